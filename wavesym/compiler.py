@@ -1,0 +1,195 @@
+"""wavesym in one view: each stage takes one frozen value and gives the next.
+
+    stage        takes                gives                        room
+    ----------   ------------------   --------------------------   ------------
+    read         TOML                 Scene                        scene/
+    build        Scene                Chain                        mechanics/
+    derive       System               Recurrence (symbolic m)      derivation/   SymPy, and only here
+    run          Recurrence, Chain    Table (exact coefficients)   tables/
+    merge        Table, outputs       Signals, then an evaluator   evaluators/
+    emit         evaluator            C, NumPy, manifest           emission/
+    verify       all of these         a verdict                    verification/
+
+What follows is one short function for each way through. The heavy libraries load when a way needs them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from difflib import unified_diff
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wavesym.emission import closed as closed_emission
+from wavesym.emission.description import describe
+from wavesym.emission.manifest import manifest
+from wavesym.emission.tables import table_lines
+from wavesym.evaluators.ball import evaluate, largest
+from wavesym.evaluators.closed import ClosedForm, closed_form, refuse_beyond
+from wavesym.evaluators.contact import ContactEnd, contact_ends
+from wavesym.evaluators.doubles import above, nearest, rational
+from wavesym.evaluators.signal import Signal, horizon, signals
+from wavesym.mechanics.chain import chain
+from wavesym.scene import Scene
+from wavesym.tables.table import Row, Table, full_table
+from wavesym.writing import write_whole
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+LANGUAGES = {"c": ("c",), "numpy": ("numpy",), "all": ("c", "numpy")}
+
+
+@dataclass(frozen=True)
+class Response:
+    """A scene's outputs as one function: the exact tables in ball arithmetic, each value rounded once.
+
+    `outputs` are their names, `tau_max` the end of the horizon; `error_bound` is relative to an output's largest value.
+    """
+
+    scene: Scene
+
+    @cached_property
+    def signals(self) -> tuple[Signal, ...]:
+        """The outputs as sums of arrivals, exact."""
+        return signals(self.scene)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return tuple(output.name for output in self.scene.outputs)
+
+    @property
+    def tau_max(self) -> float:
+        return horizon(self.scene)
+
+    @property
+    def error_bound(self) -> float:
+        return 2.0**-53
+
+    def __call__(self, tau: ArrayLike) -> NDArray[np.float64]:
+        """Values at tau (dimensionless): shape (len(outputs), *tau.shape), NaN where tau is out of [0, tau_max]."""
+        taus = np.asarray(tau, dtype=np.float64)
+        inside = (taus >= 0.0) & (taus <= self.tau_max)
+        out = np.full((len(self.outputs), *taus.shape), np.nan)
+        for row, signal in zip(out, self.signals, strict=True):
+            row[inside] = evaluate(signal, taus[inside].tolist(), self.tau_max)
+        return out
+
+
+def evaluator(scene: Scene) -> Response:
+    """The reference evaluator of a scene, right to the last bit. CostError where its tables would be absurd."""
+    return Response(scene)
+
+
+def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
+    """The rows of the coefficient table (see `Row`), exact; `intervals` of every function, or those the horizon needs."""
+    return list(table(scene, intervals).rows())
+
+
+def table(scene: Scene, intervals: int | None = None) -> Table:
+    """The unit responses of all sources of the scene's system."""
+    return full_table(chain(scene), intervals, rational(horizon(scene)))
+
+
+def tables_text(scene: Scene, intervals: int | None, format: str) -> Iterator[str]:
+    """The table as csv, json or latex, line by line."""
+    return table_lines(table(scene, intervals), scene.name, format)
+
+
+def derive(system: str, m: int | None) -> str:
+    """The derivation of "collision", "drive" or "building" (both bases) as text; with m, every line written out."""
+    from wavesym.derivation.text import derivation_text
+
+    return derivation_text(system, m)
+
+
+def files(scene: Scene, language: str = "c", evaluator: str = "auto") -> dict[str, str]:
+    """What `generate` writes, by file name. ToleranceError where the evaluator cannot meet the scene's tolerance."""
+    merged = signals(scene)
+    form = closed_form(merged, horizon(scene))
+    refuse_beyond(form, rational(scene.output.tolerance), scene.name)
+    reason = f"closed: {len(form.outputs)} outputs, bound {form.error_bound:.1e}"
+    description = describe(scene, form, reason, contact_ends(scene))
+    made = {f"{scene.name}.json": manifest(scene, description, form)}
+    if "c" in LANGUAGES[language]:
+        made |= closed_emission.c_files(description, form, _reference(merged, form))
+    if "numpy" in LANGUAGES[language]:
+        made |= closed_emission.numpy_files(description, form)
+    return dict(sorted(made.items()))
+
+
+def _reference(merged: Sequence[Signal], form: ClosedForm) -> closed_emission.Reference:
+    """Values for the self-test: at every arrival, just before it, and between."""
+    taus = form.check_points
+    sizes = [largest(signal, form.tau_max) for signal in merged]
+    return closed_emission.Reference(
+        taus,
+        [evaluate(signal, taus, form.tau_max) for signal in merged],
+        [above(output.bound * size) for output, size in zip(form.outputs, sizes, strict=True)],
+    )
+
+
+def generate(
+    scene: Scene, directory: str | Path | None = None, language: str = "c", evaluator: str = "auto"
+) -> tuple[Path, ...]:
+    """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written."""
+    folder = Path(directory or scene.name)
+    made = {folder / name: text for name, text in files(scene, language, evaluator).items()}
+    write_whole(made)
+    return tuple(made)
+
+
+def check(scene: Scene, directory: str | Path | None = None, language: str = "c", evaluator: str = "auto") -> str:
+    """The difference between what stands in `directory` and what `generate` would write; empty where there is none."""
+    folder = Path(directory or scene.name)
+    made = files(scene, language, evaluator)
+    found = {path.name for path in folder.glob(f"{scene.name}*")} if folder.is_dir() else set()
+    report: list[str] = []
+    for name in sorted(made.keys() | found):
+        if name not in made:
+            report.append(f"orphaned: {folder / name}\n")
+            continue
+        old = (folder / name).read_text(encoding="utf-8") if name in found else ""
+        if name not in found:
+            report.append(f"missing: {folder / name}\n")
+        report += unified_diff(
+            old.splitlines(keepends=True), made[name].splitlines(keepends=True), str(folder / name), "as generated"
+        )
+    if report:
+        report.append(f"to mend: wavesym generate SCENE -o {folder} --language {language}\n")
+    return "".join(report)
+
+
+def run(scene: Scene, samples: int, at: Sequence[float] | None = None) -> Iterator[str]:
+    """The outputs as CSV lines: at `at`, or at `samples` equally spaced tau from 0 to the end of the horizon."""
+    response = evaluator(scene)
+    taus = list(at) if at is not None else grid(scene, samples)
+    yield ",".join(("tau", *response.outputs)) + "\n"
+    for row in np.vstack([np.asarray(taus), response(taus)]).T.tolist():
+        yield ",".join(map(repr, row)) + "\n"
+
+
+def grid(scene: Scene, samples: int) -> list[float]:
+    """`samples` equally spaced tau, each rounded once; the last one is the end of the horizon."""
+    until = rational(scene.output.until)
+    between = [nearest(until * k / (samples - 1)) for k in range(samples - 1)]
+    return [*between, horizon(scene)] if samples > 1 else [0.0]
+
+
+def contact_warnings(scene: Scene) -> list[str]:
+    """A line for every contact that opens early enough to matter to an output."""
+    return [
+        f"contact at x = {end.x} opens at tau = {end.digits}: what it can reach after that is the formal continuation"
+        for end in contact_ends(scene)
+    ]
+
+
+def verify(scenes: Sequence[Scene]) -> tuple[str, bool]:
+    """Evaluators against direct integration: a table of errors, and whether all of them are allowed."""
+    from wavesym.verification.report import verify as report
+
+    return report(scenes)

@@ -1,0 +1,1 @@
+"""System -> Recurrence: wave ansatz, boundary conditions, delay equations, coefficient recurrences; SymPy, and only here."""

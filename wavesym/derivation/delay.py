@@ -1,0 +1,139 @@
+"""Boundary conditions -> delay equations: (4.2) put into (2.3) and (2.4) at every node, as the paper does for (4.6)-(4.8).
+
+At a node two waves leave, one to each side. Continuity (2.3) gives one of them, the balance (2.4) the other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+from sympy import Expr, IndexedBase, Integer, Rational, Symbol
+
+from wavesym.derivation.line import Line, Operator, Wave, exact, load, wave
+from wavesym.mechanics.node import Family, Node, Parameters, Rod, System
+
+I = Symbol("i", integer=True, positive=True)
+M = Symbol("m", integer=True, positive=True)
+D = Operator(Integer(1), Integer(0))
+SYMBOLS = Parameters(kappa=IndexedBase("kappa"), inertia=IndexedBase("J"), velocity=IndexedBase("v"))
+
+
+@dataclass(frozen=True)
+class DelayEquation:
+    """(a D + b) of wave `function` of rod `rod` equals `right`, for i = first, first + step, ... last.
+
+    Where `rod` is no function of i the equation stands alone and first = last = rod.
+    """
+
+    function: str
+    rod: Expr
+    own: Operator
+    right: Line
+    first: Expr
+    last: Expr
+    step: int
+
+
+@dataclass(frozen=True)
+class Side:
+    """A rod as its end at a node sees it: velocity and strain there, as lines in the clock tau."""
+
+    rod: Expr
+    velocity: Line
+    strain: Line
+    outgoing: Wave
+
+
+def _side(rod: Rod, number: Expr, x: Expr, outgoing: str) -> Side:
+    lag = {"f": exact(rod.tau0 + x - rod.x0), "g": exact(rod.tau0 - x + rod.x0)}
+    f, g = wave("f", number, lag["f"]), wave("g", number, lag["g"])
+    return Side(
+        number, f + g + load("impact", None, 0, rod.velocity), g - f, Wave(outgoing, exact(number), lag[outgoing])
+    )
+
+
+def _solved(equation: Line, unknown: Wave) -> tuple[Operator, Line]:
+    """`equation` = 0 as (own operator) unknown = right, on the clock of the unknown, own operator D + b or 1."""
+    a, b = equation.waves[unknown]
+    factor = a if a != 0 else b
+    right = equation.without(unknown).scaled(-1 / factor).delayed(-unknown.lag)
+    return Operator(exact(a / factor), exact((b / factor).expand())), right
+
+
+def _balance(node: Node, left: Side | None, right: Side | None, velocity: Line) -> Line:
+    """(2.4), everything on one side."""
+    line = velocity.scaled(node.damping)
+    if node.inertia:
+        line = line + velocity.differentiated().scaled(node.inertia)
+    if right:
+        line = line - right.strain.scaled(Rational(1, 2) * node.beta)
+    if left:
+        line = line + left.strain.scaled(Rational(1, 2) * node.alpha)
+    for unit in node.loads:
+        for power, value in enumerate(unit.coefficients):
+            line = line - load(unit.kind, unit.number, power, value)
+    return line
+
+
+def _at_node(node: Node, x: Expr) -> list[tuple[Wave, Operator, Line]]:
+    """The waves that leave the node at x: each as (wave, its operator, what that equals)."""
+    left = _side(node.left, x, x, "g") if node.left else None
+    right = _side(node.right, x + 1, x, "f") if node.right else None
+    if left is None or right is None:
+        side = left or right
+        assert side is not None  # a node has a rod
+        return [(side.outgoing, *_solved(_balance(node, left, right, side.velocity), side.outgoing))]
+    # Continuity must look back in time, so it gives the wave that is ahead on its clock; on a tie, the one to the right.
+    ahead, other = (right, left) if (right.outgoing.lag - left.outgoing.lag).is_nonpositive else (left, right)
+    _, continuous = _solved(ahead.velocity - other.velocity, ahead.outgoing)
+    balance = _balance(node, left, right, other.velocity).substituted(ahead.outgoing.function, ahead.rod, continuous)
+    own, balanced = _solved(balance, other.outgoing)
+    if own.a == 0:
+        continuous = continuous.substituted(other.outgoing.function, other.rod, balanced)
+    return [(ahead.outgoing, Operator(Integer(0), Integer(1)), continuous), (other.outgoing, own, balanced)]
+
+
+def _family_equations(family: Family) -> list[DelayEquation]:
+    alone = exact(family.first - family.last) == 0
+    x = exact(family.first) if alone else I
+    equations = []
+    for unknown, own, right in _at_node(family.at(x), x):
+        if alone:
+            equations.append(DelayEquation(unknown.function, unknown.rod, own, right, unknown.rod, unknown.rod, 1))
+            continue
+        # number the equation by its own rod: of the node at x = i, the right one is rod i + 1
+        shift = unknown.rod - I
+        place = Line({Wave(unknown.function, unknown.rod, Integer(0)): own}).renumbered(I, I - shift)
+        ((renumbered, operator),) = place.waves.items()
+        equations.append(
+            DelayEquation(
+                unknown.function,
+                renumbered.rod,
+                operator,
+                right.renumbered(I, I - shift),
+                exact(family.first + shift),
+                exact(family.last + shift),
+                family.step,
+            )
+        )
+    return equations
+
+
+def _without_echoes(equations: list[DelayEquation]) -> list[DelayEquation]:
+    """A free end only sends back what arrives: put that into the other equations, as the paper does."""
+    for echo in equations:
+        (end,) = echo.right.waves.values() if len(echo.right.waves) == 1 else (None,)
+        if end is not None and end.a == 0 and echo.own.a == 0 and not echo.right.loads:
+            equations = [
+                other if other is echo else replace(other, right=other.right.substituted(echo.function, echo.rod, echo.right))
+                for other in equations
+            ]
+    return equations
+
+
+@cache
+def delay_equations(system: System) -> tuple[DelayEquation, ...]:
+    """The delay equations of a system for symbolic m: one for every wave function of every kind of rod."""
+    equations = [e for family in system.families(M, SYMBOLS) for e in _family_equations(family)]
+    return tuple(_without_echoes(equations))

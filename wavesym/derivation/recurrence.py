@@ -1,0 +1,162 @@
+"""Delay equations -> coefficient recurrences, with symbolic rod, interval and power, and their numbers for one chain.
+
+The recurrences that `derive` prints are the ones that `tables` runs: `Recurrence.rule` evaluates them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache, reduce
+from math import gcd
+
+from flint import fmpq
+from sympy import Expr, Symbol, exp
+
+from wavesym.derivation.delay import DelayEquation, I, M, delay_equations
+from wavesym.derivation.line import Operator
+from wavesym.derivation.numbers import number
+from wavesym.derivation.rule import Linear, LoadTerm, Rule, Term, Weights
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Parameters, System
+
+RATE = Symbol("g")
+POWER = Symbol("k", integer=True, nonnegative=True)
+W = Symbol("w", positive=True)
+
+
+@dataclass(frozen=True)
+class SymbolicWeights:
+    """(a D + b) on a coefficient: `same` times F[g,k] plus `raised` times F[g,k+1]; `jump` at a front."""
+
+    same: Expr
+    raised: Expr
+    jump: Expr
+
+
+@cache
+def _derivative_weights() -> tuple[Expr, Expr]:
+    """D on exp(-g w) (F_k w**k + F_(k+1) w**(k+1)), read off at exp(-g w) w**k."""
+    this, following = Symbol("F_k"), Symbol("F_k1")
+    ansatz = exp(-RATE * W) * (this * W**POWER + following * W ** (POWER + 1))
+    bare = (ansatz.diff(W) / (exp(-RATE * W) * W**POWER)).expand().powsimp()
+    at_power = bare.as_independent(W, as_Add=True)[0]
+    return at_power.coeff(this), at_power.coeff(following).factor()
+
+
+def weights(operator: Operator) -> SymbolicWeights:
+    """What a D + b does to the coefficients of an increment."""
+    same, raised = _derivative_weights()
+    return SymbolicWeights(operator.b + operator.a * same, operator.a * raised, operator.a)
+
+
+@dataclass(frozen=True)
+class SymbolicTerm:
+    """A function on the right of a recurrence, `back` intervals earlier."""
+
+    function: str
+    rod: Expr
+    back: int
+    weights: SymbolicWeights
+
+
+@dataclass(frozen=True)
+class SymbolicLoad:
+    """A load on the right of a recurrence: `value` at rate 0 and `power`, in interval 1 + `back`."""
+
+    kind: str
+    number: Expr | None
+    back: int
+    power: int
+    value: Expr
+
+
+@dataclass(frozen=True)
+class CoefficientLaw:
+    """The recurrence of one kind of function, for i = first, first + step, ... last (see `DelayEquation`).
+
+    With R[g,k] the sum of terms and loads, and for every rate g, powers k downwards from the highest:
+        own.same(g) F[g,k] + own.raised(k) F[g,k+1] = R[g,k];
+    at the rate where own.same vanishes, F[g,0] follows from own.jump sum_g F[g,0] = sum of term.jump sum_g G[g,0].
+    """
+
+    function: str
+    rod: Expr
+    own: SymbolicWeights
+    terms: tuple[SymbolicTerm, ...]
+    loads: tuple[SymbolicLoad, ...]
+    first: Expr
+    last: Expr
+    step: int
+
+
+@dataclass(frozen=True)
+class Recurrence:
+    """All coefficient recurrences of a system; an interval is `interval` long on every function's own clock."""
+
+    laws: tuple[CoefficientLaw, ...]
+    interval: int
+
+    def rule(self, chain: Chain, function: str, rod: int) -> Rule:
+        """The recurrence of one function of a chain, in exact numbers. KeyError where there is none."""
+        places = {M.name: chain.m, I.name: rod}
+        for law in self.laws:
+            if law.function == function and _place(law.first, places) <= rod <= _place(law.last, places):
+                if (rod - _place(law.first, places)) % law.step == 0:
+                    return _rule(law, chain.parameters, places)
+        raise KeyError((function, rod))
+
+
+@cache
+def recurrence(system: System) -> Recurrence:
+    """The recurrence of a system, for symbolic m."""
+    equations = delay_equations(system)
+    lags = [int(x.lag) for e in equations for x in (*e.right.waves, *e.right.loads)]
+    interval = reduce(gcd, lags)
+    return Recurrence(tuple(_law(e, interval) for e in equations), interval)
+
+
+def _law(e: DelayEquation, interval: int) -> CoefficientLaw:
+    return CoefficientLaw(
+        e.function,
+        e.rod,
+        weights(e.own),
+        tuple(
+            SymbolicTerm(w.function, w.rod, int(w.lag) // interval, weights(operator))
+            for w, operator in e.right.waves.items()
+        ),
+        tuple(
+            SymbolicLoad(s.kind, s.number, int(s.lag) // interval, s.power, value)
+            for s, value in e.right.loads.items()
+        ),
+        e.first,
+        e.last,
+        e.step,
+    )
+
+
+def _place(expression: Expr, places: Mapping[str, int]) -> int:
+    return int(number(expression, places, None))
+
+
+def _rule(law: CoefficientLaw, parameters: Parameters, places: Mapping[str, int]) -> Rule:
+    def value(expression: Expr) -> fmpq:
+        return number(expression, places, parameters)
+
+    def linear(expression: Expr, variable: Symbol) -> Linear:
+        slope = expression.expand().coeff(variable)
+        return Linear(value(expression.subs(variable, 0)), value(slope))
+
+    def exact(w: SymbolicWeights) -> Weights:
+        return Weights(linear(w.same, RATE), linear(w.raised, POWER), value(w.jump))
+
+    def source(kind: str, index: Expr | None) -> str:
+        return kind if index is None else f"{kind}{_place(index, places)}"
+
+    return Rule(
+        law.function,
+        places[I.name],
+        exact(law.own),
+        tuple(Term(t.function, _place(t.rod, places), t.back, exact(t.weights)) for t in law.terms),
+        tuple(LoadTerm(source(x.kind, x.number), x.back, x.power, value(x.value)) for x in law.loads),
+    )

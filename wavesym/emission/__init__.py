@@ -1,0 +1,1 @@
+"""Evaluator -> files: dataclasses of strings for the templates, literals, rendering."""

@@ -1,0 +1,138 @@
+"""The reference: exact tables evaluated in ball arithmetic with as many bits as it takes, rounded once.
+
+Between two arrivals an output is one polynomial per rate in the local variable u = tau - (last arrival); all earlier
+increments are carried along into it, so that a value costs the same after many reflections as after few.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+from flint import arb, arb_poly, ctx, fmpq
+
+from wavesym.evaluators.doubles import midpoint, rational, rounded
+from wavesym.evaluators.signal import Signal
+from wavesym.tables.increments import Increment
+
+_FIRST_BITS = 128
+_MOST_BITS = 1 << 17
+_NEGLIGIBLE = arb(2) ** -200
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Segment:
+    """An output between two arrivals: sum over rates of exp(-rate u) * polynomial(u), u = tau - start."""
+
+    start: fmpq
+    families: dict[fmpq, arb_poly]
+
+    def at(self, u: fmpq | arb) -> arb:
+        """The value, a ball, at a point or on an interval."""
+        local = arb(u)
+        return sum((polynomial(local) * (-local * arb(rate)).exp() for rate, polynomial in self.families.items()), arb(0))
+
+    def shifted(self, by: fmpq) -> dict[fmpq, arb_poly]:
+        """The same function in a local variable that starts `by` later."""
+        return shifted(self.families, by)
+
+
+def shifted(families: dict[fmpq, arb_poly], by: fmpq) -> dict[fmpq, arb_poly]:
+    """sum exp(-g (u + by)) P_g(u + by), as families in u. Coefficients that are not negative stay so."""
+    later = arb_poly([arb(by), 1])
+    return {rate: (-arb(rate) * arb(by)).exp() * polynomial(later) for rate, polynomial in families.items()}
+
+
+def segments(signal: Signal) -> Iterator[Segment]:
+    """The segments of a signal, at the working precision."""
+    families: dict[fmpq, arb_poly] = {}
+    last = None
+    for arrival in signal.arrivals:
+        if last is not None:
+            families = shifted(families, arrival.time - last)
+        for rate, polynomial in polynomials(arrival.increment).items():
+            families[rate] = families.get(rate, arb_poly()) + polynomial
+        last = arrival.time
+        yield Segment(last, dict(families))
+
+
+def polynomials(increment: Increment) -> dict[fmpq, arb_poly]:
+    """An increment as one polynomial in balls per rate."""
+    return {rate: arb_poly([arb(value) for value in powers]) for rate, powers in increment.items()}
+
+
+class Balls:
+    """A signal in balls at the precision at which it is made."""
+
+    def __init__(self, signal: Signal) -> None:
+        self.segments = list(segments(signal))
+        self._starts = [segment.start for segment in self.segments]
+
+    def largest(self, until: fmpq) -> arb:
+        """A lower bound of the largest absolute value up to `until`, from the ends of all segments and points between."""
+        ends = [*self._starts[1:], until]
+        points = [
+            segment.at((end - segment.start) * fmpq(k, 4))
+            for segment, end in zip(self.segments, ends, strict=True)
+            for k in range(5)
+        ]
+        return max((abs(value).lower() for value in points), default=arb(0))
+
+    def at(self, tau: fmpq) -> arb:
+        """The value at tau; at a jump the one to the right of it."""
+        place = bisect_right(self._starts, tau) - 1
+        return self.segments[place].at(tau - self._starts[place]) if place >= 0 else arb(0)
+
+
+def precise(attempt: Callable[[], T | None], bits: int = _FIRST_BITS) -> T:
+    """The first result of `attempt` that is not None, each time with twice the bits of working precision."""
+    while bits <= _MOST_BITS:
+        with ctx.workprec(bits):
+            result = attempt()
+        if result is not None:
+            return result
+        bits *= 2
+    raise ArithmeticError(f"{_MOST_BITS} bits are not enough")
+
+
+def evaluate(signal: Signal, taus: Sequence[float], until: float) -> list[float]:
+    """The correctly rounded values of a signal at doubles tau <= until.
+
+    Where a value is so near to 0 or to the middle between two doubles that 200 bits more than the largest value's do
+    not tell, it is rounded from there.
+    """
+    if not signal.arrivals:
+        return [0.0] * len(taus)
+    exact = [rational(tau) for tau in taus]
+
+    def attempt() -> list[float] | None:
+        balls = Balls(signal)
+        negligible = balls.largest(rational(until)) * _NEGLIGIBLE
+        results = []
+        for tau in exact:
+            value = balls.at(tau)
+            double = rounded(value)
+            if double is None:
+                if not value.rad() < negligible:
+                    return None
+                double = 0.0 if value.contains(0) else midpoint(value)
+            results.append(double)
+        return results
+
+    return precise(attempt)
+
+
+def largest(signal: Signal, until: float) -> arb:
+    """A ball with a lower bound of a signal's largest absolute value on [0, until]; 0 where it has no arrivals."""
+    if not signal.arrivals:
+        return arb(0)
+
+    def attempt() -> arb | None:
+        size = Balls(signal).largest(rational(until))
+        return size if size > 0 else None
+
+    return precise(attempt)

@@ -1,0 +1,178 @@
+"""The closed form: the paper's sums of increments in double arithmetic, with a proof of how far it can be trusted.
+
+For tau between two arrivals an output is the sum, over all arrivals so far, of sum_g exp(-g w) sum_k c_k w**k. That is
+what the generated program adds up, oldest first: w as the sum of two doubles, the powers by Horner's rule. With u the
+unit roundoff 2**-53, a term c_k w**k exp(-g w) is wrong by at most (to first order, times its absolute value)
+
+    c_k rounded                     1 u         w, twice rounded       2 k u + 2 g w u
+    Horner's rule                   (2 k + 1) u   g rounded, g w rounded   2 g w u
+    exp, within two ulp             4 u         times the polynomial   1 u      and 1 u for every later addition.
+
+The weighted absolute values are themselves exponential polynomials without negative coefficients, so that they merge
+from segment to segment as the output does, and their largest value on a segment is known term by term. Where terms
+cancel (many reflections, nearly equal rates) this bound grows without the output growing: there the form ends.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+from flint import arb, arb_poly, fmpq
+
+from wavesym.errors import ToleranceError
+from wavesym.evaluators.ball import largest, polynomials, shifted
+from wavesym.evaluators.doubles import UNIT_ROUNDOFF, above, nearest, not_below, rational
+from wavesym.evaluators.signal import Signal
+from wavesym.tables.increments import Increment
+
+# Horner's rule must stay within the exponents of doubles; what underflows is then below the second number
+_LARGEST_POWER = arb(2) ** 900
+_UNDERFLOW = arb(2) ** -170
+# all that is of second order in u, as long as no factor of u reaches 2**40
+_SECOND_ORDER = arb(fmpq(1001, 1000))
+
+
+@dataclass(frozen=True)
+class Family:
+    """exp(-rate w) * (powers[0] + powers[1] w + ...)."""
+
+    rate: float
+    powers: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """What is added from tau = `start` on, in w = (tau - start) + excess: the arrival was `excess` before `start`."""
+
+    start: float
+    excess: float
+    families: tuple[Family, ...]
+
+
+@dataclass(frozen=True)
+class ClosedOutput:
+    """One output as a sum of pulses.
+
+    `bound` is the proved largest error relative to the largest value, `reached[n]` the same up to the end of pulse n.
+    """
+
+    name: str
+    pulses: tuple[Pulse, ...]
+    bound: float
+    reached: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """The closed form of a scene's outputs on [0, tau_max]."""
+
+    outputs: tuple[ClosedOutput, ...]
+    tau_max: float
+
+    @cached_property
+    def error_bound(self) -> float:
+        """The largest error of any output relative to its largest value; proved."""
+        return max(output.bound for output in self.outputs)
+
+
+    @cached_property
+    def check_points(self) -> list[float]:
+        """0, every start of a pulse, the last double before it, the middle between two of them, and tau_max."""
+        starts = sorted({0.0, self.tau_max} | {pulse.start for output in self.outputs for pulse in output.pulses})
+        points = set(starts)
+        for start, end in pairwise(starts):
+            points |= {(start + end) / 2, math.nextafter(end, start)}
+        return sorted(points)
+
+
+def closed_form(signals: Sequence[Signal], tau_max: float) -> ClosedForm:
+    """The closed form of signals, with its bounds, whatever they are."""
+    return ClosedForm(tuple(_closed_output(signal, tau_max) for signal in signals), tau_max)
+
+
+def refuse_beyond(form: ClosedForm, tolerance: fmpq, name: str) -> None:
+    """ToleranceError where the closed form does not meet `tolerance`: how many digits are lost, from which tau on."""
+    worst = max(form.outputs, key=lambda output: output.bound)
+    if rational(worst.bound) <= tolerance if math.isfinite(worst.bound) else False:
+        return
+    since = min(
+        pulse.start
+        for output in form.outputs
+        for pulse, bound in zip(output.pulses, output.reached, strict=True)
+        if not bound <= nearest(tolerance)
+    )
+    digits = "all" if worst.bound >= 1 else str(math.ceil(math.log10(worst.bound * 2**53)))
+    raise ToleranceError(
+        f"{name}: closed: loses {digits} digits, tolerance {nearest(tolerance):g} is not met after tau = {since:g} "
+        f"(bound {worst.bound:.1e} for {worst.name}); `wavesym run` has the values"
+    )
+
+
+def _closed_output(signal: Signal, tau_max: float) -> ClosedOutput:
+    pulses = tuple(_pulse(arrival.time, arrival.increment) for arrival in signal.arrivals)
+    errors = _errors(signal, tau_max)
+    if not errors:
+        return ClosedOutput(signal.name, pulses, 0.0, ())
+    reached = tuple(max(errors[: n + 1]) for n in range(len(errors)))
+    return ClosedOutput(signal.name, pulses, reached[-1], reached)
+
+
+def _pulse(time: fmpq, increment: Increment) -> Pulse:
+    start = not_below(time)
+    families = (Family(nearest(rate), tuple(nearest(c) for c in increment[rate])) for rate in sorted(increment))
+    return Pulse(start, nearest(rational(start) - time), tuple(families))
+
+
+def _errors(signal: Signal, tau_max: float) -> list[float]:
+    """For every segment the largest error on it, relative to the signal's largest value; infinite beyond doubles."""
+    if not signal.arrivals:
+        return []
+
+    size = largest(signal, tau_max)
+    return [above(error / size) if error is not None else math.inf for error in _segment_errors(signal, rational(tau_max))]
+
+
+def _segment_errors(signal: Signal, until: fmpq) -> list[arb | None]:
+    """Upper bounds of the absolute error on each segment; None where doubles would overflow."""
+    u = arb(UNIT_ROUNDOFF)
+    sizes: dict[fmpq, arb_poly] = {}  # the absolute values of all terms so far
+    weights: dict[fmpq, arb_poly] = {}  # the same, each times its factor of u
+    ends = [arrival.time for arrival in signal.arrivals[1:]] + [until]
+    last = signal.arrivals[0].time
+    representable = True
+    errors: list[arb | None] = []
+    for arrival, end in zip(signal.arrivals, ends, strict=True):
+        sizes = shifted(sizes, arrival.time - last)
+        weights = shifted(weights, arrival.time - last)
+        last = arrival.time
+        new = {rate: arb_poly([abs(c) for c in p.coeffs()]) for rate, p in polynomials(arrival.increment).items()}
+        for rate, polynomial in new.items():
+            sizes[rate] = sizes.get(rate, arb_poly()) + polynomial
+            weights[rate] = weights.get(rate, arb_poly()) + _weighted(rate, polynomial)
+            representable &= bool(polynomial(arb(until - last).max(arb(1))) < _LARGEST_POWER)
+            # every family is one more addition for all that came before it
+            for older, size in sizes.items():
+                weights[older] = weights[older] + size
+        length = arb(end - arrival.time)
+        error = sum((_largest(rate, polynomial, length) for rate, polynomial in weights.items()), arb(0))
+        errors.append((error * u * _SECOND_ORDER + _UNDERFLOW) if representable else None)
+    return errors
+
+
+def _weighted(rate: fmpq, polynomial: arb_poly) -> arb_poly:
+    """Every term times its factor of u in the module's table: 7 + 4 k + 4 g w."""
+    powers = [(7 + 4 * k) * c for k, c in enumerate(polynomial.coeffs())]
+    return arb_poly(powers) + arb_poly([arb(0), 4 * arb(rate)]) * polynomial
+
+
+def _largest(rate: fmpq, polynomial: arb_poly, length: arb) -> arb:
+    """An upper bound of exp(-rate w) * polynomial(w), coefficients >= 0, for 0 <= w <= length: the sum of each term's largest."""
+    total = arb(0)
+    for k, c in enumerate(polynomial.coeffs()):
+        peak = length if rate == 0 else length.min(arb(fmpq(k) / rate))
+        total += c * peak**k * (-arb(rate) * peak).exp()
+    return total.upper()

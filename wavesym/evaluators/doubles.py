@@ -1,0 +1,47 @@
+"""Between exact numbers, balls and IEEE doubles. Nothing is rounded here except where a name says so."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+from flint import arb, fmpq
+
+UNIT_ROUNDOFF = fmpq(1, 2**53)
+
+
+def rational(value: float | Fraction) -> fmpq:
+    """The exact value of a double or a fraction."""
+    return fmpq(*value.as_integer_ratio())
+
+
+def nearest(value: fmpq) -> float:
+    """The double nearest to an exact number, ties to even. OverflowError beyond the largest double."""
+    return int(value.p) / int(value.q)
+
+
+def not_below(value: fmpq) -> float:
+    """The smallest double that is not below an exact number: from there on a breakpoint counts."""
+    double = nearest(value)
+    return double if rational(double) >= value else math.nextafter(double, math.inf)
+
+
+def _exact(point: arb) -> fmpq:
+    mantissa, exponent = (int(part) for part in point.man_exp())
+    return fmpq(mantissa << exponent) if exponent >= 0 else fmpq(mantissa, 1 << -exponent)
+
+
+def midpoint(ball: arb) -> float:
+    """The double nearest to the middle of a ball."""
+    return nearest(_exact(ball.mid()))
+
+
+def above(ball: arb) -> float:
+    """A double that is not below anything in a ball."""
+    return not_below(_exact(ball.upper()))
+
+
+def rounded(ball: arb) -> float | None:
+    """The double that everything in the ball rounds to, None where there is not one."""
+    low, high = nearest(_exact(ball.lower())), nearest(_exact(ball.upper()))
+    return low if low == high else None

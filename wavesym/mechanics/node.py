@@ -1,0 +1,93 @@
+"""What a system is made of: rods, and the conditions (2.4) at the nodes between them.
+
+A system describes its nodes once, as functions of the place i, the number of rods m and the parameters. With exact
+numbers in their place the description is the chain of a scene; with symbols it is the start of the derivation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+# An exact rational (int, fmpq, Fraction) in a chain, a symbolic expression in a derivation.
+Quantity = Any
+
+
+@dataclass(frozen=True)
+class Rod:
+    """An elastic rod's clock and start: the constants of (4.2) and Table 1 (all dimensionless).
+
+    Its waves are f(tau - tau0 - x + x0) and g(tau - tau0 + x - x0); `velocity` is the v of (2.2).
+    """
+
+    tau0: Quantity
+    x0: Quantity
+    velocity: Quantity = 0
+
+
+@dataclass(frozen=True)
+class Load:
+    """A unit load at a node: `coefficients[k]` multiplies tau**k from tau = 0 on.
+
+    `kind` is "M" (a step of moment `number`), "a" or "b" (a unit step or ramp of the base acceleration).
+    """
+
+    kind: str
+    number: Quantity | None
+    coefficients: tuple[Quantity, ...]
+
+
+@dataclass(frozen=True)
+class Node:
+    """The condition between rod x (on the left) and rod x + 1 (on the right), in dimensionless form:
+
+        inertia U_tt + damping U_t = (beta/2) dU_right/dx - (alpha/2) dU_left/dx + loads,
+
+    with U_t the same on both sides. Every line of (4.3)-(4.5) is of this form: a rigid body has inertia 1, a contact,
+    a free end or a prescribed force inertia 0; a prescribed velocity is damping 1 alone.
+    """
+
+    left: Rod | None
+    right: Rod | None
+    inertia: int
+    alpha: Quantity
+    beta: Quantity
+    damping: Quantity = 0
+    loads: tuple[Load, ...] = ()
+
+
+@dataclass(frozen=True)
+class Family:
+    """Nodes of one kind, at x = first, first + step, ... last."""
+
+    first: Quantity
+    last: Quantity
+    step: int
+    at: Callable[[Quantity], Node]
+
+
+def single(x: Quantity, node: Node) -> Family:
+    """A family of one: `node` at `x`."""
+    return Family(x, x, 1, lambda _: node)
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """The numbers (or symbols) of a system, each indexed as in the paper."""
+
+    kappa: Any
+    inertia: Any = None
+    velocity: Any = None
+
+
+@dataclass(frozen=True)
+class System:
+    """One system of the paper: its nodes, for any m, as families from left to right.
+
+    `name` is what `derive` calls it; `smallest` is the least m it is made for.
+    """
+
+    name: str
+    smallest: int
+    families: Callable[[Quantity, Parameters], tuple[Family, ...]]
