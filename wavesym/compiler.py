@@ -30,7 +30,7 @@ from wavesym.emission.manifest import manifest
 from wavesym.emission.tables import table_lines
 from wavesym.evaluators.ball import evaluate, largest
 from wavesym.evaluators.closed import ClosedForm, closed_form, refuse_beyond
-from wavesym.evaluators.contact import ContactEnd, contact_ends
+from wavesym.evaluators.contact import contact_ends
 from wavesym.evaluators.doubles import above, nearest, rational
 from wavesym.evaluators.signal import Signal, horizon, signals
 from wavesym.mechanics.chain import chain
@@ -73,11 +73,12 @@ class Response:
     def __call__(self, tau: ArrayLike) -> NDArray[np.float64]:
         """Values at tau (dimensionless): shape (len(outputs), *tau.shape), NaN where tau is out of [0, tau_max]."""
         taus = np.asarray(tau, dtype=np.float64)
-        inside = (taus >= 0.0) & (taus <= self.tau_max)
-        out = np.full((len(self.outputs), *taus.shape), np.nan)
+        flat = taus.ravel()
+        inside = (flat >= 0.0) & (flat <= self.tau_max)
+        out = np.full((len(self.outputs), flat.size), np.nan)
         for row, signal in zip(out, self.signals, strict=True):
-            row[inside] = evaluate(signal, taus[inside].tolist(), self.tau_max)
-        return out
+            row[inside] = evaluate(signal, flat[inside].tolist(), self.tau_max)
+        return out.reshape(len(self.outputs), *taus.shape)
 
 
 def evaluator(scene: Scene) -> Response:
@@ -86,7 +87,7 @@ def evaluator(scene: Scene) -> Response:
 
 
 def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
-    """The rows of the coefficient table (see `Row`), exact; `intervals` of every function, or those the horizon needs."""
+    """The rows of the coefficient table, exact: `intervals` of every function, or those the horizon needs."""
     return list(table(scene, intervals).rows())
 
 

@@ -1,1 +1,1 @@
-"""System -> Recurrence: wave ansatz, boundary conditions, delay equations, coefficient recurrences; SymPy, and only here."""
+"""System -> Recurrence: wave ansatz, delay equations, coefficient recurrences; SymPy, and only here."""

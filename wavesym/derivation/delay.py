@@ -1,4 +1,4 @@
-"""Boundary conditions -> delay equations: (4.2) put into (2.3) and (2.4) at every node, as the paper does for (4.6)-(4.8).
+"""Boundary conditions -> delay equations: (4.2) put into (2.3) and (2.4) at every node, as in (4.6)-(4.8).
 
 At a node two waves leave, one to each side. Continuity (2.3) gives one of them, the balance (2.4) the other.
 """
@@ -13,9 +13,8 @@ from sympy import Expr, IndexedBase, Integer, Rational, Symbol
 from wavesym.derivation.line import Line, Operator, Wave, exact, load, wave
 from wavesym.mechanics.node import Family, Node, Parameters, Rod, System
 
-I = Symbol("i", integer=True, positive=True)
-M = Symbol("m", integer=True, positive=True)
-D = Operator(Integer(1), Integer(0))
+INDEX = Symbol("i", integer=True, positive=True)
+COUNT = Symbol("m", integer=True, positive=True)
 SYMBOLS = Parameters(kappa=IndexedBase("kappa"), inertia=IndexedBase("J"), velocity=IndexedBase("v"))
 
 
@@ -84,7 +83,7 @@ def _at_node(node: Node, x: Expr) -> list[tuple[Wave, Operator, Line]]:
         side = left or right
         assert side is not None  # a node has a rod
         return [(side.outgoing, *_solved(_balance(node, left, right, side.velocity), side.outgoing))]
-    # Continuity must look back in time, so it gives the wave that is ahead on its clock; on a tie, the one to the right.
+    # Continuity must look back in time, so it gives the wave that is ahead on its clock; on a tie, the right one.
     ahead, other = (right, left) if (right.outgoing.lag - left.outgoing.lag).is_nonpositive else (left, right)
     _, continuous = _solved(ahead.velocity - other.velocity, ahead.outgoing)
     balance = _balance(node, left, right, other.velocity).substituted(ahead.outgoing.function, ahead.rod, continuous)
@@ -96,22 +95,22 @@ def _at_node(node: Node, x: Expr) -> list[tuple[Wave, Operator, Line]]:
 
 def _family_equations(family: Family) -> list[DelayEquation]:
     alone = exact(family.first - family.last) == 0
-    x = exact(family.first) if alone else I
+    x = exact(family.first) if alone else INDEX
     equations = []
     for unknown, own, right in _at_node(family.at(x), x):
         if alone:
             equations.append(DelayEquation(unknown.function, unknown.rod, own, right, unknown.rod, unknown.rod, 1))
             continue
         # number the equation by its own rod: of the node at x = i, the right one is rod i + 1
-        shift = unknown.rod - I
-        place = Line({Wave(unknown.function, unknown.rod, Integer(0)): own}).renumbered(I, I - shift)
+        shift = unknown.rod - INDEX
+        place = Line({Wave(unknown.function, unknown.rod, Integer(0)): own}).renumbered(INDEX, INDEX - shift)
         ((renumbered, operator),) = place.waves.items()
         equations.append(
             DelayEquation(
                 unknown.function,
                 renumbered.rod,
                 operator,
-                right.renumbered(I, I - shift),
+                right.renumbered(INDEX, INDEX - shift),
                 exact(family.first + shift),
                 exact(family.last + shift),
                 family.step,
@@ -126,7 +125,9 @@ def _without_echoes(equations: list[DelayEquation]) -> list[DelayEquation]:
         (end,) = echo.right.waves.values() if len(echo.right.waves) == 1 else (None,)
         if end is not None and end.a == 0 and echo.own.a == 0 and not echo.right.loads:
             equations = [
-                other if other is echo else replace(other, right=other.right.substituted(echo.function, echo.rod, echo.right))
+                other
+                if other is echo
+                else replace(other, right=other.right.substituted(echo.function, echo.rod, echo.right))
                 for other in equations
             ]
     return equations
@@ -135,5 +136,5 @@ def _without_echoes(equations: list[DelayEquation]) -> list[DelayEquation]:
 @cache
 def delay_equations(system: System) -> tuple[DelayEquation, ...]:
     """The delay equations of a system for symbolic m: one for every wave function of every kind of rod."""
-    equations = [e for family in system.families(M, SYMBOLS) for e in _family_equations(family)]
+    equations = [e for family in system.families(COUNT, SYMBOLS) for e in _family_equations(family)]
     return tuple(_without_echoes(equations))

@@ -72,7 +72,8 @@ class Line:
 
     def differentiated(self) -> Line:
         """D of a line of plain waves. A constant start velocity goes; the D of a load is never needed."""
-        assert all(a == 0 for a, _ in self.waves.values()) and all(s.kind == "impact" for s in self.loads)
+        assert all(a == 0 for a, _ in self.waves.values())
+        assert all(s.kind == "impact" for s in self.loads)
         return Line({wave: Operator(b, Integer(0)) for wave, (_, b) in self.waves.items()})
 
     def without(self, wave: Wave) -> Line:
@@ -97,10 +98,7 @@ class Line:
             return expand(expression.subs(index, by))
 
         return Line(
-            {
-                Wave(w.function, at(w.rod), at(w.lag)): Operator(at(o.a), at(o.b))
-                for w, o in self.waves.items()
-            },
+            {Wave(w.function, at(w.rod), at(w.lag)): Operator(at(o.a), at(o.b)) for w, o in self.waves.items()},
             {
                 Source(s.kind, None if s.number is None else at(s.number), at(s.lag), s.power): at(value)
                 for s, value in self.loads.items()

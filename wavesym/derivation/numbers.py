@@ -21,7 +21,8 @@ def number(expression: Expr, places: Mapping[str, int], parameters: Parameters |
             return fmpq(places[expression.name])
         case Indexed():
             index = int(number(expression.indices[0], places, None))
-            return getattr(parameters, _FIELDS[str(expression.base)])[index]
+            value: fmpq = getattr(parameters, _FIELDS[str(expression.base)])[index]
+            return value
         case Add():
             return sum((number(part, places, parameters) for part in expression.args), fmpq(0))
         case Mul():

@@ -13,7 +13,7 @@ from math import gcd
 from flint import fmpq
 from sympy import Expr, Symbol, exp
 
-from wavesym.derivation.delay import DelayEquation, I, M, delay_equations
+from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equations
 from wavesym.derivation.line import Operator
 from wavesym.derivation.numbers import number
 from wavesym.derivation.rule import Linear, LoadTerm, Rule, Term, Weights
@@ -99,11 +99,11 @@ class Recurrence:
 
     def rule(self, chain: Chain, function: str, rod: int) -> Rule:
         """The recurrence of one function of a chain, in exact numbers. KeyError where there is none."""
-        places = {M.name: chain.m, I.name: rod}
+        places = {COUNT.name: chain.m, INDEX.name: rod}
         for law in self.laws:
-            if law.function == function and _place(law.first, places) <= rod <= _place(law.last, places):
-                if (rod - _place(law.first, places)) % law.step == 0:
-                    return _rule(law, chain.parameters, places)
+            rods = range(_place(law.first, places), _place(law.last, places) + 1, law.step)
+            if law.function == function and rod in rods:
+                return _rule(law, chain.parameters, places)
         raise KeyError((function, rod))
 
 
@@ -111,8 +111,9 @@ class Recurrence:
 def recurrence(system: System) -> Recurrence:
     """The recurrence of a system, for symbolic m."""
     equations = delay_equations(system)
-    lags = [int(x.lag) for e in equations for x in (*e.right.waves, *e.right.loads)]
-    interval = reduce(gcd, lags)
+    lags = [wave.lag for e in equations for wave in e.right.waves]
+    lags += [source.lag for e in equations for source in e.right.loads]
+    interval = reduce(gcd, map(int, lags))
     return Recurrence(tuple(_law(e, interval) for e in equations), interval)
 
 
@@ -126,8 +127,7 @@ def _law(e: DelayEquation, interval: int) -> CoefficientLaw:
             for w, operator in e.right.waves.items()
         ),
         tuple(
-            SymbolicLoad(s.kind, s.number, int(s.lag) // interval, s.power, value)
-            for s, value in e.right.loads.items()
+            SymbolicLoad(s.kind, s.number, int(s.lag) // interval, s.power, value) for s, value in e.right.loads.items()
         ),
         e.first,
         e.last,
@@ -155,7 +155,7 @@ def _rule(law: CoefficientLaw, parameters: Parameters, places: Mapping[str, int]
 
     return Rule(
         law.function,
-        places[I.name],
+        places[INDEX.name],
         exact(law.own),
         tuple(Term(t.function, _place(t.rod, places), t.back, exact(t.weights)) for t in law.terms),
         tuple(LoadTerm(source(x.kind, x.number), x.back, x.power, value(x.value)) for x in law.loads),

@@ -1,7 +1,7 @@
 """The coefficient recurrence of one wave function in exact numbers: what a table is run from. No SymPy here.
 
-The increment that a function gains at the start of an interval is sum_g exp(-g w) sum_k F[g,k] w**k. To apply a D + b to
-it, D = d/dw, is to put, for every rate g and power k,
+The increment that a function gains at the start of an interval is sum_g exp(-g w) sum_k F[g,k] w**k. To apply a D + b
+to it, D = d/dw, is to put, for every rate g and power k,
 
     same(g) F[g,k] + raised(k) F[g,k+1]         same(g) = b - a g,  raised(k) = a (k + 1)
 

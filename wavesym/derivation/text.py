@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 
 from sympy import Add, Expr, Indexed, Integer, Rational
 from sympy.printing.str import StrPrinter
 
-from wavesym.derivation.delay import SYMBOLS, DelayEquation, I, M, delay_equations
+from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation, delay_equations
 from wavesym.derivation.line import Source, exact
 from wavesym.derivation.recurrence import RATE, CoefficientLaw, SymbolicWeights, recurrence
+from wavesym.errors import WavesymError
 from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.mechanics.collision import COLLISION
 from wavesym.mechanics.drive import DRIVE
 from wavesym.mechanics.node import Node, System
 
+LARGEST_WRITTEN_OUT = 100
 SYSTEMS = {"collision": (COLLISION,), "drive": (DRIVE,), "building": (BUILDING_FORCE, BUILDING_GROUND)}
 
 Place = Callable[[Expr], Expr]
@@ -47,7 +50,14 @@ def subscript(index: Expr | int) -> str:
 
 
 def derivation_text(name: str, m: int | None = None) -> str:
-    """The derivation of a system of the paper, for symbolic m or written out for one. ValueError below the smallest m."""
+    """The derivation of a system of the paper, for symbolic m or written out for one m.
+
+    WavesymError for an m that the system does not have, or that is too large to read.
+    """
+    for system in SYSTEMS[name]:
+        if m is not None and m not in range(system.smallest, LARGEST_WRITTEN_OUT + 1, system.step):
+            even = "even, " if system.step == 2 else ""
+            raise WavesymError(f"--m: {m} given, {even}{system.smallest} ... {LARGEST_WRITTEN_OUT} expected")
     return "\n".join(line for system in SYSTEMS[name] for line in _system(system, m))
 
 
@@ -55,10 +65,10 @@ def _system(system: System, m: int | None) -> Iterator[str]:
     yield f"{system.name}, " + (f"m = {m}" if m is not None else f"m >= {system.smallest}")
     yield ""
     yield "Boundary conditions, dimensionless (U_i: displacement of rod i)"
-    for family in system.families(M, SYMBOLS):
+    for family in system.families(COUNT, SYMBOLS):
         for at in _places(family.first, family.last, family.step, m):
             alone = exact(family.first - family.last) == 0
-            x = exact(family.first) if alone else I
+            x = exact(family.first) if alone else INDEX
             yield f"  x = {text(at(x))}{_range(family.first, family.last, family.step, m)}:"
             yield from (f"    {line}" for line in _conditions(family.at(x), x, at))
     yield ""
@@ -68,10 +78,11 @@ def _system(system: System, m: int | None) -> Iterator[str]:
             yield f"  {_equation(equation, at)}{_range(equation.first, equation.last, equation.step, m)}"
     yield ""
     laws = recurrence(system)
-    start = "n - 1" if laws.interval == 1 else f"{laws.interval}(n - 1)"
-    yield f"Coefficient recurrences: f_i' gains sum_g sum_k exp(-g w) f_i^n[g,k] w^k at z = {start}, w = z - {start if laws.interval > 1 else '(n - 1)'}."
-    yield "They hold for every rate g (0 is a rate like the others) and every power k, n = 1, 2, ...; ^n is 0 for n < 1."
-    yield "Where the factor of [g,k] on the left vanishes, at the body's own rate g = q, they give [q,k+1], and the last line [q,0]."
+    start, shift = ("n - 1", "(n - 1)") if laws.interval == 1 else (f"{laws.interval}(n - 1)",) * 2
+    yield "Coefficient recurrences"
+    yield f"  At z = {start}, n = 1, 2, ..., f_i' gains sum_g sum_k exp(-g w) f_i^n[g,k] w^k with w = z - {shift}."
+    yield "  The lines hold for every rate g (0 is a rate like the others) and every power k; ^n is 0 for n < 1."
+    yield "  Where [g,k] has no factor on the left, at the body's own rate q, they give [q,k+1]; the last is [q,0]."
     for law in laws.laws:
         for at in _places(law.first, law.last, law.step, m):
             yield f"  {_name(law.function, at(law.rod))}{_range(law.first, law.last, law.step, m)}:"
@@ -83,8 +94,12 @@ def _places(first: Expr | int, last: Expr | int, step: int, m: int | None) -> It
     """How i and m are to be written: as they are, or every i of the range for a given m."""
     if m is None:
         return [exact]
-    low, high = (int(exact(bound).subs(M, m)) for bound in (first, last))
-    return [lambda e, i=i: exact(e).subs({I: i, M: m}) for i in range(low, high + 1, step)]
+    low, high = (int(exact(bound).subs(COUNT, m)) for bound in (first, last))
+    return [partial(_at, i, m) for i in range(low, high + 1, step)]
+
+
+def _at(i: int, m: int, expression: Expr) -> Expr:
+    return exact(expression).subs({INDEX: i, COUNT: m})
 
 
 def _range(first: Expr | int, last: Expr | int, step: int, m: int | None) -> str:
@@ -144,7 +159,9 @@ def _load(source: Source, at: Place) -> str:
     clock = _clock(source.lag)
     if source.kind == "impact":
         return f"H{clock}"
-    return f"{_source(source.kind, source.number, at)} H{clock}" + _power("z" if source.lag == 0 else clock, source.power)
+    return f"{_source(source.kind, source.number, at)} H{clock}" + _power(
+        "z" if source.lag == 0 else clock, source.power
+    )
 
 
 def _equation(e: DelayEquation, at: Place) -> str:
@@ -184,4 +201,5 @@ def _law(law: CoefficientLaw, at: Place) -> Iterator[str]:
             for t in law.terms
             if t.weights.jump != 0
         ]
-        yield f"q = {text(at(law.own.same.subs(RATE, 0)))};  [q,0] from sum_g {_coefficient(law.function, at(law.rod), 0, 'g', '0')} = {_joined(jumps)}"
+        start = _coefficient(law.function, at(law.rod), 0, "g", "0")
+        yield f"q = {text(at(law.own.same.subs(RATE, 0)))};  [q,0] from sum_g {start} = {_joined(jumps)}"

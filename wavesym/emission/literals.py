@@ -14,5 +14,5 @@ def literal(value: float) -> str:
 
 
 def lines(items: Iterable[str], width: int = 116) -> tuple[str, ...]:
-    """Literals joined by commas, in lines of at most `width`; a lone 0 where there are none, for C has no empty array."""
+    """Literals joined by commas, in lines of at most `width`; a lone 0 for none, as C has no empty array."""
     return tuple(wrap(", ".join(items) or "0", width))

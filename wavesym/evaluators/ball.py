@@ -34,7 +34,9 @@ class Segment:
     def at(self, u: fmpq | arb) -> arb:
         """The value, a ball, at a point or on an interval."""
         local = arb(u)
-        return sum((polynomial(local) * (-local * arb(rate)).exp() for rate, polynomial in self.families.items()), arb(0))
+        return sum(
+            (polynomial(local) * (-local * arb(rate)).exp() for rate, polynomial in self.families.items()), arb(0)
+        )
 
     def shifted(self, by: fmpq) -> dict[fmpq, arb_poly]:
         """The same function in a local variable that starts `by` later."""
@@ -73,7 +75,7 @@ class Balls:
         self._starts = [segment.start for segment in self.segments]
 
     def largest(self, until: fmpq) -> arb:
-        """A lower bound of the largest absolute value up to `until`, from the ends of all segments and points between."""
+        """A lower bound of the largest absolute value up to `until`, from the ends of segments and points between."""
         ends = [*self._starts[1:], until]
         points = [
             segment.at((end - segment.start) * fmpq(k, 4))

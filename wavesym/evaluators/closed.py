@@ -25,7 +25,7 @@ from flint import arb, arb_poly, fmpq
 
 from wavesym.errors import ToleranceError
 from wavesym.evaluators.ball import largest, polynomials, shifted
-from wavesym.evaluators.doubles import UNIT_ROUNDOFF, above, nearest, not_below, rational
+from wavesym.evaluators.doubles import UNIT_ROUNDOFF, bound, nearest, not_below, rational
 from wavesym.evaluators.signal import Signal
 from wavesym.tables.increments import Increment
 
@@ -78,7 +78,6 @@ class ClosedForm:
         """The largest error of any output relative to its largest value; proved."""
         return max(output.bound for output in self.outputs)
 
-
     @cached_property
     def check_points(self) -> list[float]:
         """0, every start of a pulse, the last double before it, the middle between two of them, and tau_max."""
@@ -97,7 +96,7 @@ def closed_form(signals: Sequence[Signal], tau_max: float) -> ClosedForm:
 def refuse_beyond(form: ClosedForm, tolerance: fmpq, name: str) -> None:
     """ToleranceError where the closed form does not meet `tolerance`: how many digits are lost, from which tau on."""
     worst = max(form.outputs, key=lambda output: output.bound)
-    if rational(worst.bound) <= tolerance if math.isfinite(worst.bound) else False:
+    if math.isfinite(worst.bound) and rational(worst.bound) <= tolerance:
         return
     since = min(
         pulse.start
@@ -133,7 +132,9 @@ def _errors(signal: Signal, tau_max: float) -> list[float]:
         return []
 
     size = largest(signal, tau_max)
-    return [above(error / size) if error is not None else math.inf for error in _segment_errors(signal, rational(tau_max))]
+    return [
+        bound(error / size) if error is not None else math.inf for error in _segment_errors(signal, rational(tau_max))
+    ]
 
 
 def _segment_errors(signal: Signal, until: fmpq) -> list[arb | None]:
@@ -170,7 +171,7 @@ def _weighted(rate: fmpq, polynomial: arb_poly) -> arb_poly:
 
 
 def _largest(rate: fmpq, polynomial: arb_poly, length: arb) -> arb:
-    """An upper bound of exp(-rate w) * polynomial(w), coefficients >= 0, for 0 <= w <= length: the sum of each term's largest."""
+    """An upper bound of exp(-rate w) polynomial(w), coefficients >= 0, on [0, length]: each term's largest, summed."""
     total = arb(0)
     for k, c in enumerate(polynomial.coeffs()):
         peak = length if rate == 0 else length.min(arb(fmpq(k) / rate))

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 
-from flint import arb, fmpq
+from flint import arb, ctx, fmpq
 
-from wavesym.evaluators.ball import Segment, precise, segments
+from wavesym.derivation.rule import DERIVATIVE
+from wavesym.evaluators.ball import Segment, polynomials, precise, segments
 from wavesym.evaluators.doubles import midpoint, rational
 from wavesym.evaluators.signal import Modelled, Signal, horizon, observed
 from wavesym.mechanics.chain import chain
 from wavesym.scene import Collision, Observable, Scene
+from wavesym.tables.increments import Increment, apply, start, trimmed
 
 # a zero is known to this width, and a strain that only touches zero counts from there
 _WIDTH = fmpq(1, 2**80)
+# a strain at a front that is 0 to as many bits is 0
+_BITS_FOR_ZERO = 2048
 
 
 @dataclass(frozen=True)
@@ -48,7 +52,7 @@ def contact_ends(scene: Scene) -> tuple[ContactEnd, ...]:
         latest = until - min(abs(rational(output.x) - x) for output in scene.outputs)
         place = Observable("strain", Fraction(x), 0, f"strain@{x}")
         (strain,) = observed(model, (place,), scene.pieces, latest)
-        tau = precise(lambda: _first_return(strain, latest))  # noqa: B023  (called at once)
+        tau = precise(partial(_first_return, strain, latest))
         if tau.is_finite():
             ends.append(ContactEnd(x, tau))
     return tuple(ends)
@@ -67,33 +71,57 @@ def _contacts(scene: Scene, until: fmpq) -> list[int]:
 def _first_return(strain: Signal, until: fmpq) -> arb | None:
     """The first tau at which a compressed contact is compressed no more; infinite where it stays closed.
 
-    None where the working precision does not tell.
+    A contact that is pulled before it was compressed opens then. None where the working precision does not tell.
     """
+    if not strain.arrivals:
+        return arb.pos_inf()
+    first = strain.arrivals[0]
+    calm = _compressed_at_first(first.increment)
+    if calm is None:
+        return arb(first.time)
     pieces = list(segments(strain))
     ends = [piece.start for piece in pieces[1:]] + [until]
     for piece, end in zip(pieces, ends, strict=True):
-        if all(polynomial.degree() < 0 for polynomial in piece.families.values()):
-            continue
-        start = piece.at(fmpq(0))
-        if start.contains(0) and not start.is_zero():
-            return None
-        if start > 0:
-            return arb(piece.start)
-        for low, high in _not_compressed(piece, fmpq(0), end - piece.start):
-            if low > 0 or start < 0:
-                return arb(piece.start) + arb(low).union(arb(high))
+        if piece.start != first.time:
+            calm = fmpq(0)
+            start = piece.at(calm)
+            if start.contains(0) and ctx.prec < _BITS_FOR_ZERO:
+                return None
+            if not start < 0:  # over zero by a jump, or on it
+                return arb(piece.start)
+        opening = _not_compressed(piece, calm, end - piece.start)
+        if opening is not None:
+            return arb(piece.start) + opening
     return arb.pos_inf()
 
 
-def _not_compressed(piece: Segment, low: fmpq, high: fmpq) -> Iterator[tuple[fmpq, fmpq]]:
-    """The first interval of width `_WIDTH` in which the strain is not certainly negative."""
+def _compressed_at_first(increment: Increment) -> fmpq | None:
+    """A w > 0 up to which the first increment of a strain is negative (0 where it jumps there), None where it pulls."""
+    order = 0
+    while start(increment) == 0:  # strain starts without a jump: its first derivative that is not 0 tells
+        increment = trimmed(apply(DERIVATIVE, increment))
+        order += 1
+    if start(increment) > 0:
+        return None
+    if order == 0:
+        return fmpq(0)
+    derivative = Segment(fmpq(0), polynomials(increment))
+    width = fmpq(1)
+    while not derivative.at(arb(0).union(arb(width))) < 0:
+        width /= 2
+    return width
+
+
+def _not_compressed(piece: Segment, low: fmpq, high: fmpq) -> arb | None:
+    """The first interval of width `_WIDTH`, a ball in u, where the strain is not certainly negative."""
     stack = [(low, high)]
     while stack:
         low, high = stack.pop()
-        middle = (low + high) / 2
-        if piece.at(arb(low).union(arb(high))) < 0:
+        interval = arb(low).union(arb(high))
+        if piece.at(interval) < 0:
             continue
         if high - low < _WIDTH:
-            yield low, high
-            return
+            return interval
+        middle = (low + high) / 2
         stack += [(middle, high), (low, middle)]
+    return None

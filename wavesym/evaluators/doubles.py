@@ -41,6 +41,16 @@ def above(ball: arb) -> float:
     return not_below(_exact(ball.upper()))
 
 
+def bound(ball: arb) -> float:
+    """An upper bound to print: a double that two digits write down and that is not below anything in a ball."""
+    double = above(ball)
+    if double == 0.0 or not math.isfinite(double):
+        return double
+    # half of the last digit more, so that rounding to two digits goes up
+    shown = float(f"{double * 1.05:.1e}")
+    return shown if shown >= double else float(f"{double * 1.1:.1e}")
+
+
 def rounded(ball: arb) -> float | None:
     """The double that everything in the ball rounds to, None where there is not one."""
     low, high = nearest(_exact(ball.lower())), nearest(_exact(ball.upper()))

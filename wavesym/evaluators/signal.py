@@ -100,7 +100,9 @@ def _signal(output: Observable, gains: dict[fmpq, list[tuple[fmpq, Increment]]],
     return Signal(output.name, tuple(Arrival(time, merged[time]) for time in sorted(merged) if merged[time]))
 
 
-def _arrivals(start: fmpq, interval: int, increments: Iterable[Increment], until: fmpq) -> Iterator[tuple[fmpq, Increment]]:
+def _arrivals(
+    start: fmpq, interval: int, increments: Iterable[Increment], until: fmpq
+) -> Iterator[tuple[fmpq, Increment]]:
     for n, increment in enumerate(increments):
         if increment and start + interval * n <= until:
             yield start + interval * n, increment

@@ -1,7 +1,7 @@
-"""System III: a building of m storeys under base acceleration; (4.5), and with a foundation that moves with the ground.
+"""System III: a building of m storeys under base acceleration; (4.5), and with a base that moves with the ground.
 
-The paper's base ("force") balances the foundation's inertia M_0 a against the columns. It is not a foundation that moves
-with the ground ("ground"), whose velocity is the integral of the acceleration.
+The paper's base ("force") balances the foundation's inertia M_0 a against the columns. It is not a foundation that
+moves with the ground ("ground"), whose velocity is the integral of the acceleration.
 """
 
 from __future__ import annotations
@@ -39,5 +39,5 @@ def _building(base: Callable[[Rod, Parameters], Node]) -> Callable[[Quantity, Pa
     return families
 
 
-BUILDING_FORCE = System("building-force", 2, _building(_force))
-BUILDING_GROUND = System("building-ground", 2, _building(_ground))
+BUILDING_FORCE = System("building-force", _building(_force), smallest=2)
+BUILDING_GROUND = System("building-ground", _building(_ground), smallest=2)

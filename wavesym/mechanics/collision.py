@@ -32,4 +32,4 @@ def _families(m: Quantity, p: Parameters) -> tuple[Family, ...]:
     )
 
 
-COLLISION = System("collision", 4, _families)
+COLLISION = System("collision", _families, smallest=4, step=2)

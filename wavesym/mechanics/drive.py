@@ -32,4 +32,4 @@ def _families(m: Quantity, p: Parameters) -> tuple[Family, ...]:
     )
 
 
-DRIVE = System("drive", 1, _families)
+DRIVE = System("drive", _families, smallest=1)

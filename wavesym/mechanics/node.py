@@ -85,9 +85,10 @@ class Parameters:
 class System:
     """One system of the paper: its nodes, for any m, as families from left to right.
 
-    `name` is what `derive` calls it; `smallest` is the least m it is made for.
+    It is made for m = smallest, smallest + step, ...
     """
 
     name: str
-    smallest: int
     families: Callable[[Quantity, Parameters], tuple[Family, ...]]
+    smallest: int
+    step: int = 1

@@ -14,10 +14,10 @@ from flint import fmpq
 from wavesym.derivation.rule import DERIVATIVE, Weights
 
 Increment = dict[fmpq, list[fmpq]]
-_ZERO = fmpq(0)
+_ZERO, _ONE = fmpq(0), fmpq(1)
 
 
-def add(total: Increment, part: Increment, factor: fmpq = fmpq(1)) -> None:
+def add(total: Increment, part: Increment, factor: fmpq = _ONE) -> None:
     """Add `factor` times `part` to `total`, in place."""
     for rate, powers in part.items():
         old = total.get(rate, [])

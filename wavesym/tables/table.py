@@ -15,7 +15,6 @@ from wavesym.errors import CostError
 from wavesym.mechanics.chain import Chain
 from wavesym.tables.increments import Increment, add, apply, solve, start
 
-
 MOST_COEFFICIENTS = 20_000_000
 
 
@@ -132,7 +131,7 @@ def _increment(rule: Rule, source: str, response: Mapping[Function, list[Increme
 
 
 def full_table(chain: Chain, intervals: int | None, until: fmpq) -> Table:
-    """All functions of all rods for all sources: `intervals` of each, or those that reach its rod until tau = `until`."""
+    """All functions of all rods, all sources: `intervals` of each, or those that reach its rod until tau = `until`."""
     rules = Rules(chain)
     wanted = {}
     for rod in range(1, chain.m + 1):
@@ -161,6 +160,6 @@ def refuse_absurd(rules: Rules, wanted: Mapping[Function, int], m: int, sources:
     coefficients = sources * sum(n * n * min(n, m + 1) // 4 for n in intervals.values())
     if coefficients > MOST_COEFFICIENTS:
         raise CostError(
-            f"the exact tables would hold about {coefficients:.1e} coefficients ({len(intervals)} wave functions in up to "
-            f"{max(intervals.values())} intervals), at most {MOST_COEFFICIENTS:.0e} expected: shorten output.until"
+            f"the exact tables would hold about {coefficients:.1e} coefficients, at most {MOST_COEFFICIENTS:.0e} "
+            f"expected: {len(intervals)} wave functions in up to {max(intervals.values())} intervals"
         )

@@ -1,0 +1,43 @@
+# `make demo` and `make test` on a fresh clone need Python 3.11 or newer and a C compiler, nothing else.
+
+PYTHON ?= python3
+BIN := .venv/bin
+INSTALLED := .venv/.installed
+DEMO := collision_m4 drive_m1 building_m2
+
+.PHONY: install demo test lint generated check-all
+
+install: $(INSTALLED)
+
+$(INSTALLED): pyproject.toml constraints.txt
+	$(PYTHON) -m venv --clear .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test,lint]'
+	@touch $@
+
+demo: install
+	@echo '== The three examples of the paper, against direct integration'
+	$(BIN)/wavesym verify $(DEMO)
+	@echo '== C and NumPy for each of them, into build/demo'
+	@set -e; for scene in $(DEMO); do \
+		echo "$(BIN)/wavesym generate $$scene -o build/demo/$$scene --language all"; \
+		$(BIN)/wavesym generate $$scene -o build/demo/$$scene --language all; \
+	done
+
+test: install
+	$(BIN)/python -m pytest
+
+lint: install
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy --strict wavesym
+
+# what is kept in generated/, written anew; the tests compare it with what would be made now
+generated: install
+	rm -rf generated
+	@set -e; for scene in $(DEMO); do \
+		$(BIN)/wavesym generate $$scene -o generated/$$scene --language all; \
+		$(BIN)/wavesym tables $$scene -o generated/$$scene/tables.csv; \
+	done
+
+check-all: lint
+	$(BIN)/python -m pytest --run-slow

@@ -1,0 +1,52 @@
+/* drive_m1: made by wavesym, command: wavesym generate drive_m1.toml
+ *
+ *   drive, m = 1
+ *   kappa = 1
+ *   inertia = 1, 2 (ratios)
+ *   unit loads: 1 M1 at 0, 1 M2 at 0, -1 M1 at 4, -1 M2 at 4
+ *   until = 10, tolerance = 1e-06
+ *
+ * Evaluator: closed: 5 outputs, bound 2.3e-08
+ * Everything is dimensionless: x in rod lengths, tau = c t / l, strain positive in tension.
+ *
+ * output           proved largest error / largest value
+ *   strain@0               6.7e-09
+ *   strain@0.5             2.7e-09
+ *   strain@1               7.3e-09
+ *   displacement@0         2.3e-08
+ *   displacement@1         1.9e-08
+ */
+#ifndef DRIVE_M1_H
+#define DRIVE_M1_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { DRIVE_M1_OUTPUTS = 5 };
+
+/* The last tau. */
+#define DRIVE_M1_TAU_MAX 10.0
+
+/* Proved: largest error of any output relative to its largest value on [0, TAU_MAX].
+ * Holds with and without contraction of a*b + c, for round-to-nearest doubles and an exp within 2 ulp;
+ * not under -ffast-math. */
+#define DRIVE_M1_ERROR_BOUND 2.3e-08
+
+extern const char *const drive_m1_output_name[DRIVE_M1_OUTPUTS];
+
+/* All outputs at tau; at a jump the values to the right of it.
+ * Returns 0, or 1 with out all NaN where tau is negative, beyond TAU_MAX or NaN. */
+int drive_m1_eval(double tau, double out[DRIVE_M1_OUTPUTS]);
+
+/* Outputs at tau_k = tau0 + k*dtau, k = 0 ... count-1, each of the two operations rounded to double:
+ * out[output*count + k]. Returns 0, or 1 where any tau_k was out of range; those values are NaN, the others right. */
+int drive_m1_sample(double tau0, double dtau, size_t count, double *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

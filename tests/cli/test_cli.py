@@ -1,0 +1,256 @@
+"""The command line: exit statuses, one line for a wrong request, nothing left behind.
+
+What is computed is tested elsewhere; here a stand-in takes the compiler's place where only the command matters.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+import wavesym
+from wavesym.cli import COMMANDS, main
+from wavesym.errors import CostError, ToleranceError
+from wavesym.scene import builtin_names
+
+SCENE = """name = "mine"
+[system]
+type = "drive"
+m = 1
+kappa = [1]
+inertia = [1, 2]
+[output]
+until = 2
+strain = [0.5]
+"""
+
+
+class Compiler(SimpleNamespace):
+    """Stands in for `wavesym.compiler`; keeps what it was asked for."""
+
+    def __init__(self) -> None:
+        super().__init__(asked=[], difference="", allowed=True)
+
+    def generate(self, scene: object, *options: object) -> tuple[Path, ...]:
+        self.asked.append(options)
+        return (Path("out/mine.c"), Path("out/mine.h"))
+
+    def check(self, scene: object, *options: object) -> str:
+        self.asked.append(options)
+        return self.difference
+
+    def contact_warnings(self, scene: object) -> list[str]:
+        return ["a contact opens"]
+
+    def run(self, scene: object, samples: int, at: list[float] | None) -> Iterator[str]:
+        self.asked.append((samples, at))
+        yield from ("tau,strain@0.5\n", "0.0,0.0\n")
+
+    def tables_text(self, scene: object, *options: object) -> Iterator[str]:
+        self.asked.append(options)
+        yield from ("[", "1]\n")
+
+    def derive(self, system: str, m: int | None) -> str:
+        if m == 0:
+            raise ValueError("0 given, at least 1 expected")
+        return f"{system} {m}"
+
+    def verify(self, scenes: list[wavesym.Scene]) -> tuple[str, bool]:
+        self.asked.append([scene.name for scene in scenes])
+        return "errors", self.allowed
+
+
+@pytest.fixture
+def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
+    stand_in = Compiler()
+    monkeypatch.setitem(sys.modules, "wavesym.compiler", stand_in)  # type: ignore[misc]
+    monkeypatch.setattr(wavesym, "compiler", stand_in, raising=False)
+    return stand_in
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    Path("mine.toml").write_text(SCENE)
+    return tmp_path
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 2) -> str:
+    """The one line that a request is refused with; nothing is printed or written."""
+    before = sorted(Path().rglob("*"))
+    assert main(arguments) == status
+    out, line = capsys.readouterr()
+    assert out == ""
+    assert line.count("\n") == 1
+    assert line.endswith("\n")
+    assert sorted(Path().rglob("*")) == before
+    return line[:-1]
+
+
+def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"wavesym {wavesym.__version__}\n"
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    assert all(f"  {command} " in text for command in COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_an_example_that_works(
+    command: str, compiler: Compiler, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([command, "--help"]) == 0
+    (example,) = [line.split() for line in capsys.readouterr().out.splitlines() if line.startswith("    wavesym ")]
+    assert example[1] == command
+    assert main(example[1:]) == 0
+
+
+def test_scenes_lists_what_is_built_in(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["scenes"]) == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(builtin_names())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        ([], "wavesym: Missing command."),
+        (["bogus"], "wavesym: No such command 'bogus'."),
+        (["--bogus"], "wavesym: No such option '--bogus'."),
+        (["run"], "wavesym run: Missing argument 'SCENE'."),
+        (["run", "mine.toml", "more"], "wavesym run: Got unexpected extra argument"),
+        (["run", "mine.toml", "--samples", "0"], "wavesym run: Invalid value for '--samples': 0 is not in the range"),
+        (["run", "mine.toml", "--samples", "1e3"], "wavesym run: Invalid value for '--samples'"),
+        (["run", "mine.toml", "--samples", "10000001"], "wavesym run: Invalid value for '--samples'"),
+        (["run", "mine.toml", "--samples", "3", "--at", "x"], "wavesym run: --samples and --at given"),
+        (["tables", "mine.toml", "--intervals", "0"], "wavesym tables: Invalid value for '--intervals'"),
+        (
+            ["tables", "mine.toml", "--format", "xml"],
+            "wavesym tables: Invalid value for '--format': 'xml' is not one of",
+        ),
+        (["generate", "mine.toml", "--language", "ada"], "wavesym generate: Invalid value for '--language'"),
+        (["derive", "train"], "wavesym derive: Invalid value for '{collision|drive|building}'"),
+        (["derive", "drive", "--m", "x"], "wavesym derive: Invalid value for '--m'"),
+        (["derive", "drive", "--m", "0"], "wavesym derive: --m: 0 given, at least 1 expected"),
+    ],
+)
+def test_wrong_usage(
+    arguments: list[str], expected: str, compiler: Compiler, capsys: pytest.CaptureFixture[str]
+) -> None:
+    line = refused(capsys, *arguments)
+    assert line.startswith(expected)
+    assert line.endswith(" --help)")
+
+
+@pytest.mark.parametrize("command", ["tables", "generate", "run", "verify"])
+def test_a_wrong_scene_is_refused_by_every_command(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("bad.toml").write_text(SCENE.replace("[1, 2]", "[1]"))
+    assert refused(capsys, command, "bad.toml") == "bad.toml: system.inertia: 1 numbers given, 2 expected (m + 1)"
+    assert refused(capsys, command, "nowhere.toml").startswith("nowhere.toml: No such file or directory, ")
+    assert refused(capsys, command, ".").startswith(".: Is a directory, ")
+
+
+def test_generate(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["generate", "mine.toml"]) == 0
+    assert main(["generate", "mine.toml", "-o", "there", "--language", "all", "--evaluator", "closed"]) == 0
+    assert compiler.asked == [(None, "c", "auto"), (Path("there"), "all", "closed")]
+    assert capsys.readouterr().out.split() == [str(Path("out/mine.c")), str(Path("out/mine.h"))] * 2
+
+
+def test_generate_check(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["generate", "mine.toml", "--check"]) == 0
+    assert capsys.readouterr().out == ""
+    compiler.difference = "- old\n+ new\n"
+    assert main(["generate", "mine.toml", "--check"]) == 1
+    assert capsys.readouterr().out == "- old\n+ new\n"
+
+
+def test_tables_are_printed_as_they_are_made(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["tables", "mine.toml", "--intervals", "3", "--format", "json"]) == 0
+    assert compiler.asked == [(3, "json")]
+    assert capsys.readouterr().out == "[1]\n"
+
+
+def test_verify(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify"]) == 0
+    assert main(["verify", "mine.toml", "drive_m1"]) == 0
+    compiler.allowed = False
+    assert main(["verify", "mine.toml"]) == 1
+    assert compiler.asked == [list(builtin_names()), ["mine", "drive_m1"], ["mine"]]
+    assert capsys.readouterr() == ("errors\n" * 3, "")
+
+
+def test_run_puts_values_out_and_warnings_aside(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "mine.toml"]) == 0
+    assert capsys.readouterr() == ("tau,strain@0.5\n0.0,0.0\n", "mine: a contact opens\n")
+    assert main(["run", "mine.toml", "--samples", "7", "-o", "out.csv"]) == 0
+    assert capsys.readouterr().out == ""
+    assert Path("out.csv").read_bytes() == b"tau,strain@0.5\n0.0,0.0\n"
+    assert compiler.asked == [(1001, None), (7, None)]
+
+
+def test_run_at_given_times(compiler: Compiler) -> None:
+    Path("at.txt").write_bytes(b"# times\r\n0\r\n\r\n 0.1 # a tenth\n-1e-3\n+2.50\n")
+    assert main(["run", "mine.toml", "--at", "at.txt"]) == 0
+    assert compiler.asked == [(1001, [0.0, 0.1, -0.001, 2.5])]
+
+
+@pytest.mark.parametrize("wrong", ["nan", "1e400", "1/2", "0x1p3", "1 2", "1,5", "1_0", "__import__('os')", "\u0661"])
+def test_run_at_what_is_no_time(wrong: str, compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("at.txt").write_text(f"0\n{wrong}\n", encoding="utf-8")
+    line = refused(capsys, "run", "mine.toml", "--at", "at.txt", "-o", "out.csv")
+    assert line.startswith("at.txt: line 2: ")
+    assert line.endswith(" given, a decimal expected")
+
+
+def test_where_nothing_can_be_written(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("folder").mkdir()
+    compiler.contact_warnings = lambda scene: []
+    assert refused(capsys, "run", "mine.toml", "-o", "folder") == "folder: Is a directory, a file expected"
+    assert "mine.toml" in refused(capsys, "run", "mine.toml", "-o", "mine.toml/out.csv")
+
+
+def test_errors_of_the_compiler(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
+    def failing(error: Exception) -> object:
+        def generate(*_: object) -> None:
+            raise error
+
+        return generate
+
+    compiler.generate = failing(ToleranceError("11 digits are lost\nfrom tau = 9 on"))
+    assert refused(capsys, "generate", "mine.toml", status=1) == "11 digits are lost from tau = 9 on"
+    compiler.generate = failing(CostError("1e12 intervals"))
+    assert refused(capsys, "generate", "mine.toml") == "1e12 intervals"
+    compiler.generate = failing(KeyboardInterrupt())  # type: ignore[arg-type]
+    assert main(["generate", "mine.toml"]) == 130
+
+
+def process(*arguments: str, stdin: bytes = b"") -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run([sys.executable, "-m", "wavesym", *arguments], input=stdin, capture_output=True, check=False)
+
+
+def test_as_a_process() -> None:
+    done = process("run", "-", stdin=SCENE.replace("until = 2", "until = -2").encode())
+    assert done.returncode == 2
+    assert done.stderr.decode().splitlines() == ["<stdin>: output.until: -2 given, a positive number expected"]
+    assert done.stdout == b""
+    assert process("run", "-", stdin=b"\xff\xfe").stderr.count(b"\n") == 1
+
+
+@pytest.mark.skipif(os.name == "nt", reason="pipes break differently there")
+def test_a_reader_that_stops_is_met_in_silence() -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", "wavesym", "scenes"], stdout=writing, stderr=subprocess.PIPE, check=False
+        )
+    finally:
+        os.close(writing)
+    assert done.stderr == b""
+    assert done.returncode == 1

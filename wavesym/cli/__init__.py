@@ -1,0 +1,78 @@
+"""The command line: one thin file per command, each loaded only when it is called or its help is asked for.
+
+What the commands need is imported inside them, so that no `--help` waits for SymPy.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+
+import click
+
+from wavesym import __version__
+from wavesym.errors import WavesymError
+
+COMMANDS = ("scenes", "derive", "tables", "generate", "run", "verify")
+
+DONE, FAILED, WRONG_REQUEST, INTERRUPTED = 0, 1, 2, 130
+
+
+class _Commands(click.Group):
+    """The commands in the order in which one meets them; NAME is the function NAME in `wavesym.cli.NAME`."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        command: click.Command = getattr(import_module(f"wavesym.cli.{cmd_name}"), cmd_name)
+        return command
+
+
+@click.command(cls=_Commands, no_args_is_help=False)
+@click.version_option(__version__, prog_name="wavesym", message="%(prog)s %(version)s")
+def cli() -> None:
+    """Waves in chains of rods and rigid bodies: from a scene to exact tables, NumPy and C.
+
+    SCENE is a path, - for standard input, or the name of a built-in scene.
+
+    \b
+    Example:
+      wavesym generate building_m2 -o building --language all
+    """
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command and give its exit status; what goes wrong for a user is one line on standard error."""
+    try:
+        status = cli.main(arguments, prog_name="wavesym", standalone_mode=False)
+        sys.stdout.flush()  # here, where a reader that has gone can still be met in silence
+        return status if isinstance(status, int) else DONE
+    except click.UsageError as error:
+        command = error.ctx.command_path if error.ctx else "wavesym"
+        return _refused(f"{command}: {error.format_message()} (see {command} --help)", WRONG_REQUEST)
+    except click.ClickException as error:
+        return _refused(f"wavesym: {error.format_message()}", WRONG_REQUEST)
+    except WavesymError as error:
+        return _refused(str(error), error.status)
+    except BrokenPipeError:
+        return _unread()
+    except OSError as error:
+        return _refused(f"{error.filename or 'wavesym'}: {error.strerror or error}", WRONG_REQUEST)
+    except (click.Abort, KeyboardInterrupt):
+        return INTERRUPTED
+
+
+def _refused(line: str, status: int) -> int:
+    click.echo(" ".join(line.split()), err=True)
+    return status
+
+
+def _unread() -> int:
+    """`wavesym ... | head`: nobody reads on, and Python's own flush at exit must not complain."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return FAILED

@@ -1,0 +1,45 @@
+"""`wavesym generate`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from wavesym.cli.parameters import PATH, SCENE, put
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+LANGUAGES = ["c", "numpy", "all"]
+EVALUATORS = ["auto", "closed"]
+PRECISIONS = ["double"]
+
+
+@click.command()
+@click.argument("scene", type=SCENE)
+@click.option("-o", "directory", type=PATH, metavar="DIR", help="Where the files go.  [default: ./NAME of the scene]")
+@click.option("--language", type=click.Choice(LANGUAGES), default="c", show_default=True, help="What to write.")
+@click.option("--evaluator", type=click.Choice(EVALUATORS), default="auto", show_default=True, help="How it computes.")
+@click.option("--precision", type=click.Choice(PRECISIONS), default="double", show_default=True, help="In what type.")
+@click.option("--check", "only_check", is_flag=True, help="Write nothing; print a diff and exit 1 where files differ.")
+def generate(
+    scene: Scene, directory: Path | None, language: str, evaluator: str, precision: str, only_check: bool
+) -> int:
+    """Write source files that evaluate a scene; print their paths.
+
+    \b
+    Example:
+      wavesym generate building_m2 -o building --language all
+    """
+    from wavesym import compiler
+
+    if only_check:
+        difference = compiler.check(scene, directory, language, evaluator)
+        if difference:
+            put(difference)
+        return 1 if difference else 0
+    for path in compiler.generate(scene, directory, language, evaluator):
+        click.echo(path)
+    return 0

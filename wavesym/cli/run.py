@@ -1,0 +1,67 @@
+"""`wavesym run`."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from wavesym.cli.parameters import PATH, SCENE, put
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+DEFAULT_SAMPLES = 1001
+MOST_SAMPLES = 10**7
+
+_DECIMAL = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
+
+
+@click.command()
+@click.argument("scene", type=SCENE)
+@click.option(
+    "--samples",
+    type=click.IntRange(1, MOST_SAMPLES),
+    help=f"How many equally spaced tau on [0, until].  [default: {DEFAULT_SAMPLES}]",
+)
+@click.option("--at", type=PATH, metavar="FILE", help="File of the tau to use instead: one decimal a line, # comments.")
+@click.option("-o", "out", type=PATH, metavar="OUT.csv", help="Where the values go.  [default: standard output]")
+def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) -> None:
+    """Print the outputs of a scene as CSV, right to the last bit.
+
+    \b
+    Example:
+      wavesym run collision_m4 --samples 101 -o collision.csv
+    """
+    if samples is not None and at is not None:
+        raise click.UsageError("--samples and --at given, one of them expected", click.get_current_context())
+    taus = _decimals(at) if at is not None else None
+
+    from wavesym import compiler
+    from wavesym.writing import write_whole
+
+    for warning in compiler.contact_warnings(scene):
+        click.echo(f"{scene.name}: {warning}", err=True)
+    lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus)
+    if out is None:
+        put(lines)
+    else:
+        write_whole({out: lines})
+
+
+def _decimals(path: Path) -> list[float]:
+    """The numbers in a file, each as a double; SceneError names the first line that holds something else."""
+    from wavesym.scene import SceneError, read_text
+    from wavesym.scene.table import shown
+
+    file, text = read_text(path, "a file with one decimal a line")
+    taus: list[float] = []
+    for number, line in enumerate(text.split("\n"), 1):
+        if written := line.partition("#")[0].strip():
+            if not _DECIMAL.fullmatch(written) or not math.isfinite(float(written)):
+                raise SceneError(f"{shown(written)} given, a decimal expected", f"line {number}", file)
+            taus.append(float(written))
+    return taus

@@ -1,0 +1,24 @@
+"""TOML -> Scene: what the user said, validated, every number exact."""
+
+from wavesym.errors import SceneError
+from wavesym.scene.loads import Acceleration, Moment, Piece, Record
+from wavesym.scene.model import Scene
+from wavesym.scene.outputs import Observable, Output
+from wavesym.scene.reading import builtin_names, read_text
+from wavesym.scene.systems import Building, Collision, Drive
+
+__all__ = [
+    "Acceleration",
+    "Building",
+    "Collision",
+    "Drive",
+    "Moment",
+    "Observable",
+    "Output",
+    "Piece",
+    "Record",
+    "Scene",
+    "SceneError",
+    "builtin_names",
+    "read_text",
+]

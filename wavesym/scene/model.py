@@ -1,0 +1,76 @@
+"""A scene: what the user said, validated, every number exact."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cached_property
+from os import PathLike
+from typing import Any, Self
+
+from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
+
+from wavesym.errors import SceneError
+from wavesym.scene.loads import Load, Piece, loads, merged
+from wavesym.scene.names import Name
+from wavesym.scene.outputs import Observable, Output, observables
+from wavesym.scene.reading import read_toml
+from wavesym.scene.systems import Collision, System
+from wavesym.scene.table import Table, first_error, key_path
+
+
+class Scene(Table):
+    """A chain, its loads, and what to watch of it: `Scene(name=..., system={...}, load=[...], output={...})`.
+
+    The fields are those of a scene file. Everything is dimensionless: x in rod lengths, tau = c t / l. Numbers may be
+    int, Fraction, Decimal, float (the shortest decimal that reads back to it) or text such as "1/3".
+    Raises SceneError for the first thing that is wrong.
+    """
+
+    name: Name = Field(description="an identifier of C")
+    system: System = Field(description="a table")
+    load: tuple[Load, ...] = ()
+    output: Output = Field(description="a table")
+
+    def __init__(self, /, **fields: Any) -> None:
+        try:
+            super().__init__(**fields)
+        except ValidationError as error:
+            what, keys = first_error(error)
+            if keys[:1] == ("system",) and keys[1:2] in (("collision",), ("drive",), ("building",)):
+                keys = (keys[0], *keys[2:])  # pydantic's own step, to the system of this type
+            raise SceneError(what, key_path(keys)) from None
+
+    @classmethod
+    def from_toml(cls, source: str | PathLike[str]) -> Self:
+        """The scene in a file, on standard input (`-`), or built in (by name).
+
+        A built-in scene goes before a file of the same name; `./NAME` is the file. Raises SceneError.
+        """
+        file, fields = read_toml(source)
+        try:
+            return cls(**fields)
+        except SceneError as error:
+            raise SceneError(error.what, error.path, file) from None
+
+    @field_validator("load", mode="wrap")
+    @classmethod
+    def _loads_on_the_system(cls, tables: object, _: object, info: ValidationInfo) -> tuple[Load, ...]:
+        # without a system there is nothing to check against; that it is wrong is said first
+        return loads(tables, info.data["system"]) if "system" in info.data else ()
+
+    @model_validator(mode="after")
+    def _watches_the_chain(self) -> Self:
+        _ = self.outputs
+        return self
+
+    @cached_property
+    def outputs(self) -> tuple[Observable, ...]:
+        """The outputs: strains, velocities, displacements, each in the order of the scene."""
+        return tuple(observables(self.output, self.system))
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """The loads, summed, as weights of unit responses; sorted by time, and each source at a time once."""
+        if isinstance(self.system, Collision):
+            return merged([Piece("impact", Fraction(0), Fraction(1))])
+        return merged(piece for load in self.load for piece in load.pieces())

@@ -1,0 +1,103 @@
+"""Exact numbers: what a user may write for one, and what it is as a fraction."""
+
+from __future__ import annotations
+
+import re
+from decimal import Decimal
+from fractions import Fraction
+from numbers import Integral, Rational
+from typing import Annotated
+
+from pydantic import BeforeValidator, FailFast, PlainSerializer, PlainValidator
+
+from wavesym.scene.table import Written, listed, shown, wrong
+
+# Short and of moderate size, so that no scene can make a number that takes long, or that is infinite or 0 as a double.
+LONGEST = 100
+LARGEST_EXPONENT = 300
+_LARGEST = Fraction(10) ** LARGEST_EXPONENT
+_SMALLEST = 1 / _LARGEST
+_MOST_BITS = 2048  # above what LONGEST and LARGEST_EXPONENT let through
+
+_DECIMAL = re.compile(r"([+-]?[0-9]+)(?:\.([0-9]+))?(?:[eE]([+-]?[0-9]+))?")
+_RATIO = re.compile(r"([+-]?[0-9]+)/([0-9]+)")
+
+
+def written(value: object) -> str | None:
+    """The text of a number that is given as text or as a floating-point number; None of anything else.
+
+    A float stands for the shortest decimal that reads back to it.
+    """
+    match value:
+        case Written():
+            return value.replace("_", "")  # TOML has checked where they stand
+        case str():
+            return value
+        case float():
+            return float.__repr__(value)  # of a NumPy double too, whose own repr is no number
+        case Decimal():
+            return str(value)
+    return None
+
+
+def exact(value: object) -> Fraction:
+    """A number: an integer, a decimal or a ratio `"p/q"` as TOML, text, or a Python number.
+
+    Raises (as does every validator here) the error of `table.wrong`.
+    """
+    text = written(value)
+    if text is not None:
+        number = _parsed(text, value)
+    elif isinstance(value, Rational) and not isinstance(value, bool):
+        number = _fraction(value)
+    else:
+        raise wrong(f'{shown(value)} given, a number expected (an integer, a decimal or "p/q")')
+    if number and not _SMALLEST <= abs(number) <= _LARGEST:
+        raise wrong(f"{shown(value)} given, 0 or a size from 1e-{LARGEST_EXPONENT} to 1e{LARGEST_EXPONENT} expected")
+    return number
+
+
+def _fraction(value: Rational) -> Fraction:
+    number = Fraction(int(value.numerator), int(value.denominator))  # of NumPy's integers too
+    if max(number.numerator.bit_length(), number.denominator.bit_length()) > _MOST_BITS:
+        raise wrong(f"{shown(number)} given, at most {_MOST_BITS} bits above and below the line expected")
+    return number
+
+
+def _parsed(text: str, value: object) -> Fraction:
+    """The number that `text` writes; `value` is what the message shows where it writes none."""
+    if len(text) > LONGEST:  # before anything is done with it
+        raise wrong(f"{shown(value)} given, a number of at most {LONGEST} characters expected")
+    if ratio := _RATIO.fullmatch(text):
+        above, below = int(ratio[1]), int(ratio[2])
+        if not below:
+            raise wrong(f"{shown(value)} given, a denominator other than 0 expected")
+        return Fraction(above, below)
+    if decimal := _DECIMAL.fullmatch(text):
+        whole, digits, exponent = decimal[1], decimal[2] or "", int(decimal[3] or 0)
+        if abs(exponent) > LARGEST_EXPONENT:  # before ten is raised to it
+            raise wrong(f"{shown(value)} given, an exponent from -{LARGEST_EXPONENT} to {LARGEST_EXPONENT} expected")
+        return int(whole + digits) * Fraction(10) ** (exponent - len(digits))
+    raise wrong(f'{shown(value)} given, a number expected (an integer, a decimal or "p/q")')
+
+
+def _positive(value: object) -> Fraction:
+    number = exact(value)
+    if number <= 0:
+        raise wrong(f"{shown(value)} given, a positive number expected")
+    return number
+
+
+def _integer(value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise wrong(f"{shown(value)} given, an integer expected")
+    return int(value)
+
+
+# dumped as text that reads back to the same number
+Exact = Annotated[Fraction, PlainValidator(exact), PlainSerializer(str, return_type=str)]
+Positive = Annotated[Fraction, PlainValidator(_positive), PlainSerializer(str, return_type=str)]
+Integer = Annotated[int, PlainValidator(_integer)]
+# The first number that is wrong ends the reading of a list, however long.
+Numbers = Annotated[tuple[Exact, ...], FailFast(), BeforeValidator(listed)]
+Positives = Annotated[tuple[Positive, ...], FailFast(), BeforeValidator(listed)]

@@ -1,0 +1,104 @@
+"""What to watch: positions, how long and how exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Annotated, Self
+
+from pydantic import BeforeValidator, FailFast, Field, PlainSerializer, PlainValidator, field_validator, model_validator
+
+from wavesym.scene.numbers import Exact, Positive, exact, written
+from wavesym.scene.systems import Building, Collision, Drive
+from wavesym.scene.table import Table, Written, listed, shown, wrong
+
+# Beyond it even the integer part of an argument costs a double most of its digits.
+LONGEST_HORIZON = 10**9
+QUANTITIES = ("strain", "velocity", "displacement")
+
+
+@dataclass(frozen=True)
+class Position:
+    """A place x (in rod lengths) as it is `written`, and the side of it: -1 left, +1 right, 0 not said."""
+
+    written: str
+    x: Fraction
+    side: int
+
+
+@dataclass(frozen=True)
+class Observable:
+    """An output: a quantity at x (in rod lengths).
+
+    `side` is the side as it matters: -1 or +1 for the strain at a rigid body inside the chain, 0 elsewhere.
+    """
+
+    quantity: str
+    x: Fraction
+    side: int
+    name: str
+
+
+def _position(value: object) -> Position:
+    text = written(value)
+    if text is None:
+        return Position(str(exact(value)), exact(value), 0)
+    side = {"-": -1, "+": 1}.get(text[-1:], 0)
+    return Position(str(value) if isinstance(value, str) else text, exact(text[:-1] if side else value), side)
+
+
+Place = Annotated[Position, PlainValidator(_position), PlainSerializer(lambda place: place.written, return_type=str)]
+Positions = Annotated[tuple[Place, ...], FailFast(), BeforeValidator(listed)]
+
+
+class Output(Table):
+    """The outputs, the horizon (in tau), and the largest error allowed relative to an output's largest value."""
+
+    until: Positive = Field(description="the horizon, a positive number,")
+    tolerance: Exact = Fraction(1, 10**10)
+    strain: Positions = ()
+    velocity: Positions = ()
+    displacement: Positions = ()
+
+    @field_validator("until")
+    @classmethod
+    def _reachable(cls, until: Fraction) -> Fraction:
+        if until > LONGEST_HORIZON:
+            # the longest intervals of a system are 2 long
+            cost = f"{shown(until)} would cost at least {shown(until // 2)} intervals of every function"
+            raise wrong(f"{cost}, a horizon of at most {LONGEST_HORIZON} expected")
+        return until
+
+    @field_validator("tolerance")
+    @classmethod
+    def _useful(cls, tolerance: Fraction) -> Fraction:
+        if not 0 < tolerance < 1:
+            raise wrong(f"{shown(tolerance)} given, a number between 0 and 1 expected")
+        return tolerance
+
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if not (self.strain or self.velocity or self.displacement):
+            raise wrong("no positions given, at least one of strain, velocity or displacement expected")
+        return self
+
+
+def observables(output: Output, system: Collision | Drive | Building) -> Iterator[Observable]:
+    """The outputs in order, checked against the chain; raises the error of `table.wrong`."""
+    seen: dict[Observable, str] = {}
+    for quantity in QUANTITIES:
+        positions: tuple[Position, ...] = getattr(output, quantity)
+        for k, position in enumerate(positions):
+            at = "output", quantity, k
+            x, text = position.x, shown(Written(position.written))
+            if not 0 <= x <= system.m:
+                raise wrong(f"{text} given, a position from 0 to {system.m} expected", *at)
+            side = position.side if quantity == "strain" and system.divided_at(x) else 0
+            if quantity == "strain" and system.divided_at(x) and not side:
+                raise wrong(f'{text} given, a side of the body there expected: "{text}-" or "{text}+"', *at)
+            place = Observable(quantity, x, side, "")
+            if place in seen:
+                raise wrong(f"{text} given, another place than {seen[place]} expected (both are the same)", *at)
+            seen[place] = text
+            yield replace(place, name=f"{quantity}@{position.written}")

@@ -1,0 +1,74 @@
+"""What everything is compared with: the outputs of a scene in ball arithmetic, where errors are most likely."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.evaluators.ball import evaluate
+from wavesym.evaluators.doubles import not_below
+from wavesym.evaluators.signal import Signal, horizon, signals
+from wavesym.scene import Observable, Scene
+
+_SPREAD = 400
+_GOLDEN = (math.sqrt(5) - 1) / 2
+
+
+@dataclass(frozen=True)
+class Output:
+    """One output: its values at the reference's taus, right to the last bit, and the largest of them."""
+
+    observable: Observable
+    values: NDArray[np.float64]
+
+    @cached_property
+    def zero(self) -> bool:
+        """Whether the output is 0 throughout."""
+        return not np.any(self.values)
+
+    @cached_property
+    def scale(self) -> float:
+        """What errors are relative to: the largest absolute value, or 1 for an output that is 0 throughout."""
+        return 1.0 if self.zero else float(np.max(np.abs(self.values)))
+
+    def error(self, values: NDArray[np.float64]) -> float:
+        """The largest error of `values`; NaN where one of them is NaN."""
+        return float(np.max(np.abs(values - self.values))) / self.scale
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The outputs of a scene at `taus`, doubles in [0, until]."""
+
+    scene: Scene
+    until: float
+    taus: Sequence[float]
+    outputs: tuple[Output, ...]
+
+
+def reference(scene: Scene) -> Reference:
+    """A scene's outputs at a few hundred spread taus, at every arrival, and at the doubles just before and after."""
+    until = horizon(scene)
+    merged = signals(scene)
+    taus = sorted(set(_taus(merged, until)))
+    outputs = (
+        Output(observable, np.array(evaluate(signal, taus, until)))
+        for observable, signal in zip(scene.outputs, merged, strict=True)
+    )
+    return Reference(scene, until, taus, tuple(outputs))
+
+
+def _taus(merged: Sequence[Signal], until: float) -> Iterator[float]:
+    yield from (0.0, until)
+    # multiples of the golden ratio fall evenly, and on no grid of any evaluator
+    yield from (math.fmod(k * _GOLDEN, 1) * until for k in range(1, _SPREAD + 1))
+    for time in {arrival.time for signal in merged for arrival in signal.arrivals}:
+        first = not_below(time)
+        for tau in (math.nextafter(first, -math.inf), first, math.nextafter(first, math.inf)):
+            if 0 <= tau <= until:
+                yield tau
