@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from wavesym.compiler import files, tables_text
+from wavesym.compiler import tables_text
+from wavesym.emission.files import files
 from wavesym.scene import Scene
 
 KEPT = Path(__file__).parent.parent / "generated"

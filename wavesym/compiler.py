@@ -5,7 +5,7 @@
     read         TOML                 Scene                        scene/
     build        Scene                Chain                        mechanics/
     derive       System               Recurrence (symbolic m)      derivation/   SymPy, and only here
-    run          Recurrence, Chain    Table (exact coefficients)   tables/
+    run          Recurrence, Chain    Table (exact)                coefficients/
     merge        Table, outputs       Signals, then an evaluator   evaluators/
     emit         evaluator            C, NumPy, manifest           emission/
     verify       all of these         a verdict                    verification/
@@ -24,24 +24,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wavesym.emission import closed as closed_emission
-from wavesym.emission.description import describe
-from wavesym.emission.manifest import manifest
+from wavesym.coefficients.table import Row, Table, full_table
+from wavesym.emission.files import files
 from wavesym.emission.tables import table_lines
-from wavesym.evaluators.ball import evaluate, largest
-from wavesym.evaluators.closed import ClosedForm, closed_form, refuse_beyond
+from wavesym.evaluators.ball import evaluate
 from wavesym.evaluators.contact import contact_ends
-from wavesym.evaluators.doubles import above, nearest, rational
+from wavesym.evaluators.doubles import fraction, nearest, rational
 from wavesym.evaluators.signal import Signal, horizon, signals
 from wavesym.mechanics.chain import chain
 from wavesym.scene import Scene
-from wavesym.tables.table import Row, Table, full_table
 from wavesym.writing import write_whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-
-LANGUAGES = {"c": ("c",), "numpy": ("numpy",), "all": ("c", "numpy")}
 
 
 @dataclass(frozen=True)
@@ -88,7 +83,8 @@ def evaluator(scene: Scene) -> Response:
 
 def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
     """The rows of the coefficient table, exact: `intervals` of every function, or those the horizon needs."""
-    return list(table(scene, intervals).rows())
+    rows = table(scene, intervals).rows()
+    return [row._replace(rate=fraction(row.rate), value=fraction(row.value)) for row in rows]
 
 
 def table(scene: Scene, intervals: int | None = None) -> Table:
@@ -106,32 +102,6 @@ def derive(system: str, m: int | None) -> str:
     from wavesym.derivation.text import derivation_text
 
     return derivation_text(system, m)
-
-
-def files(scene: Scene, language: str = "c", evaluator: str = "auto") -> dict[str, str]:
-    """What `generate` writes, by file name. ToleranceError where the evaluator cannot meet the scene's tolerance."""
-    merged = signals(scene)
-    form = closed_form(merged, horizon(scene))
-    refuse_beyond(form, rational(scene.output.tolerance), scene.name)
-    reason = f"closed: {len(form.outputs)} outputs, bound {form.error_bound:.1e}"
-    description = describe(scene, form, reason, contact_ends(scene))
-    made = {f"{scene.name}.json": manifest(scene, description, form)}
-    if "c" in LANGUAGES[language]:
-        made |= closed_emission.c_files(description, form, _reference(merged, form))
-    if "numpy" in LANGUAGES[language]:
-        made |= closed_emission.numpy_files(description, form)
-    return dict(sorted(made.items()))
-
-
-def _reference(merged: Sequence[Signal], form: ClosedForm) -> closed_emission.Reference:
-    """Values for the self-test: at every arrival, just before it, and between."""
-    taus = form.check_points
-    sizes = [largest(signal, form.tau_max) for signal in merged]
-    return closed_emission.Reference(
-        taus,
-        [evaluate(signal, taus, form.tau_max) for signal in merged],
-        [above(output.bound * size) for output, size in zip(form.outputs, sizes, strict=True)],
-    )
 
 
 def generate(

@@ -58,7 +58,7 @@ class Compiler(SimpleNamespace):
 
     def derive(self, system: str, m: int | None) -> str:
         if m == 0:
-            raise ValueError("0 given, at least 1 expected")
+            raise ValueError("--m: 0 given, at least 1 expected")
         return f"{system} {m}"
 
     def verify(self, scenes: list[wavesym.Scene]) -> tuple[str, bool]:

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wavesym
-from wavesym.compiler import files
 from wavesym.emission.closed import numpy_files
 from wavesym.emission.description import describe
+from wavesym.emission.files import files
 from wavesym.errors import ToleranceError
 from wavesym.evaluators.ball import evaluate
 from wavesym.evaluators.closed import closed_form, refuse_beyond

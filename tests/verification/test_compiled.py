@@ -7,7 +7,7 @@ import shutil
 import numpy as np
 import pytest
 
-from wavesym.compiler import files
+from wavesym.emission.files import files
 from wavesym.scene import Scene
 from wavesym.verification.compiled import CompilerError, c_compiler, compiled, imported
 
@@ -34,7 +34,9 @@ def test_c_and_numpy_give_the_same(made):
         assert program.selftest() == 0
     assert values.shape == (3, 8)
     assert np.isnan(values[:, 5:]).all()
-    np.testing.assert_allclose(values, module.evaluate(taus), rtol=0, atol=1e-14)
+    # each is within the bound of the true value; 2: the largest value may lie between these taus
+    allowed = 2 * module.ERROR_BOUND * 2 * np.nanmax(np.abs(values))
+    np.testing.assert_allclose(values, module.evaluate(taus), rtol=0, atol=allowed)
 
 
 def test_sample_is_eval_on_a_grid(made):

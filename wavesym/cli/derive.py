@@ -23,4 +23,4 @@ def derive(system: str, m: int | None, format: str) -> None:
     try:
         put(derivation(system, m))
     except ValueError as error:  # no such m
-        raise click.UsageError(f"--m: {error}", click.get_current_context()) from None
+        raise click.UsageError(str(error), click.get_current_context()) from None

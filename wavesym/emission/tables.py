@@ -6,8 +6,8 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from wavesym.coefficients.table import Row, Table
 from wavesym.emission.rendering import render_stream
-from wavesym.tables.table import Row, Table
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,9 @@ from typing import TypeVar
 
 from flint import arb, arb_poly, ctx, fmpq
 
+from wavesym.coefficients.increments import Increment
 from wavesym.evaluators.doubles import midpoint, rational, rounded
 from wavesym.evaluators.signal import Signal
-from wavesym.tables.increments import Increment
 
 _FIRST_BITS = 128
 _MOST_BITS = 1 << 17

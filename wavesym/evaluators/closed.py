@@ -23,11 +23,11 @@ from itertools import pairwise
 
 from flint import arb, arb_poly, fmpq
 
+from wavesym.coefficients.increments import Increment
 from wavesym.errors import ToleranceError
 from wavesym.evaluators.ball import largest, polynomials, shifted
 from wavesym.evaluators.doubles import UNIT_ROUNDOFF, bound, nearest, not_below, rational
 from wavesym.evaluators.signal import Signal
-from wavesym.tables.increments import Increment
 
 # Horner's rule must stay within the exponents of doubles; what underflows is then below the second number
 _LARGEST_POWER = arb(2) ** 900

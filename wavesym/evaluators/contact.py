@@ -8,13 +8,13 @@ from functools import partial
 
 from flint import arb, ctx, fmpq
 
+from wavesym.coefficients.increments import Increment, apply, start, trimmed
 from wavesym.derivation.rule import DERIVATIVE
 from wavesym.evaluators.ball import Segment, polynomials, precise, segments
 from wavesym.evaluators.doubles import midpoint, rational
 from wavesym.evaluators.signal import Modelled, Signal, horizon, observed
 from wavesym.mechanics.chain import chain
 from wavesym.scene import Collision, Observable, Scene
-from wavesym.tables.increments import Increment, apply, start, trimmed
 
 # a zero is known to this width, and a strain that only touches zero counts from there
 _WIDTH = fmpq(1, 2**80)
@@ -99,15 +99,17 @@ def _compressed_at_first(increment: Increment) -> fmpq | None:
     """A w > 0 up to which the first increment of a strain is negative (0 where it jumps there), None where it pulls."""
     order = 0
     while start(increment) == 0:  # strain starts without a jump: its first derivative that is not 0 tells
-        increment = trimmed(apply(DERIVATIVE, increment))
+        derivative: Increment = {}
+        apply(DERIVATIVE, increment, derivative)
+        increment = trimmed(derivative)
         order += 1
     if start(increment) > 0:
         return None
     if order == 0:
         return fmpq(0)
-    derivative = Segment(fmpq(0), polynomials(increment))
+    slope = Segment(fmpq(0), polynomials(increment))
     width = fmpq(1)
-    while not derivative.at(arb(0).union(arb(width))) < 0:
+    while not slope.at(arb(0).union(arb(width))) < 0:
         width /= 2
     return width
 

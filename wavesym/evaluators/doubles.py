@@ -15,6 +15,11 @@ def rational(value: float | Fraction) -> fmpq:
     return fmpq(*value.as_integer_ratio())
 
 
+def fraction(value: fmpq | Fraction) -> Fraction:
+    """An exact number as Python's own."""
+    return Fraction(int(value.numerator), int(value.denominator))
+
+
 def nearest(value: fmpq) -> float:
     """The double nearest to an exact number, ties to even. OverflowError beyond the largest double."""
     return int(value.p) / int(value.q)

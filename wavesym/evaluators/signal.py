@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 from flint import fmpq
 
+from wavesym.coefficients.increments import Increment, combined, integrated
+from wavesym.coefficients.table import Function, Rules, refuse_absurd, unit_response
 from wavesym.evaluators.doubles import not_below, rational
 from wavesym.mechanics.chain import Chain, chain
 from wavesym.scene import Observable, Piece, Scene
-from wavesym.tables.increments import Increment, combined, integrated
-from wavesym.tables.table import Function, Rules, refuse_absurd, unit_response
 
 
 @dataclass(frozen=True)

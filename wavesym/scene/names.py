@@ -22,6 +22,7 @@ new noexcept not not_eq operator or or_eq private protected public reinterpret_c
 throw try typeid typename using virtual wchar_t xor xor_eq"""
 # the soft keywords by name: which they are depends on the Python that runs
 _KEYWORDS = frozenset((*_C.split(), *_CPP.split(), *keyword.kwlist, "case", "match", "type"))
+_IMPORTED = "numpy"  # by NAME.py, which must not import itself
 
 
 def _name(value: object) -> str:
@@ -29,6 +30,8 @@ def _name(value: object) -> str:
         raise wrong(f"{shown(value)} given, at most 63 ASCII letters, digits and _ expected, a letter first")
     if value in _KEYWORDS:
         raise wrong(f"{shown(value)} given, a name that is no keyword of C, C++ or Python expected")
+    if value == _IMPORTED:
+        raise wrong(f"{shown(value)} given, a name other than that of a module that NAME.py imports expected")
     return value
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wavesym.compiler import files
+from wavesym.emission.files import files
 from wavesym.errors import ToleranceError
 from wavesym.mechanics.chain import chain
 from wavesym.verification.characteristics import COARSEST, Motion, integrate

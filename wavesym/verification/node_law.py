@@ -22,7 +22,7 @@ from wavesym.mechanics.node import Node
 from wavesym.verification.exact import exact, start
 
 if TYPE_CHECKING:  # tables are what is checked, not what is used
-    from wavesym.tables.table import Function, Table
+    from wavesym.coefficients.table import Function, Table
 
 Change = dict[fmpq, fmpq_poly]
 """sum over rates g of exp(-g w) * polynomial(w); what is 0 is left out."""

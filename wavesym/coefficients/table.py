@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from graphlib import TopologicalSorter
 from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
 from flint import fmpq
 
+from wavesym.coefficients.increments import Increment, add, apply, solve, start
 from wavesym.derivation.rule import Rule
 from wavesym.errors import CostError
 from wavesym.mechanics.chain import Chain
-from wavesym.tables.increments import Increment, add, apply, solve, start
 
 MOST_COEFFICIENTS = 20_000_000
 
@@ -32,9 +33,9 @@ class Row(NamedTuple):
     rod: int
     source: str
     interval: int
-    rate: fmpq
+    rate: fmpq | Fraction
     power: int
-    value: fmpq
+    value: fmpq | Fraction
 
 
 class Rules:
@@ -122,7 +123,7 @@ def _increment(rule: Rule, source: str, response: Mapping[Function, list[Increme
         if term.back <= n:
             increment = response[Function(term.function, term.rod)][n - term.back]
             if increment:
-                add(right, apply(term.weights, increment))
+                apply(term.weights, increment, right)
                 jump += term.weights.jump * start(increment)
     for load in rule.loads:
         if load.back == n and load.source == source:
@@ -143,7 +144,8 @@ def full_table(chain: Chain, intervals: int | None, until: fmpq) -> Table:
             wanted[Function(function, rod)] = (
                 intervals if intervals is not None else max(0, int((fmpq(latest) / rules.interval).floor()) + 1)
             )
-    refuse_absurd(rules, wanted, chain.m, sources=len(chain.sources))
+    asked = "output.until" if intervals is None else "--intervals"
+    refuse_absurd(rules, wanted, chain.m, asked, sources=len(chain.sources))
     responses = {}
     for source in chain.sources:
         response = unit_response(rules, source, wanted)
@@ -151,7 +153,9 @@ def full_table(chain: Chain, intervals: int | None, until: fmpq) -> Table:
     return Table(rules.interval, responses)
 
 
-def refuse_absurd(rules: Rules, wanted: Mapping[Function, int], m: int, sources: int = 1) -> None:
+def refuse_absurd(
+    rules: Rules, wanted: Mapping[Function, int], m: int, asked: str = "output.until", sources: int = 1
+) -> None:
     """CostError where the tables would be absurdly large; counted before they are made.
 
     An increment of interval n has about n / 2 powers for every rate, and as many rates as bodies can be met by then.
@@ -160,6 +164,6 @@ def refuse_absurd(rules: Rules, wanted: Mapping[Function, int], m: int, sources:
     coefficients = sources * sum(n * n * min(n, m + 1) // 4 for n in intervals.values())
     if coefficients > MOST_COEFFICIENTS:
         raise CostError(
-            f"the exact tables would hold about {coefficients:.1e} coefficients, at most {MOST_COEFFICIENTS:.0e} "
-            f"expected: {len(intervals)} wave functions in up to {max(intervals.values())} intervals"
+            f"{asked}: the tables would hold about {coefficients:.1e} coefficients ({len(intervals)} wave functions in "
+            f"up to {max(intervals.values())} intervals), at most {MOST_COEFFICIENTS:.0e} expected"
         )

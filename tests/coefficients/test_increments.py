@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sympy import Rational, Symbol, exp, expand
 
+from wavesym.coefficients.increments import add, apply, combined, integrated, solve, start
 from wavesym.derivation.rule import DERIVATIVE, Linear, Weights
-from wavesym.tables.increments import add, apply, combined, integrated, solve, start
 
 W = Symbol("w")
 ONE, ZERO = fmpq(1), fmpq(0)
@@ -36,14 +36,16 @@ def rational(number):
 def test_apply_is_the_operator(increment, a, b):
     function = expression(increment)
     expected = rational(a) * function.diff(W) + rational(b) * function if increment else 0
-    assert expand(expression(apply(weights(a, b), increment)) - expected) == 0
+    applied: dict = {}
+    apply(weights(a, b), increment, applied)
+    assert expand(expression(applied) - expected) == 0
 
 
 @given(increments, rates, rationals)
 def test_solve_solves_and_starts_right(right, rate, jump):
     found = solve(weights(ONE, rate), right, jump)
     difference: dict = {}
-    add(difference, apply(weights(ONE, rate), found))
+    apply(weights(ONE, rate), found, difference)
     add(difference, right, fmpq(-1))
     assert combined([(ONE, difference)]) == {}
     assert start(found) == jump
@@ -53,7 +55,10 @@ def test_solve_solves_and_starts_right(right, rate, jump):
 def test_integral_starts_at_zero_and_differentiates_back(increment):
     whole = integrated(increment)
     assert start(whole) == 0
-    assert combined([(ONE, apply(DERIVATIVE, whole)), (fmpq(-1), increment)]) == {}
+    difference: dict = {}
+    apply(DERIVATIVE, whole, difference)
+    add(difference, increment, fmpq(-1))
+    assert combined([(ONE, difference)]) == {}
 
 
 def test_solve_without_derivative_divides():

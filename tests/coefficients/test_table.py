@@ -6,13 +6,13 @@ import pytest
 from flint import fmpq
 from sympy import Integer
 
+from wavesym.coefficients.table import Function, Rules, full_table, needed, unit_response
 from wavesym.derivation import recurrence as derivation
 from wavesym.derivation.text import derivation_text
 from wavesym.errors import CostError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.drive import DRIVE
 from wavesym.mechanics.node import Parameters
-from wavesym.tables.table import Function, Rules, full_table, needed, unit_response
 
 
 def drive(kappa, inertia):

@@ -24,18 +24,19 @@ def add(total: Increment, part: Increment, factor: fmpq = _ONE) -> None:
         total[rate] = [a + factor * b for a, b in zip_longest(old, powers, fillvalue=_ZERO)]
 
 
-def apply(weights: Weights, increment: Increment) -> Increment:
-    """An operator on an increment: same(g) F[g,k] + raised(k) F[g,k+1]."""
+def apply(weights: Weights, increment: Increment, total: Increment) -> None:
+    """Add an operator on an increment, same(g) F[g,k] + raised(k) F[g,k+1], to `total`, in place."""
     (s0, s1), (r0, r1), jump = weights
-    result: Increment = {}
     for rate, powers in increment.items():
+        out = total.setdefault(rate, [])
+        out += [_ZERO] * (len(powers) - len(out))
         same = s0 + s1 * rate
-        out = [same * value for value in powers] if same != 0 else [_ZERO] * len(powers)
+        if same != 0:
+            for k, value in enumerate(powers):
+                out[k] += same * value
         if jump != 0:
-            for k in range(len(powers) - 1):
-                out[k] += (r0 + r1 * k) * powers[k + 1]
-        result[rate] = out
-    return result
+            for k in range(1, len(powers)):
+                out[k - 1] += (r0 + r1 * (k - 1)) * powers[k]
 
 
 def solve(own: Weights, right: Increment, jump: fmpq) -> Increment:
