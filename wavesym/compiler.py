@@ -27,10 +27,10 @@ import numpy as np
 from wavesym.coefficients.table import Row, Table, full_table
 from wavesym.emission.files import files
 from wavesym.emission.tables import table_lines
-from wavesym.evaluators.ball import evaluate
 from wavesym.evaluators.contact import contact_ends
 from wavesym.evaluators.doubles import fraction, nearest, rational
-from wavesym.evaluators.signal import Signal, horizon, signals
+from wavesym.evaluators.reference import Reference
+from wavesym.evaluators.signal import horizon
 from wavesym.mechanics.chain import chain
 from wavesym.scene import Scene
 from wavesym.writing import write_whole
@@ -49,9 +49,8 @@ class Response:
     scene: Scene
 
     @cached_property
-    def signals(self) -> tuple[Signal, ...]:
-        """The outputs as sums of arrivals, exact."""
-        return signals(self.scene)
+    def _reference(self) -> Reference:
+        return Reference(self.scene)
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -71,8 +70,7 @@ class Response:
         flat = taus.ravel()
         inside = (flat >= 0.0) & (flat <= self.tau_max)
         out = np.full((len(self.outputs), flat.size), np.nan)
-        for row, signal in zip(out, self.signals, strict=True):
-            row[inside] = evaluate(signal, flat[inside].tolist(), self.tau_max)
+        out[:, inside] = self._reference.values(flat[inside].tolist())
         return out.reshape(len(self.outputs), *taus.shape)
 
 
@@ -105,19 +103,29 @@ def derive(system: str, m: int | None) -> str:
 
 
 def generate(
-    scene: Scene, directory: str | Path | None = None, language: str = "c", evaluator: str = "auto"
+    scene: Scene,
+    directory: str | Path | None = None,
+    language: str = "c",
+    evaluator: str = "auto",
+    precision: str = "double",
 ) -> tuple[Path, ...]:
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written."""
     folder = Path(directory or scene.name)
-    made = {folder / name: text for name, text in files(scene, language, evaluator).items()}
+    made = {folder / name: text for name, text in files(scene, language, evaluator, precision).items()}
     write_whole(made)
     return tuple(made)
 
 
-def check(scene: Scene, directory: str | Path | None = None, language: str = "c", evaluator: str = "auto") -> str:
+def check(
+    scene: Scene,
+    directory: str | Path | None = None,
+    language: str = "c",
+    evaluator: str = "auto",
+    precision: str = "double",
+) -> str:
     """The difference between what stands in `directory` and what `generate` would write; empty where there is none."""
     folder = Path(directory or scene.name)
-    made = files(scene, language, evaluator)
+    made = files(scene, language, evaluator, precision)
     found = {path.name for path in folder.glob(f"{scene.name}*")} if folder.is_dir() else set()
     report: list[str] = []
     for name in sorted(made.keys() | found):
@@ -131,7 +139,10 @@ def check(scene: Scene, directory: str | Path | None = None, language: str = "c"
             old.splitlines(keepends=True), made[name].splitlines(keepends=True), str(folder / name), "as generated"
         )
     if report:
-        report.append(f"to mend: wavesym generate SCENE -o {folder} --language {language}\n")
+        report.append(
+            f"to mend: wavesym generate SCENE -o {folder} --language {language} --evaluator {evaluator} "
+            f"--precision {precision}\n"
+        )
     return "".join(report)
 
 

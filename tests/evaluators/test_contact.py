@@ -24,10 +24,10 @@ def test_the_strain_is_zero_there_and_negative_before():
     scene = collision(["1/7", "1/5", "2/3"], [1, "1/4", -1], until=12, strain=[2, 4])
     response = wavesym.evaluator(scene)
     ends = {end.x: end.double for end in contact_ends(scene)}
-    for x, strain in zip((2, 4), response.signals, strict=True):
+    for x in (2, 4):
         taus = np.linspace(0, ends[x] - 1e-9, 2001)
         values = response(taus)[x // 2 - 1]
-        assert values.max() < 0, strain.name
+        assert values.max() < 0, x
     late = brentq(lambda tau: response(tau)[0], ends[2] - 1e-3, ends[2] + 1e-3, xtol=1e-13)
     assert abs(late - ends[2]) < 1e-12 or response(ends[2])[0] > 0  # a root, or a jump over 0
 

@@ -62,8 +62,8 @@ def bar(alpha):
         rod = Rod(tau0=0, x0=0)
         push = Load("F", None, (1,))
         return (
-            single(0, Node(None, rod, inertia=1, alpha=0, beta=2 * alpha, loads=(push,))),
-            single(1, Node(rod, None, inertia=0, alpha=0, beta=0, damping=1)),
+            single(0, lambda: Node(None, rod, inertia=1, alpha=0, beta=2 * alpha, loads=(push,))),
+            single(1, lambda: Node(rod, None, inertia=0, alpha=0, beta=0, damping=1)),
         )
 
     return Chain(System(name="bar", smallest=1, families=families), 1, Parameters(kappa={}))
@@ -214,7 +214,7 @@ def mutated(scene, x, **changes):
     nodes = list(right.nodes)
     nodes[x] = replace(nodes[x], **{name: change(getattr(nodes[x], name)) for name, change in changes.items()})
     system = System(
-        name="wrong", smallest=1, families=lambda *_: tuple(single(i, node) for i, node in enumerate(nodes))
+        name="wrong", smallest=1, families=lambda *_: tuple(single(i, lambda node=node: node) for i, node in enumerate(nodes))
     )
     return replace(right, system=system)
 

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from wavesym.scene import Scene
 
 LANGUAGES = ["c", "numpy", "all"]
-EVALUATORS = ["auto", "closed"]
-PRECISIONS = ["double"]
+EVALUATORS = ["auto", "closed", "pieces"]
+PRECISIONS = ["double", "single"]
 
 
 @click.command()
@@ -36,10 +36,10 @@ def generate(
     from wavesym import compiler
 
     if only_check:
-        difference = compiler.check(scene, directory, language, evaluator)
+        difference = compiler.check(scene, directory, language, evaluator, precision)
         if difference:
             put(difference)
         return 1 if difference else 0
-    for path in compiler.generate(scene, directory, language, evaluator):
+    for path in compiler.generate(scene, directory, language, evaluator, precision):
         click.echo(path)
     return 0

@@ -154,7 +154,12 @@ def full_table(chain: Chain, intervals: int | None, until: fmpq) -> Table:
 
 
 def refuse_absurd(
-    rules: Rules, wanted: Mapping[Function, int], m: int, asked: str = "output.until", sources: int = 1
+    rules: Rules,
+    wanted: Mapping[Function, int],
+    m: int,
+    asked: str = "output.until",
+    sources: int = 1,
+    most: int = MOST_COEFFICIENTS,
 ) -> None:
     """CostError where the tables would be absurdly large; counted before they are made.
 
@@ -162,8 +167,8 @@ def refuse_absurd(
     """
     intervals = needed(rules, wanted)
     coefficients = sources * sum(n * n * min(n, m + 1) // 4 for n in intervals.values())
-    if coefficients > MOST_COEFFICIENTS:
+    if coefficients > most:
         raise CostError(
             f"{asked}: the tables would hold about {coefficients:.1e} coefficients ({len(intervals)} wave functions in "
-            f"up to {max(intervals.values())} intervals), at most {MOST_COEFFICIENTS:.0e} expected"
+            f"up to {max(intervals.values())} intervals), at most {most:.0e} expected"
         )

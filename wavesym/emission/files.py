@@ -2,42 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import dataclass
 
-from wavesym.emission.closed import Reference, c_files, numpy_files
-from wavesym.emission.description import describe
+from wavesym.emission import closed, pieces
+from wavesym.emission.description import Description, describe
 from wavesym.emission.manifest import manifest
-from wavesym.evaluators.ball import evaluate, largest
-from wavesym.evaluators.closed import ClosedForm, closed_form, refuse_beyond
+from wavesym.emission.rendering import render
+from wavesym.emission.selftest import selftest
+from wavesym.evaluators.choice import choose
 from wavesym.evaluators.contact import contact_ends
-from wavesym.evaluators.doubles import above, rational
-from wavesym.evaluators.signal import Signal, horizon, signals
+from wavesym.evaluators.reference import Reference
 from wavesym.scene import Scene
 
 LANGUAGES = {"c": ("c",), "numpy": ("numpy",), "all": ("c", "numpy")}
+_EMITTERS = {"closed": closed, "pieces": pieces}
 
 
-def files(scene: Scene, language: str = "c", evaluator: str = "auto") -> dict[str, str]:
-    """What `generate` writes, by file name. ToleranceError where the evaluator cannot meet the scene's tolerance."""
-    merged = signals(scene)
-    form = closed_form(merged, horizon(scene))
-    refuse_beyond(form, rational(scene.output.tolerance), scene.name)
-    reason = f"closed: {len(form.outputs)} outputs, bound {form.error_bound:.1e}"
-    description = describe(scene, form, reason, contact_ends(scene))
-    made = {f"{scene.name}.json": manifest(scene, description, form)}
+@dataclass(frozen=True)
+class Header:
+    """templates/c/header.h.j2."""
+
+    scene: Description
+
+
+def files(scene: Scene, language: str = "c", evaluator: str = "auto", precision: str = "double") -> dict[str, str]:
+    """What `generate` writes, by file name.
+
+    ToleranceError where no evaluator, or not the one asked for, meets the scene's tolerance; CostError where the one
+    asked for would cost too much.
+    """
+    name, chosen, reason = choose(scene, evaluator, precision)
+    description = describe(scene, chosen, reason, contact_ends(scene))
+    emitter = _EMITTERS[name]
+    made = {f"{scene.name}.json": manifest(scene, description, chosen, name)}
     if "c" in LANGUAGES[language]:
-        made |= c_files(description, form, _reference(merged, form))
+        made[f"{scene.name}.h"] = render("c/header.h.j2", Header(description))
+        made[f"{scene.name}.c"] = emitter.c_source(description, chosen)
+        made[f"{scene.name}_selftest.c"] = selftest(description, chosen, Reference(scene))
     if "numpy" in LANGUAGES[language]:
-        made |= numpy_files(description, form)
+        made[f"{scene.name}.py"] = emitter.numpy_source(description, chosen)
     return dict(sorted(made.items()))
-
-
-def _reference(merged: Sequence[Signal], form: ClosedForm) -> Reference:
-    """Values for the self-test: at every arrival, just before it, and between."""
-    taus = form.check_points
-    sizes = [largest(signal, form.tau_max) for signal in merged]
-    return Reference(
-        taus,
-        [evaluate(signal, taus, form.tau_max) for signal in merged],
-        [above(output.bound * size) for output, size in zip(form.outputs, sizes, strict=True)],
-    )

@@ -49,8 +49,12 @@ def shifted(families: dict[fmpq, arb_poly], by: fmpq) -> dict[fmpq, arb_poly]:
     return {rate: (-arb(rate) * arb(by)).exp() * polynomial(later) for rate, polynomial in families.items()}
 
 
-def segments(signal: Signal) -> Iterator[Segment]:
+def segments(signal: Signal) -> list[Segment]:
     """The segments of a signal, at the working precision."""
+    return list(_segments(signal))
+
+
+def _segments(signal: Signal) -> Iterator[Segment]:
     families: dict[fmpq, arb_poly] = {}
     last = None
     for arrival in signal.arrivals:
@@ -68,15 +72,16 @@ def polynomials(increment: Increment) -> dict[fmpq, arb_poly]:
 
 
 class Balls:
-    """A signal in balls at the precision at which it is made."""
+    """An output in balls, at the precision at which its segments are made."""
 
-    def __init__(self, signal: Signal) -> None:
-        self.segments = list(segments(signal))
+    def __init__(self, segments: Sequence[Segment]) -> None:
+        self.segments = segments
+        self.zero = all(p.length() == 0 for segment in segments for p in segment.families.values())
         self._starts = [segment.start for segment in self.segments]
 
     def largest(self, until: fmpq) -> arb:
         """A lower bound of the largest absolute value up to `until`, from the ends of segments and points between."""
-        ends = [*self._starts[1:], until]
+        ends = [*self._starts[1:], until] if self._starts else []
         points = [
             segment.at((end - segment.start) * fmpq(k, 4))
             for segment, end in zip(self.segments, ends, strict=True)
@@ -101,18 +106,18 @@ def precise(attempt: Callable[[], T | None], bits: int = _FIRST_BITS) -> T:
     raise ArithmeticError(f"{_MOST_BITS} bits are not enough")
 
 
-def evaluate(signal: Signal, taus: Sequence[float], until: float) -> list[float]:
-    """The correctly rounded values of a signal at doubles tau <= until.
+def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float], until: float) -> list[float]:
+    """The correctly rounded values of an output at doubles tau <= until; `source` gives its segments.
 
     Where a value is so near to 0 or to the middle between two doubles that 200 bits more than the largest value's do
     not tell, it is rounded from there.
     """
-    if not signal.arrivals:
-        return [0.0] * len(taus)
     exact = [rational(tau) for tau in taus]
 
     def attempt() -> list[float] | None:
-        balls = Balls(signal)
+        balls = Balls(source())
+        if balls.zero:
+            return [0.0] * len(exact)
         negligible = balls.largest(rational(until)) * _NEGLIGIBLE
         results = []
         for tau in exact:
@@ -128,13 +133,17 @@ def evaluate(signal: Signal, taus: Sequence[float], until: float) -> list[float]
     return precise(attempt)
 
 
-def largest(signal: Signal, until: float) -> arb:
-    """A ball with a lower bound of a signal's largest absolute value on [0, until]; 0 where it has no arrivals."""
-    if not signal.arrivals:
-        return arb(0)
+def largest(source: Callable[[], Sequence[Segment]], until: float) -> arb:
+    """A lower bound, a ball, of an output's largest absolute value on [0, until]; 0 where it is 0 throughout."""
 
     def attempt() -> arb | None:
-        size = Balls(signal).largest(rational(until))
-        return size if size > 0 else None
+        balls = Balls(source())
+        size = balls.largest(rational(until))
+        return size if size > 0 or balls.zero else None
 
     return precise(attempt)
+
+
+def evaluate(signal: Signal, taus: Sequence[float], until: float) -> list[float]:
+    """`values` of a signal."""
+    return values(lambda: segments(signal), taus, until)

@@ -18,20 +18,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 
 from flint import arb, arb_poly, fmpq
 
 from wavesym.coefficients.increments import Increment
-from wavesym.errors import ToleranceError
-from wavesym.evaluators.ball import largest, polynomials, shifted
-from wavesym.evaluators.doubles import UNIT_ROUNDOFF, bound, nearest, not_below, rational
+from wavesym.evaluators.ball import largest, polynomials, segments, shifted
+from wavesym.evaluators.doubles import bound, rational
+from wavesym.evaluators.reals import DOUBLE, Real
 from wavesym.evaluators.signal import Signal
 
-# Horner's rule must stay within the exponents of doubles; what underflows is then below the second number
-_LARGEST_POWER = arb(2) ** 900
-_UNDERFLOW = arb(2) ** -170
+_EXP = 20  # an exponential, in multiplications
 # all that is of second order in u, as long as no factor of u reaches 2**40
 _SECOND_ORDER = arb(fmpq(1001, 1000))
 
@@ -72,6 +70,7 @@ class ClosedForm:
 
     outputs: tuple[ClosedOutput, ...]
     tau_max: float
+    real: Real
 
     @cached_property
     def error_bound(self) -> float:
@@ -79,67 +78,86 @@ class ClosedForm:
         return max(output.bound for output in self.outputs)
 
     @cached_property
+    def work(self) -> float:
+        """About how many operations a value takes, at the end of the horizon and for the mean output."""
+        families = [family for output in self.outputs for pulse in output.pulses for family in pulse.families]
+        return sum(_EXP + len(family.powers) for family in families) / len(self.outputs)
+
+    @property
+    def bytes(self) -> int:
+        """The size of the tables, with indices of 4 bytes."""
+        pulses = [pulse for output in self.outputs for pulse in output.pulses]
+        families = [family for pulse in pulses for family in pulse.families]
+        numbers = 2 * len(pulses) + sum(1 + len(family.powers) for family in families)
+        return numbers * self.real.bytes + 4 * (len(self.outputs) + len(pulses) + len(families) + 3)
+
+    @property
+    def summary(self) -> str:
+        """What it is, in a few words."""
+        return f"closed, {sum(len(output.pulses) for output in self.outputs)} pulses, bound {self.error_bound:g}"
+
+    def shortfall(self, tolerance: fmpq) -> str:
+        """Why it does not meet a tolerance: how many digits are lost, from which tau on."""
+        worst = max(self.outputs, key=lambda output: output.bound)
+        since = min(
+            pulse.start
+            for output in self.outputs
+            for pulse, reached in zip(output.pulses, output.reached, strict=True)
+            if not (math.isfinite(reached) and rational(reached) <= tolerance)
+        )
+        lost = math.log10(worst.bound / float(self.real.roundoff))
+        digits = "all" if worst.bound >= 1 else str(math.ceil(lost))
+        return f"closed: loses {digits} digits after tau = {since:g} (bound {worst.bound:g} for {worst.name})"
+
+    @cached_property
     def check_points(self) -> list[float]:
         """0, every start of a pulse, the last double before it, the middle between two of them, and tau_max."""
         starts = sorted({0.0, self.tau_max} | {pulse.start for output in self.outputs for pulse in output.pulses})
         points = set(starts)
         for start, end in pairwise(starts):
-            points |= {(start + end) / 2, math.nextafter(end, start)}
+            middle = self.real.nearest(rational(start) / 2 + rational(end) / 2)
+            points |= {middle, self.real.next_to(end, start)}
         return sorted(points)
 
 
-def closed_form(signals: Sequence[Signal], tau_max: float) -> ClosedForm:
+def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) -> ClosedForm:
     """The closed form of signals, with its bounds, whatever they are."""
-    return ClosedForm(tuple(_closed_output(signal, tau_max) for signal in signals), tau_max)
+    return ClosedForm(tuple(_closed_output(signal, tau_max, real) for signal in signals), tau_max, real)
 
 
-def refuse_beyond(form: ClosedForm, tolerance: fmpq, name: str) -> None:
-    """ToleranceError where the closed form does not meet `tolerance`: how many digits are lost, from which tau on."""
-    worst = max(form.outputs, key=lambda output: output.bound)
-    if math.isfinite(worst.bound) and rational(worst.bound) <= tolerance:
-        return
-    since = min(
-        pulse.start
-        for output in form.outputs
-        for pulse, bound in zip(output.pulses, output.reached, strict=True)
-        if not bound <= nearest(tolerance)
-    )
-    digits = "all" if worst.bound >= 1 else str(math.ceil(math.log10(worst.bound * 2**53)))
-    raise ToleranceError(
-        f"{name}: closed: loses {digits} digits, tolerance {nearest(tolerance):g} is not met after tau = {since:g} "
-        f"(bound {worst.bound:.1e} for {worst.name}); `wavesym run` has the values"
-    )
-
-
-def _closed_output(signal: Signal, tau_max: float) -> ClosedOutput:
-    pulses = tuple(_pulse(arrival.time, arrival.increment) for arrival in signal.arrivals)
-    errors = _errors(signal, tau_max)
+def _closed_output(signal: Signal, tau_max: float, real: Real) -> ClosedOutput:
+    pulses = tuple(_pulse(arrival.time, arrival.increment, real) for arrival in signal.arrivals)
+    errors = _errors(signal, tau_max, real)
     if not errors:
         return ClosedOutput(signal.name, pulses, 0.0, ())
     reached = tuple(max(errors[: n + 1]) for n in range(len(errors)))
     return ClosedOutput(signal.name, pulses, reached[-1], reached)
 
 
-def _pulse(time: fmpq, increment: Increment) -> Pulse:
-    start = not_below(time)
-    families = (Family(nearest(rate), tuple(nearest(c) for c in increment[rate])) for rate in sorted(increment))
-    return Pulse(start, nearest(rational(start) - time), tuple(families))
+def _pulse(time: fmpq, increment: Increment, real: Real) -> Pulse:
+    start = real.not_below(time)
+    families = (Family(real.nearest(g), tuple(real.nearest(c) for c in increment[g])) for g in sorted(increment))
+    return Pulse(start, real.nearest(rational(start) - time), tuple(families))
 
 
-def _errors(signal: Signal, tau_max: float) -> list[float]:
+def _errors(signal: Signal, tau_max: float, real: Real) -> list[float]:
     """For every segment the largest error on it, relative to the signal's largest value; infinite beyond doubles."""
     if not signal.arrivals:
         return []
 
-    size = largest(signal, tau_max)
+    size = largest(partial(segments, signal), tau_max)
     return [
-        bound(error / size) if error is not None else math.inf for error in _segment_errors(signal, rational(tau_max))
+        bound(error / size) if error is not None else math.inf
+        for error in _segment_errors(signal, rational(tau_max), real)
     ]
 
 
-def _segment_errors(signal: Signal, until: fmpq) -> list[arb | None]:
-    """Upper bounds of the absolute error on each segment; None where doubles would overflow."""
-    u = arb(UNIT_ROUNDOFF)
+def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]:
+    """Upper bounds of the absolute error on each segment; None where Horner's rule might overflow."""
+    u = arb(real.roundoff)
+    # Horner's rule must stay within the exponents of the format; what underflows is then below the second number
+    largest_power = arb(real.largest) ** fmpq(7, 8)
+    underflow = arb(real.smallest) * largest_power
     sizes: dict[fmpq, arb_poly] = {}  # the absolute values of all terms so far
     weights: dict[fmpq, arb_poly] = {}  # the same, each times its factor of u
     ends = [arrival.time for arrival in signal.arrivals[1:]] + [until]
@@ -154,13 +172,13 @@ def _segment_errors(signal: Signal, until: fmpq) -> list[arb | None]:
         for rate, polynomial in new.items():
             sizes[rate] = sizes.get(rate, arb_poly()) + polynomial
             weights[rate] = weights.get(rate, arb_poly()) + _weighted(rate, polynomial)
-            representable &= bool(polynomial(arb(until - last).max(arb(1))) < _LARGEST_POWER)
+            representable &= bool(polynomial(arb(until - last).max(arb(1))) < largest_power)
             # every family is one more addition for all that came before it
             for older, size in sizes.items():
                 weights[older] = weights[older] + size
         length = arb(end - arrival.time)
         error = sum((_largest(rate, polynomial, length) for rate, polynomial in weights.items()), arb(0))
-        errors.append((error * u * _SECOND_ORDER + _UNDERFLOW) if representable else None)
+        errors.append((error * u * _SECOND_ORDER + underflow) if representable else None)
     return errors
 
 

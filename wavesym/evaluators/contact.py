@@ -79,7 +79,7 @@ def _first_return(strain: Signal, until: fmpq) -> arb | None:
     calm = _compressed_at_first(first.increment)
     if calm is None:
         return arb(first.time)
-    pieces = list(segments(strain))
+    pieces = segments(strain)
     ends = [piece.start for piece in pieces[1:]] + [until]
     for piece, end in zip(pieces, ends, strict=True):
         if piece.start != first.time:

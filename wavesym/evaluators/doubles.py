@@ -36,9 +36,14 @@ def _exact(point: arb) -> fmpq:
     return fmpq(mantissa << exponent) if exponent >= 0 else fmpq(mantissa, 1 << -exponent)
 
 
+def middle(ball: arb) -> fmpq:
+    """The middle of a ball, exact."""
+    return _exact(ball.mid())
+
+
 def midpoint(ball: arb) -> float:
     """The double nearest to the middle of a ball."""
-    return nearest(_exact(ball.mid()))
+    return nearest(middle(ball))
 
 
 def above(ball: arb) -> float:

@@ -14,9 +14,11 @@ from typing import NamedTuple
 from flint import fmpq
 
 from wavesym.coefficients.increments import Increment, combined, integrated
-from wavesym.coefficients.table import Function, Rules, refuse_absurd, unit_response
+from wavesym.coefficients.increments import start as start_of
+from wavesym.coefficients.table import MOST_COEFFICIENTS, Function, Rules, refuse_absurd, unit_response
 from wavesym.evaluators.doubles import not_below, rational
 from wavesym.mechanics.chain import Chain, chain
+from wavesym.mechanics.cone import rod_of
 from wavesym.scene import Observable, Piece, Scene
 
 
@@ -49,9 +51,9 @@ def horizon(scene: Scene) -> float:
     return not_below(rational(scene.output.until))
 
 
-def signals(scene: Scene) -> tuple[Signal, ...]:
-    """The outputs of a scene on its horizon, exact. CostError where the tables would be absurdly large."""
-    return observed(Modelled(chain(scene)), scene.outputs, scene.pieces, rational(horizon(scene)))
+def signals(scene: Scene, most: int = MOST_COEFFICIENTS) -> tuple[Signal, ...]:
+    """The outputs of a scene on its horizon, exact. CostError where the tables would have more than `most` numbers."""
+    return observed(Modelled(chain(scene)), scene.outputs, scene.pieces, rational(horizon(scene)), most)
 
 
 class Modelled:
@@ -63,7 +65,11 @@ class Modelled:
 
 
 def observed(
-    model: Modelled, outputs: Sequence[Observable], pieces: Sequence[Piece], until: fmpq
+    model: Modelled,
+    outputs: Sequence[Observable],
+    pieces: Sequence[Piece],
+    until: fmpq,
+    most: int = MOST_COEFFICIENTS,
 ) -> tuple[Signal, ...]:
     """The signals at `outputs` until tau = `until` under the loads `pieces`."""
     parts = [_parts(model.chain, output) for output in outputs]
@@ -75,7 +81,7 @@ def observed(
         for part in waves:
             reach = (until - start - part.delay) / model.rules.interval
             wanted[part.function] = max(wanted[part.function], int(reach.floor()) + 1)
-        refuse_absurd(model.rules, wanted, model.chain.m)
+        refuse_absurd(model.rules, wanted, model.chain.m, most=most)
         responses[source] = unit_response(model.rules, source, wanted)
     signals = []
     for output, group in zip(outputs, parts, strict=True):
@@ -86,17 +92,21 @@ def observed(
                 increments = responses[piece.source].get(part.function, [])
                 for time, increment in _arrivals(start, model.rules.interval, increments, until):
                     gains[time].append((part.sign * rational(piece.weight), increment))
-        signals.append(_signal(output, gains, _motion(model.chain, output)))
+        signals.append(_signal(output, gains, _motion(model.chain, output), until))
     return tuple(signals)
 
 
-def _signal(output: Observable, gains: dict[fmpq, list[tuple[fmpq, Increment]]], moving: Increment) -> Signal:
+def _signal(
+    output: Observable, gains: dict[fmpq, list[tuple[fmpq, Increment]]], moving: Increment, until: fmpq
+) -> Signal:
     displacement = output.quantity == "displacement"
     merged = {time: combined(group) for time, group in sorted(gains.items())}
     if displacement:
         merged = {time: integrated(increment) for time, increment in merged.items()}
     if moving:
         merged[fmpq(0)] = combined([(fmpq(1), merged.get(fmpq(0), {})), (fmpq(1), moving)])
+    if until in merged and start_of(merged[until]) == 0:
+        del merged[until]  # of what begins at the end of the horizon only the first value is seen
     return Signal(output.name, tuple(Arrival(time, merged[time]) for time in sorted(merged) if merged[time]))
 
 
@@ -108,15 +118,9 @@ def _arrivals(
             yield start + interval * n, increment
 
 
-def _rod(output: Observable) -> int:
-    """The rod in which an output lies; at a node the one on its left, where no side is asked for."""
-    ceiling = int(rational(output.x).ceil())
-    return max(1, ceiling + 1 if output.side > 0 else ceiling)
-
-
 def _parts(system: Chain, output: Observable) -> tuple[Part, Part]:
     """dU/dx = g' - f', dU/dtau = f' + g' + v, U = f + g + v tau, each on the clocks of (4.2)."""
-    number = _rod(output)
+    number = rod_of(output)
     rod = system.rod(number)
     offset = rational(output.x) - rod.x0
     return (
@@ -127,7 +131,7 @@ def _parts(system: Chain, output: Observable) -> tuple[Part, Part]:
 
 def _motion(system: Chain, output: Observable) -> Increment:
     """The part of an output that is not wave: v, or v tau."""
-    v = fmpq(0) + system.rod(_rod(output)).velocity
+    v = fmpq(0) + system.rod(rod_of(output)).velocity
     if v == 0 or output.quantity == "strain":
         return {}
     return {fmpq(0): [v] if output.quantity == "velocity" else [fmpq(0), v]}

@@ -31,9 +31,9 @@ def _building(base: Callable[[Rod, Parameters], Node]) -> Callable[[Quantity, Pa
             return Node(storey(i), storey(i + 1), inertia=1, alpha=2 * p.kappa[i], beta=2 * p.kappa[i])
 
         return (
-            single(0, base(storey(1), p)),
+            single(0, lambda: base(storey(1), p)),
             Family(1, m - 1, 1, floor),
-            single(m, Node(storey(m), None, inertia=1, alpha=2 * p.kappa[m], beta=0)),
+            single(m, lambda: Node(storey(m), None, inertia=1, alpha=2 * p.kappa[m], beta=0)),
         )
 
     return families

@@ -18,7 +18,7 @@ def _families(m: Quantity, p: Parameters) -> tuple[Family, ...]:
         return 2 * p.kappa[i] * p.inertia[i] / p.inertia[i + 1]
 
     return (
-        single(0, Node(None, shaft(1), inertia=1, alpha=0, beta=2 * p.kappa[1], loads=moment(1))),
+        single(0, lambda: Node(None, shaft(1), inertia=1, alpha=0, beta=2 * p.kappa[1], loads=moment(1))),
         Family(
             1,
             m - 1,
@@ -28,7 +28,7 @@ def _families(m: Quantity, p: Parameters) -> tuple[Family, ...]:
             ),
         ),
         # the last moment counts against positive rotation, as in the paper
-        single(m, Node(shaft(m), None, inertia=1, alpha=pull(m), beta=0, loads=moment(m + 1, sign=-1))),
+        single(m, lambda: Node(shaft(m), None, inertia=1, alpha=pull(m), beta=0, loads=moment(m + 1, sign=-1))),
     )
 
 

@@ -59,7 +59,7 @@ class Node:
 
 @dataclass(frozen=True)
 class Family:
-    """Nodes of one kind, at x = first, first + step, ... last."""
+    """Nodes of one kind, at x = first, first + step, ... last. `at` takes no more parameters than its node has."""
 
     first: Quantity
     last: Quantity
@@ -67,9 +67,9 @@ class Family:
     at: Callable[[Quantity], Node]
 
 
-def single(x: Quantity, node: Node) -> Family:
-    """A family of one: `node` at `x`."""
-    return Family(x, x, 1, lambda _: node)
+def single(x: Quantity, node: Callable[[], Node]) -> Family:
+    """A family of one, at `x`."""
+    return Family(x, x, 1, lambda _: node())
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.evaluators.ball import evaluate
-from wavesym.evaluators.doubles import not_below
-from wavesym.evaluators.signal import Signal, horizon, signals
+from wavesym.evaluators.reference import Reference as Exact
 from wavesym.scene import Observable, Scene
 
 _SPREAD = 400
@@ -53,22 +51,21 @@ class Reference:
 
 def reference(scene: Scene) -> Reference:
     """A scene's outputs at a few hundred spread taus, at every arrival, and at the doubles just before and after."""
-    until = horizon(scene)
-    merged = signals(scene)
-    taus = sorted(set(_taus(merged, until)))
+    exact = Exact(scene)
+    taus = sorted(set(_taus(exact)))
     outputs = (
-        Output(observable, np.array(evaluate(signal, taus, until)))
-        for observable, signal in zip(scene.outputs, merged, strict=True)
+        Output(observable, np.array(values))
+        for observable, values in zip(scene.outputs, exact.values(taus), strict=True)
     )
-    return Reference(scene, until, taus, tuple(outputs))
+    return Reference(scene, exact.tau_max, taus, tuple(outputs))
 
 
-def _taus(merged: Sequence[Signal], until: float) -> Iterator[float]:
+def _taus(exact: Exact) -> Iterator[float]:
+    until = exact.tau_max
     yield from (0.0, until)
     # multiples of the golden ratio fall evenly, and on no grid of any evaluator
     yield from (math.fmod(k * _GOLDEN, 1) * until for k in range(1, _SPREAD + 1))
-    for time in {arrival.time for signal in merged for arrival in signal.arrivals}:
-        first = not_below(time)
+    for first in exact.breakpoints():
         for tau in (math.nextafter(first, -math.inf), first, math.nextafter(first, math.inf)):
             if 0 <= tau <= until:
                 yield tau

@@ -1,0 +1,107 @@
+"""The choice: the cheapest evaluator whose proved bound meets the scene's tolerance, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple, Protocol
+
+from flint import fmpq
+
+from wavesym.errors import CostError, ToleranceError
+from wavesym.evaluators.closed import ClosedForm, closed_form
+from wavesym.evaluators.doubles import nearest, rational
+from wavesym.evaluators.pieces import Pieces, pieces
+from wavesym.evaluators.reals import REALS, Real
+from wavesym.evaluators.signal import signals
+from wavesym.scene import Scene
+
+# Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
+_WORTH_TRYING = 50_000
+
+
+class Output(Protocol):
+    """One output of an evaluator: its name, and the proved largest error relative to its largest value."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def bound(self) -> float: ...
+
+
+class Evaluator(Protocol):
+    """What computes the outputs of a scene on [0, tau_max]."""
+
+    @property
+    def real(self) -> Real: ...
+
+    @property
+    def tau_max(self) -> float: ...
+
+    @property
+    def outputs(self) -> tuple[Output, ...]: ...
+
+    @property
+    def error_bound(self) -> float: ...
+
+    @property
+    def work(self) -> float: ...
+
+    @property
+    def bytes(self) -> int: ...
+
+    @property
+    def summary(self) -> str: ...
+
+    @property
+    def check_points(self) -> list[float]: ...
+
+    def shortfall(self, tolerance: fmpq) -> str: ...
+
+
+class Choice(NamedTuple):
+    """The name of the evaluator chosen, itself, and the reason in one line."""
+
+    name: str
+    evaluator: ClosedForm | Pieces
+    reason: str
+
+
+def choose(scene: Scene, name: str = "auto", precision: str = "double") -> Choice:
+    """The evaluator `name` of a scene, or with "auto" the cheapest that meets its tolerance.
+
+    ToleranceError where none does: it says what can be had. CostError where one is asked for that would cost too much.
+    """
+    real = REALS[precision]
+    tolerance = rational(scene.output.tolerance)
+    found: list[tuple[str, ClosedForm | Pieces]] = []
+    refused: list[str] = []
+    for each in MAKERS if name == "auto" else (name,):
+        try:
+            evaluator = MAKERS[each](scene, real, name != "auto")
+        except (CostError, OverflowError) as error:
+            if name != "auto":
+                raise
+            refused.append(f"{each}: {error}")
+            continue
+        if rational(min(evaluator.error_bound, 2.0)) <= tolerance:
+            found.append((each, evaluator))
+        else:
+            refused.append(evaluator.shortfall(tolerance))
+    if not found:
+        raise ToleranceError(f"{scene.name}: tolerance {nearest(tolerance):g} cannot be met: {'; '.join(refused)}")
+    name, best = min(found, key=lambda one: one[1].work)
+    dearer = [f"{evaluator.summary}, takes longer" for _, evaluator in found if evaluator is not best]
+    return Choice(name, best, "; ".join([*refused, *dearer, best.summary]))
+
+
+def _closed(scene: Scene, real: Real, asked: bool) -> ClosedForm:
+    merged = signals(scene) if asked else signals(scene, _WORTH_TRYING)
+    return closed_form(merged, real.not_below(rational(scene.output.until)), real)
+
+
+def _pieces(scene: Scene, real: Real, asked: bool) -> Pieces:
+    return pieces(scene, real, rational(scene.output.tolerance))
+
+
+MAKERS: dict[str, Callable[[Scene, Real, bool], ClosedForm | Pieces]] = {"closed": _closed, "pieces": _pieces}

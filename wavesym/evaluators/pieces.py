@@ -1,0 +1,292 @@
+"""Pieces: on each stretch between breakpoints an output is one polynomial, of just the degree that the tolerance needs.
+
+The waves come from `windows`, in balls. On a piece, with t = (tau - centre) / half in [-1, 1], an output is turned into
+a Chebyshev series and cut off where the rest is small enough; what stays is rounded, as powers of w = tau - centre.
+
+The proved error of a piece of degree d with powers c_k (of t) is the sum of
+- the Chebyshev terms cut off, and the balls that the waves are known in;
+- rounding, with unit roundoff u and to first order: each c_k once, w once (k u), and Horner's rule (2 k + 1) u make
+  (3 k + 2) u |c_k|; contraction of a*b + c only makes less of it. NumPy sums products of powers of w with the c_k in
+  any order, c_0 last: (2 k + d + 1) u |c_k|, for c_0 2 u |c_0|. The bound takes the larger of the two.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+from flint import arb, arb_poly, ctx, fmpq
+
+from wavesym.errors import CostError
+from wavesym.evaluators import chebyshev
+from wavesym.evaluators.ball import Segment, precise
+from wavesym.evaluators.doubles import bound, middle, rational
+from wavesym.evaluators.motion import Motion, is_zero
+from wavesym.evaluators.reals import SINGLE, Real
+from wavesym.scene import Scene
+
+# A table larger than this is for the march.
+MOST_BYTES = 4 << 20
+# Pieces in a unit of tau: shorter ones have lower degrees, which is faster and rounds less, in larger tables.
+_USUAL = (8, 4, 2, 1)
+_SHORTER = (2, 4, 8, 16, 32)
+# In double precision the fastest are taken whose tables are no larger than this; single is for small machines.
+_FAST_BYTES = 128 << 10
+_SECOND_ORDER = arb(fmpq(1001, 1000))
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Pieces that some outputs share: piece p is for starts[p] <= tau < starts[p + 1].
+
+    `powers[p][j]` are the coefficients of output `outputs[j]` in w = tau - centres[p], lowest first. `first[b]` is the
+    piece at tau = b / scale; from there at most `steps` more are to be tried.
+    """
+
+    outputs: tuple[int, ...]
+    starts: tuple[float, ...]
+    centres: tuple[float, ...]
+    powers: tuple[tuple[tuple[float, ...], ...], ...]
+    scale: float
+    first: tuple[int, ...]
+    steps: int
+
+
+@dataclass(frozen=True)
+class PiecesOutput:
+    """An output's name and its proved largest error, relative to its largest value."""
+
+    name: str
+    bound: float
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Polynomial pieces for the outputs of a scene on [0, tau_max]."""
+
+    outputs: tuple[PiecesOutput, ...]
+    tau_max: float
+    real: Real
+    grids: tuple[Grid, ...]
+    per_unit: int
+
+    @property
+    def error_bound(self) -> float:
+        """The largest error of any output relative to its largest value; proved."""
+        return max(output.bound for output in self.outputs)
+
+    @cached_property
+    def degrees(self) -> tuple[int, int]:
+        """The lowest and the highest degree of a piece."""
+        degrees = [len(powers) - 1 for grid in self.grids for piece in grid.powers for powers in piece]
+        return min(degrees), max(degrees)
+
+    @cached_property
+    def bytes(self) -> int:
+        """The size of the tables."""
+        return sum(_bytes(grid, self.real) for grid in self.grids)
+
+    @cached_property
+    def work(self) -> float:
+        """About how many operations a value takes: the mean degree, and finding the place."""
+        degrees = [len(powers) - 1 for grid in self.grids for piece in grid.powers for powers in piece]
+        return 4 + sum(degrees) / len(degrees)
+
+    @property
+    def summary(self) -> str:
+        """What it is, in a few words."""
+        low, high = self.degrees
+        return f"pieces, degree {low}..{high}, {-(-self.bytes // 1024)} KiB, bound {self.error_bound:g}"
+
+    def shortfall(self, tolerance: fmpq) -> str:
+        """Why it does not meet a tolerance."""
+        worst = max(self.outputs, key=lambda output: output.bound)
+        return f"pieces: rounding allows {worst.bound:g} at best for {worst.name}"
+
+    @cached_property
+    def check_points(self) -> list[float]:
+        """For the self-test: the start of every piece, the last number before it, and one in the middle."""
+        points = {0.0, self.tau_max}
+        for grid in self.grids:
+            for start, end, centre in zip(grid.starts, grid.starts[1:], grid.centres, strict=False):
+                points |= {start, centre, self.real.next_to(end, 0.0)}
+        return sorted(points)
+
+
+def pieces(scene: Scene, real: Real, tolerance: fmpq) -> Pieces:
+    """The pieces of a scene in `real` numbers, with degrees for `tolerance`, met or not: see `error_bound`.
+
+    CostError where the tables would be larger than `MOST_BYTES`.
+    """
+    fits = _Fits(scene, real, tolerance)
+    found = _smallest(fits, tolerance) if real is SINGLE else _fastest(fits)
+    for shorter in _SHORTER:
+        if shorter > found.per_unit and rational(found.error_bound) > tolerance:
+            found = fits.fitted(shorter)
+    if found.bytes > MOST_BYTES:
+        raise CostError(f"output.until: pieces would take {found.bytes >> 20} MiB, at most {MOST_BYTES >> 20} expected")
+    return found
+
+
+def _fastest(fits: _Fits) -> Pieces:
+    for per_unit in _USUAL:
+        found = fits.fitted(per_unit)
+        if found.bytes <= _FAST_BYTES:
+            break
+    return found
+
+
+def _smallest(fits: _Fits, tolerance: fmpq) -> Pieces:
+    tried = [fits.fitted(per_unit) for per_unit in _USUAL]
+    good = [found for found in tried if rational(found.error_bound) <= tolerance]
+    return min(good, key=lambda found: found.bytes) if good else tried[0]
+
+
+class _Fits:
+    """The outputs of a scene at the precision that its tolerance needs, and fits to them."""
+
+    def __init__(self, scene: Scene, real: Real, tolerance: fmpq) -> None:
+        self._real = real
+        # a little of it is left for printing the bound in two digits, rounded up
+        self._tolerance = arb(tolerance) * arb(fmpq(9, 10))
+        self._tau_max = real.not_below(rational(scene.output.until))
+        self._motion = Motion(scene, rational(self._tau_max))
+        self._bits = 128
+
+    def fitted(self, per_unit: int) -> Pieces:
+        """Pieces, about `per_unit` of them in a unit of tau."""
+
+        def attempt() -> Pieces | None:
+            self._bits = ctx.prec  # what did for one number of pieces is where the next one starts
+            return self._fit(per_unit)
+
+        return precise(attempt, self._bits)
+
+    def _fit(self, per_unit: int) -> Pieces | None:
+        places = self._motion.places
+        shared: dict[frozenset[fmpq], list[int]] = {}
+        for k, place in enumerate(places):
+            shared.setdefault(self._motion.breaks(place), []).append(k)
+        grids: list[Grid] = []
+        bounds: dict[int, float] = {}
+        for members in shared.values():
+            columns = []
+            for k in members:
+                segments = self._motion.segments(places[k])
+                cuts = _Cuts([segment.start for segment in segments], self._motion.until, per_unit, self._real)
+                fit = self._output(segments, cuts)
+                if fit is None:
+                    return None
+                bounds[k], powers = fit
+                columns.append(powers)
+            grids.append(cuts.grid(members, columns))
+        outputs = tuple(PiecesOutput(place.observable.name, bounds[k]) for k, place in enumerate(places))
+        return Pieces(outputs, self._tau_max, self._real, tuple(grids), per_unit)
+
+    def _output(self, segments: Sequence[Segment], cuts: _Cuts) -> tuple[float, list[tuple[float, ...]]] | None:
+        """The bound of an output and its powers on every piece; None where the precision does not do."""
+        if is_zero(segments):
+            return 0.0, [(0.0,)] * len(cuts.centres)
+        local = list(_on_pieces(segments, cuts))
+        scale = max(abs(polynomial(arb(t))).lower() for polynomial in local for t in (-1, 0, 1))
+        if not scale > 0:
+            return None
+        allowed = self._tolerance * scale
+        enough = allowed.max(arb(self._real.roundoff) * scale) / 1000
+        worst = arb(0)
+        powers = []
+        for coefficients, half in zip(chebyshev.coefficients(local), cuts.halves, strict=True):
+            blurred = sum((c.rad() for c in coefficients), arb(0))
+            if not blurred < enough:
+                return None
+            error, kept = _cut_off([c.mid() for c in coefficients], allowed - blurred, self._real)
+            worst = worst.max((error + blurred).upper())
+            powers.append(tuple(self._real.nearest(middle(c / arb(half) ** k)) for k, c in enumerate(kept)))
+        return bound(worst / scale), powers
+
+
+def _on_pieces(segments: Sequence[Segment], cuts: _Cuts) -> Iterator[arb_poly]:
+    """The output on every piece, in t."""
+    starts = [segment.start for segment in segments]
+    for start, centre, half in zip(cuts.exact, cuts.middles, cuts.halves, strict=False):
+        segment = segments[bisect_right(starts, start) - 1]
+        (polynomial,) = segment.families.values()
+        yield polynomial(arb_poly([arb(centre - segment.start), arb(half)]))
+
+
+class _Cuts:
+    """The pieces between breakpoints: their exact ends, and how these look in real numbers."""
+
+    def __init__(self, breaks: Sequence[fmpq], until: fmpq, per_unit: int, real: Real) -> None:
+        self._real = real
+        last = rational(real.next_to(real.nearest(until), float("inf")))
+        exact = []
+        for low, high in pairwise([*breaks, last]):
+            parts = max(1, int(((high - low) * per_unit).ceil()))
+            inner = (rational(real.nearest(low + (high - low) * j / parts)) for j in range(1, parts))
+            exact += [low, *inner]
+        exact.append(last)
+        # where two of them are the same real number, no tau is between them
+        seen = [real.not_below(cut) for cut in exact]
+        kept = [k for k in range(len(exact) - 1) if seen[k] < seen[k + 1]]
+        self.exact = [exact[k] for k in kept] + [last]
+        self.starts = [seen[k] for k in kept] + [seen[-1]]
+        self.centres = [real.nearest((low + high) / 2) for low, high in pairwise(self.exact)]
+        self.middles = [rational(centre) for centre in self.centres]
+        self.halves = [
+            max(high - middle, middle - low)
+            for (low, high), middle in zip(pairwise(self.exact), self.middles, strict=True)
+        ]
+
+    def grid(self, outputs: Sequence[int], columns: Sequence[Sequence[tuple[float, ...]]]) -> Grid:
+        """The pieces with their powers, output by output."""
+        pieces = len(self.centres)
+        count = pieces
+        while True:  # finer until few pieces lie in a part
+            scale = self._real.nearest(fmpq(count) / rational(self.starts[-1]))
+            first = [bisect_right(self.starts, float(b) / scale) - 1 for b in range(count + 2)]
+            first = [max(0, min(piece - 1 if piece else 0, pieces - 1)) for piece in first]
+            steps = max(b - a for a, b in pairwise(first)) + 1
+            if steps <= 3 or count > 4 * pieces:
+                break
+            count *= 2
+        return Grid(
+            tuple(outputs),
+            tuple(self.starts),
+            tuple(self.centres),
+            tuple(zip(*columns, strict=True)),
+            scale,
+            tuple(first),
+            steps,
+        )
+
+
+def _cut_off(coefficients: Sequence[arb], allowed: arb, real: Real) -> tuple[arb, list[arb]]:
+    """The error and the powers of the shortest series whose error is allowed; of the best one where none is."""
+    rest = [arb(0)]
+    for c in reversed(coefficients):
+        rest.append(rest[-1] + abs(c).upper())
+    rest.reverse()  # rest[d] is what is lost by keeping d terms
+    best: tuple[arb, list[arb]] | None = None
+    for terms in range(1, len(coefficients) + 1):
+        if rest[terms] > allowed and terms < len(coefficients):
+            continue
+        powers = chebyshev.powers(coefficients[:terms])
+        weights = (max(3 * k + 2, 2 * k + terms if k else 0) for k in range(terms))
+        rounding = sum((w * abs(c) for w, c in zip(weights, powers, strict=True)), arb(0)) * arb(real.roundoff)
+        error = rest[terms] + _SECOND_ORDER * rounding.upper()
+        if best is None or error < best[0]:
+            best = error, powers
+        if error <= allowed or rest[terms] < rounding * arb(real.roundoff):
+            break
+    assert best is not None  # all terms are always tried
+    return best
+
+
+def _bytes(grid: Grid, real: Real) -> int:
+    numbers = len(grid.starts) + len(grid.centres) + sum(len(p) for piece in grid.powers for p in piece)
+    indices = len(grid.first) + len(grid.powers) * len(grid.outputs) + 1
+    return numbers * real.bytes + indices * 4
