@@ -16,6 +16,7 @@ from wavesym.evaluators.march_plan import Stretch
 from wavesym.evaluators.reals import Real
 
 _QUANTITIES = ("strain", "velocity", "displacement")
+_NOTHING = len(_QUANTITIES)  # 0 throughout
 _END_OF_DECLARATIONS = "\n#ifdef __cplusplus\n}\n"
 
 Lines = tuple[str, ...]
@@ -58,8 +59,8 @@ class March:
     ratio: Lines
     first: Lines
     last: Lines
-    share: Lines
-    kept: Lines
+    slack: Lines
+    loss: Lines
     leak: Lines
     event_window: Lines
     event_panel: Lines
@@ -151,8 +152,8 @@ def _march(evaluator: MarchEvaluator, text: Callable[[float, Real], str]) -> Mar
         ratio=rounded(value for operator in operators for value in operator.ratio),
         first=rounded(value for operator in operators for value in operator.first),
         last=rounded(value for operator in operators for value in operator.last),
-        share=rounded(operator.share for operator in operators),
-        kept=rounded(operator.kept for operator in operators),
+        slack=rounded(operator.slack for operator in operators),
+        loss=rounded(operator.loss for operator in operators),
         leak=rounded(operator.leak for operator in operators),
         event_window=lines(str(event.window) for event in plan.events),
         event_panel=lines(str(event.panel) for event in plan.events),
@@ -161,7 +162,10 @@ def _march(evaluator: MarchEvaluator, text: Callable[[float, Real], str]) -> Mar
         source_force=lines(str(channel.force) for channel in plan.channels),
         source_gain=reals(channel.gain for channel in plan.channels),
         source_integral=lines(str(channel.order) for channel in plan.channels),
-        quantity=lines(str(_QUANTITIES.index(output.quantity)) for output in plan.outputs),
+        quantity=lines(
+            str(_QUANTITIES.index(output.quantity) if made.bound else _NOTHING)
+            for output, made in zip(plan.outputs, evaluator.outputs, strict=True)
+        ),
         left_node=lines(str(output.left) for output in plan.outputs),
         right_node=lines(str(output.right) for output in plan.outputs),
         left_delay=lines(str(delays.index(1 - output.delay)) for output in plan.outputs),

@@ -8,11 +8,8 @@ from dataclasses import dataclass
 from wavesym.emission.description import Description
 from wavesym.emission.literals import c_literal, firsts, lines, literal
 from wavesym.emission.rendering import render
-from wavesym.evaluators.pieces import Grid, Pieces
+from wavesym.evaluators.pieces import BLOCK, Grid, Pieces
 from wavesym.evaluators.reals import Real
-
-# So many samples at once: their sums and offsets fill the vector registers of common machines.
-BLOCK = 32
 
 
 @dataclass(frozen=True)

@@ -79,10 +79,10 @@ def choose(scene: Scene, name: str = "auto", precision: str = "double") -> Choic
     for each in MAKERS if name == "auto" else (name,):
         try:
             evaluator = MAKERS[each](scene, real, name != "auto")
-        except (CostError, OverflowError) as error:
+        except (CostError, OverflowError):
             if name != "auto":
                 raise
-            refused.append(f"{each}: {error}")
+            refused.append(f"{each}: costs too much")
             continue
         if rational(min(evaluator.error_bound, 2.0)) <= tolerance:
             found.append((each, evaluator))

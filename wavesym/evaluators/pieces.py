@@ -30,6 +30,8 @@ from wavesym.scene import Scene
 
 # A table larger than this is for the march.
 MOST_BYTES = 4 << 20
+# C evaluates so many samples at once: their sums and offsets fill the vector registers of common machines.
+BLOCK = 32
 # Pieces in a unit of tau: shorter ones have lower degrees, which is faster and rounds less, in larger tables.
 _USUAL = (8, 4, 2, 1)
 _SHORTER = (2, 4, 8, 16, 32)
@@ -86,8 +88,8 @@ class Pieces:
 
     @cached_property
     def bytes(self) -> int:
-        """The size of the tables."""
-        return sum(_bytes(grid, self.real) for grid in self.grids)
+        """The size of the tables in C."""
+        return BLOCK * self.real.bytes + sum(_bytes(grid, self.real) for grid in self.grids)
 
     @cached_property
     def work(self) -> float:
