@@ -5,14 +5,18 @@ BIN := .venv/bin
 INSTALLED := .venv/.installed
 DEMO := collision_m4 drive_m1 building_m2
 
-.PHONY: install demo test lint generated check-all
+.PHONY: install demo test lint generated bench peers check-all
 
 install: $(INSTALLED)
 
 $(INSTALLED): pyproject.toml constraints.txt
 	$(PYTHON) -m venv --clear .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test,lint]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test,lint,plot]'
 	@touch $@
+
+# other packages as rows of `wavesym chart`
+peers: install
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[peers]'
 
 demo: install
 	@echo '== The three examples of the paper, against direct integration'
@@ -41,3 +45,8 @@ generated: install
 
 check-all: lint
 	$(BIN)/python -m pytest --run-slow
+
+# speed, as ratios within one run
+bench: install
+	$(BIN)/python -m wavesym.report.bench > BENCHMARKS.part
+	mv BENCHMARKS.part BENCHMARKS.md

@@ -39,5 +39,5 @@ def test_code_and_data_are_no_larger_than_stated(evaluator, precision, tmp_path)
     assert sum(size for name, size in sections.items() if name.startswith(".text")) <= stated["code_at_most"]
     tables = sum(size for name, size in sections.items() if name.startswith(".rodata"))
     # the outputs' names and their addresses are not tables, nor is what the linker joins
-    assert stated["data"] <= tables + 4 <= stated["data"] + 128
+    assert stated["data"] <= tables + 4 <= stated["data"] + 256
     assert sections.get(".data", 0) == sections.get(".bss", 0) == 0
