@@ -11,8 +11,10 @@ typedef double real;
 
 enum { GRIDS = 2, BLOCK = 32 };
 
-/* Loops over a block are unrolled, so that its values stay in registers. */
-#if defined(__clang__)
+/* Loops over a block are unrolled, so that its values stay in registers; not where size counts more than speed. */
+#if defined(__OPTIMIZE_SIZE__)
+#define UNROLLED
+#elif defined(__clang__)
 #define UNROLLED _Pragma("clang loop unroll(full)")
 #elif defined(__GNUC__)
 #define UNROLLED _Pragma("GCC unroll 32")

@@ -213,9 +213,8 @@ def mutated(scene, x, **changes):
     right = chain(scene)
     nodes = list(right.nodes)
     nodes[x] = replace(nodes[x], **{name: change(getattr(nodes[x], name)) for name, change in changes.items()})
-    system = System(
-        name="wrong", smallest=1, families=lambda *_: tuple(single(i, lambda node=node: node) for i, node in enumerate(nodes))
-    )
+    families = tuple(single(i, lambda node=node: node) for i, node in enumerate(nodes))
+    system = System(name="wrong", smallest=1, families=lambda *_: families)
     return replace(right, system=system)
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from wavesym.scene import Scene
 
 LANGUAGES = ["c", "numpy", "all"]
-EVALUATORS = ["auto", "closed", "pieces"]
+EVALUATORS = ["auto", "closed", "pieces", "march"]
 PRECISIONS = ["double", "single"]
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from wavesym.emission.description import Description
+from wavesym.emission.header import common_header
 from wavesym.emission.literals import c_literal, firsts, lines, literal
 from wavesym.emission.rendering import render
 from wavesym.evaluators.closed import ClosedForm, Pulse
@@ -33,6 +34,11 @@ class Module:
 
     scene: Description
     outputs: tuple[tuple[str, ...], ...]
+
+
+def c_header(scene: Description, form: ClosedForm) -> str:
+    """NAME.h."""
+    return common_header(scene)
 
 
 def c_source(scene: Description, form: ClosedForm) -> str:

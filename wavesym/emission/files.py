@@ -2,27 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from wavesym.emission import closed, pieces
-from wavesym.emission.description import Description, describe
+from wavesym.emission import closed, march, pieces
+from wavesym.emission.description import describe
 from wavesym.emission.manifest import manifest
-from wavesym.emission.rendering import render
 from wavesym.emission.selftest import selftest
 from wavesym.evaluators.choice import choose
 from wavesym.evaluators.contact import contact_ends
-from wavesym.evaluators.reference import Reference
 from wavesym.scene import Scene
 
 LANGUAGES = {"c": ("c",), "numpy": ("numpy",), "all": ("c", "numpy")}
-_EMITTERS = {"closed": closed, "pieces": pieces}
-
-
-@dataclass(frozen=True)
-class Header:
-    """templates/c/header.h.j2."""
-
-    scene: Description
+_EMITTERS = {"closed": closed, "pieces": pieces, "march": march}
 
 
 def files(scene: Scene, language: str = "c", evaluator: str = "auto", precision: str = "double") -> dict[str, str]:
@@ -36,9 +25,9 @@ def files(scene: Scene, language: str = "c", evaluator: str = "auto", precision:
     emitter = _EMITTERS[name]
     made = {f"{scene.name}.json": manifest(scene, description, chosen, name)}
     if "c" in LANGUAGES[language]:
-        made[f"{scene.name}.h"] = render("c/header.h.j2", Header(description))
+        made[f"{scene.name}.h"] = emitter.c_header(description, chosen)
         made[f"{scene.name}.c"] = emitter.c_source(description, chosen)
-        made[f"{scene.name}_selftest.c"] = selftest(description, chosen, Reference(scene))
+        made[f"{scene.name}_selftest.c"] = selftest(scene, description, chosen)
     if "numpy" in LANGUAGES[language]:
         made[f"{scene.name}.py"] = emitter.numpy_source(description, chosen)
     return dict(sorted(made.items()))

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from wavesym.emission.description import Description
+from wavesym.emission.header import common_header
 from wavesym.emission.literals import c_literal, firsts, lines, literal
 from wavesym.emission.rendering import render
 from wavesym.evaluators.pieces import BLOCK, Grid, Pieces
@@ -51,6 +52,11 @@ class Module:
 
     scene: Description
     grids: tuple[Table, ...]
+
+
+def c_header(scene: Description, form: Pieces) -> str:
+    """NAME.h."""
+    return common_header(scene)
 
 
 def c_source(scene: Description, form: Pieces) -> str:

@@ -10,23 +10,29 @@ from flint import fmpq
 from wavesym.errors import CostError, ToleranceError
 from wavesym.evaluators.closed import ClosedForm, closed_form
 from wavesym.evaluators.doubles import nearest, rational
+from wavesym.evaluators.march import MarchEvaluator, marched
 from wavesym.evaluators.pieces import Pieces, pieces
 from wavesym.evaluators.reals import REALS, Real
 from wavesym.evaluators.signal import signals
 from wavesym.scene import Scene
+
+Made = ClosedForm | Pieces | MarchEvaluator
 
 # Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
 _WORTH_TRYING = 50_000
 
 
 class Output(Protocol):
-    """One output of an evaluator: its name, and the proved largest error relative to its largest value."""
+    """An output of an evaluator: its name, its proved largest error relative to its largest value, and that value."""
 
     @property
     def name(self) -> str: ...
 
     @property
     def bound(self) -> float: ...
+
+    @property
+    def largest(self) -> float: ...
 
 
 class Evaluator(Protocol):
@@ -63,7 +69,7 @@ class Choice(NamedTuple):
     """The name of the evaluator chosen, itself, and the reason in one line."""
 
     name: str
-    evaluator: ClosedForm | Pieces
+    evaluator: Made
     reason: str
 
 
@@ -74,9 +80,11 @@ def choose(scene: Scene, name: str = "auto", precision: str = "double") -> Choic
     """
     real = REALS[precision]
     tolerance = rational(scene.output.tolerance)
-    found: list[tuple[str, ClosedForm | Pieces]] = []
+    found: list[tuple[str, Made]] = []
     refused: list[str] = []
     for each in MAKERS if name == "auto" else (name,):
+        if each == "march" and found and name == "auto":
+            break  # it takes as long for a value as for all windows before it
         try:
             evaluator = MAKERS[each](scene, real, name != "auto")
         except (CostError, OverflowError):
@@ -104,4 +112,8 @@ def _pieces(scene: Scene, real: Real, asked: bool) -> Pieces:
     return pieces(scene, real, rational(scene.output.tolerance))
 
 
-MAKERS: dict[str, Callable[[Scene, Real, bool], ClosedForm | Pieces]] = {"closed": _closed, "pieces": _pieces}
+def _march(scene: Scene, real: Real, asked: bool) -> MarchEvaluator:
+    return marched(scene, real)
+
+
+MAKERS: dict[str, Callable[[Scene, Real, bool], Made]] = {"closed": _closed, "pieces": _pieces, "march": _march}

@@ -55,12 +55,14 @@ class Pulse:
 class ClosedOutput:
     """One output as a sum of pulses.
 
-    `bound` is the proved largest error relative to the largest value, `reached[n]` the same up to the end of pulse n.
+    `bound` is the proved largest error relative to the largest value, `reached[n]` the same up to the end of pulse n,
+    `largest` a lower bound of the largest value.
     """
 
     name: str
     pulses: tuple[Pulse, ...]
     bound: float
+    largest: float
     reached: tuple[float, ...]
 
 
@@ -127,29 +129,21 @@ def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) 
 
 def _closed_output(signal: Signal, tau_max: float, real: Real) -> ClosedOutput:
     pulses = tuple(_pulse(arrival.time, arrival.increment, real) for arrival in signal.arrivals)
-    errors = _errors(signal, tau_max, real)
-    if not errors:
-        return ClosedOutput(signal.name, pulses, 0.0, ())
+    if not pulses:
+        return ClosedOutput(signal.name, pulses, 0.0, 0.0, ())
+    size = largest(partial(segments, signal), tau_max)
+    errors = [
+        bound(error / size) if error is not None else math.inf
+        for error in _segment_errors(signal, rational(tau_max), real)
+    ]
     reached = tuple(max(errors[: n + 1]) for n in range(len(errors)))
-    return ClosedOutput(signal.name, pulses, reached[-1], reached)
+    return ClosedOutput(signal.name, pulses, reached[-1], float(size), reached)
 
 
 def _pulse(time: fmpq, increment: Increment, real: Real) -> Pulse:
     start = real.not_below(time)
     families = (Family(real.nearest(g), tuple(real.nearest(c) for c in increment[g])) for g in sorted(increment))
     return Pulse(start, real.nearest(rational(start) - time), tuple(families))
-
-
-def _errors(signal: Signal, tau_max: float, real: Real) -> list[float]:
-    """For every segment the largest error on it, relative to the signal's largest value; infinite beyond doubles."""
-    if not signal.arrivals:
-        return []
-
-    size = largest(partial(segments, signal), tau_max)
-    return [
-        bound(error / size) if error is not None else math.inf
-        for error in _segment_errors(signal, rational(tau_max), real)
-    ]
 
 
 def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]:

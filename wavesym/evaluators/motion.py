@@ -17,7 +17,7 @@ from wavesym.mechanics.chain import chain
 from wavesym.mechanics.cone import light_cone, rod_of
 from wavesym.scene import Observable, Scene
 
-MOST_WINDOWS = 1_000_000
+MOST_WINDOWS = 20_000
 
 
 @dataclass(frozen=True)

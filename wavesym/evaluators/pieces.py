@@ -59,10 +59,11 @@ class Grid:
 
 @dataclass(frozen=True)
 class PiecesOutput:
-    """An output's name and its proved largest error, relative to its largest value."""
+    """An output's name, its proved largest error relative to its largest value, and a lower bound of that value."""
 
     name: str
     bound: float
+    largest: float
 
 
 @dataclass(frozen=True)
@@ -173,7 +174,7 @@ class _Fits:
         for k, place in enumerate(places):
             shared.setdefault(self._motion.breaks(place), []).append(k)
         grids: list[Grid] = []
-        bounds: dict[int, float] = {}
+        bounds: dict[int, tuple[float, float]] = {}
         for members in shared.values():
             columns = []
             for k in members:
@@ -185,13 +186,15 @@ class _Fits:
                 bounds[k], powers = fit
                 columns.append(powers)
             grids.append(cuts.grid(members, columns))
-        outputs = tuple(PiecesOutput(place.observable.name, bounds[k]) for k, place in enumerate(places))
+        outputs = tuple(PiecesOutput(place.observable.name, *bounds[k]) for k, place in enumerate(places))
         return Pieces(outputs, self._tau_max, self._real, tuple(grids), per_unit)
 
-    def _output(self, segments: Sequence[Segment], cuts: _Cuts) -> tuple[float, list[tuple[float, ...]]] | None:
-        """The bound of an output and its powers on every piece; None where the precision does not do."""
+    def _output(
+        self, segments: Sequence[Segment], cuts: _Cuts
+    ) -> tuple[tuple[float, float], list[tuple[float, ...]]] | None:
+        """Bound and largest value of an output, and its powers on every piece; None where the precision does not do."""
         if is_zero(segments):
-            return 0.0, [(0.0,)] * len(cuts.centres)
+            return (0.0, 0.0), [(0.0,)] * len(cuts.centres)
         local = list(_on_pieces(segments, cuts))
         scale = max(abs(polynomial(arb(t))).lower() for polynomial in local for t in (-1, 0, 1))
         if not scale > 0:
@@ -207,7 +210,7 @@ class _Fits:
             error, kept = _cut_off([c.mid() for c in coefficients], allowed - blurred, self._real)
             worst = worst.max((error + blurred).upper())
             powers.append(tuple(self._real.nearest(middle(c / arb(half) ** k)) for k, c in enumerate(kept)))
-        return bound(worst / scale), powers
+        return (bound(worst / scale), float(scale)), powers
 
 
 def _on_pieces(segments: Sequence[Segment], cuts: _Cuts) -> Iterator[arb_poly]:

@@ -7,6 +7,7 @@ windows, where they are not (many unequal rates, many reflections).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from functools import cached_property, partial
 
 from flint import arb
@@ -16,10 +17,23 @@ from wavesym.evaluators.ball import Segment, largest, segments, values
 from wavesym.evaluators.doubles import not_below, rational
 from wavesym.evaluators.motion import Motion
 from wavesym.evaluators.signal import Signal, horizon, signals
+from wavesym.mechanics.chain import chain
+from wavesym.mechanics.cone import light_cone
 from wavesym.scene import Scene
 
+# nodes times windows that are known in seconds
+_QUICK = 6000
 # coefficients of the tables from which on windows are cheaper
 _MODERATE = 50_000
+
+
+def beginning(scene: Scene) -> Scene:
+    """The scene, or as much of its horizon as takes little time to know exactly."""
+    nodes = len(light_cone(chain(scene), scene.outputs, scene.output.until))
+    if nodes * scene.output.until <= _QUICK:
+        return scene
+    shorter = {"until": Fraction(max(8, _QUICK // nodes))}
+    return scene.model_copy(update={"output": scene.output.model_copy(update=shorter)})
 
 
 class Reference:

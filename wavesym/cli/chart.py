@@ -1,0 +1,60 @@
+"""`wavesym chart`."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from wavesym.cli.parameters import PATH, SCENE
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+SAMPLES = 10001
+
+# one thread for all that is compared; NumPy reads this when it is first imported
+for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ.setdefault(_threads, "1")
+
+
+@click.command()
+@click.argument("scene", type=SCENE)
+@click.option("-o", "out", type=PATH, metavar="FILE", required=True, help="The picture: .svg, .png or .pdf.")
+@click.option("--csv", "table", type=PATH, metavar="FILE", help="Where the numbers go.")
+@click.option(
+    "--samples", type=click.IntRange(101, 10**6), default=SAMPLES, show_default=True, help="Timed, an output."
+)
+def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
+    """Draw speed against accuracy: every evaluator of a scene, and other methods.
+
+    Takes some tens of seconds, and a C compiler.
+
+    \b
+    Example:
+      wavesym chart building_m2 -o chart.svg --csv chart.csv
+    """
+    if not find_spec("matplotlib"):
+        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context())
+
+    from wavesym.report.chart import draw
+    from wavesym.report.measure import measure, to_csv
+    from wavesym.report.saving import picture_format, save
+    from wavesym.writing import write_whole
+
+    picture_format(out)  # before the work, not after it
+    measured = measure(scene, samples, _tell)
+    _tell("")
+    save(draw(scene, measured), out)
+    if table is not None:
+        write_whole({table: to_csv(measured)})
+
+
+def _tell(what: str) -> None:
+    """What is measured at present, on a terminal."""
+    if sys.stderr.isatty():
+        click.echo(f"\r\x1b[K{what}", nl=False, err=True)

@@ -1,0 +1,156 @@
+"""The march: waves window by window, for long horizons and many rods, in constant memory and with a proved bound.
+
+On each window [n, n + 1) what arrives at a node was sent on the window before, so the nodes are independent of each
+other and each needs one short recurrence (march_operator.py). The degree of the polynomials that hold the waves grows
+like the square root of the horizon, as fronts gather ever finer detail: it is chosen by marching once over the whole
+horizon and adding up what was lost (march_bound.py), and raised until that is no more than what rounding costs.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from flint import arb, fmpq
+
+from wavesym.errors import CostError, ToleranceError
+from wavesym.evaluators.doubles import bound, nearest, rational
+from wavesym.evaluators.march_bound import judge
+from wavesym.evaluators.march_operator import Operator
+from wavesym.evaluators.march_plan import Plan, plan
+from wavesym.evaluators.march_run import operators
+from wavesym.evaluators.reals import DOUBLE, Real
+from wavesym.scene import Scene
+
+_HIGHEST_DEGREE = 2000
+_MOST_WORK = 2e10  # nodes * coefficients * windows, ten minutes or so
+_LARGEST_STATE = 1 << 22  # bytes; programs keep it on the stack
+_OVERHEAD = 1000  # of a window, in units of a coefficient
+
+
+@dataclass(frozen=True)
+class MarchOutput:
+    """An output's name, the proved bound of its error relative to its largest value, and a lower bound of that."""
+
+    name: str
+    bound: float
+    largest: float
+
+
+@dataclass(frozen=True)
+class MarchEvaluator:
+    """A march over [0, tau_max] with polynomials of `degree` in `real` numbers."""
+
+    plan: Plan
+    degree: int
+    real: Real
+    outputs: tuple[MarchOutput, ...]
+
+    @property
+    def tau_max(self) -> float:
+        """The last tau."""
+        return self.plan.tau_max
+
+    @cached_property
+    def error_bound(self) -> float:
+        """The largest error of any output relative to its largest value; proved."""
+        return max(output.bound for output in self.outputs)
+
+    @cached_property
+    def operators(self) -> dict[fmpq, Operator]:
+        """By rate times length of a panel."""
+        return operators(self.plan, self.degree)
+
+    @property
+    def bytes(self) -> int:
+        """The size of the tables that grow, those of the operators and the loads."""
+        return self.real.bytes * (3 * (self.degree + 1) * len(self.operators) + 6 * len(self.plan.events))
+
+    @property
+    def state_bytes(self) -> int:
+        """The size of what a march remembers: two windows of waves."""
+        return self.real.bytes * _state(self.plan, self.degree)
+
+    @property
+    def work(self) -> float:
+        """About how many operations a window takes, and so a value that is asked for alone on one."""
+        return 8.0 * len(self.plan.panels) * len(self.plan.junctions) * self.degree
+
+    @property
+    def summary(self) -> str:
+        """What it is, in a few words."""
+        size = -(-self.state_bytes // 1024)
+        return f"march, degree {self.degree}, a state of {size} KiB, bound {self.error_bound:g}"
+
+    def shortfall(self, tolerance: fmpq) -> str:
+        """Why it does not meet a tolerance."""
+        worst = max(self.outputs, key=lambda output: output.bound)
+        if not worst.bound < 1:
+            return f"march: {worst.name} cannot be told from 0"
+        return f"march: rounding allows {worst.bound:g} to tau = {self.tau_max:g} for {worst.name}"
+
+    @cached_property
+    def check_points(self) -> list[float]:
+        """For the self-test: both ends, the first windows, and a few of all later ones."""
+        early = [k / 8 for k in range(int(min(8 * self.tau_max, 160)) + 1)]
+        late = [self.real.nearest(rational(self.tau_max) * k / 32) for k in range(33)]
+        return sorted(set(early + late))
+
+
+def march(scene: Scene, real: Real = DOUBLE) -> MarchEvaluator:
+    """The march of a scene in `real` numbers, of the least sufficient degree.
+
+    ToleranceError where its bound is above the scene's tolerance, CostError where it would be long.
+    """
+    made = marched(scene, real)
+    tolerance = rational(scene.output.tolerance)
+    if not (math.isfinite(made.error_bound) and rational(made.error_bound) <= tolerance):
+        raise ToleranceError(
+            f"{scene.name}: tolerance {nearest(tolerance):g} cannot be met: {made.shortfall(tolerance)}"
+        )
+    return made
+
+
+def marched(scene: Scene, real: Real = DOUBLE, degree: int | None = None) -> MarchEvaluator:
+    """The same, whatever its bound, of the least sufficient degree or of the one given (at least 8)."""
+    prepared = plan(scene, real)
+    if degree is not None:
+        return _made(prepared, degree, real)[0]
+    degree = _first_degree(prepared, real)
+    while True:
+        _refuse_long(prepared, degree)
+        made, enough = _made(prepared, degree, real)
+        if enough:
+            return made
+        degree += degree // 6
+
+
+def _made(prepared: Plan, degree: int, real: Real) -> tuple[MarchEvaluator, bool]:
+    verdict = judge(prepared, degree, nearest(real.roundoff))
+    outputs = tuple(
+        MarchOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)
+        for output, error, size in zip(prepared.outputs, verdict.bounds, verdict.sizes, strict=True)
+    )
+    return MarchEvaluator(prepared, degree, real, outputs), verdict.quiet and verdict.truncated <= verdict.rounded
+
+
+def _first_degree(prepared: Plan, real: Real) -> int:
+    """A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved."""
+    rates = [nearest(node.rate) if node.rate is not None else 0.0 for node in prepared.junctions]
+    longest = max(nearest(panel.length) for panel in prepared.panels)
+    detail = math.sqrt(2 * float(np.mean(rates)) * longest * prepared.windows)
+    return math.ceil(detail) + (20 if real is DOUBLE else 10)
+
+
+def _refuse_long(prepared: Plan, degree: int) -> None:
+    work = prepared.windows * len(prepared.panels) * (_OVERHEAD + len(prepared.junctions) * degree)
+    if degree > _HIGHEST_DEGREE or work > _MOST_WORK:
+        raise CostError(f"march: degree {degree} to tau = {prepared.tau_max:g} would cost {work:.0e} operations")
+    if 8 * _state(prepared, degree) > _LARGEST_STATE:
+        raise CostError(f"march: its state would have {8 * _state(prepared, degree):.0e} bytes")
+
+
+def _state(prepared: Plan, degree: int) -> int:
+    return 4 * len(prepared.panels) * (len(prepared.junctions) + 2) * (degree + 1)

@@ -1,0 +1,221 @@
+"""How far a march can be from the truth: an a-posteriori bound, proved.
+
+Take as the state at an instant all waves that are in the rods, and the velocities of the bodies. Its energy,
+
+    E**2 = sum over rods of Z * integral of both waves squared + sum over bodies of M q**2 / 2,
+
+does not grow where nothing is loaded: M q' + (Z_l + Z_r) q = 2 Z_l a + 2 Z_r b makes what arrives,
+Z_l a**2 + Z_r b**2, less what leaves, Z_l (q - a)**2 + Z_r (q - b)**2, the growth of M q**2 / 2; and a node without
+inertia sends no more than arrives. The equations are linear, so the difference of two motions under the same loads does
+not grow in E, and the error of the march is at most the sum, over windows and panels, of what each adds anew:
+
+- Truncation. On a panel the computed q satisfies q + L int q = L int p + start up to R = eps (T_(d+1) -+ 1), with
+  eps = x_(d+1) (q_d - p_d) and L = rate h / 2. Its error e solves e + L int e = R, whence |e| <= 2 |eps|.
+- Rounding, by running the recurrences on absolute values: coefficients of q are wrong by at most u T |p| + u t |start|,
+  with a matrix T and a vector t without negative entries, and q - a by u |q - a| more. In L2 over a panel a series has
+  at most sqrt(pi h) / 2 times its norm (2 c_0**2 + c_1**2 + ...)**0.5, as (1 - u**2)**-0.5 >= 1.
+
+From energy to values: the true wave on a panel is a polynomial of degree K up to some tail (march_tail.py), K for the
+horizon; so its difference from the computed one is, and a polynomial of degree K in [-1, 1] is nowhere larger than
+(K + 1)/sqrt(2) times its L2 norm. Reading a value adds the rounding of Clenshaw's recurrence, at most
+12 u sum ((k + 1)(k + 2) + d) |c_k| with that of the local variable. A displacement is an integral, so L2 will do.
+
+All of it holds to first order in u, and a margin of 1 % is added for the rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, inf, log2, pi, sqrt
+
+import numpy as np
+
+from wavesym.evaluators.doubles import nearest
+from wavesym.evaluators.march_operator import Array, Operator
+from wavesym.evaluators.march_plan import Plan
+from wavesym.evaluators.march_run import LEFT, RIGHT, Block, Run
+from wavesym.evaluators.march_tail import Tail, tail
+from wavesym.evaluators.march_watch import Watch
+from wavesym.evaluators.march_zero import silent
+
+_MARGIN = 1.01
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a march at some degree is worth.
+
+    `errors` and `sizes` are, for each output, a bound of its largest error and a lower bound of its largest value; of
+    the energy norm of the error, `truncated` is the part of the degree, `rounded` that of the arithmetic. `quiet` says
+    that the programs, which watch what their polynomials miss as they run, will not complain.
+    """
+
+    degree: int
+    errors: tuple[float, ...]
+    sizes: tuple[float, ...]
+    truncated: float
+    rounded: float
+    quiet: bool
+
+    @property
+    def bounds(self) -> tuple[float, ...]:
+        """Errors relative to the largest values; 0 for an output that is 0 throughout, inf where nothing is left."""
+        return tuple(
+            0.0 if error == 0 else error / (size - error) if error < size else inf
+            for error, size in zip(self.errors, self.sizes, strict=True)
+        )
+
+
+def judge(plan: Plan, degree: int, unit: float) -> Verdict:
+    """March once over the horizon at `degree` with unit roundoff `unit`, and bound the errors."""
+    run = Run(plan, degree)
+    roundings = _Roundings(plan, run, unit)
+    smooth = tail(plan)
+    watches = [Watch(plan, output, degree) for output in plan.outputs]
+    k = np.arange(degree + 1)
+    steep, flat = (k + 1) * (k + 2.0) + degree, k + 8 + degree / (k + 1.0)
+    displaced = [output.quantity == "displacement" for output in plan.outputs]
+    truncated = rounded = summed = 0.0
+    alarm = Alarm(unit * len(plan.junctions))
+    largest, reading, sums = (np.zeros(len(watches)) for _ in range(3))
+    for block in run.blocks():
+        lost, inexact = roundings.of(block)
+        truncated += float(np.sum(lost))
+        rounded += float(np.sum(inexact))
+        summed += len(lost) * (truncated + rounded)
+        alarm.watch(block, roundings.leak)
+        for o, watch in enumerate(watches):
+            largest[o] = max(largest[o], float(np.max(np.abs(watch.values(block)))))
+            weighted = watch.size(block, flat if displaced[o] else steep)
+            reading[o] = max(reading[o], float(np.max(weighted)))
+            sums[o] += float(np.sum(weighted))
+    errors = []
+    for o, output in enumerate(plan.outputs):
+        impedance = _impedance(plan, output.right)
+        if displaced[o]:
+            stretches = 2.0 * len(plan.panels) + 2
+            error = 2 * summed / sqrt(impedance) + unit * (24 * stretches * sums[o] + 2 * plan.windows * largest[o])
+        else:
+            error = 2 * _largest(smooth, plan, (truncated + rounded) / sqrt(impedance)) + 12 * unit * reading[o]
+        errors.append(_MARGIN * float(error))
+    # what rounding could have made may be nothing at all: programs then return exactly 0
+    if any(size <= error for size, error in zip(largest, errors, strict=True)):
+        for o, nothing in enumerate(silent(plan)):
+            if nothing:
+                errors[o] = largest[o] = 0.0
+    return Verdict(degree, tuple(errors), tuple(map(float, largest)), truncated, rounded, not alarm.rung)
+
+
+def _largest(smooth: Tail, plan: Plan, energy: float) -> float:
+    """The largest value of a wave on a window whose L2 norm is `energy`, and whose tail is known."""
+    shortest = min(nearest(panel.length) for panel in plan.panels)
+    factor = (smooth.degree + 1) / sqrt(2)
+    return factor * (sqrt(2 / shortest) * energy + sqrt(2) * smooth.size) + smooth.size
+
+
+def _impedance(plan: Plan, column: int) -> float:
+    """That of the rod on the right of a column."""
+    return nearest(plan.junctions[column].right)
+
+
+class Alarm:
+    """What the programs watch: the sum of all leaks |eps|, against the largest velocity or mean of a wave so far.
+
+    It may be `allowed` of that per window: what the arithmetic of as many nodes loses anyway.
+    """
+
+    def __init__(self, allowed: float) -> None:
+        self._allowed = allowed
+        self._leak = self._size = 0.0
+        self._window = 0
+        self.rung = False
+
+    def watch(self, block: Block, leak: Array) -> None:
+        """The windows of a block, with the leak per unit of `excess` of each panel and column."""
+        leaks = self._leak + np.cumsum(np.sum(leak * np.abs(block.excess), axis=(1, 2)))
+        means = np.max(np.abs(block.waves[1:, :, :, :, 0]), axis=(1, 2, 3))
+        sizes = np.maximum.accumulate(np.maximum(means, np.max(np.abs(block.ends), axis=(1, 2))))
+        sizes = np.maximum(sizes, self._size)
+        count = self._window + np.arange(1, len(leaks) + 1)
+        self.rung |= bool(np.any(leaks > self._allowed * count * sizes))
+        self._leak, self._size, self._window = float(leaks[-1]), float(sizes[-1]), int(count[-1])
+
+
+class _Roundings:
+    """What a window adds to the error, in energy: for all nodes at once."""
+
+    def __init__(self, plan: Plan, run: Run, unit: float) -> None:
+        self._unit, self._plan = unit, plan
+        nodes = plan.junctions
+        constants = {step: _constants(operator) for step, operator in run.operators.items()}
+        shape = len(plan.panels), len(nodes)
+        self._q, self._start, self._end, self._end_start, self.leak = (np.zeros(shape) for _ in range(5))
+        self._lost = np.zeros(shape)
+        self._q[:] = 4.0
+        for p, panel in enumerate(plan.panels):
+            for c, node in enumerate(nodes):
+                if node.rate is not None:
+                    step = node.rate * panel.length
+                    self._q[p, c], self._start[p, c], self._end[p, c], self._end_start[p, c] = constants[step]
+                    self.leak[p, c] = run.operators[step].leak
+                    self._lost[p, c] = nearest(node.mass * (4 * step + 2))  # M (rate h (2 eps)^2 + (2 eps)^2 / 2)
+        self._length = np.array([[nearest(panel.length)] for panel in plan.panels])
+        self._left = np.array([nearest(node.left) for node in nodes])
+        self._right = np.array([nearest(node.right) for node in nodes])
+        self._mass = np.array([nearest(node.mass) for node in nodes])
+        self._alpha, self._beta = np.abs(run.alpha[:, 0]), np.abs(run.beta[:, 0])
+
+    def of(self, block: Block) -> tuple[Array, Array]:
+        """By truncation and by rounding; shape (windows,) each."""
+        norms = np.sqrt(np.sum(block.waves**2, axis=-1) + block.waves[..., 0] ** 2)
+        arriving = self._alpha * norms[:-1, RIGHT, :, :-2] + self._beta * norms[:-1, LEFT, :, 2:] + 2 * block.forces
+        starts = np.abs(block.starts)
+        q = self._unit * (self._q * arriving + self._start * starts)
+        end = self._unit * (self._end * arriving + self._end_start * starts)
+        missed = self.leak * (np.abs(block.excess) + q + 4 * self._unit * arriving)
+        left = q + self._unit * norms[1:, LEFT, :, 1:-1]
+        right = q + self._unit * norms[1:, RIGHT, :, 1:-1]
+        waves = pi / 4 * self._length * (self._left * left**2 + self._right * right**2)
+        inexact = np.sum(np.sqrt(np.sum(waves + self._mass / 2 * end**2, axis=-1)), axis=-1)
+        return np.sum(np.sqrt(np.sum(self._lost * missed**2, axis=-1)), axis=-1), inexact
+
+
+def _constants(operator: Operator) -> tuple[float, float, float, float]:
+    """Norms of T and t for the coefficients of q, and the same for its value at the end.
+
+    Counts the roundings of the programs in C (one after the other) and in NumPy (scans and sums in pairs).
+    """
+    degree = len(operator.ratio) - 1
+    levels = ceil(log2(degree + 1))
+    ratio, first, last = (np.abs(np.array(table)) for table in (operator.ratio, operator.first, operator.last))
+    slack, loss = operator.slack, operator.loss
+    # columns: |p_0| ... |p_d|, |start|
+    given = np.eye(degree + 2)
+    y, y_error = np.zeros((degree + 2, degree + 2)), np.zeros((degree + 2, degree + 2))
+    for k in range(degree, 0, -1):
+        difference = (2 if k == 1 else 1) * given[k - 1] + (given[k + 1] if k < degree else 0)
+        y[k] = ratio[k] * (difference + y[k + 1])
+        y_error[k] = 8 * y[k] + ratio[k] * y_error[k + 1]
+    y, y_error = y[:-1], y_error[:-1] + levels * y[:-1]
+    counts = np.maximum(np.arange(degree + 1), levels) + 3.0
+    begun, ended = given[-1] + first @ y, last @ y
+    mean = (1 - slack) * begun
+    mean_error = (1 - slack) * (first @ y_error + (first * counts) @ y) + 3 * begun
+    end_error = abs(1 - loss) * mean_error + last @ y_error + (last * counts) @ y + 3 * ((1 + loss) * mean + ended)
+    q_error = np.empty((degree + 1, degree + 2))
+    q_error[0] = mean_error
+    q, error = 2 * mean, 2 * mean_error
+    for k in range(1, degree + 1):
+        q = y[k] + ratio[k] * q
+        error = y_error[k] + ratio[k] * error + 3 * q
+        q_error[k] = error + levels * q
+    # in the norm that counts c_0 twice
+    q_error[0] *= sqrt(2)
+    q_error[:, 0] /= sqrt(2)
+    end_error[0] /= sqrt(2)
+    return (
+        float(np.linalg.norm(q_error[:, :-1], 2)),
+        float(np.linalg.norm(q_error[:, -1])),
+        float(np.linalg.norm(end_error[:-1])),
+        float(end_error[-1]),
+    )

@@ -1,0 +1,85 @@
+"""Outputs on a window: as linear functionals of its waves for the generator, as stretches for the programs."""
+
+from __future__ import annotations
+
+import numpy as np
+from flint import fmpq
+
+from wavesym.evaluators.doubles import nearest
+from wavesym.evaluators.march_operator import Array
+from wavesym.evaluators.march_plan import Plan, Watched
+from wavesym.evaluators.march_run import LEFT, RIGHT, Block
+
+SAMPLES = 17
+"""Points per window, both ends among them, at which the generator looks for an output's largest value."""
+
+
+class Watch:
+    """An output at `SAMPLES` points of every window."""
+
+    def __init__(self, plan: Plan, output: Watched, degree: int) -> None:
+        self._output = output
+        self._sign = -1.0 if output.quantity == "strain" else 1.0
+        self._sums = output.quantity == "displacement"
+        self._right = _functional(plan, output.delay, degree, integral=self._sums)
+        self._left = _functional(plan, 1 - output.delay, degree, integral=self._sums)
+        self._total = 0.0
+
+    def values(self, block: Block) -> Array:
+        """Shape (windows, SAMPLES); blocks come in order, as a displacement is summed up."""
+        right = _pairs(block.waves[:, RIGHT, :, self._output.right + 1])
+        left = _pairs(block.waves[:, LEFT, :, self._output.left + 1])
+        values = left @ self._left + self._sign * (right @ self._right)
+        if self._sums:
+            before = self._total + np.concatenate([[0.0], np.cumsum(values[:, -1])])
+            self._total = float(before[-1])
+            values = values + before[:-1, np.newaxis]
+        return np.asarray(values)
+
+    def size(self, block: Block, weights: Array) -> Array:
+        """The weighted absolute coefficients of its two waves on each window, the larger panel; shape (windows,)."""
+        right = np.abs(block.waves[:, RIGHT, :, self._output.right + 1]) @ weights
+        left = np.abs(block.waves[:, LEFT, :, self._output.left + 1]) @ weights
+        total = np.max(right + left, axis=-1)
+        return np.asarray(np.maximum(total[1:], total[:-1]))
+
+
+def _pairs(waves: Array) -> Array:
+    """Each window's coefficients after those of the window before: (windows, 2 * panels * coefficients)."""
+    return np.concatenate([waves[:-1].reshape(len(waves) - 1, -1), waves[1:].reshape(len(waves) - 1, -1)], axis=1)
+
+
+def _functional(plan: Plan, delay: fmpq, degree: int, *, integral: bool) -> Array:
+    """What maps the coefficients of `_pairs` to values, or integrals since the window began, at the samples."""
+    points = np.linspace(0.0, 1.0, SAMPLES)
+    result = np.zeros((2, len(plan.panels), degree + 1, SAMPLES))
+    stretches = plan.stretches(delay)
+    for k, stretch in enumerate(stretches):
+        length = nearest(plan.panels[stretch.panel].length)
+        start = nearest(stretch.start)
+        last = k == len(stretches) - 1
+        end = 1.0 if last else nearest(stretches[k + 1].start)
+        here = (points >= max(start, 0.0)) & ((points < end) | last)
+        at = result[1 - stretch.back, stretch.panel]
+        if integral:
+            low = _antiderivative(np.array([2 * (max(start, 0.0) - start) / length - 1]), degree)
+            reached = np.clip(points, max(start, 0.0), end)
+            at += (_antiderivative(2 * (reached - start) / length - 1, degree) - low) * length / 2
+        else:
+            at[:, here] = _basis(2 * (points[here] - start) / length - 1, degree)
+    return result.reshape(-1, SAMPLES)
+
+
+def _basis(u: Array, degree: int) -> Array:
+    return np.asarray(np.cos(np.outer(np.arange(degree + 1), np.arccos(np.clip(u, -1, 1)))))
+
+
+def _antiderivative(u: Array, degree: int) -> Array:
+    """Antiderivatives of T_0 ... T_degree at u."""
+    chebyshev = _basis(u, degree + 1)
+    result = np.empty((degree + 1, len(u)))
+    result[0] = chebyshev[1]
+    result[1] = chebyshev[2] / 4
+    for k in range(2, degree + 1):
+        result[k] = chebyshev[k + 1] / (2 * (k + 1)) - chebyshev[k - 1] / (2 * (k - 1))
+    return result

@@ -1,0 +1,1 @@
+"""Results -> pictures: histories, the chart, the report."""

@@ -1,0 +1,18 @@
+"""The list of rivals, in the order of a chart."""
+
+from __future__ import annotations
+
+from wavesym.rivals import characteristics, differences, elements, laplace, modes, steps
+from wavesym.rivals.peers import PEERS
+from wavesym.rivals.problem import Rival
+
+RIVALS: tuple[Rival, ...] = (
+    characteristics.SECOND,
+    characteristics.FOURTH,
+    differences.RIVAL,
+    elements.RIVAL,
+    modes.RIVAL,
+    steps.RIVAL,
+    laplace.RIVAL,
+    *PEERS,
+)

@@ -1,0 +1,162 @@
+"""(2.1)-(2.4) of a scene in doubles: where every rival starts."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.evaluators.doubles import fraction
+from wavesym.mechanics.chain import Chain, chain
+from wavesym.mechanics.node import Load, Rod
+from wavesym.scene import Observable, Piece, Scene
+
+Array = NDArray[np.float64]
+Evaluate = Callable[[Array], Array]
+"""Ascending tau in [0, until], shape (n,), to the outputs, shape (outputs, n)."""
+
+FORCE_TERMS = 3
+"""Loads are polynomials in tau of at most this many terms: a ramp of acceleration is a parabola of ground velocity."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """From `time` on, the load at a node has sum_k coefficients[k] (tau - time)**k more."""
+
+    time: Fraction
+    node: int
+    coefficients: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Watch:
+    """An output: a quantity in rod 1 ... m, `offset` in [0, 1] from its left end."""
+
+    quantity: str
+    rod: int
+    offset: float
+
+
+@dataclass(frozen=True)
+class Problem:
+    """m rods of length 1 with waves of speed 1, and at node x = 0 ... m, with U_t the same on both sides,
+
+        inertia U_tt + damping U_t = (beta/2) dU_right/dx - (alpha/2) dU_left/dx + loads.
+
+    At tau = 0 nothing is displaced and the rods move at `rods` (m,). All else has shape (m + 1,).
+    """
+
+    inertia: Array
+    alpha: Array
+    beta: Array
+    damping: Array
+    rods: Array
+    events: tuple[Event, ...]
+    watches: tuple[Watch, ...]
+    until: float
+
+    @property
+    def nodes(self) -> int:
+        """m + 1."""
+        return len(self.inertia)
+
+    @property
+    def gamma(self) -> Array:
+        """What stands before the velocity once the waves are told apart: damping + (alpha + beta)/2."""
+        return np.asarray(self.damping + (self.alpha + self.beta) / 2)
+
+    @cached_property
+    def velocity(self) -> Array:
+        """The nodes' velocities at tau = 0: a body's are those of its rods, a contact's what balances two rods."""
+        left, right = self.beside(self.rods)
+        balanced = (self.alpha * left + self.beta * right) / (2 * self.gamma)
+        return np.where(self.inertia > 0, np.where(np.arange(self.nodes) > 0, left, right), balanced)
+
+    def beside(self, rods: Array) -> tuple[Array, Array]:
+        """A quantity of rods (m,) seen from the nodes: of the rod on the left, on the right; 0 if there is none."""
+        return np.append(0.0, rods), np.append(rods, 0.0)
+
+    @cached_property
+    def cuts(self) -> tuple[Fraction, ...]:
+        """0, the fractional parts of the load times, 1: inside a unit of tau waves jump or bend nowhere else."""
+        return tuple(sorted({Fraction(0), Fraction(1)} | {event.time % 1 for event in self.events}))
+
+    def place(self, event: Event) -> tuple[int, int]:
+        """The unit of tau, and in it the panel between two cuts, that an event starts."""
+        window = event.time // 1
+        return window, bisect_right(self.cuts, event.time - window) - 1
+
+    def load_mean(self, low: Array, high: Array) -> Array:
+        """The loads' means over intervals [low, high], each (n,): shape (n, nodes)."""
+        total = np.zeros((len(low), self.nodes))
+        for event in self.events:
+            start = float(event.time)
+            first, last = np.maximum(low - start, 0.0), np.maximum(high - start, 0.0)
+            for k, c in enumerate(event.coefficients):
+                total[:, event.node] += c / (k + 1) * (last ** (k + 1) - first ** (k + 1)) / (high - low)
+        return total
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A method: `prepare` does what a new parameter set needs, and gives what is called for values.
+
+    `resolutions`, from coarse to fine, are what its accuracy is bought with; `unit` says of what.
+    """
+
+    name: str
+    language: str
+    unit: str
+    resolutions: tuple[float, ...]
+    prepare: Callable[[Problem, float], Evaluate]
+
+
+def problem(system: Chain, pieces: Sequence[Piece], outputs: Sequence[Observable], until: float) -> Problem:
+    """A chain under `pieces`, watched at `outputs` for 0 <= tau <= until, all dimensionless.
+
+    ValueError for a piece whose source the chain does not have.
+    """
+    loads = {f"{load.kind}{load.number or ''}": (x, load) for x, node in enumerate(system.nodes) for load in node.loads}
+    events = []
+    for piece in pieces:
+        if piece.source == "impact":  # that is in the rods' initial velocities
+            continue
+        if piece.source not in loads:
+            raise ValueError(f"{piece.source}: no such load")
+        x, load = loads[piece.source]
+        events.append(Event(piece.time, x, _coefficients(load, piece.weight)))
+    column = {
+        name: np.array([float(fraction(getattr(node, name))) for node in system.nodes])
+        for name in ("inertia", "alpha", "beta", "damping")
+    }
+    rods = np.array([_velocity(system.rod(i)) for i in range(1, system.m + 1)])
+    return Problem(**column, rods=rods, events=tuple(events), watches=tuple(_watches(system, outputs)), until=until)
+
+
+def scene_problem(scene: Scene) -> Problem:
+    """The problem of a scene."""
+    return problem(chain(scene), scene.pieces, scene.outputs, float(scene.output.until))
+
+
+def _coefficients(load: Load, weight: Fraction) -> tuple[float, float, float]:
+    exact = [weight * fraction(c) for c in load.coefficients]
+    a, b, c = (float(value) for value in (*exact, *[Fraction(0)] * (FORCE_TERMS - len(exact))))
+    return a, b, c
+
+
+def _velocity(rod: Rod) -> float:
+    return float(fraction(rod.velocity))
+
+
+def _watches(system: Chain, outputs: Sequence[Observable]) -> list[Watch]:
+    watches = []
+    for output in outputs:
+        rod = output.x // 1 + 1 if output.side > 0 else -(-output.x // 1)
+        rod = min(max(1, rod), system.m)
+        watches.append(Watch(output.quantity, rod, float(output.x - (rod - 1))))
+    return watches
