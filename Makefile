@@ -46,7 +46,9 @@ generated: install
 check-all: lint
 	$(BIN)/python -m pytest --run-slow
 
-# speed, as ratios within one run
+# speed, as ratios within one run, and the charts of the same scenes
 bench: install
-	$(BIN)/python -m wavesym.report.bench > BENCHMARKS.part
-	mv BENCHMARKS.part BENCHMARKS.md
+	$(BIN)/python -m wavesym.report.bench bench
+	@set -e; for scene in b d c; do \
+		$(BIN)/wavesym chart bench/$$scene.toml -o bench/$$scene.svg --csv bench/$$scene.csv; \
+	done

@@ -101,7 +101,12 @@ def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(f"  {command} " in text for command in COMMANDS)
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+LONG = ("chart", "stability")  # their examples run for a minute and more
+
+
+@pytest.mark.parametrize(
+    "command", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in COMMANDS]
+)
 def test_every_command_has_an_example_that_works(
     command: str, compiler: Compiler, capsys: pytest.CaptureFixture[str]
 ) -> None:
