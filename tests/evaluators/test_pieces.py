@@ -80,15 +80,16 @@ def test_no_error_is_above_the_bound(drawn, precision, random):
         )
 
 
+@pytest.mark.parametrize("count", [2000, pytest.param(100_000, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", SCENES)
-def test_the_bound_is_met_and_is_near_the_error(name):
-    """The issue's three scenes at 1e-14: the proved bound holds everywhere and is no more than 50 times the error."""
+def test_the_bound_is_met_and_is_near_the_error(name, count):
+    """Three scenes at 1e-14: the proved bound holds at random tau and all edges, and is at most 50 times the error."""
     chosen = scene(name)
     made = files(chosen, "all", "pieces")
     module = imported(made[f"{name}.py"], name)
     assert module.ERROR_BOUND <= 1e-14
     _, form, _ = choose(chosen, "pieces")
-    taus = np.sort(np.concatenate([np.random.default_rng(7).uniform(0, form.tau_max, 2000), form.check_points]))
+    taus = np.sort(np.concatenate([np.random.default_rng(7).uniform(0, form.tau_max, count), form.check_points]))
     expected = np.array(Reference(chosen).values(taus.tolist()))
     with compiled(made, len(form.outputs)) as program:
         values = program(taus.tolist())
