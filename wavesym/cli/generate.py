@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,7 +28,7 @@ PRECISIONS = ["double", "single"]
 def generate(
     scene: Scene, directory: Path | None, language: str, evaluator: str, precision: str, only_check: bool
 ) -> int:
-    """Write source files that evaluate a scene; print their paths.
+    """Write source files that evaluate a scene; print their paths, and on standard error why this evaluator.
 
     \b
     Example:
@@ -40,6 +41,9 @@ def generate(
         if difference:
             put(difference)
         return 1 if difference else 0
-    for path in compiler.generate(scene, directory, language, evaluator, precision):
+    written = compiler.generate(scene, directory, language, evaluator, precision)
+    for path in written:
         click.echo(path)
+    for manifest in (path for path in written if path.suffix == ".json"):
+        click.echo(f"{scene.name}: {json.loads(manifest.read_text(encoding='utf-8'))['reason']}", err=True)
     return 0
