@@ -1,6 +1,7 @@
 """The closed form's bound: above every error, and refusal where it cannot hold."""
 
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from wavesym.emission.closed import numpy_source
 from wavesym.emission.description import describe
 from wavesym.emission.files import files
 from wavesym.errors import ToleranceError
-from wavesym.evaluators.ball import evaluate
+from wavesym.evaluators.ball import segments, values
 from wavesym.evaluators.closed import closed_form
 from wavesym.evaluators.signal import horizon, signals
 from wavesym.verification.compiled import imported
@@ -26,9 +27,9 @@ def test_no_error_is_above_the_bound(scene, random):
     form = closed_form(merged, horizon(scene))
     taus = form.check_points + [random.uniform(0, form.tau_max) for _ in range(50)]
     module = imported(numpy_source(describe(scene, form, "test", ()), form), "made")
-    values = module.evaluate(np.array(taus))
-    for signal, output, row in zip(merged, form.outputs, values, strict=True):
-        expected = np.array(evaluate(signal, taus, form.tau_max))
+    found = module.evaluate(np.array(taus))
+    for signal, output, row in zip(merged, form.outputs, found, strict=True):
+        expected = np.array(values(partial(segments, signal), taus, form.tau_max))
         error = np.abs(row - expected).max()
         # the reference itself is rounded
         assert error <= (output.bound + 2.0**-53) * np.abs(expected).max() or not signal.arrivals
@@ -56,7 +57,7 @@ def test_the_bound_is_not_idle():
     form = closed_form(merged, horizon(scene))
     module = imported(numpy_source(describe(scene, form, "test", ()), form), "made")
     taus = np.linspace(8, 16, 2001)
-    expected = np.array(evaluate(merged[0], taus.tolist(), form.tau_max))
+    expected = np.array(values(partial(segments, merged[0]), taus.tolist(), form.tau_max))
     error = np.abs(module.evaluate(taus)[0] - expected).max() / np.abs(expected).max()
     assert error <= form.error_bound < 1000 * error
 

@@ -142,8 +142,3 @@ def largest(source: Callable[[], Sequence[Segment]], until: float) -> arb:
         return size if size > 0 or balls.zero else None
 
     return precise(attempt)
-
-
-def evaluate(signal: Signal, taus: Sequence[float], until: float) -> list[float]:
-    """`values` of a signal."""
-    return values(lambda: segments(signal), taus, until)
