@@ -42,6 +42,7 @@ generated: install
 		$(BIN)/wavesym generate $$scene -o generated/$$scene --language all; \
 		$(BIN)/wavesym tables $$scene -o generated/$$scene/tables.csv; \
 	done
+	$(BIN)/wavesym verify --published --format markdown > generated/errata.md
 
 check-all: lint
 	$(BIN)/python -m pytest --run-slow

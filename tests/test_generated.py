@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from wavesym.compiler import tables_text
+from wavesym.compiler import published, tables_text
 from wavesym.emission.files import files
 from wavesym.scene import Scene
 
@@ -22,5 +22,9 @@ def test_kept_files_are_what_is_generated(name):
         assert kept[file] == text, f"{name}/{file} differs: make generated"
 
 
+def test_the_errata_are_what_is_found_now():
+    assert (KEPT / "errata.md").read_bytes().decode() == published("markdown")[0], "make generated"
+
+
 def test_nothing_else_is_kept():
-    assert sorted(path.name for path in KEPT.iterdir()) == sorted(EXAMPLES), "make generated"
+    assert sorted(path.name for path in KEPT.iterdir()) == sorted([*EXAMPLES, "errata.md"]), "make generated"

@@ -24,9 +24,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wavesym.coefficients.symbolic import symbolic
 from wavesym.coefficients.table import Row, Table, full_table
 from wavesym.emission.files import files
-from wavesym.emission.tables import table_lines
+from wavesym.emission.tables import symbolic_lines, table_lines
 from wavesym.evaluators.contact import contact_ends
 from wavesym.evaluators.doubles import fraction, nearest, rational
 from wavesym.evaluators.reference import Reference
@@ -37,6 +38,9 @@ from wavesym.writing import write_whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+
+LARGEST_SYMBOLIC = 100_000  # coefficients; they may be rational functions of a hundred thousand terms each
 
 
 @dataclass(frozen=True)
@@ -95,11 +99,25 @@ def tables_text(scene: Scene, intervals: int | None, format: str) -> Iterator[st
     return table_lines(table(scene, intervals), scene.name, format)
 
 
-def derive(system: str, m: int | None) -> str:
-    """The derivation of "collision", "drive" or "building" (both bases) as text; with m, every line written out."""
-    from wavesym.derivation.text import derivation_text
+def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tuple[list[str], Iterator[str]]:
+    """The table as rational functions of the parameters, csv or json, after what the symbols stand for, line by line.
 
-    return derivation_text(system, m)
+    Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
+    """
+    symbols = symbolic(chain(scene))
+    made = full_table(symbols.chain, intervals, rational(horizon(scene)), most=LARGEST_SYMBOLIC)
+    merged = [f"{name} = {ratio}" for name, ratio in symbols.meaning.items() if str(ratio) != name]
+    return merged, symbolic_lines(made, symbols, scene.name, format)
+
+
+def derive(system: str, m: int | None, format: str = "text") -> str:
+    """The derivation of "collision", "drive" or "building" (both bases) as text, latex or json.
+
+    With m, every line is written out. WavesymError for an m that the system does not have.
+    """
+    from wavesym.emission.derivation import derivation
+
+    return derivation(system, m, format)
 
 
 def generate(
@@ -175,3 +193,10 @@ def verify(scenes: Sequence[Scene]) -> tuple[str, bool]:
     from wavesym.verification.report import verify as report
 
     return report(scenes)
+
+
+def published(format: str) -> tuple[str, bool]:
+    """A verdict on every formula of the paper, as text, json or markdown, and whether all of them could be tested."""
+    from wavesym.verification.published.report import published as report
+
+    return report(format)

@@ -56,7 +56,11 @@ class Compiler(SimpleNamespace):
         self.asked.append(options)
         yield from ("[", "1]\n")
 
-    def derive(self, system: str, m: int | None) -> str:
+    def symbolic_tables_text(self, scene: object, *options: object) -> tuple[list[str], Iterator[str]]:
+        self.asked.append(options)
+        return [], iter(["symbols\n"])
+
+    def derive(self, system: str, m: int | None, format: str) -> str:
         if m == 0:
             raise ValueError("--m: 0 given, at least 1 expected")
         return f"{system} {m}"

@@ -8,7 +8,7 @@ from sympy import Integer
 
 from wavesym.coefficients.table import Function, Rules, full_table, needed, unit_response
 from wavesym.derivation import recurrence as derivation
-from wavesym.derivation.text import derivation_text
+from wavesym.emission.derivation import derivation as written
 from wavesym.errors import CostError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.drive import DRIVE
@@ -25,16 +25,16 @@ def drive(kappa, inertia):
 
 def test_a_changed_law_changes_the_tables_and_the_text(monkeypatch):
     chain = drive([1, 2], [1, 2, 3])
-    before, text = list(full_table(chain, 4, fmpq(0)).rows()), derivation_text("drive")
+    before, text = list(full_table(chain, 4, fmpq(0)).rows()), written("drive", None, "text")
     true = derivation.recurrence(DRIVE)
     law = true.laws[0]
     term = law.terms[0]
     wrong_term = replace(term, weights=replace(term.weights, same=term.weights.same + Integer(1)))
     wrong = replace(true, laws=(replace(law, terms=(wrong_term, *law.terms[1:])), *true.laws[1:]))
     monkeypatch.setattr("wavesym.derivation.recurrence.recurrence", lambda system: wrong)
-    monkeypatch.setattr("wavesym.derivation.text.recurrence", lambda system: wrong)
+    monkeypatch.setattr("wavesym.derivation.statement.recurrence", lambda system: wrong)
     assert list(full_table(chain, 4, fmpq(0)).rows()) != before
-    assert derivation_text("drive") != text
+    assert written("drive", None, "text") != text
 
 
 def test_equal_discs_have_one_family_and_nothing_divides_by_zero():

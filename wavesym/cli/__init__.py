@@ -15,7 +15,7 @@ import click
 from wavesym import __version__
 from wavesym.errors import WavesymError
 
-COMMANDS = ("scenes", "derive", "tables", "generate", "run", "verify", "chart")
+COMMANDS = ("scenes", "derive", "tables", "generate", "run", "verify", "chart", "stability")
 
 DONE, FAILED, WRONG_REQUEST, INTERRUPTED = 0, 1, 2, 130
 

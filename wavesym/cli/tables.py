@@ -19,18 +19,30 @@ if TYPE_CHECKING:
 @click.option(
     "--format", type=click.Choice(["csv", "json", "latex"]), default="csv", show_default=True, help="How it is written."
 )
+@click.option(
+    "--symbolic",
+    is_flag=True,
+    help="Rational functions of kappa_i, r_i = J_i/J_(i+1), u_i = v_(i-1) - v_(i+1); what is equal in SCENE is one.",
+)
 @click.option("-o", "out", type=PATH, metavar="FILE", help="Where the table goes.  [default: standard output]")
-def tables(scene: Scene, intervals: int | None, format: str, out: Path | None) -> None:
+def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, out: Path | None) -> None:
     """Print the exact coefficients of every wave function.
 
     \b
     Example:
-      wavesym tables drive_m1 --intervals 4
+      wavesym tables building_m2 --intervals 4 --symbolic
     """
-    from wavesym.compiler import tables_text
+    from wavesym.compiler import symbolic_tables_text, tables_text
     from wavesym.writing import write_whole
 
-    lines = tables_text(scene, intervals, format)
+    if symbolic and format == "latex":
+        raise click.UsageError("--format: latex given, csv or json expected with --symbolic")
+    if symbolic:
+        merged, lines = symbolic_tables_text(scene, intervals, format)
+        for equation in merged:
+            click.echo(equation, err=True)
+    else:
+        lines = tables_text(scene, intervals, format)
     if out is None:
         put(lines)
     else:

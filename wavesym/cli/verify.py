@@ -14,10 +14,12 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("scenes", type=SCENE, nargs=-1, metavar="[SCENE]...")
-def verify(scenes: tuple[Scene, ...]) -> int:
+@click.option("--published", is_flag=True, help="A verdict on every formula of the paper instead.")
+@click.option("--format", type=click.Choice(["text", "json", "markdown"]), help="With --published.  [default: text]")
+def verify(scenes: tuple[Scene, ...], published: bool, format: str | None) -> int:
     """Compare evaluators with direct integration; exit 1 where one is out of tolerance.
 
-    Without SCENE, all built-in scenes.
+    Without SCENE, all built-in scenes. With --published, exit 1 only where a formula could not be tested.
 
     \b
     Example:
@@ -26,6 +28,14 @@ def verify(scenes: tuple[Scene, ...]) -> int:
     from wavesym import compiler
     from wavesym.scene import Scene, builtin_names
 
+    if published:
+        if scenes:
+            raise click.UsageError("--published takes no SCENE")
+        verdicts, tested = compiler.published(format or "text")
+        put(verdicts)
+        return 0 if tested else 1
+    if format:
+        raise click.UsageError("--format is for --published")
     table, allowed = compiler.verify(scenes or [Scene.from_toml(name) for name in builtin_names()])
     put(table)
     return 0 if allowed else 1

@@ -131,8 +131,11 @@ def _increment(rule: Rule, source: str, response: Mapping[Function, list[Increme
     return solve(rule.own, right, jump)
 
 
-def full_table(chain: Chain, intervals: int | None, until: fmpq) -> Table:
-    """All functions of all rods, all sources: `intervals` of each, or those that reach its rod until tau = `until`."""
+def full_table(chain: Chain, intervals: int | None, until: fmpq, most: int = MOST_COEFFICIENTS) -> Table:
+    """All functions of all rods, all sources: `intervals` of each, or those that reach its rod until tau = `until`.
+
+    CostError beyond about `most` coefficients. The numbers are of the chain's kind: exact, or symbolic (`symbolic`).
+    """
     rules = Rules(chain)
     wanted = {}
     for rod in range(1, chain.m + 1):
@@ -145,7 +148,7 @@ def full_table(chain: Chain, intervals: int | None, until: fmpq) -> Table:
                 intervals if intervals is not None else max(0, int((fmpq(latest) / rules.interval).floor()) + 1)
             )
     asked = "output.until" if intervals is None else "--intervals"
-    refuse_absurd(rules, wanted, chain.m, asked, sources=len(chain.sources))
+    refuse_absurd(rules, wanted, chain.m, asked, len(chain.sources), most)
     responses = {}
     for source in chain.sources:
         response = unit_response(rules, source, wanted)

@@ -11,7 +11,7 @@ from wavesym.evaluators.contact import contact_ends
 from wavesym.scene import Scene
 
 LANGUAGES = {"c": ("c",), "numpy": ("numpy",), "all": ("c", "numpy")}
-_EMITTERS = {"closed": closed, "pieces": pieces, "march": march}
+EMITTERS = {"closed": closed, "pieces": pieces, "march": march}
 
 
 def files(scene: Scene, language: str = "c", evaluator: str = "auto", precision: str = "double") -> dict[str, str]:
@@ -22,7 +22,7 @@ def files(scene: Scene, language: str = "c", evaluator: str = "auto", precision:
     """
     name, chosen, reason = choose(scene, evaluator, precision)
     description = describe(scene, chosen, reason, contact_ends(scene))
-    emitter = _EMITTERS[name]
+    emitter = EMITTERS[name]
     made = {f"{scene.name}.json": manifest(scene, description, chosen, name)}
     if "c" in LANGUAGES[language]:
         made[f"{scene.name}.h"] = emitter.c_header(description, chosen)

@@ -6,6 +6,10 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from flint import fmpq
+
+from wavesym.coefficients.ratio import Ratio, written
+from wavesym.coefficients.symbolic import SymbolicChain
 from wavesym.coefficients.table import Row, Table
 from wavesym.emission.rendering import render_stream
 
@@ -37,6 +41,28 @@ def _json(table: Table, name: str) -> Iterator[str]:
         yield separator + json.dumps(row._asdict() | {"rate": str(row.rate), "value": str(row.value)})
         separator = ",\n"
     yield "\n]}\n"
+
+
+def symbolic_lines(table: Table, symbols: SymbolicChain, name: str, format: str) -> Iterator[str]:
+    """The rows of a table of rational functions as text. `format` is "csv" or "json"."""
+    return _csv(table, name) if format == "csv" else _symbolic_json(table, symbols, name)
+
+
+def _symbolic_json(table: Table, symbols: SymbolicChain, name: str) -> Iterator[str]:
+    meaning = json.dumps({parameter: str(ratio) for parameter, ratio in symbols.meaning.items()})
+    yield f'{{"name": {json.dumps(name)}, "interval": {table.interval}, "symbols": {meaning}, "rows": ['
+    separator = "\n"
+    used: set[int] = set()
+    for row in table.rows():
+        value = row.value if isinstance(row.value, Ratio) else symbols.ring.constant(fmpq(row.value))
+        used |= value.denominator.keys()
+        above, below = value.parts
+        fields = row._asdict() | {"rate": str(row.rate), "numerator": above, "denominator": below}
+        del fields["value"]
+        yield separator + json.dumps(fields)
+        separator = ",\n"
+    forms = json.dumps([written(symbols.ring.forms[form]) for form in sorted(used)])
+    yield f'\n], "forms": {forms}}}\n'
 
 
 def _latex(table: Table, name: str) -> Iterator[str]:

@@ -1,0 +1,241 @@
+"""Rational functions whose denominators are products of known forms: what symbolic tables are made of.
+
+The numerator is one polynomial, the denominator the exponents of irreducible forms such as kappa_1 or
+2*kappa_1 - kappa_3, each met first where something is divided by it. So no greatest common divisor is ever taken: what
+may cancel is known, and tried by exact division.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from math import prod
+from string import ascii_letters
+from typing import Any
+
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint.utils.flint_exceptions import DomainError
+
+Denominator = dict[int, int]  # number of a form: its exponent, at least 1
+
+
+class Ring:
+    """The rational functions of `names` over the rationals, with the forms met so far in their denominators."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.names = tuple(names)
+        self.context = fmpq_mpoly_ctx.get(self.names, Ordering.lex)
+        self.forms: list[fmpq_mpoly] = []
+
+    def symbols(self) -> dict[str, Ratio]:
+        """The symbols by name."""
+        return {name: Ratio(self, symbol) for name, symbol in zip(self.names, self.context.gens(), strict=True)}
+
+    def constant(self, value: fmpq | int) -> Ratio:
+        """A number."""
+        return Ratio(self, self.context.constant(value))
+
+    def product(self, exponents: Denominator) -> fmpq_mpoly:
+        """The product of forms with these exponents."""
+        return prod(
+            (self.forms[form] ** power for form, power in exponents.items() if power), start=self.context.constant(1)
+        )
+
+    def form(self, polynomial: fmpq_mpoly) -> int:
+        """The number of an irreducible polynomial among the forms, a new one where it is new."""
+        for number, form in enumerate(self.forms):
+            if form == polynomial:
+                return number
+        self.forms.append(polynomial)
+        return len(self.forms) - 1
+
+
+class Ratio:
+    """numerator / prod forms**exponent in lowest terms; with ints and fmpq it mixes as numbers do.
+
+    Equality is that of functions. The order, which sorts rates, is that of the first symbols in them; 0 is least.
+    """
+
+    __slots__ = ("__dict__", "denominator", "numerator", "ring")
+
+    def __init__(self, ring: Ring, numerator: fmpq_mpoly, denominator: Denominator | None = None) -> None:
+        self.ring = ring
+        self.numerator = numerator
+        self.denominator: Denominator = denominator or {}
+
+    def _other(self, value: object) -> Ratio | None:
+        if isinstance(value, Ratio):
+            return value
+        return self.ring.constant(value) if isinstance(value, (int, fmpq)) else None
+
+    def __add__(self, value: Ratio | fmpq | int) -> Ratio:
+        other = self._other(value)
+        if other is None:
+            return NotImplemented
+        if not other.numerator:
+            return self
+        if not self.numerator:
+            return other
+        if self.denominator == other.denominator:
+            return self._reduced(self.numerator + other.numerator, self.denominator, self.denominator)
+        common = dict(self.denominator)
+        for form, exponent in other.denominator.items():
+            common[form] = max(exponent, common.get(form, 0))
+        # where the exponents differ nothing can cancel: one of the two numerators has been multiplied by the form
+        equal = [form for form, exponent in self.denominator.items() if other.denominator.get(form) == exponent]
+        return self._reduced(self._over(common) + other._over(common), common, equal)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Ratio:
+        return Ratio(self.ring, -self.numerator, self.denominator)
+
+    def __sub__(self, value: Ratio | fmpq | int) -> Ratio:
+        return self + -value
+
+    def __rsub__(self, value: fmpq | int) -> Ratio:
+        return -self + value
+
+    def __mul__(self, value: Ratio | fmpq | int) -> Ratio:
+        if isinstance(value, (int, fmpq)):
+            return Ratio(self.ring, self.numerator * value, self.denominator if value != 0 else None)
+        if not isinstance(value, Ratio):
+            return NotImplemented
+        # forms are irreducible: one that divides the product divides the numerator that did not stand over it
+        ours = self._reduced(self.numerator, value.denominator, value.denominator)
+        theirs = self._reduced(value.numerator, self.denominator, self.denominator)
+        denominator = dict(ours.denominator)
+        for form, exponent in theirs.denominator.items():
+            denominator[form] = denominator.get(form, 0) + exponent
+        product = ours.numerator * theirs.numerator
+        return Ratio(self.ring, product, denominator if product else None)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, value: Ratio | fmpq | int) -> Ratio:
+        return self * (value.inverse if isinstance(value, Ratio) else 1 / fmpq(value))
+
+    def __rtruediv__(self, value: fmpq | int) -> Ratio:
+        return self.inverse * value
+
+    def __pow__(self, exponent: int) -> Ratio:
+        base = self if exponent >= 0 else self.inverse
+        return prod([base] * abs(exponent), start=self.ring.constant(1))
+
+    @cached_property
+    def inverse(self) -> Ratio:
+        """1 over this. ZeroDivisionError for 0."""
+        if not self.numerator:
+            raise ZeroDivisionError("1/0")
+        content, factors = self.numerator.factor()
+        above = self.ring.product(self.denominator)
+        return Ratio(self.ring, above / content, {self.ring.form(factor): int(power) for factor, power in factors})
+
+    def _over(self, common: Denominator) -> fmpq_mpoly:
+        """The numerator over the `common` denominator."""
+        result = self.numerator
+        for form, exponent in common.items():
+            missing = exponent - self.denominator.get(form, 0)
+            if missing:  # power by power: their product first takes twice as long
+                result = result * self.ring.forms[form] ** missing
+        return result
+
+    def _reduced(self, numerator: fmpq_mpoly, denominator: Denominator, candidates: Any) -> Ratio:
+        """numerator / denominator, with the `candidates` among the forms cancelled as often as they can be."""
+        if not numerator:
+            return Ratio(self.ring, numerator)
+        left = dict(denominator)
+        for form in candidates:
+            while form in left:
+                try:
+                    numerator = numerator / self.ring.forms[form]
+                except DomainError:  # not divisible
+                    break
+                left[form] -= 1
+                if not left[form]:
+                    del left[form]
+        return Ratio(self.ring, numerator, left)
+
+    def at(self, values: Mapping[str, fmpq]) -> fmpq:
+        """The number that this is where the symbols have `values`. ZeroDivisionError at a pole."""
+        point = [values[name] for name in self.ring.names]
+        below = prod(
+            (self.ring.forms[form](*point) ** power for form, power in self.denominator.items()), start=fmpq(1)
+        )
+        return fmpq(self.numerator(*point)) / below
+
+    def composed(self, images: Sequence[fmpq_mpoly]) -> Ratio:
+        """This polynomial with `images` for the symbols."""
+        assert not self.denominator
+        return Ratio(self.ring, self.numerator.compose(*images))
+
+    def __eq__(self, value: object) -> bool:
+        other = self._other(value)
+        return other is not None and self.denominator == other.denominator and bool(self.numerator == other.numerator)
+
+    def __hash__(self) -> int:
+        if not self.denominator and self.numerator.is_constant():
+            return hash(
+                self.numerator.leading_coefficient() if self.numerator else fmpq(0)
+            )  # like the number it equals
+        return hash((self._key, tuple(sorted(self.denominator.items()))))
+
+    @cached_property
+    def _key(self) -> tuple[tuple[tuple[int, ...], fmpq], ...]:
+        terms = self.numerator.to_dict().items()
+        return tuple((tuple(-int(power) for power in monomial), value) for monomial, value in terms)
+
+    def _order(self) -> tuple[Any, ...]:
+        return self._key, tuple(sorted(self.denominator.items()))
+
+    def __lt__(self, value: Ratio | fmpq | int) -> bool:
+        other = self._other(value)
+        assert other is not None
+        return self._order() < other._order()
+
+    def __gt__(self, value: Ratio | fmpq | int) -> bool:
+        other = self._other(value)
+        assert other is not None
+        return other._order() < self._order()
+
+    @property
+    def parts(self) -> tuple[str, str]:
+        """Numerator, factored over the rationals, and denominator, as text that Python reads as well."""
+        if not self.numerator:
+            return "0", "1"
+        content, factors = self.numerator.factor()
+        above = [(factor, int(power)) for factor, power in factors]
+        below = [(self.ring.forms[form], power) for form, power in sorted(self.denominator.items())]
+        return _product(int(content.p), above), _product(int(content.q), below)
+
+    def __str__(self) -> str:
+        above, below = self.parts
+        if below == "1":
+            return above
+        if " " in above and "(" not in above:  # a lone sum
+            above = f"({above})"
+        return f"{above}/({below})" if below.strip("_0123456789" + ascii_letters) else f"{above}/{below}"
+
+
+def _product(number: int, factors: Sequence[tuple[fmpq_mpoly, int]]) -> str:
+    """A product as text. A lone factor needs no brackets, unless something is to be divided by it (see `__str__`)."""
+    if number == 1 and len(factors) == 1 and factors[0][1] == 1:
+        return written(factors[0][0])
+    parts = [
+        (f"({written(factor)})" if len(factor) > 1 else written(factor)) + (f"**{power}" if power > 1 else "")
+        for factor, power in sorted(factors, key=_place)
+    ]
+    if abs(number) != 1 or not parts:
+        return "*".join([str(number), *parts])
+    return ("-" if number < 0 else "") + "*".join(parts)
+
+
+def _place(factor: tuple[fmpq_mpoly, int]) -> tuple[int, list[int]]:
+    """Symbols before sums, in the order of their names."""
+    polynomial, _ = factor
+    return len(polynomial), [-int(power) for power in polynomial.degrees()]
+
+
+def written(polynomial: fmpq_mpoly) -> str:
+    """A polynomial as text."""
+    return str(polynomial).replace("^", "**")

@@ -1,0 +1,37 @@
+"""`wavesym stability`: the atlas of where methods fail, as a picture and a table for each family of curves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from wavesym.report.atlas import endurance, extremes, fronts, gaps, limits, reflections
+from wavesym.report.atlas.drawing import draw
+from wavesym.report.atlas.family import Family, Progress, to_csv
+from wavesym.report.saving import save
+from wavesym.writing import write_whole
+
+FAMILIES: Mapping[str, Callable[[Progress], Family]] = {
+    "reflections": reflections.family,
+    "gaps": gaps.family,
+    "kappa": extremes.family,
+    "springs": limits.family,
+    "fronts": fronts.family,
+    "march": endurance.family,
+}
+"""By name, the quick ones first."""
+
+
+def atlas(directory: Path, names: Sequence[str] = tuple(FAMILIES), progress: Progress = lambda _: None) -> list[Path]:
+    """Run and draw families of curves into `directory`, NAME.svg and NAME.csv each; the paths written.
+
+    CompilerError where there is no C compiler, OSError.
+    """
+    written = []
+    for name in names:
+        family = FAMILIES[name](progress)
+        picture, table = directory / f"{name}.svg", directory / f"{name}.csv"
+        write_whole({table: to_csv(family)})
+        save(draw(family), picture)
+        written += [picture, table]
+    return written

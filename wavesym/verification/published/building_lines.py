@@ -1,0 +1,640 @@
+"""III.1 ... III.22: the coefficient recurrences of example III as they are printed, term by term, and as corrected.
+
+A line says: coefficient = sum of factor * H(...) * coefficient. Superscript k (the piece of the load) is left out; n+1
+is the interval of the coefficient on the left, and a term is `back` = 0 or 1 intervals earlier.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+from flint import fmpq
+
+from wavesym.verification.published.record import Slipped
+
+Family = str
+"""`c` constant, `0` linear (rate 0); `1` rate 2 kappa_1; `m` rate kappa_m."""
+
+
+@dataclass(frozen=True)
+class At:
+    """Where a line is evaluated: the building and the indices."""
+
+    m: int
+    n: int
+    j: int
+    i: int
+    kappa: Mapping[int, fmpq]
+
+    @property
+    def gap(self) -> fmpq:
+        """2 kappa_1 - kappa_m."""
+        return 2 * self.kappa[1] - self.kappa[self.m]
+
+
+Count = Callable[[At], int]
+Factor = Callable[[At], fmpq | int]
+
+
+@dataclass(frozen=True)
+class Term:
+    """factor * product of H(guard) * coefficient, e.g. -H(n-2-i) f_(m,i)^(m,n)."""
+
+    text: str
+    factor: Factor
+    letter: str
+    family: Family
+    rod: Count
+    back: int
+    power: Count = lambda at: at.i
+    guards: tuple[Count, ...] = ()
+
+    def on(self, at: At) -> bool:
+        """The product of the H, with H(0) = 1."""
+        return all(guard(at) >= 0 for guard in self.guards)
+
+
+@dataclass(frozen=True)
+class Target:
+    """A coefficient on the left: for rods first(m) ... last(m), n >= start, powers top ... bottom.
+
+    Without `top` it is a single coefficient (power 0), and no range is claimed.
+    """
+
+    letter: str
+    family: Family
+    first: Callable[[int], int]
+    last: Callable[[int], int]
+    start: int = 0
+    top: Count | None = None
+    bottom: int = 0
+
+    def powers(self, at: At) -> range:
+        """The powers of the line, downwards."""
+        return range(self.top(at) if self.top else 0, self.bottom - 1, -1)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A printed line. `loads` is the constant part of III.1, by source. `strict` is the first n of the range's test."""
+
+    number: int
+    printed: str
+    ranges: str
+    targets: tuple[Target, ...]
+    terms: tuple[Term, ...]
+    loads: Mapping[tuple[str, Family], Factor] | None = None
+    strict: int = 0
+
+
+@dataclass(frozen=True)
+class Correction:
+    """The terms and the text of a line as it should be; `kind` and how sure."""
+
+    kind: Slipped
+    corrected: str
+    line: Line
+    note: str
+
+
+def _rod(shift: int = 0) -> Count:
+    return lambda at: at.j + shift
+
+
+def _fixed(rod: int) -> Count:
+    return lambda at: rod
+
+
+def _last(shift: int = 0) -> Count:
+    return lambda at: at.m + shift
+
+
+def _up(at: At) -> int:
+    return at.i + 1
+
+
+def _down(at: At) -> int:
+    return at.i - 1
+
+
+def _zero(at: At) -> int:
+    return 0
+
+
+def _one(m: int) -> int:
+    return 1
+
+
+def _two(m: int) -> int:
+    return 2
+
+
+def _roof(m: int) -> int:
+    return m
+
+
+def _under_roof(m: int) -> int:
+    return m - 1
+
+
+def _plus(at: At) -> int:
+    return 1
+
+
+def _minus(at: At) -> int:
+    return -1
+
+
+def _second(at: At) -> int:
+    """The argument n - 1 of H."""
+    return at.n - 1
+
+
+def _third(at: At) -> int:
+    """The argument n - 2 of H."""
+    return at.n - 2
+
+
+def _visits(at: At) -> fmpq:
+    """2 kappa_1 / i."""
+    return 2 * at.kappa[1] / at.i
+
+
+_FIRST = (Target("f", "c", _one, _one), Target("f", "0", _one, _one))
+
+
+def _constants(number: int, family: Family) -> Line:
+    """III.2 and III.3, the same but for the index 0."""
+    mark = "_0" if family == "0" else ""
+    return Line(
+        number,
+        f"f{mark}^{{k,1,n+1}} = f{mark}^{{k,2,n}} + H(n-2) g{mark}^{{k,2,n}} - f{mark}^{{k,1,n}}",
+        "n >= 1",
+        (Target("f", family, _one, _one, start=1),),
+        (
+            Term(f"f{mark}^{{k,2,n}}", _plus, "f", family, _fixed(2), 1, _zero),
+            Term(f"H(n-2) g{mark}^{{k,2,n}}", _plus, "g", family, _fixed(2), 1, _zero, (_third,)),
+            Term(f"-f{mark}^{{k,1,n}}", _minus, "f", family, _fixed(1), 1, _zero),
+        ),
+    )
+
+
+def _left_going(number: int, family: Family) -> Line:
+    """III.4 and III.7, the same but for the index 0."""
+    mark = "_0" if family == "0" else ""
+    return Line(
+        number,
+        f"g{mark}^{{k,j,n+1}} = H(n-1) (f{mark}^{{k,j+1,n}} - f{mark}^{{k,j,n}}) + H(n-2) g{mark}^{{k,j+1,n}}",
+        "j = 2, 3, ..., m-1",
+        (Target("g", family, _two, _under_roof),),
+        (
+            Term(f"H(n-1) f{mark}^{{k,j+1,n}}", _plus, "f", family, _rod(1), 1, _zero, (_second,)),
+            Term(f"-H(n-1) f{mark}^{{k,j,n}}", _minus, "f", family, _rod(), 1, _zero, (_second,)),
+            Term(f"H(n-2) g{mark}^{{k,j+1,n}}", _plus, "g", family, _rod(1), 1, _zero, (_third,)),
+        ),
+    )
+
+
+def _roof_constant(family: Family) -> Line:
+    """III.5; the linear part's index 0 is missing as printed."""
+    mark = "_0" if family == "0" else ""
+    return Line(
+        5,
+        rf"g^{{k,m,n+1}} = H(n-1) (f^{{k,m,n}} - \frac{{2}}{{\kappa_m}} f{mark}^{{k,m,n}})",
+        "",
+        (Target("g", "c", _roof, _roof),),
+        (
+            Term("H(n-1) f^{k,m,n}", _plus, "f", "c", _last(), 1, _zero, (_second,)),
+            Term(
+                rf"-H(n-1) \frac{{2}}{{\kappa_m}} f{mark}^{{k,m,n}}",
+                lambda at: -2 / at.kappa[at.m],
+                "f",
+                family,
+                _last(),
+                1,
+                _zero,
+                (_second,),
+            ),
+        ),
+    )
+
+
+def _right_constant(letter: str) -> Line:
+    """III.6; the linear part of the other wave has the wrong letter as printed."""
+
+    def lag(at: At) -> fmpq:
+        return -1 / (2 * at.kappa[1])
+
+    return Line(
+        6,
+        r"f^{k,j,n+1} = f^{k,j-1,n+1} - \frac{1}{2\kappa_1} "
+        f"[H(n-1) {letter}_0^{{k,j,n+1}} + f_0^{{k,j-1,n+1}}]",
+        "j = 2, 3, ..., m",
+        (Target("f", "c", _two, _roof),),
+        (
+            Term("f^{k,j-1,n+1}", _plus, "f", "c", _rod(-1), 0, _zero),
+            Term(
+                rf"-\frac{{1}}{{2\kappa_1}} H(n-1) {letter}_0^{{k,j,n+1}}",
+                lag,
+                letter,
+                "0",
+                _rod(),
+                0,
+                _zero,
+                (_second,),
+            ),
+            Term(r"-\frac{1}{2\kappa_1} f_0^{k,j-1,n+1}", lag, "f", "0", _rod(-1), 0, _zero),
+        ),
+    )
+
+
+def _left_power(second: int, begun: tuple[Count, ...] = ()) -> Line:
+    """III.12; the rod of the wave that returns is j+1 as printed. `begun`: see `_next_to_roof`."""
+
+    def guard(at: At) -> int:
+        return 2 * at.n + at.j - 4 - at.i
+
+    returned = "f_{1,i}^{k,j+1,n}" if second else "f_{1,i}^{k,j,n}"
+    return Line(
+        12,
+        f"g_{{1,i}}^{{k,j,n+1}} = f_{{1,i}}^{{k,j+1,n}} + H(2n+j-4-i)(g_{{1,i}}^{{k,j+1,n}} - {returned})",
+        "j = 2, 3, ..., m-2; i = 2n+j-3, 2n+j-4, ..., 0",
+        (Target("g", "1", _two, lambda m: m - 2, top=lambda at: 2 * at.n + at.j - 3),),
+        (
+            Term("f_{1,i}^{k,j+1,n}", _plus, "f", "1", _rod(1), 1),
+            Term("H(2n+j-4-i) g_{1,i}^{k,j+1,n}", _plus, "g", "1", _rod(1), 1, guards=(guard, *begun)),
+            Term(f"-H(2n+j-4-i) {returned}", _minus, "f", "1", _rod(second), 1, guards=(guard,)),
+        ),
+        strict=1,
+    )
+
+
+def _next_to_roof(begun: tuple[Count, ...] = ()) -> Line:
+    """III.13. `begun` = (n-2,): g has no coefficients in the first interval, whatever H(2n+m-6-i) says for n = 1."""
+    return Line(
+        13,
+        "g_{1,i}^{k,m-1,n+1} = f_{1,i}^{k,m,n} + H(2n+m-6-i)g_{1,i}^{k,m,n} - H(2n+m-5-i)f_{1,i}^{k,m-1,n}",
+        "i = 2n+m-4, 2n+m-5, ..., 0",
+        (Target("g", "1", _under_roof, _under_roof, top=lambda at: 2 * at.n + at.m - 4),),
+        (
+            Term("f_{1,i}^{k,m,n}", _plus, "f", "1", _last(), 1),
+            Term(
+                "H(2n+m-6-i)g_{1,i}^{k,m,n}",
+                _plus,
+                "g",
+                "1",
+                _last(),
+                1,
+                guards=(lambda at: 2 * at.n + at.m - 6 - at.i, *begun),
+            ),
+            Term(
+                "-H(2n+m-5-i)f_{1,i}^{k,m-1,n}",
+                _minus,
+                "f",
+                "1",
+                _last(-1),
+                1,
+                guards=(lambda at: 2 * at.n + at.m - 5 - at.i,),
+            ),
+        ),
+        strict=1,
+    )
+
+
+def _roof_power(index: str, power: Count) -> Line:
+    """III.14; an index is i+n as printed."""
+
+    def guard(at: At) -> int:
+        return 2 * at.n + at.m - 5 - at.i
+
+    def raised(at: At) -> fmpq:
+        return (at.i + 1) / at.gap
+
+    return Line(
+        14,
+        rf"g_{{1,i}}^{{k,m,n+1}} = \frac{{1}}{{2\kappa_1 - \kappa_m}} [(i+1)(g_{{1,{index}}}^{{k,m,n+1}} + "
+        r"f_{1,i+1}^{k,m,n})H(2n+m-5-i) - (2\kappa_1 + \kappa_m)f_{1,i}^{k,m,n}]",
+        "i = 2n+m-4, 2n+m-5, ..., 0",
+        (Target("g", "1", _roof, _roof, top=lambda at: 2 * at.n + at.m - 4),),
+        (
+            Term(
+                rf"\frac{{i+1}}{{2\kappa_1 - \kappa_m}} H(2n+m-5-i) g_{{1,{index}}}^{{k,m,n+1}}",
+                raised,
+                "g",
+                "1",
+                _last(),
+                0,
+                power,
+                (guard,),
+            ),
+            Term(
+                r"\frac{i+1}{2\kappa_1 - \kappa_m} H(2n+m-5-i) f_{1,i+1}^{k,m,n}",
+                raised,
+                "f",
+                "1",
+                _last(),
+                1,
+                _up,
+                (guard,),
+            ),
+            Term(
+                r"-\frac{2\kappa_1 + \kappa_m}{2\kappa_1 - \kappa_m} f_{1,i}^{k,m,n}",
+                lambda at: -(2 * at.kappa[1] + at.kappa[at.m]) / at.gap,
+                "f",
+                "1",
+                _last(),
+                1,
+            ),
+        ),
+        strict=1,
+    )
+
+
+def _roof_start(own: str, family: Family) -> Line:
+    """III.17; as printed the coefficient stands on both sides."""
+    return Line(
+        17,
+        f"g_{{m,0}}^{{k,m,n+1}} = -{own}^{{k,m,n+1}} - g_{{1,0}}^{{k,m,n+1}}H(n-1)",
+        "n >= 1, where III.16 ends",
+        (Target("g", "m", _roof, _roof, start=1),),
+        (
+            Term(f"-{own}^{{k,m,n+1}}", _minus, "g", family, _last(), 0, _zero),
+            Term("-g_{1,0}^{k,m,n+1}H(n-1)", _minus, "g", "1", _last(), 0, _zero, (_second,)),
+        ),
+    )
+
+
+def _floor_start(own: str, family: Family, shift: int) -> Line:
+    """III.22; as printed the coefficient stands on both sides, and H switches f_(m,0) on one interval early."""
+    guard = "H(n-m+j-1)" if shift else "H(n-m+j)"
+    return Line(
+        22,
+        f"f_{{1,0}}^{{k,j,n+1}} = -{own}^{{k,j,n+1}} - {guard}f_{{m,0}}^{{k,j,n+1}}",
+        "j = 2, 3, ..., m",
+        (Target("f", "1", _two, _roof),),
+        (
+            Term(f"-{own}^{{k,j,n+1}}", _minus, "f", family, _rod(), 0, _zero),
+            Term(
+                f"-{guard}f_{{m,0}}^{{k,j,n+1}}",
+                _minus,
+                "f",
+                "m",
+                _rod(),
+                0,
+                _zero,
+                (lambda at: at.n - at.m + at.j - shift,),
+            ),
+        ),
+    )
+
+
+PRINTED: tuple[Line, ...] = (
+    Line(
+        1,
+        r"f^{k,1,1} = -\frac{1}{\kappa_0} \bar{a}_k, \quad f_0^{k,1,1} = -\frac{1}{\kappa_0} \bar{b}_k",
+        "",
+        _FIRST,
+        (),
+        {("a", "c"): lambda at: -1 / at.kappa[0], ("b", "0"): lambda at: -1 / at.kappa[0]},
+    ),
+    _constants(2, "c"),
+    _constants(3, "0"),
+    _left_going(4, "c"),
+    _roof_constant("c"),
+    _right_constant("f"),
+    _left_going(7, "0"),
+    Line(
+        8,
+        "g_0^{k,m,n+1} = H(n-1) f_0^{k,m,n}",
+        "",
+        (Target("g", "0", _roof, _roof),),
+        (Term("H(n-1) f_0^{k,m,n}", _plus, "f", "0", _last(), 1, _zero, (_second,)),),
+    ),
+    Line(
+        9,
+        "f_0^{k,j,n+1} = f_0^{k,j-1,n+1}",
+        "j = 2, 3, ..., m",
+        (Target("f", "0", _two, _roof),),
+        (Term("f_0^{k,j-1,n+1}", _plus, "f", "0", _rod(-1), 0, _zero),),
+    ),
+    Line(
+        10,
+        "f_{1,i}^{k,1,n+1} = f_{1,i}^{k,2,n} + H(2n-3-i) g_{1,i}^{k,2,n} - H(2n-4-i) f_{1,i}^{k,1,n}",
+        "i = 2n-2, 2n-3, ..., 0",
+        (Target("f", "1", _one, _one, top=lambda at: 2 * at.n - 2),),
+        (
+            Term("f_{1,i}^{k,2,n}", _plus, "f", "1", _fixed(2), 1),
+            Term("H(2n-3-i) g_{1,i}^{k,2,n}", _plus, "g", "1", _fixed(2), 1, guards=(lambda at: 2 * at.n - 3 - at.i,)),
+            Term(
+                "-H(2n-4-i) f_{1,i}^{k,1,n}", _minus, "f", "1", _fixed(1), 1, guards=(lambda at: 2 * at.n - 4 - at.i,)
+            ),
+        ),
+    ),
+    Line(
+        11,
+        "f_{m,i}^{k,1,n+1} = f_{m,i}^{k,2,n} + g_{m,i}^{k,2,n} - H(n-m-1-i) f_{m,i}^{k,1,n}",
+        "i = n-m, n-m-1, ..., 0",
+        (Target("f", "m", _one, _one, top=lambda at: at.n - at.m),),
+        (
+            Term("f_{m,i}^{k,2,n}", _plus, "f", "m", _fixed(2), 1),
+            Term("g_{m,i}^{k,2,n}", _plus, "g", "m", _fixed(2), 1),
+            Term(
+                "-H(n-m-1-i) f_{m,i}^{k,1,n}",
+                _minus,
+                "f",
+                "m",
+                _fixed(1),
+                1,
+                guards=(lambda at: at.n - at.m - 1 - at.i,),
+            ),
+        ),
+    ),
+    _left_power(1),
+    _next_to_roof(),
+    _roof_power("i+n", lambda at: at.i + at.n),
+    Line(
+        15,
+        "g_{m,i}^{k,j,n+1} = f_{m,i}^{k,j+1,n} + g_{m,i}^{k,j+1,n} - H(n-2-m+j-i)f_{m,i}^{k,j,n}",
+        "j = 2, 3, ..., m-1; i = n-m+j-1, n-m+j-2, ..., 0",
+        (Target("g", "m", _two, _under_roof, top=lambda at: at.n - at.m + at.j - 1),),
+        (
+            Term("f_{m,i}^{k,j+1,n}", _plus, "f", "m", _rod(1), 1),
+            Term("g_{m,i}^{k,j+1,n}", _plus, "g", "m", _rod(1), 1),
+            Term(
+                "-H(n-2-m+j-i)f_{m,i}^{k,j,n}",
+                _minus,
+                "f",
+                "m",
+                _rod(),
+                1,
+                guards=(lambda at: at.n - 2 - at.m + at.j - at.i,),
+            ),
+        ),
+    ),
+    Line(
+        16,
+        r"g_{m,i}^{k,m,n+1} = -H(n-2-i)f_{m,i}^{k,m,n} + \frac{2\kappa_m}{i}f_{m,i-1}^{k,m,n}",
+        "i = n-1, n-2, ..., 1",
+        (Target("g", "m", _roof, _roof, top=lambda at: at.n - 1, bottom=1),),
+        (
+            Term("-H(n-2-i)f_{m,i}^{k,m,n}", _minus, "f", "m", _last(), 1, guards=(lambda at: at.n - 2 - at.i,)),
+            Term(
+                r"\frac{2\kappa_m}{i}f_{m,i-1}^{k,m,n}",
+                lambda at: 2 * at.kappa[at.m] / at.i,
+                "f",
+                "m",
+                _last(),
+                1,
+                _down,
+            ),
+        ),
+    ),
+    _roof_start("g_{m,0}", "m"),
+    Line(
+        18,
+        r"f_{1,i}^{k,2,n+1} = -H(2n-1-i)g_{1,i}^{k,2,n+1} + \frac{2\kappa_1}{i}[g_{1,i-1}^{k,2,n+1} + "
+        "H(2n-1-i)f_{1,i-1}^{k,1,n+1}]",
+        "i = 2n, 2n-1, ..., 1",
+        (Target("f", "1", _two, _two, top=lambda at: 2 * at.n, bottom=1),),
+        (
+            Term(
+                "-H(2n-1-i)g_{1,i}^{k,2,n+1}", _minus, "g", "1", _fixed(2), 0, guards=(lambda at: 2 * at.n - 1 - at.i,)
+            ),
+            Term(r"\frac{2\kappa_1}{i} g_{1,i-1}^{k,2,n+1}", _visits, "g", "1", _fixed(2), 0, _down),
+            Term(
+                r"\frac{2\kappa_1}{i} H(2n-1-i)f_{1,i-1}^{k,1,n+1}",
+                _visits,
+                "f",
+                "1",
+                _fixed(1),
+                0,
+                _down,
+                (lambda at: 2 * at.n - 1 - at.i,),
+            ),
+        ),
+    ),
+    Line(
+        19,
+        r"f_{1,i}^{k,j,n+1} = -H(2n+j-3-i)H(n-1)g_{1,i}^{k,j,n+1} + \frac{2\kappa_1}{i}[H(n-1)g_{1,i-1}^{k,j,n+1} + "
+        "f_{1,i-1}^{k,j-1,n+1}]",
+        "j = 3, 4, ..., m-1; i = 2n+j-2, 2n+j-3, ..., 1",
+        (Target("f", "1", lambda m: 3, _under_roof, top=lambda at: 2 * at.n + at.j - 2, bottom=1),),
+        (
+            Term(
+                "-H(2n+j-3-i)H(n-1)g_{1,i}^{k,j,n+1}",
+                _minus,
+                "g",
+                "1",
+                _rod(),
+                0,
+                guards=(lambda at: 2 * at.n + at.j - 3 - at.i, _second),
+            ),
+            Term(r"\frac{2\kappa_1}{i} H(n-1)g_{1,i-1}^{k,j,n+1}", _visits, "g", "1", _rod(), 0, _down, (_second,)),
+            Term(r"\frac{2\kappa_1}{i} f_{1,i-1}^{k,j-1,n+1}", _visits, "f", "1", _rod(-1), 0, _down),
+        ),
+    ),
+    Line(
+        20,
+        r"f_{1,i}^{k,m,n+1} = -H(2n+m-4-i)H(n-1)g_{1,i}^{k,m,n+1} + "
+        r"\frac{2\kappa_1}{i}[H(2n+m-3-i)H(n-1)g_{1,i-1}^{k,m,n+1} + f_{1,i-1}^{k,m-1,n+1}]",
+        "i = 2n+m-2, 2n+m-3, ..., 1",
+        (Target("f", "1", _roof, _roof, top=lambda at: 2 * at.n + at.m - 2, bottom=1),),
+        (
+            Term(
+                "-H(2n+m-4-i)H(n-1)g_{1,i}^{k,m,n+1}",
+                _minus,
+                "g",
+                "1",
+                _last(),
+                0,
+                guards=(lambda at: 2 * at.n + at.m - 4 - at.i, _second),
+            ),
+            Term(
+                r"\frac{2\kappa_1}{i} H(2n+m-3-i)H(n-1)g_{1,i-1}^{k,m,n+1}",
+                _visits,
+                "g",
+                "1",
+                _last(),
+                0,
+                _down,
+                (lambda at: 2 * at.n + at.m - 3 - at.i, _second),
+            ),
+            Term(r"\frac{2\kappa_1}{i} f_{1,i-1}^{k,m-1,n+1}", _visits, "f", "1", _last(-1), 0, _down),
+        ),
+    ),
+    Line(
+        21,
+        r"f_{m,i}^{k,j,n+1} = \frac{1}{2\kappa_1 - \kappa_m} [-(i+1)H(n-m+j-2-i)(f_{m,i+1}^{k,j,n+1} + "
+        r"g_{m,i+1}^{k,j,n+1}) + \kappa_m g_{m,i}^{k,j,n+1} + 2\kappa_1 H(n-m+j-2-i)f_{m,i}^{k,j-1,n+1}]",
+        "j = 2, 3, ..., m; i = n-m+j-1, n-m+j-2, ..., 0",
+        (Target("f", "m", _two, _roof, top=lambda at: at.n - at.m + at.j - 1),),
+        (
+            *(
+                Term(
+                    rf"-\frac{{i+1}}{{2\kappa_1 - \kappa_m}} H(n-m+j-2-i){letter}_{{m,i+1}}^{{k,j,n+1}}",
+                    lambda at: -(at.i + 1) / at.gap,
+                    letter,
+                    "m",
+                    _rod(),
+                    0,
+                    _up,
+                    (lambda at: at.n - at.m + at.j - 2 - at.i,),
+                )
+                for letter in "fg"
+            ),
+            Term(
+                r"\frac{\kappa_m}{2\kappa_1 - \kappa_m} g_{m,i}^{k,j,n+1}",
+                lambda at: at.kappa[at.m] / at.gap,
+                "g",
+                "m",
+                _rod(),
+                0,
+            ),
+            Term(
+                r"\frac{2\kappa_1}{2\kappa_1 - \kappa_m} H(n-m+j-2-i)f_{m,i}^{k,j-1,n+1}",
+                lambda at: 2 * at.kappa[1] / at.gap,
+                "f",
+                "m",
+                _rod(-1),
+                0,
+                guards=(lambda at: at.n - at.m + at.j - 2 - at.i,),
+            ),
+        ),
+    ),
+    _floor_start("f_{1,0}", "1", 0),
+)
+
+
+def _corrected(line: Line, note: str) -> Correction:
+    return Correction("misprint", line.printed, line, note)
+
+
+CORRECTIONS: dict[int, Correction] = {
+    5: _corrected(_roof_constant("0"), "The index 0 is missing: the derivative of the linear part is meant."),
+    6: _corrected(_right_constant("g"), "Letter: f for g; f_0^{k,j,n+1} stands in the bracket already, by III.9."),
+    12: _corrected(
+        _left_power(0, (_third,)),
+        "Index: j+1 for j in what returns from floor j. H lets in g of the first interval, as in III.13.",
+    ),
+    13: Correction(
+        "convention",
+        "as printed, with 0 for the coefficients of g in the first interval: H(n-2) g_{1,i}^{k,m,n}",
+        _next_to_roof((_third,)),
+        "For n = 1 and m >= 4 H lets in g of the first interval, which has none; the text says that it is 0.",
+    ),
+    14: _corrected(_roof_power("i+1", _up), "Index: i+n for i+1."),
+    17: _corrected(
+        _roof_start("g", "c"), "As printed the coefficient stands on both sides; the constant of the rate 0 is meant."
+    ),
+    22: _corrected(
+        _floor_start("f", "c", 1),
+        "As printed the coefficient stands on both sides; the constant of the rate 0 is meant. H opens one interval "
+        "too early, where f_{m,0} does not exist yet.",
+    ),
+}
+
+
+def with_terms(line: Line, place: int, term: Term) -> Line:
+    """The line with another term at `place`."""
+    return replace(line, terms=(*line.terms[:place], term, *line.terms[place + 1 :]))
