@@ -54,7 +54,7 @@ def _symbolic_json(table: Table, symbols: SymbolicChain, name: str) -> Iterator[
     separator = "\n"
     used: set[int] = set()
     for row in table.rows():
-        value = row.value if isinstance(row.value, Ratio) else symbols.ring.constant(fmpq(row.value))
+        value = row.value if isinstance(row.value, Ratio) else symbols.ring.constant(fmpq(str(row.value)))
         used |= value.denominator.keys()
         above, below = value.parts
         fields = row._asdict() | {"rate": str(row.rate), "numerator": above, "denominator": below}
