@@ -7,12 +7,13 @@ import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.emission import closed, march, pieces
 from wavesym.emission.description import describe
+from wavesym.emission.files import EMITTERS
 from wavesym.errors import CostError
 from wavesym.evaluators.ball import largest, segments, values
 from wavesym.evaluators.choice import MAKERS
@@ -28,7 +29,6 @@ from wavesym.verification.compiled import imported
 Array = NDArray[np.float64]
 
 EVALUATORS = ("closed", "pieces", "march")
-EMITTERS = {"closed": closed, "pieces": pieces, "march": march}
 ROUNDED = 2.0**-53
 """The truth is rounded once: an error may be this much larger than its bound."""
 
@@ -93,15 +93,19 @@ def attempt(known: Truth, name: str) -> Attempt:
     met = form.error_bound <= scene.output.tolerance
     refused = "" if met else form.shortfall(rational(scene.output.tolerance))
     bounds = _reached(form, taus) if isinstance(form, ClosedForm) else np.full(len(taus), form.error_bound)
-    # a program has to print its bound, an infinite one too
-    printable = tuple(replace(output, bound=min(output.bound, sys.float_info.max)) for output in form.outputs)
-    form = replace(form, outputs=printable)  # type: ignore[arg-type]  # of each kind its own
+    form = printable(form)
     text = EMITTERS[name].numpy_source(describe(scene, form, "the atlas", ()), form)
     with np.errstate(over="ignore", invalid="ignore"):
         found = imported(text, scene.name).evaluate(taus)
     wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
     errors = np.where(np.isfinite(wrong), wrong, math.inf)
     return Attempt(name, taus, errors, bounds, refused)
+
+
+def printable(form: Any) -> Any:
+    """An evaluator whose bounds a program can print, which has no way to write down an infinite one."""
+    outputs = tuple(replace(output, bound=min(output.bound, sys.float_info.max)) for output in form.outputs)
+    return replace(form, outputs=outputs)
 
 
 def _reached(form: ClosedForm, taus: Array) -> Array:

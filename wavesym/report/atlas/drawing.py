@@ -26,6 +26,7 @@ Places = NDArray[np.float64]
 _FONT = 8.5
 _PANEL = (5.6, 4.8)  # inches
 _MOST_COLUMNS = 3
+_CROSSES = 24  # lines of crosses that would fit under each other
 _STYLES = (
     ("s", "-", "black"),
     ("o", "-", "0.35"),
@@ -64,25 +65,25 @@ def draw(family: Family) -> Figure:
 
 
 def _panel(axes: Axes, family: Family, panel: str, named: bool) -> None:
-    axes.set(xscale="log", yscale="log", ylim=(family.least, family.most))
+    axes.set(xscale=family.x.scale, yscale="log", ylim=(family.least, family.most))
     axes.set_xlabel(family.x.label)
     if named:
         axes.set_title(panel, fontsize=_FONT + 1, loc="left")
     axes.grid(True, which="major", color="0.9", linewidth=0.5)
     axes.yaxis.set_minor_locator(NullLocator())
     for (marker, dashes, grey), name in zip(_STYLES, family.curves(panel), strict=False):
-        points = family.curve(panel, name)
-        places = _places(family, points, [point.error for point in points])
-        _line(axes, places, points, color=grey, linestyle=dashes, linewidth=1.2, zorder=3)
-        for (x, y), point in zip(places, points, strict=True):
-            missing = math.isnan(point.error)
-            filled = grey if not point.refused else "white"
-            axes.plot(x, y, "x" if missing else marker, color=grey, markerfacecolor=filled, markersize=5, zorder=4)
-        proved = _proved(points)
+        valued, missing, proved = _parts(family.curve(panel, name))
+        places = _places(family, valued, [point.error for point in valued])
+        _line(axes, places, valued, color=grey, linestyle=dashes, linewidth=1.2, zorder=3)
+        for (x, y), point in zip(places, valued, strict=True):
+            filled = "white" if point.refused else grey
+            axes.plot(x, y, marker, color=grey, markerfacecolor=filled, markersize=5, zorder=4)
+        for x, y in _missing(family, panel, name, missing):
+            axes.plot(x, y, "x", color=grey, markersize=6, zorder=4)
         bounds = _places(family, proved, [point.bound for point in proved])
         if len(proved) == 1:
             axes.plot(*bounds[0], "_", color=grey, markersize=12)
-        elif proved:
+        else:
             _line(axes, bounds, proved, color=grey, linestyle=(0, (1, 2)), linewidth=1.0, zorder=2)
     if family.x.zero is not None:
         _mark_zero(axes, family)
@@ -90,22 +91,30 @@ def _panel(axes: Axes, family: Family, panel: str, named: bool) -> None:
         axes.invert_xaxis()
 
 
+def _parts(points: Sequence[Point]) -> tuple[list[Point], list[Point], list[Point]]:
+    """Those with a value, those without, and those of the first for which something is proved."""
+    valued = [point for point in points if not math.isnan(point.error)]
+    missing = [point for point in points if math.isnan(point.error)]
+    return valued, missing, [point for point in valued if math.isfinite(point.bound)]
+
+
 def _line(axes: Axes, places: Places, points: Sequence[Point], **style: Any) -> None:
-    """A line through points that have a value; between the smallest x and exactly 0 nothing is known."""
-    joined = [k for k, point in enumerate(points) if point.x and not math.isnan(point.error)]
+    """A line through points; between the smallest x and exactly 0 nothing is known."""
+    joined = [k for k, point in enumerate(points) if point.x]
     axes.plot(places[joined, 0], places[joined, 1], **style)
 
 
 def _places(family: Family, points: Sequence[Point], values: Sequence[float]) -> Places:
-    """Where points are drawn: inside the axes, what is no number at the top."""
-    low, high = family.least * 1.5, family.most / 1.5
-    zero = family.x.zero or 0.0
-    heights = [high if math.isnan(value) else min(max(value, low), high) for value in values]
-    return np.array([(point.x or zero, height) for point, height in zip(points, heights, strict=True)])
+    """Where points are drawn: inside the axes."""
+    heights = np.clip(values, family.least * 1.5, family.most / 1.5)
+    return np.column_stack([[point.x or family.x.zero or 0.0 for point in points], heights])
 
 
-def _proved(points: Sequence[Point]) -> list[Point]:
-    return [point for point in points if math.isfinite(point.bound)]
+def _missing(family: Family, panel: str, name: str, points: Sequence[Point]) -> Places:
+    """Where points without a value are drawn: near the top, each curve's on a line of its own."""
+    depth = (1.5 + family.curves(panel).index(name)) / _CROSSES
+    height = family.most * (family.least / family.most) ** depth
+    return _places(family, points, [height] * len(points))
 
 
 def _mark_zero(axes: Axes, family: Family) -> None:
@@ -123,9 +132,12 @@ def _mark_zero(axes: Axes, family: Family) -> None:
 def _label(axes: Axes, family: Family, panel: str) -> None:
     curves = []
     for (_, _, grey), name in zip(_STYLES, family.curves(panel), strict=False):
-        points = family.curve(panel, name)
-        curves.append(Curve(name, _places(family, points, [point.error for point in points]), grey, "bold"))
-        if proved := _proved(points):
-            bounds = _places(family, proved, [point.bound for point in proved])
-            curves.append(Curve(f"{name}: proved", bounds, grey, "normal"))
+        valued, missing, proved = _parts(family.curve(panel, name))
+        for points, places, text, weight in (
+            (valued, _places(family, valued, [point.error for point in valued]), name, "bold"),
+            (missing, _missing(family, panel, name, missing), f"{name}: no value", "bold"),
+            (proved, _places(family, proved, [point.bound for point in proved]), f"{name}: proved", "normal"),
+        ):
+            if points:
+                curves.append(Curve(text, places, grey, weight))
     label(axes, curves, _FONT)

@@ -16,6 +16,7 @@ from wavesym.emission.description import describe
 from wavesym.emission.march import c_header, c_source
 from wavesym.evaluators.march import MarchEvaluator, marched
 from wavesym.report.atlas import twist
+from wavesym.report.atlas.attempts import printable
 from wavesym.report.atlas.family import Axis, Family, Point, Progress
 from wavesym.rivals.native import FAST, address, library
 from wavesym.scene import Scene
@@ -74,7 +75,7 @@ def family(progress: Progress, horizon: int = HORIZON, tried: Mapping[Fraction, 
     return Family(
         "march",
         f"March to tau = {horizon:g}: error and energy drift reach rounding at the degree it takes (the last point)",
-        Axis("degree"),
+        Axis("degree of the polynomials", scale="linear"),
         "relative to the largest value, or to the energy",
         tuple(points),
         "filled: the program reports nothing; hollow: it reports that the degree is too low",
@@ -96,7 +97,7 @@ def follow(kappa: Fraction, evaluator: MarchEvaluator) -> Followed:
 
 def _run(scene: Scene, evaluator: MarchEvaluator, taus: twist.Array) -> tuple[twist.Array, twist.Array, bool]:
     """Outputs (outputs, n), energies and the alarm."""
-    description = describe(scene, evaluator, "the atlas", ())
+    description = describe(scene, printable(evaluator), "the atlas", ())
     text = c_source(description, evaluator) + _FOLLOW.replace("NAME", scene.name)
     program = library(text, FAST, (f"{scene.name}.h", c_header(description, evaluator)))
     out, energy = np.empty((len(taus), len(scene.outputs))), np.empty(len(taus))

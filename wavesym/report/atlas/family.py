@@ -29,9 +29,10 @@ class Point:
 
 @dataclass(frozen=True)
 class Axis:
-    """A logarithmic axis. `zero`, where given, is the place on it that stands for exactly 0."""
+    """An axis. `zero`, where given, is the place on a logarithmic one that stands for exactly 0."""
 
     label: str
+    scale: str = "log"
     zero: float | None = None
     falling: bool = False
 

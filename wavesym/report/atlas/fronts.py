@@ -21,7 +21,7 @@ AWAY = "away from fronts: 1/10 or more from any arrival"
 _SAME, _NEAR, _FAR = 1e-6, 0.0201, 0.0999
 # so near that no grid or series here resolves it, and farther
 _DISTANCES = (1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 2e-2)
-_AROUND = (*_DISTANCES, *(-distance for distance in _DISTANCES))
+AROUND = (*_DISTANCES, *(-distance for distance in _DISTANCES))
 # a solver of order 8 takes as many more steps as its tolerance to this power
 _PER_TOLERANCE = -1 / 8
 
@@ -35,7 +35,7 @@ def scene() -> Scene:
 
 def family(progress: Progress) -> Family:
     """A curve for each rival, at fronts and away from them. Rivals that are other packages are left to the chart."""
-    known = truth(scene(), per_unit=40, around=_AROUND)
+    known = truth(scene(), per_unit=40, around=AROUND)
     points = []
     for rival in RIVALS:
         if rival in PEERS:
