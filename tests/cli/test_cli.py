@@ -108,16 +108,29 @@ def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
 LONG = ("chart", "stability")  # their examples run for a minute and more
 
 
-@pytest.mark.parametrize(
-    "command", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in COMMANDS]
-)
+def example(command: str, capsys: pytest.CaptureFixture[str]) -> list[str]:
+    """The arguments of the example in a command's help."""
+    assert main([command, "--help"]) == 0
+    (line,) = [line.split() for line in capsys.readouterr().out.splitlines() if line.startswith("    wavesym ")]
+    assert line[1] == command
+    return line[1:]
+
+
+@pytest.mark.parametrize("command", [name for name in COMMANDS if name not in LONG])
 def test_every_command_has_an_example_that_works(
     command: str, compiler: Compiler, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main([command, "--help"]) == 0
-    (example,) = [line.split() for line in capsys.readouterr().out.splitlines() if line.startswith("    wavesym ")]
-    assert example[1] == command
-    assert main(example[1:]) == 0
+    assert main(example(command, capsys)) == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", LONG)
+def test_long_examples_work_too(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(example(command, capsys)) == 0
+    assert list(tmp_path.rglob("*.svg"))
 
 
 def test_scenes_lists_what_is_built_in(capsys: pytest.CaptureFixture[str]) -> None:
