@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import wavesym
 from tests.evaluators.drawn import scenes
 from wavesym.emission.files import files
-from wavesym.errors import ToleranceError
+from wavesym.errors import CostError, ToleranceError
 from wavesym.evaluators.ball import Balls, segments
 from wavesym.evaluators.choice import choose
 from wavesym.evaluators.doubles import rational
@@ -168,3 +168,15 @@ def test_tables_scale_with_the_tolerance():
     ]
     assert sizes == sorted(sizes)
     assert sizes[-1] < choose(scene("B"), "pieces").evaluator.bytes / 4
+
+
+@pytest.mark.slow
+def test_pieces_that_would_take_minutes_are_refused():
+    """Many reflections of light bodies need more bits than can be had in time; auto then takes the march."""
+    system = {"type": "drive", "m": 1, "kappa": [5], "inertia": [1, 1]}
+    load = [{"body": 1, "times": [0], "steps": [1]}]
+    output = {"until": 200, "tolerance": "1e-6", "strain": ["1/2"]}
+    heavy = wavesym.Scene(name="heavy", system=system, load=load, output=output)
+    with pytest.raises(CostError, match="1024 bits"):
+        choose(heavy, "pieces")
+    assert choose(heavy).name == "march"

@@ -95,15 +95,15 @@ class Balls:
         return self.segments[place].at(tau - self._starts[place]) if place >= 0 else arb(0)
 
 
-def precise(attempt: Callable[[], T | None], bits: int = _FIRST_BITS) -> T:
+def precise(attempt: Callable[[], T | None], bits: int = _FIRST_BITS, most: int = _MOST_BITS) -> T:
     """The first result of `attempt` that is not None, each time with twice the bits of working precision."""
-    while bits <= _MOST_BITS:
+    while bits <= most:
         with ctx.workprec(bits):
             result = attempt()
         if result is not None:
             return result
         bits *= 2
-    raise ArithmeticError(f"{_MOST_BITS} bits are not enough")
+    raise ArithmeticError(f"{most} bits are not enough")
 
 
 def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float], until: float) -> list[float]:

@@ -35,6 +35,8 @@ BLOCK = 32
 # Pieces in a unit of tau: shorter ones have lower degrees, which is faster and rounds less, in larger tables.
 _USUAL = (8, 4, 2, 1)
 _SHORTER = (2, 4, 8, 16, 32)
+# A fit at so many bits takes seconds, at twice as many the better part of a minute (the terms double with the bits).
+_MOST_BITS = 1024
 # In double precision the fastest are taken whose tables are no larger than this; single is for small machines.
 _FAST_BYTES = 128 << 10
 _SECOND_ORDER = arb(fmpq(1001, 1000))
@@ -166,7 +168,10 @@ class _Fits:
             self._bits = ctx.prec  # what did for one number of pieces is where the next one starts
             return self._fit(per_unit)
 
-        return precise(attempt, self._bits)
+        try:
+            return precise(attempt, self._bits, _MOST_BITS)
+        except ArithmeticError as error:
+            raise CostError(f"output.until: pieces would take minutes to fit, as {error}") from None
 
     def _fit(self, per_unit: int) -> Pieces | None:
         places = self._motion.places
