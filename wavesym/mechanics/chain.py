@@ -38,6 +38,11 @@ class Chain:
         assert rod is not None  # every node but the first has a rod on its left
         return rod
 
+    def leaves(self, function: str, rod: int, z: int) -> int:
+        """When "f" or "g" of a rod leaves its node, x = rod - 1 or x = rod, with argument z: tau, by (4.2)."""
+        clock = self.rod(rod)
+        return int(z + clock.tau0 + (rod - 1 - clock.x0 if function == "f" else clock.x0 - rod))
+
     @cached_property
     def sources(self) -> tuple[str, ...]:
         """The unit loads of the system; a collision has its impact instead."""

@@ -70,7 +70,7 @@ def differences(chain: Chain, table: Table) -> Iterator[Difference]:
     """Every increment in which a table of the chain differs from the node law; none where both are right."""
     last = max(
         (
-            _tau(chain, function, table.interval * len(increments))
+            chain.leaves(*function, table.interval * len(increments))
             for response in table.responses.values()
             for function, increments in response.items()
         ),
@@ -80,22 +80,14 @@ def differences(chain: Chain, table: Table) -> Iterator[Difference]:
         sent = unit_waves(chain, source, last)
         for function, increments in response.items():
             gained = {
-                _tau(chain, function, table.interval * n): {rate: fmpq_poly(powers) for rate, powers in gain.items()}
+                chain.leaves(*function, table.interval * n): {rate: fmpq_poly(powers) for rate, powers in gain.items()}
                 for n, gain in enumerate(increments)
             }
             node = sent[function.rod - 1].right if function.function == "f" else sent[function.rod].left
-            for tau in range(min(gained, default=0), _tau(chain, function, table.interval * len(increments))):
+            for tau in range(min(gained, default=0), chain.leaves(*function, table.interval * len(increments))):
                 ours, theirs = node[tau] if tau >= 0 else {}, gained.get(tau, {})
                 if ours != theirs:
                     yield Difference(source, function, tau, theirs, ours)
-
-
-def _tau(chain: Chain, function: Function, z: int) -> int:
-    """When a wave function with argument z, on its clock of (4.2), leaves its node: f at x = i - 1, g at x = i."""
-    rod = chain.rod(function.rod)
-    if function.function == "f":
-        return int(z + rod.tau0 + (function.rod - 1) - rod.x0)
-    return int(z + rod.tau0 - function.rod + rod.x0)
 
 
 def _arrived(sent: list[Change], v: fmpq, n: int) -> Change:

@@ -1,0 +1,203 @@
+"""The highest powers, the paper's Tables 2, 3 and 4, as formulas in interval, rod, body and source; stated as data.
+
+A wave that leaves node y at tau = t came from its source at node s in t steps from node to node. Every visit to the
+body at node l is a factor T (`coefficients.walks`), after the first one visit costs a way to a neighbour and back; so
+there are at most 1 + (t - |s - l| - |l - y|)/2, and the highest power of w beside exp(-gamma_l w) is one less. What is
+stated here is proved as an upper bound in `verification.powers`, by induction over the derived laws.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sympy import Abs, Expr, Integer, Rational, Symbol, binomial, floor
+
+from wavesym.derivation.delay import COUNT, INDEX
+from wavesym.derivation.line import exact
+
+INTERVAL = Symbol("n", integer=True, positive=True)
+BODY = Symbol("l", integer=True, positive=True)
+SOURCE = Symbol("s", integer=True, positive=True)
+HIGHEST = Symbol("K", integer=True, nonnegative=True)
+NODE = Symbol("y", integer=True)
+IMAGE = Symbol("j", integer=True)
+
+_m, _i, _n, _l, _s, _K, _y, _j = COUNT, INDEX, INTERVAL, BODY, SOURCE, HIGHEST, NODE, IMAGE
+_HALF = Rational(1, 2)
+
+
+@dataclass(frozen=True)
+class PowerRow:
+    """One kind of function, i = first, first + step, ... last, last sent by the body (or the base) `node`.
+
+    Where it is not 0, `since` >= 0. Its increment of interval n has the family's rate up to power
+    floor(`budget`/`period`), and not at all where that is below 0.
+    """
+
+    function: str
+    rod: Expr
+    node: Expr
+    budget: Expr
+    since: Expr
+    first: Expr
+    last: Expr
+    step: int
+
+
+@dataclass(frozen=True)
+class PowerFamily:
+    """The powers beside the rate of body l = first, first + step, ... last; or of all of these, where they are one.
+
+    `period` is what a further visit takes from the budget; `offset` the number of the body at x = 0. A pattern says
+    which parameters are equal; without one they may all differ. `smallest` is the least m that it is about. Where every
+    step is a visit, the coefficient of T**(K + 1), K the highest power, counts walks of K steps to y (by reflection, a
+    sum over images): `leading`, over all whole j, of `walks`; a binomial with a half in it is 0.
+    """
+
+    pattern: str
+    rate: str
+    first: Expr
+    last: Expr
+    step: int
+    merged: bool
+    period: int
+    offset: int
+    smallest: int
+    rows: tuple[PowerRow, ...]
+    walks: str = ""
+    leading: Expr | None = None
+
+    def power(self, row: PowerRow) -> Expr:
+        """The highest power; negative where there is none."""
+        # a sum of ways there and back is even, so that half of it is whole
+        whole = self.period in (1, 2)
+        return row.budget / self.period if whole else floor(row.budget / self.period)
+
+
+def _row(function: str, rod: Expr | int, node: Expr | int, budget: Expr, since: Expr, *places: Expr | int) -> PowerRow:
+    first, last, step = places or (rod, rod, 1)
+    return PowerRow(function, exact(rod), exact(node), budget, since, exact(first), exact(last), int(step))
+
+
+def _ways(*rows: tuple[str, Expr | int, Expr, Expr, tuple[Expr | int, ...]], source: Expr) -> tuple[PowerRow, ...]:
+    """Rows from the time t at which a function leaves node y, both in the numbering of bodies."""
+    return tuple(
+        _row(function, rod, y, t - Abs(source - _l) - Abs(_l - y), t - Abs(source - y), *places)
+        for function, rod, t, y, places in rows
+    )
+
+
+# moment M_s and body l in the paper's numbers, 1 ... m + 1: f_i leaves disc i at tau = z, g_i disc i + 1 at z - 1
+_DRIVE = PowerFamily(
+    "",
+    "gamma_l of disc l, for moment M_s",
+    Integer(1),
+    exact(_m + 1),
+    1,
+    False,
+    2,
+    1,
+    1,
+    _ways(
+        ("f", _i, _n - 1, _i, (1, _m, 1)),
+        ("g", _i, _n - 2, _i + 1, (1, _m, 1)),
+        source=_s,
+    ),
+)
+
+# the source is the base; floors in the paper's numbers 1 ... m
+_BUILDING = PowerFamily(
+    "",
+    "gamma_l of floor l (2 kappa_l; the roof's is kappa_m)",
+    Integer(1),
+    _m,
+    1,
+    False,
+    2,
+    0,
+    2,
+    _ways(
+        ("f", _i, 2 * _n + _i - 3, _i - 1, (1, _m, 1)),
+        ("g", _i, 2 * _n + _i - 4, _i, (1, _m, 1)),
+        source=Integer(0),
+    ),
+)
+
+# every step of a wave between equal floors is a visit
+_EQUAL_FLOORS = PowerFamily(
+    "kappa_1 = ... = kappa_(m-1), m >= 3",
+    "2 kappa_1 of all floors but the roof",
+    Integer(1),
+    exact(_m - 1),
+    1,
+    True,
+    1,
+    0,
+    3,
+    (
+        _row("f", 1, 0, 2 * _n - 4, 2 * _n - 2),
+        _row("f", _i, _i - 1, 2 * _n + _i - 4, 2 * _n - 2, 2, _m, 1),
+        _row("g", _i, _i, 2 * _n + _i - 5, 2 * _n - 4, 1, _m - 1, 1),
+        _row("g", _m, _m, 2 * _n + _m - 6, 2 * _n - 4),
+    ),
+    "walks of K steps from floor 1 to floor y within 1, ..., m-1; y is where the wave was last sent by one of these: "
+    "i-1 for f_i, i for g_i, 1 for f_1, m-1 for g_m",
+    binomial(_K, (_K + _y - 1) * _HALF + _j * _m) - binomial(_K, (_K + _y + 1) * _HALF + _j * _m),
+)
+
+# body l is at odd x = l. All contacts send at tau = 0, so that any body may be the first one met, at tau = 1. Each line
+# has the time and the body at which a function was last sent by a body, since contacts pass waves on and free ends send
+# them back; and whether it may come straight from its contact, up to two units of that time earlier.
+_LAST_SENT: tuple[tuple[str, Expr | int, Expr, Expr, bool, tuple[Expr | int, ...]], ...] = (
+    ("g", 1, 2 * _n - 1, Integer(1), False, ()),
+    ("f", 1, 2 * _n - 3, Integer(1), False, ()),
+    ("f", _i, 2 * _n - 3, _i - 1, False, (2, _m - 2, 2)),
+    ("g", _i, 2 * _n - 3, _i + 1, True, (2, _m - 2, 2)),
+    ("f", _i, 2 * _n - 3, _i - 2, True, (3, _m - 1, 2)),
+    ("g", _i, 2 * _n - 3, _i, False, (3, _m - 1, 2)),
+    ("f", _m, 2 * _n - 1, _m - 1, False, ()),
+    ("g", _m, 2 * _n - 3, _m - 1, False, ()),
+)
+
+
+def _collision(rate: str, first: Expr | int, last: Expr, period: int, smallest: int) -> PowerFamily:
+    rows = tuple(
+        _row(function, rod, y, t - 1 - Abs(_l - y), t - 1 + 2 * contact, *places)
+        for function, rod, t, y, contact, places in _LAST_SENT
+    )
+    return PowerFamily("", rate, exact(first), exact(last), 2, False, period, 0, smallest, rows)
+
+
+_EQUAL_BODIES = PowerFamily(
+    "equal bodies, m >= 6",
+    "2 kappa_1 of all bodies",
+    Integer(1),
+    exact(_m - 1),
+    2,
+    True,
+    2,
+    0,
+    6,
+    tuple(
+        _row(function, rod, y, t - 1, t - 1 + 2 * contact, *places)
+        for function, rod, t, y, contact, places in _LAST_SENT
+    ),
+    "for the contact at x = s, walks of K steps from body to body that end at x = y, from s+1 less those from s-1; at "
+    "a free end a wave comes back to the same body, one step later",
+    sum(
+        sign * binomial(_K, (_K + (_y + shift) * _HALF) * _HALF + _j * _m * _HALF)
+        for sign, shift in ((1, -_s - 1), (1, _s + 1), (-1, 1 - _s), (-1, _s - 1))
+    ),
+)
+
+POWERS: dict[str, tuple[PowerFamily, ...]] = {
+    "collision": (
+        _collision("2 kappa_1 of the first body, l = 1", 1, Integer(1), 2, 4),
+        _collision("2 kappa_(m-1) of the last body, l = m - 1", _m - 1, _m - 1, 2, 4),
+        _collision("2 kappa_l of an inner body, l = 3, 5, ..., m - 3", 3, exact(_m - 3), 4, 6),
+        _EQUAL_BODIES,
+    ),
+    "drive": (_DRIVE,),
+    "building-force": (_BUILDING, _EQUAL_FLOORS),
+    "building-ground": (_BUILDING, _EQUAL_FLOORS),
+}
