@@ -1,15 +1,21 @@
 """Symbolic tables against the numeric ones, and against what the paper prints."""
 
 from fractions import Fraction
+from math import prod
 
 import pytest
 from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from wavesym.coefficients import ratio
+from wavesym.coefficients import symbolic as symbolic_module
+from wavesym.coefficients.factored import factored, tell
+from wavesym.coefficients.letters import in_rates
 from wavesym.coefficients.ratio import Ratio, Ring
 from wavesym.coefficients.symbolic import generic, symbolic
 from wavesym.coefficients.table import full_table
+from wavesym.errors import SceneError
 from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.collision import COLLISION
@@ -50,15 +56,49 @@ def numbers(table, values):
     return {row[:-1]: row.value for row in rows if row.value != 0}
 
 
+def told(table, values):
+    """The same from what a reader gets, factors in the symbols of the scene."""
+
+    def at(value):
+        if not isinstance(value, Ratio):
+            return value
+        content, above, below = factored(value)
+        point = [values[name] for name in value.ring.told.names()]
+        return (
+            content
+            * prod((factor(*point) ** power for factor, power in above), start=fmpq(1))
+            / prod((factor(*point) ** power for factor, power in below), start=fmpq(1))
+        )
+
+    return {
+        row[:-1]: row.value
+        for row in (row._replace(rate=at(row.rate), value=at(row.value)) for row in table.rows())
+        if row.value != 0
+    }
+
+
 def exact(chain, intervals):
     return {row[:-1]: row.value for row in full_table(chain, intervals, NOWHERE).rows()}
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=40)
 @given(chains())
 def test_numbers_in_place_of_symbols_give_the_exact_table(chain):
-    symbols = symbolic(chain)
-    assert numbers(full_table(symbols.chain, 4, NOWHERE), symbols.values) == exact(chain, 4)
+    expected = exact(chain, 4)
+    for symbols in (symbolic(chain), in_rates(symbolic(chain))):
+        table = full_table(symbols.chain, 4, NOWHERE)
+        assert numbers(table, symbols.values) == expected
+        assert told(table, symbols.values) == expected
+
+
+def test_a_coefficient_told_wrongly_is_seen(monkeypatch):
+    chain = Chain(DRIVE, 1, Parameters({1: fmpq(3)}, inertia={1: fmpq(2), 2: fmpq(7)}))
+    symbols = in_rates(symbolic(chain))
+    table = full_table(symbols.chain, 4, NOWHERE)
+    assert told(table, symbols.values) == exact(chain, 4)
+    monkeypatch.setattr(ratio, "tell", lambda ring, factor: (1, tell(ring, factor)[1], tell(ring, factor)[2]))
+    again = in_rates(symbolic(chain))
+    assert told(full_table(again.chain, 4, NOWHERE), again.values) != exact(chain, 4)
 
 
 @settings(deadline=None, max_examples=20)
@@ -83,6 +123,30 @@ def test_equal_parameters_and_meeting_rates_are_one_family():
         assert rates == (families or {"0", "2*kappa_1"})
     assert str(symbols.meaning["kappa_3"]) == "2*kappa_1"
     assert str(symbols.meaning["kappa_2"]) == "kappa_1"
+
+
+def test_rates_that_meet_in_no_polynomial_are_one_family():
+    """kappa_1 r + kappa_2 = kappa_2 r: no symbol is a polynomial in the others, but kappa_1 = kappa_2 (r - 1)/r."""
+    chain = Chain(DRIVE, 2, Parameters({1: fmpq(1), 2: fmpq(2)}, inertia={1: fmpq(4), 2: fmpq(2), 3: fmpq(1)}))
+    symbols = in_rates(symbolic(chain))
+    assert str(symbols.meaning["kappa_1"]) == "kappa_2*(r_1 - 1)/r_1"
+    table = full_table(symbols.chain, 6, NOWHERE)
+    assert numbers(table, symbols.values) == exact(chain, 6)
+    other = {"kappa_1": fmpq(0), "kappa_2": fmpq(3), "r_1": fmpq(5, 2)}
+    numeric = Chain(
+        DRIVE, 2, Parameters({1: fmpq(9, 5), 2: fmpq(3)}, inertia={1: fmpq(25, 4), 2: fmpq(5, 2), 3: fmpq(1)})
+    )
+    assert numbers(table, other) == exact(numeric, 6)
+
+
+def test_rates_that_meet_where_no_symbol_can_be_told_are_refused(monkeypatch):
+    ring = Ring(["x", "y"])
+    x, y = ring.context.gens()
+    assert symbolic_module._place(ring, x**2 - 2 * y**2, {"x": fmpq(1), "y": fmpq(1)}) is None
+    assert symbolic_module._place(ring, x * y - 1, {"x": fmpq(1), "y": fmpq(1)}) == 0
+    monkeypatch.setattr(symbolic_module, "_place", lambda *_: None)
+    with pytest.raises(SceneError, match=r"x = 1 and 2 meet where 2\*kappa_1 - kappa_2 = 0"):
+        symbolic(Chain(BUILDING_FORCE, 2, Parameters({0: fmpq(1), 1: fmpq(2), 2: fmpq(4)})))
 
 
 def test_the_denominator_is_the_one_that_the_paper_prints():
@@ -127,7 +191,7 @@ def test_ratios_are_a_field_in_lowest_terms(a, b, c, d):
         (lambda x, y: (x + y) / 2 / x, "(x + y)/(2*x)"),
         (lambda x, y: x * (x + y) / (x - y) ** 2, "x*(x + y)/((x - y)**2)"),
         (lambda x, y: -x / y, "-x/y"),
-        (lambda x, y: x * x - y * y, "(x - y)*(x + y)"),
+        (lambda x, y: x * x - y * y, "(x + y)*(x - y)"),
         (lambda x, y: (x + y) / y, "(x + y)/y"),
         (lambda x, y: x - x, "0"),
     ],

@@ -10,22 +10,30 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from math import prod
-from string import ascii_letters
 from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from flint.utils.flint_exceptions import DomainError
 
+from wavesym.coefficients.factored import Telling, factored, tell
+
 Denominator = dict[int, int]  # number of a form: its exponent, at least 1
 
 
 class Ring:
-    """The rational functions of `names` over the rationals, with the forms met so far in their denominators."""
+    """The rational functions of `names` over the rationals, with the irreducible forms met so far.
 
-    def __init__(self, names: Sequence[str]) -> None:
+    The first forms are the names themselves. A ring that computes in other letters than its functions are told in has
+    `images`: what each letter is, a polynomial with integer coefficients in the symbols that a reader knows.
+    """
+
+    def __init__(self, names: Sequence[str], images: Sequence[fmpq_mpoly] | None = None) -> None:
         self.names = tuple(names)
         self.context = fmpq_mpoly_ctx.get(self.names, Ordering.lex)
-        self.forms: list[fmpq_mpoly] = []
+        self.forms: list[fmpq_mpoly] = list(self.context.gens())
+        self.images = images
+        self.told: fmpq_mpoly_ctx = images[0].context() if images else self.context
+        self._tellings: list[Telling] = []
 
     def symbols(self) -> dict[str, Ratio]:
         """The symbols by name."""
@@ -34,6 +42,12 @@ class Ring:
     def constant(self, value: fmpq | int) -> Ratio:
         """A number."""
         return Ratio(self, self.context.constant(value))
+
+    def telling(self, form: int) -> Telling:
+        """What a form is in the symbols that a reader knows (see `factored`)."""
+        for number in range(len(self._tellings), form + 1):
+            self._tellings.append(tell(self, self.forms[number]))
+        return self._tellings[form]
 
     def product(self, exponents: Denominator) -> fmpq_mpoly:
         """The product of forms with these exponents."""
@@ -113,7 +127,16 @@ class Ratio:
     __rmul__ = __mul__
 
     def __truediv__(self, value: Ratio | fmpq | int) -> Ratio:
-        return self * (value.inverse if isinstance(value, Ratio) else 1 / fmpq(value))
+        if not isinstance(value, Ratio):
+            return self * (1 / fmpq(value))
+        # what both stand over is not multiplied out
+        shared = {form: min(power, value.denominator.get(form, 0)) for form, power in self.denominator.items()}
+        return self._times(shared) * value._times(shared).inverse
+
+    def _times(self, forms: Denominator) -> Ratio:
+        """This times forms of its denominator."""
+        left = {form: power - forms.get(form, 0) for form, power in self.denominator.items()}
+        return Ratio(self.ring, self.numerator, {form: power for form, power in left.items() if power})
 
     def __rtruediv__(self, value: fmpq | int) -> Ratio:
         return self.inverse * value
@@ -158,16 +181,34 @@ class Ratio:
 
     def at(self, values: Mapping[str, fmpq]) -> fmpq:
         """The number that this is where the symbols have `values`. ZeroDivisionError at a pole."""
-        point = [values[name] for name in self.ring.names]
+        point = [values[name] for name in self.ring.told.names()]
+        if self.ring.images is not None:
+            point = [image(*point) for image in self.ring.images]
         below = prod(
             (self.ring.forms[form](*point) ** power for form, power in self.denominator.items()), start=fmpq(1)
         )
         return fmpq(self.numerator(*point)) / below
 
-    def composed(self, images: Sequence[fmpq_mpoly]) -> Ratio:
-        """This polynomial with `images` for the symbols."""
-        assert not self.denominator
-        return Ratio(self.ring, self.numerator.compose(*images))
+    @property
+    def letters(self) -> set[int]:
+        """The places of the names that occur in it."""
+        polynomials = [self.numerator, *(self.ring.forms[form] for form in self.denominator)]
+        return {place for one in polynomials for place, power in enumerate(one.degrees()) if power}
+
+    def composed(self, images: Sequence[Ratio]) -> Ratio:
+        """This function with `images`, functions of one ring, for the names."""
+        ring = images[0].ring
+
+        def value(polynomial: fmpq_mpoly) -> Ratio:
+            terms = (
+                prod((images[place] ** int(power) for place, power in enumerate(powers) if power), start=factor * one)
+                for powers, factor in polynomial.to_dict().items()
+            )
+            return sum(terms, ring.constant(0))
+
+        one = ring.constant(1)
+        below = (value(self.ring.forms[form]) ** power for form, power in self.denominator.items())
+        return value(self.numerator) / prod(below, start=one)
 
     def __eq__(self, value: object) -> bool:
         other = self._other(value)
@@ -198,44 +239,5 @@ class Ratio:
         assert other is not None
         return other._order() < self._order()
 
-    @property
-    def parts(self) -> tuple[str, str]:
-        """Numerator, factored over the rationals, and denominator, as text that Python reads as well."""
-        if not self.numerator:
-            return "0", "1"
-        content, factors = self.numerator.factor()
-        above = [(factor, int(power)) for factor, power in factors]
-        below = [(self.ring.forms[form], power) for form, power in sorted(self.denominator.items())]
-        return _product(int(content.p), above), _product(int(content.q), below)
-
     def __str__(self) -> str:
-        above, below = self.parts
-        if below == "1":
-            return above
-        if " " in above and "(" not in above:  # a lone sum
-            above = f"({above})"
-        return f"{above}/({below})" if below.strip("_0123456789" + ascii_letters) else f"{above}/{below}"
-
-
-def _product(number: int, factors: Sequence[tuple[fmpq_mpoly, int]]) -> str:
-    """A product as text. A lone factor needs no brackets, unless something is to be divided by it (see `__str__`)."""
-    if number == 1 and len(factors) == 1 and factors[0][1] == 1:
-        return written(factors[0][0])
-    parts = [
-        (f"({written(factor)})" if len(factor) > 1 else written(factor)) + (f"**{power}" if power > 1 else "")
-        for factor, power in sorted(factors, key=_place)
-    ]
-    if abs(number) != 1 or not parts:
-        return "*".join([str(number), *parts])
-    return ("-" if number < 0 else "") + "*".join(parts)
-
-
-def _place(factor: tuple[fmpq_mpoly, int]) -> tuple[int, list[int]]:
-    """Symbols before sums, in the order of their names."""
-    polynomial, _ = factor
-    return len(polynomial), [-int(power) for power in polynomial.degrees()]
-
-
-def written(polynomial: fmpq_mpoly) -> str:
-    """A polynomial as text."""
-    return str(polynomial).replace("^", "**")
+        return str(factored(self))

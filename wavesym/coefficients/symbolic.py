@@ -13,7 +13,9 @@ from itertools import combinations
 
 from flint import fmpq, fmpq_mpoly
 
+from wavesym.coefficients.factored import written
 from wavesym.coefficients.ratio import Ratio, Ring
+from wavesym.errors import SceneError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters, Quantity, System
 
@@ -29,7 +31,7 @@ class SymbolicChain:
 
 
 def symbolic(chain: Chain) -> SymbolicChain:
-    """The chain of a scene with its pattern of equal parameters and rates."""
+    """The chain of a scene with its pattern of equal parameters and rates. SceneError where symbols cannot have it."""
     given = _named(chain.parameters)
     values: dict[str, fmpq] = {}
     same: dict[str, str] = {}
@@ -41,9 +43,9 @@ def symbolic(chain: Chain) -> SymbolicChain:
     ring = Ring(tuple(values))
     symbols = ring.symbols()
     free = {name: symbols[same[name]] if name in same else ring.constant(_TRIVIAL[name[0]]) for name in given}
-    images = _images(ring, replace(chain, parameters=_parameters(chain.parameters, free)), values)
+    images = _images(ring, replace(chain, parameters=parameters(chain.parameters, free)), values)
     meaning = {name: ratio.composed(images) for name, ratio in free.items()}
-    return SymbolicChain(replace(chain, parameters=_parameters(chain.parameters, meaning)), ring, meaning, values)
+    return SymbolicChain(replace(chain, parameters=parameters(chain.parameters, meaning)), ring, meaning, values)
 
 
 def generic(system: System, m: int) -> SymbolicChain:
@@ -77,7 +79,7 @@ def _named(p: Parameters) -> dict[str, fmpq]:
     return named
 
 
-def _parameters(p: Parameters, named: Mapping[str, Quantity]) -> Parameters:
+def parameters(p: Parameters, named: Mapping[str, Quantity]) -> Parameters:
     """The parameters of (2.1)-(2.5) from the independent ones: the last disc has inertia 1, the last body rests."""
     inertia, velocity = None, None
     if p.inertia:
@@ -93,21 +95,43 @@ def _parameters(p: Parameters, named: Mapping[str, Quantity]) -> Parameters:
     return Parameters({i: named[f"kappa_{i}"] for i in p.kappa}, inertia, velocity)
 
 
-def _images(ring: Ring, chain: Chain, values: Mapping[str, fmpq]) -> list[fmpq_mpoly]:
-    """What the symbols become where rates are equal in numbers but not in symbols: one symbol less for each."""
-    rates = [rate for node in chain.nodes if node.inertia and isinstance(rate := (node.alpha + node.beta) / 2, Ratio)]
-    images = list(ring.context.gens())
-    for one, other in combinations(rates, 2):
+def rates(chain: Chain) -> dict[int, Ratio]:
+    """The rates of the bodies by their places, those that depend on a symbol."""
+    halves = {x: (node.alpha + node.beta) / 2 for x, node in enumerate(chain.nodes) if node.inertia}
+    return {x: rate for x, rate in halves.items() if isinstance(rate, Ratio)}
+
+
+def _images(ring: Ring, chain: Chain, values: Mapping[str, fmpq]) -> list[Ratio]:
+    """What the symbols become where rates are equal in numbers but not in symbols: one symbol less for each.
+
+    SceneError where no symbol can be told by the others.
+    """
+    images = list(ring.symbols().values())
+    for (x, one), (y, other) in combinations(rates(chain).items(), 2):
         difference = one.composed(images) - other.composed(images)
         if difference == 0 or difference.at(values) != 0:
             continue
         _, factors = difference.numerator.factor()
         relation = next(factor for factor, _ in factors if Ratio(ring, factor).at(values) == 0)
-        for place in reversed(range(len(images))):  # the last symbol that can be told by the others
-            slope = relation.derivative(place)
-            if slope.is_constant() and slope:
-                told = list(ring.context.gens())
-                told[place] = told[place] - relation / slope.leading_coefficient()
-                images = [image.compose(*told) for image in images]
-                break
+        place = _place(ring, relation, values)
+        if place is None:
+            raise SceneError(
+                f"the rates of the bodies at x = {x} and {y} meet where {written(relation)} = 0, which no symbol can "
+                "be told from by the others; there is no symbolic table for that",
+                "system",
+            )
+        told = list(ring.symbols().values())
+        told[place] = told[place] - Ratio(ring, relation) / Ratio(ring, relation.derivative(place))
+        images = [image.composed(told) for image in images]
     return images
+
+
+def _place(ring: Ring, relation: fmpq_mpoly, values: Mapping[str, fmpq]) -> int | None:
+    """The symbol that follows from the others where `relation` is 0: the last one that is a polynomial in them.
+
+    Where there is none it is a kappa rather than a ratio of inertia: rates are linear in kappa, and stay so.
+    """
+    slopes = [(place, relation.derivative(place)) for place, power in enumerate(relation.degrees()) if power == 1]
+    constant = [place for place, slope in slopes if slope.is_constant()]
+    others = [place for place, slope in slopes if Ratio(ring, slope).at(values) != 0]
+    return constant[-1] if constant else next(iter(others), None)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
-from wavesym.coefficients.ratio import Ratio, written
+from wavesym.coefficients.factored import factored, written
+from wavesym.coefficients.ratio import Ratio
 from wavesym.coefficients.symbolic import SymbolicChain
 from wavesym.coefficients.table import Row, Table
 from wavesym.emission.rendering import render_stream
@@ -52,17 +53,17 @@ def _symbolic_json(table: Table, symbols: SymbolicChain, name: str) -> Iterator[
     meaning = json.dumps({parameter: str(ratio) for parameter, ratio in symbols.meaning.items()})
     yield f'{{"name": {json.dumps(name)}, "interval": {table.interval}, "symbols": {meaning}, "rows": ['
     separator = "\n"
-    used: set[int] = set()
+    forms: dict[str, None] = {}
     for row in table.rows():
         value = row.value if isinstance(row.value, Ratio) else symbols.ring.constant(fmpq(str(row.value)))
-        used |= value.denominator.keys()
-        above, below = value.parts
+        told = factored(value)
+        forms |= dict.fromkeys(written(form) for form, _ in told.below)
+        above, below = told.parts
         fields = row._asdict() | {"rate": str(row.rate), "numerator": above, "denominator": below}
         del fields["value"]
         yield separator + json.dumps(fields)
         separator = ",\n"
-    forms = json.dumps([written(symbols.ring.forms[form]) for form in sorted(used)])
-    yield f'\n], "forms": {forms}}}\n'
+    yield f'\n], "forms": {json.dumps(list(forms))}}}\n'
 
 
 def _latex(table: Table, name: str) -> Iterator[str]:
