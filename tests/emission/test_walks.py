@@ -12,7 +12,7 @@ from wavesym.coefficients.table import Function
 from wavesym.coefficients.walks import departures, function_walks, letters, units, walks_until
 from wavesym.emission.walks import walk_polynomials
 from wavesym.errors import CostError
-from wavesym.mechanics.building import BUILDING_FORCE
+from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.mechanics.drive import DRIVE
 
 
@@ -20,7 +20,7 @@ def test_what_is_written_reads_back():
     symbols = generic(DRIVE, 2)
     chain = symbols.chain
     names = letters(chain)
-    made = json.loads(walk_polynomials(symbols, 5, "json"))
+    (made,) = json.loads(walk_polynomials([symbols], 5, "json"))
     told = 0
     for unit, response in zip(units(chain), made["responses"], strict=True):
         sent = walks_until(chain, unit, departures(chain, 1, 5), names, names.symbols)
@@ -54,7 +54,9 @@ def parsed(text, symbols):
 
 @pytest.mark.skipif(not shutil.which("pdflatex"), reason="no LaTeX here")
 def test_latex_compiles(tmp_path):
-    (tmp_path / "walks.tex").write_text(walk_polynomials(generic(BUILDING_FORCE, 3), 4, "latex"))
+    (tmp_path / "walks.tex").write_text(
+        walk_polynomials([generic(BUILDING_FORCE, 3), generic(BUILDING_GROUND, 3)], 4, "latex")
+    )
     command = ["pdflatex", "-halt-on-error", "-interaction=batchmode", "walks.tex"]
     assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
 
@@ -62,4 +64,4 @@ def test_latex_compiles(tmp_path):
 def test_more_than_anyone_reads_is_refused(monkeypatch):
     monkeypatch.setattr("wavesym.emission.walks.MOST_TERMS", 100)
     with pytest.raises(CostError, match="--intervals"):
-        walk_polynomials(generic(DRIVE, 3), 8, "text")
+        walk_polynomials([generic(DRIVE, 3)], 8, "text")

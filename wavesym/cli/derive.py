@@ -2,14 +2,48 @@
 
 from __future__ import annotations
 
-import click
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from wavesym.cli.parameters import put
+import click
+from click.shell_completion import CompletionItem
+
+from wavesym.cli.parameters import SCENE, put
+from wavesym.errors import SceneError
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+SYSTEMS = ("collision", "drive", "building")
+WALKED = 4  # intervals, unless more are asked for
+
+
+class _Source(click.ParamType[Any]):
+    """The name of a system, or a scene."""
+
+    name = "source"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str | Scene:
+        """A name among SYSTEMS, or the scene; click.BadParameter where it is neither, SceneError for a wrong scene."""
+        if value in SYSTEMS:
+            return str(value)
+        try:
+            return SCENE.convert(value, param, ctx)
+        except SceneError as error:
+            if error.path or value == "-" or Path(value).exists():
+                raise
+            names = f"'{{{'|'.join(SYSTEMS)}}}' or SCENE"
+            raise click.BadParameter(f"{value!r} is neither a system nor a scene.", ctx, param, names) from None
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        """Systems, and what completes a scene."""
+        systems = [CompletionItem(name) for name in SYSTEMS if name.startswith(incomplete)]
+        return SCENE.shell_complete(ctx, param, incomplete) + systems
 
 
 @click.command()
-@click.argument("system", type=click.Choice(["collision", "drive", "building"]))
-@click.option("--m", type=int, metavar="M", help="Write every line out for M elastic elements.")
+@click.argument("source", type=_Source(), metavar=f"{{{'|'.join(SYSTEMS)}}}|SCENE")
+@click.option("--m", type=int, metavar="M", help="Write every line out for M elastic elements; a scene has its own.")
 @click.option(
     "--format",
     type=click.Choice(["text", "latex", "json"]),
@@ -17,16 +51,30 @@ from wavesym.cli.parameters import put
     show_default=True,
     help="How it is written.",
 )
-def derive(system: str, m: int | None, format: str) -> None:
+@click.option("--walks", is_flag=True, help="Walk polynomials instead, which say why powers are as high as they are.")
+@click.option("--intervals", type=click.IntRange(1), help="Of every function, for --walks.  [default: 4]")
+def derive(source: str | Scene, m: int | None, format: str, walks: bool, intervals: int | None) -> None:
     """Derive boundary conditions, delay equations and coefficient recurrences.
+
+    Of a system for any number m of elastic elements, with the coefficients for common patterns of equal parameters; of
+    a SCENE with those for its own.
 
     \b
     Example:
       wavesym derive building --m 3
     """
-    from wavesym.compiler import derive as derivation
+    from wavesym import compiler
 
+    if m is not None and not isinstance(source, str):
+        raise click.UsageError("--m and SCENE given, which has an m of its own")
+    if walks and isinstance(source, str) and m is None:
+        raise click.UsageError("--walks: --m expected, since polynomials are those of one chain")
+    if intervals is not None and not walks:
+        raise click.UsageError("--intervals: without --walks, which it is for")
     try:
-        put(derivation(system, m, format))
+        if walks:
+            put(compiler.walks(source, m, intervals or WALKED, format))
+        else:
+            put(compiler.derive(source, m, format))
     except ValueError as error:  # no such m
         raise click.UsageError(str(error), click.get_current_context()) from None

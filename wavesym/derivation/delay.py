@@ -44,7 +44,8 @@ class Side:
     outgoing: Wave
 
 
-def _side(rod: Rod, number: Expr, x: Expr, outgoing: str) -> Side:
+def side(rod: Rod, number: Expr, x: Expr, outgoing: str) -> Side:
+    """Rod `number` at x, by (4.2): velocity f' + g' + v and strain g' - f'."""
     lag = {"f": exact(rod.tau0 + x - rod.x0), "g": exact(rod.tau0 - x + rod.x0)}
     f, g = wave("f", number, lag["f"]), wave("g", number, lag["g"])
     return Side(
@@ -60,37 +61,47 @@ def _solved(equation: Line, unknown: Wave) -> tuple[Operator, Line]:
     return Operator(exact(a / factor), exact((b / factor).expand())), right
 
 
-def _balance(node: Node, left: Side | None, right: Side | None, velocity: Line) -> Line:
-    """(2.4), everything on one side."""
-    line = velocity.scaled(node.damping)
+def sides(node: Node, x: Expr) -> tuple[Side | None, Side | None]:
+    """The rods at the node at x as they end there: the left one, the right one."""
+    left = side(node.left, x, x, "g") if node.left else None
+    right = side(node.right, x + 1, x, "f") if node.right else None
+    return left, right
+
+
+def balance(node: Node, x: Expr) -> tuple[Line, Line]:
+    """(2.4) at the node at x with (4.2) put in: what moves, as the right rod has it where there is one; what acts."""
+    left, right = sides(node, x)
+    own = right or left
+    assert own is not None  # a node has a rod
+    motion, force = own.velocity.scaled(node.damping), Line()
     if node.inertia:
-        line = line + velocity.differentiated().scaled(node.inertia)
+        motion = motion + own.velocity.differentiated().scaled(node.inertia)
     if right:
-        line = line - right.strain.scaled(Rational(1, 2) * node.beta)
+        force = force + right.strain.scaled(Rational(1, 2) * node.beta)
     if left:
-        line = line + left.strain.scaled(Rational(1, 2) * node.alpha)
+        force = force - left.strain.scaled(Rational(1, 2) * node.alpha)
     for unit in node.loads:
         for power, value in enumerate(unit.coefficients):
-            line = line - load(unit.kind, unit.number, power, value)
-    return line
+            force = force + load(unit.kind, unit.number, power, value)
+    return motion, force
 
 
 def _at_node(node: Node, x: Expr) -> list[tuple[Wave, Operator, Line]]:
     """The waves that leave the node at x: each as (wave, its operator, what that equals)."""
-    left = _side(node.left, x, x, "g") if node.left else None
-    right = _side(node.right, x + 1, x, "f") if node.right else None
+    left, right = sides(node, x)
+    motion, force = balance(node, x)
     if left is None or right is None:
-        side = left or right
-        assert side is not None  # a node has a rod
-        return [(side.outgoing, *_solved(_balance(node, left, right, side.velocity), side.outgoing))]
+        end = left or right
+        assert end is not None  # a node has a rod
+        return [(end.outgoing, *_solved(motion - force, end.outgoing))]
     # Continuity must look back in time, so it gives the wave that is ahead on its clock; on a tie, the right one.
     ahead, other = (right, left) if (right.outgoing.lag - left.outgoing.lag).is_nonpositive else (left, right)
     _, continuous = _solved(ahead.velocity - other.velocity, ahead.outgoing)
-    balance = _balance(node, left, right, other.velocity).substituted(ahead.outgoing.function, ahead.rod, continuous)
-    own, balanced = _solved(balance, other.outgoing)
+    balanced = (motion - force).substituted(ahead.outgoing.function, ahead.rod, continuous)
+    own, rest = _solved(balanced, other.outgoing)
     if own.a == 0:
-        continuous = continuous.substituted(other.outgoing.function, other.rod, balanced)
-    return [(ahead.outgoing, Operator(Integer(0), Integer(1)), continuous), (other.outgoing, own, balanced)]
+        continuous = continuous.substituted(other.outgoing.function, other.rod, rest)
+    return [(ahead.outgoing, Operator(Integer(0), Integer(1)), continuous), (other.outgoing, own, rest)]
 
 
 def _family_equations(family: Family) -> list[DelayEquation]:
@@ -134,7 +145,10 @@ def _without_echoes(equations: list[DelayEquation]) -> list[DelayEquation]:
 
 
 @cache
-def delay_equations(system: System) -> tuple[DelayEquation, ...]:
-    """The delay equations of a system for symbolic m: one for every wave function of every kind of rod."""
-    equations = [e for family in system.families(COUNT, SYMBOLS) for e in _family_equations(family)]
+def delay_equations(system: System, parameters: Parameters = SYMBOLS) -> tuple[DelayEquation, ...]:
+    """The delay equations of a system for symbolic m: one for every wave function of every kind of rod.
+
+    `parameters` may say that some are equal: they give an expression for every symbolic index.
+    """
+    equations = [e for family in system.families(COUNT, parameters) for e in _family_equations(family)]
     return tuple(_without_echoes(equations))

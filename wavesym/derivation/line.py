@@ -55,7 +55,7 @@ class Line:
 
     def scaled(self, factor: Expr | int) -> Line:
         """Every term times a factor."""
-        return Line(
+        return Line() + Line(  # a sum leaves out what is 0
             {wave: Operator(expand(factor * a), expand(factor * b)) for wave, (a, b) in self.waves.items()},
             {source: expand(factor * value) for source, value in self.loads.items()},
         )

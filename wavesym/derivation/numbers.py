@@ -1,13 +1,18 @@
-"""The exact number that a derived expression stands for, once i, m and the parameters are known."""
+"""The exact number that a derived expression stands for, once i, m and the parameters are known, and the way back."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import prod
+from typing import TYPE_CHECKING
 
-from flint import fmpq
-from sympy import Add, Expr, Indexed, Mul, Pow, Rational, Symbol
+from flint import fmpq, fmpq_mpoly
+from sympy import Add, Expr, Indexed, IndexedBase, Integer, Mul, Pow, Rational, Symbol
 
 from wavesym.mechanics.node import Parameters
+
+if TYPE_CHECKING:
+    from wavesym.coefficients.ratio import Ratio
 
 _FIELDS = {"kappa": "kappa", "J": "inertia", "v": "velocity"}
 
@@ -33,3 +38,30 @@ def number(expression: Expr, places: Mapping[str, int], parameters: Parameters |
         case Pow(base=base, exp=exponent) if exponent.is_Integer:
             return number(base, places, parameters) ** int(exponent)
     raise TypeError(f"no exact number: {expression}")
+
+
+def symbol(name: str) -> Indexed:
+    """kappa[3] for kappa_3."""
+    base, _, index = name.rpartition("_")
+    return IndexedBase(base)[int(index)]
+
+
+def expression(value: Ratio | fmpq | int) -> Expr:
+    """An exact number or rational function as an expression, kappa[3] for its symbol kappa_3."""
+    if isinstance(value, (int, fmpq)):
+        return _rational(fmpq(value))
+    letters = [symbol(name) for name in value.ring.names]
+    below = [_polynomial(value.ring.forms[form], letters) ** power for form, power in sorted(value.denominator.items())]
+    return _polynomial(value.numerator, letters) / prod(below, start=Integer(1))
+
+
+def _polynomial(polynomial: fmpq_mpoly, letters: list[Expr]) -> Expr:
+    terms = (
+        _rational(value) * prod((s ** int(e) for s, e in zip(letters, powers, strict=True)), start=Integer(1))
+        for powers, value in polynomial.to_dict().items()
+    )
+    return sum(terms, Integer(0))
+
+
+def _rational(value: fmpq) -> Rational:
+    return Rational(int(value.p), int(value.q))

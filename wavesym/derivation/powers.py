@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sympy import Abs, Expr, Integer, Rational, Symbol, binomial, floor
+from sympy import Abs, Expr, IndexedBase, Integer, Rational, Symbol, binomial
 
-from wavesym.derivation.delay import COUNT, INDEX
+from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.line import exact
 
 INTERVAL = Symbol("n", integer=True, positive=True)
@@ -24,6 +24,7 @@ IMAGE = Symbol("j", integer=True)
 
 _m, _i, _n, _l, _s, _K, _y, _j = COUNT, INDEX, INTERVAL, BODY, SOURCE, HIGHEST, NODE, IMAGE
 _HALF = Rational(1, 2)
+_GAMMA, _KAPPA = IndexedBase("gamma")[BODY], SYMBOLS.kappa
 
 
 @dataclass(frozen=True)
@@ -46,16 +47,16 @@ class PowerRow:
 
 @dataclass(frozen=True)
 class PowerFamily:
-    """The powers beside the rate of body l = first, first + step, ... last; or of all of these, where they are one.
+    """The powers beside the `rate` of body l = first, first + step, ... last; or of all of these, where they are one.
 
-    `period` is what a further visit takes from the budget; `offset` the number of the body at x = 0. A pattern says
-    which parameters are equal; without one they may all differ. `smallest` is the least m that it is about. Where every
+    `of` says it in words. `period` is what a further visit takes from the budget; `offset` the number of the body at
+    x = 0. `merged` families are those of equal bodies. `smallest` is the least m that it is about. Where every
     step is a visit, the coefficient of T**(K + 1), K the highest power, counts walks of K steps to y (by reflection, a
     sum over images): `leading`, over all whole j, of `walks`; a binomial with a half in it is 0.
     """
 
-    pattern: str
-    rate: str
+    of: str
+    rate: Expr
     first: Expr
     last: Expr
     step: int
@@ -67,11 +68,24 @@ class PowerFamily:
     walks: str = ""
     leading: Expr | None = None
 
-    def power(self, row: PowerRow) -> Expr:
-        """The highest power; negative where there is none."""
-        # a sum of ways there and back is even, so that half of it is whole
-        whole = self.period in (1, 2)
-        return row.budget / self.period if whole else floor(row.budget / self.period)
+
+def plain(family: PowerFamily, row: PowerRow) -> Expr:
+    """The budget without absolute values that the places of i and l decide."""
+    budget = row.budget.subs(BODY, family.first) if family.first == family.last else row.budget
+    before, after = (Symbol(name, integer=True, nonnegative=True) for name in "ab")
+    known: list[dict[Symbol, Expr]] = [{COUNT: family.smallest + before}]
+    for symbol, place in ((INDEX, row), (BODY, family)):
+        at = place.first + place.step * before
+        known.append({symbol: at, COUNT: exact(at + place.step * after - place.last + COUNT)})
+
+    def decided(inside: Expr) -> Expr:
+        for places in known:
+            sign = exact(inside.xreplace(places))
+            if not sign.free_symbols - {before, after} and (sign.is_nonnegative or sign.is_nonpositive):
+                return inside if sign.is_nonnegative else -inside
+        return Abs(inside)
+
+    return exact(budget.replace(Abs, decided))
 
 
 def _row(function: str, rod: Expr | int, node: Expr | int, budget: Expr, since: Expr, *places: Expr | int) -> PowerRow:
@@ -82,15 +96,15 @@ def _row(function: str, rod: Expr | int, node: Expr | int, budget: Expr, since: 
 def _ways(*rows: tuple[str, Expr | int, Expr, Expr, tuple[Expr | int, ...]], source: Expr) -> tuple[PowerRow, ...]:
     """Rows from the time t at which a function leaves node y, both in the numbering of bodies."""
     return tuple(
-        _row(function, rod, y, t - Abs(source - _l) - Abs(_l - y), t - Abs(source - y), *places)
+        _row(function, rod, y, t - Abs(source - _l) - Abs(_l - y), t - (Abs(source - y) if source else y), *places)
         for function, rod, t, y, places in rows
     )
 
 
 # moment M_s and body l in the paper's numbers, 1 ... m + 1: f_i leaves disc i at tau = z, g_i disc i + 1 at z - 1
 _DRIVE = PowerFamily(
-    "",
-    "gamma_l of disc l, for moment M_s",
+    "disc $l$, for the moment on disc $s$",
+    _GAMMA,
     Integer(1),
     exact(_m + 1),
     1,
@@ -107,8 +121,8 @@ _DRIVE = PowerFamily(
 
 # the source is the base; floors in the paper's numbers 1 ... m
 _BUILDING = PowerFamily(
-    "",
-    "gamma_l of floor l (2 kappa_l; the roof's is kappa_m)",
+    "floor $l$, or the roof $l = m$",
+    _GAMMA,
     Integer(1),
     _m,
     1,
@@ -125,8 +139,8 @@ _BUILDING = PowerFamily(
 
 # every step of a wave between equal floors is a visit
 _EQUAL_FLOORS = PowerFamily(
-    "kappa_1 = ... = kappa_(m-1), m >= 3",
-    "2 kappa_1 of all floors but the roof",
+    "equal floors, all but the roof",
+    2 * _KAPPA[1],
     Integer(1),
     exact(_m - 1),
     1,
@@ -140,8 +154,8 @@ _EQUAL_FLOORS = PowerFamily(
         _row("g", _i, _i, 2 * _n + _i - 5, 2 * _n - 4, 1, _m - 1, 1),
         _row("g", _m, _m, 2 * _n + _m - 6, 2 * _n - 4),
     ),
-    "walks of K steps from floor 1 to floor y within 1, ..., m-1; y is where the wave was last sent by one of these: "
-    "i-1 for f_i, i for g_i, 1 for f_1, m-1 for g_m",
+    "walks of $K$ steps from floor 1 to floor $y$ within $1, ..., m-1$; $y$ is $i-1$ for $f_i$, $i$ for $g_i$, but "
+    "1 for $f_1$ and $m-1$ for $g_m$",
     binomial(_K, (_K + _y - 1) * _HALF + _j * _m) - binomial(_K, (_K + _y + 1) * _HALF + _j * _m),
 )
 
@@ -160,17 +174,17 @@ _LAST_SENT: tuple[tuple[str, Expr | int, Expr, Expr, bool, tuple[Expr | int, ...
 )
 
 
-def _collision(rate: str, first: Expr | int, last: Expr, period: int, smallest: int) -> PowerFamily:
+def _collision(of: str, first: Expr | int, last: Expr, period: int, smallest: int) -> PowerFamily:
     rows = tuple(
         _row(function, rod, y, t - 1 - Abs(_l - y), t - 1 + 2 * contact, *places)
         for function, rod, t, y, contact, places in _LAST_SENT
     )
-    return PowerFamily("", rate, exact(first), exact(last), 2, False, period, 0, smallest, rows)
+    return PowerFamily(of, _GAMMA, exact(first), exact(last), 2, False, period, 0, smallest, rows)
 
 
 _EQUAL_BODIES = PowerFamily(
-    "equal bodies, m >= 6",
-    "2 kappa_1 of all bodies",
+    "equal bodies",
+    2 * _KAPPA[1],
     Integer(1),
     exact(_m - 1),
     2,
@@ -182,8 +196,8 @@ _EQUAL_BODIES = PowerFamily(
         _row(function, rod, y, t - 1, t - 1 + 2 * contact, *places)
         for function, rod, t, y, contact, places in _LAST_SENT
     ),
-    "for the contact at x = s, walks of K steps from body to body that end at x = y, from s+1 less those from s-1; at "
-    "a free end a wave comes back to the same body, one step later",
+    "walks of $K$ steps from body to body that end at the body $x = y$ that last sent the wave, for the contact at "
+    "$x = s$ those from $s+1$ less those from $s-1$; at a free end the next body is the same again",
     sum(
         sign * binomial(_K, (_K + (_y + shift) * _HALF) * _HALF + _j * _m * _HALF)
         for sign, shift in ((1, -_s - 1), (1, _s + 1), (-1, 1 - _s), (-1, _s - 1))
@@ -192,9 +206,9 @@ _EQUAL_BODIES = PowerFamily(
 
 POWERS: dict[str, tuple[PowerFamily, ...]] = {
     "collision": (
-        _collision("2 kappa_1 of the first body, l = 1", 1, Integer(1), 2, 4),
-        _collision("2 kappa_(m-1) of the last body, l = m - 1", _m - 1, _m - 1, 2, 4),
-        _collision("2 kappa_l of an inner body, l = 3, 5, ..., m - 3", 3, exact(_m - 3), 4, 6),
+        _collision("the first body, $l = 1$", 1, Integer(1), 2, 4),
+        _collision("the last body, $l = m - 1$", _m - 1, _m - 1, 2, 4),
+        _collision("an inner body $l$", 3, exact(_m - 3), 4, 6),
         _EQUAL_BODIES,
     ),
     "drive": (_DRIVE,),

@@ -13,7 +13,7 @@ from math import gcd
 from flint import fmpq
 from sympy import Expr, Symbol, exp
 
-from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equations
+from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation, delay_equations
 from wavesym.derivation.line import Operator
 from wavesym.derivation.numbers import number
 from wavesym.derivation.rule import Linear, LoadTerm, Rule, Term, Weights
@@ -108,16 +108,17 @@ class Recurrence:
 
 
 @cache
-def recurrence(system: System) -> Recurrence:
-    """The recurrence of a system, for symbolic m."""
-    equations = delay_equations(system)
+def recurrence(system: System, parameters: Parameters = SYMBOLS) -> Recurrence:
+    """The recurrence of a system, for symbolic m and `parameters` as in `delay_equations`."""
+    equations = delay_equations(system, parameters)
     lags = [wave.lag for e in equations for wave in e.right.waves]
     lags += [source.lag for e in equations for source in e.right.loads]
     interval = reduce(gcd, map(int, lags))
-    return Recurrence(tuple(_law(e, interval) for e in equations), interval)
+    return Recurrence(tuple(coefficient_law(e, interval) for e in equations), interval)
 
 
-def _law(e: DelayEquation, interval: int) -> CoefficientLaw:
+def coefficient_law(e: DelayEquation, interval: int) -> CoefficientLaw:
+    """The recurrence that a delay equation is, all of whose lags are whole intervals."""
     return CoefficientLaw(
         e.function,
         e.rod,

@@ -1,176 +1,286 @@
-"""A derivation as people read it: boundary conditions, delay equations, coefficient recurrences of a system."""
+"""A derivation as people read it: from the equations of motion of a system to its coefficients, family by family."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from typing import TYPE_CHECKING
 
-from sympy import Expr, Integer, Rational
+from sympy import Expr, Indexed, IndexedBase
 
-from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation, delay_equations
-from wavesym.derivation.line import Source, exact
+from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, delay_equations
+from wavesym.derivation.dimensions import LENGTH, SPEED, Dimensions, dimensions
+from wavesym.derivation.families import integral, own_rate, placed
+from wavesym.derivation.line import exact
 from wavesym.derivation.notation import Text
-from wavesym.derivation.recurrence import RATE, CoefficientLaw, SymbolicWeights, recurrence
+from wavesym.derivation.own import Meaning, meanings, merged, own_laws
+from wavesym.derivation.patterns import Pattern, pattern_laws, patterns, rates
+from wavesym.derivation.powers import POWERS, PowerFamily
+from wavesym.derivation.recurrence import CoefficientLaw, recurrence
+from wavesym.derivation.rods import rod_kinds
+from wavesym.derivation.writer import Place, Writer
 from wavesym.errors import WavesymError
 from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.mechanics.collision import COLLISION
 from wavesym.mechanics.drive import DRIVE
 from wavesym.mechanics.node import Node, System
 
-LARGEST_WRITTEN_OUT = 100
-SYSTEMS = {"collision": (COLLISION,), "drive": (DRIVE,), "building": (BUILDING_FORCE, BUILDING_GROUND)}
+if TYPE_CHECKING:
+    from wavesym.coefficients.symbolic import SymbolicChain
 
-Place = Callable[[Expr | int], Expr]
+LARGEST_WRITTEN_OUT = 100
+MOST_FAMILIES = 6  # beyond that the law at one rate g is easier to read than a line for each
+SYSTEMS = {"collision": (COLLISION,), "drive": (DRIVE,), "building": (BUILDING_FORCE, BUILDING_GROUND)}
 
 
 @dataclass(frozen=True)
 class Entry:
-    """What is said of one kind of node or function: which, and its formulas."""
+    """What is said of one kind of node, rod or function: which, and its formulas."""
 
     of: str
     formulas: tuple[str, ...]
 
 
 @dataclass(frozen=True)
+class Families:
+    """The laws at each rate, for one pattern of equal parameters: which are equal, and the different rates.
+
+    `symbols` says what symbols stand for, where they are those of a scene.
+    """
+
+    name: str
+    size: str
+    symbols: tuple[str, ...]
+    given: tuple[str, ...]
+    rates: tuple[str, ...]
+    laws: tuple[Entry, ...]
+
+
+@dataclass(frozen=True)
+class Powers:
+    """The highest powers K beside the rate of a family of bodies; what their leading coefficients count, if that."""
+
+    of: str
+    size: str
+    rate: str
+    rows: tuple[Entry, ...]
+    walks: str
+    leading: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Statement:
-    """A system's derivation in one notation; interval n of every function starts at z = `start`."""
+    """A system's derivation in one notation; interval n of every function starts at z = `start`.
+
+    `quantities` are those of section 2, `rods` has (4.2) with Table 1, `nodes` the conditions with (4.2) put in.
+    """
 
     name: str
     size: str
     start: str
+    legend: tuple[Entry, ...]
+    note: str
+    quantities: tuple[str, ...]
     conditions: tuple[Entry, ...]
+    rods: tuple[Entry, ...]
+    nodes: tuple[Entry, ...]
     equations: tuple[Entry, ...]
     recurrences: tuple[Entry, ...]
+    displacements: tuple[Entry, ...]
+    families: tuple[Families, ...]
+    powers: tuple[Powers, ...]
 
 
-def statements(name: str, m: int | None, notation: Text) -> tuple[Statement, ...]:
-    """The derivation of "collision", "drive" or "building" (both bases), for symbolic m or written out for one m.
-
-    WavesymError for an m that the system does not have, or that is too large to read.
-    """
+def systems(name: str, m: int | None) -> tuple[System, ...]:
+    """ "collision", "drive" or "building" (both bases). WavesymError for an m that these do not have or none reads."""
     for system in SYSTEMS[name]:
         if m is not None and m not in range(system.smallest, LARGEST_WRITTEN_OUT + 1, system.step):
             even = "even, " if system.step == 2 else ""
             raise WavesymError(f"--m: {m} given, {even}{system.smallest} ... {LARGEST_WRITTEN_OUT} expected")
-    return tuple(_Writer(notation, m).statement(system) for system in SYSTEMS[name])
+    return SYSTEMS[name]
 
 
-class _Writer:
-    """Writes a system's equations in a notation, for symbolic m or for one."""
+def statements(name: str, m: int | None, notation: Text) -> tuple[Statement, ...]:
+    """The derivation of a system (see `systems`), for symbolic m or written out for one m. WavesymError."""
+    author = _Author(notation, m)
+    return tuple(author.statement(system, author.patterns(system)) for system in systems(name, m))
+
+
+def scene_statement(name: str, symbols: SymbolicChain, notation: Text) -> Statement:
+    """The derivation of a scene's system for symbolic m, and the families of the scene's own m and pattern.
+
+    WavesymError where the scene has too many rods to read.
+    """
+    m = symbols.chain.m
+    if m > LARGEST_WRITTEN_OUT:
+        raise WavesymError(f"system.m: {m} given, at most {LARGEST_WRITTEN_OUT} expected where all is written out")
+    author = _Author(notation, None)
+    return author.statement(symbols.chain.system, [author.scene(name, symbols)])
+
+
+class _Author:
+    """Puts a statement together, for symbolic m or for one."""
 
     def __init__(self, notation: Text, m: int | None) -> None:
         self.n = notation
         self.m = m
+        self.w = Writer(notation, m)
 
-    def statement(self, system: System) -> Statement:
+    def statement(self, system: System, families: Iterable[Families]) -> Statement:
         laws = recurrence(system)
+        units = dimensions(system)
         return Statement(
-            system.name,
-            f"m = {self.m}" if self.m is not None else self.n.at_least(system.smallest),
-            "(n - 1)" if laws.interval == 1 else f"{laws.interval} (n - 1)",
-            tuple(self._conditions(system)),
-            tuple(self._equations(system)),
-            tuple(self._laws(laws.laws)),
+            name=system.name,
+            size=self._size(system),
+            start="(n - 1)" if laws.interval == 1 else f"{laws.interval} (n - 1)",
+            legend=tuple(Entry(self.n.word(words), (self.n.expression(letter),)) for letter, words in units.legend),
+            note=self.n.word(units.note),
+            quantities=tuple(self._quantities(units)),
+            conditions=tuple(self._nodes(system, self.w.condition)),
+            rods=tuple(self._rods(system)),
+            nodes=tuple(self._nodes(system, self.w.at_node)),
+            equations=tuple(self._equations(system)),
+            recurrences=tuple(self._laws(laws.laws)),
+            displacements=tuple(self._displacements()),
+            families=tuple(families),
+            powers=tuple(self._powers(system)),
         )
 
-    def _conditions(self, system: System) -> Iterator[Entry]:
+    def _size(self, of: System | PowerFamily) -> str:
+        return f"m = {self.m}" if self.m is not None else self.n.at_least(of.smallest)
+
+    def _powers(self, system: System) -> Iterator[Powers]:
+        for family in POWERS[system.name]:
+            if self.m is not None and self.m < family.smallest:
+                continue
+            rows = (
+                Entry(
+                    f"{self.n.indexed(row.function, at(row.rod))}{self.w.range(row.first, row.last, row.step)}",
+                    (self.w.power(family, row, at),),
+                )
+                for row in family.rows
+                for at in self.w.places(row.first, row.last, row.step)
+            )
+            yield Powers(
+                of=self.n.word(family.of),
+                size=self._size(family),
+                rate=self.n.expression(family.rate),
+                rows=tuple(rows),
+                walks=self.n.word(family.walks),
+                leading=(self.n.expression(family.leading),) if family.leading else (),
+            )
+
+    def _quantities(self, units: Dimensions) -> Iterator[str]:
+        u, a, b = (IndexedBase(name)[INDEX] for name in (units.displacement, "A", "B"))
+        pairs = [
+            (IndexedBase("U")[INDEX], u),
+            (SPEED**2, units.speed_squared),
+            (a, units.stiffness),
+            (b, units.inertia),
+            *([units.load] if units.load else []),
+            (SYMBOLS.kappa[INDEX], a * LENGTH / (SPEED**2 * b)),
+            (SYMBOLS.kappa[INDEX], units.kappa),
+        ]
+        for left, right in pairs:
+            yield f"{self.n.expression(left)} = {self.n.expression(right)}"
+
+    def _nodes(self, system: System, write: Callable[[Node, Expr, Place], Iterator[str]]) -> Iterator[Entry]:
         for family in system.families(COUNT, SYMBOLS):
             alone = exact(family.first - family.last) == 0
             x = exact(family.first) if alone else INDEX
-            where = self._range(family.first, family.last, family.step)
-            for at in self._places(family.first, family.last, family.step):
-                yield Entry(f"x = {self.n.expression(at(x))}{where}", tuple(self._condition(family.at(x), x, at)))
+            where = self.w.range(family.first, family.last, family.step)
+            for at in self.w.places(family.first, family.last, family.step):
+                yield Entry(f"x = {self.n.expression(at(x))}{where}", tuple(write(family.at(x), x, at)))
+
+    def _rods(self, system: System) -> Iterator[Entry]:
+        for kind in rod_kinds(system):
+            where = self.w.range(kind.first, kind.last, kind.step)
+            for at in self.w.places(kind.first, kind.last, kind.step):
+                yield Entry(f"{self.n.expression(at(kind.number))}{where}", tuple(self.w.rod(kind, at)))
 
     def _equations(self, system: System) -> Iterator[Entry]:
         for equation in delay_equations(system):
-            where = self._range(equation.first, equation.last, equation.step)
-            for at in self._places(equation.first, equation.last, equation.step):
-                yield Entry(where, (self._equation(equation, at),))
+            where = self.w.range(equation.first, equation.last, equation.step)
+            for at in self.w.places(equation.first, equation.last, equation.step):
+                yield Entry(where, (self.w.equation(equation, at),))
 
     def _laws(self, laws: Iterable[CoefficientLaw]) -> Iterator[Entry]:
         for law in laws:
-            where = self._range(law.first, law.last, law.step)
-            for at in self._places(law.first, law.last, law.step):
-                yield Entry(f"{self.n.indexed(law.function, at(law.rod))}{where}", tuple(self._law(law, at)))
+            where = self.w.range(law.first, law.last, law.step)
+            for at in self.w.places(law.first, law.last, law.step):
+                yield Entry(f"{self.n.indexed(law.function, at(law.rod))}{where}", tuple(self.w.law(law, at)))
 
-    def _places(self, first: Expr | int, last: Expr | int, step: int) -> Iterable[Place]:
-        """How i and m are to be written: as they are, or every i of the range for a given m."""
-        if self.m is None:
-            return [exact]
-        low, high = (int(exact(bound).subs(COUNT, self.m)) for bound in (first, last))
-        return [partial(self._at, i) for i in range(low, high + 1, step)]
+    def _displacements(self) -> Iterator[Entry]:
+        for function in ("f", "g"):
+            yield self._family(integral(function, function.upper()), None, {})
 
-    def _at(self, i: int, expression: Expr | int) -> Expr:
-        return exact(expression).subs({INDEX: i, COUNT: self.m})
+    def _family(self, law: CoefficientLaw, found: tuple[Expr, ...] | None, names: Mapping[Expr, Expr]) -> Entry:
+        where = self.w.range(law.first, law.last, law.step)
+        return Entry(f"{self.n.indexed(law.function, law.rod)}{where}", tuple(self.w.families(law, found, names)))
 
-    def _range(self, first: Expr | int, last: Expr | int, step: int) -> str:
-        if self.m is not None or exact(first - last) == 0:
-            return ""
-        return self.n.place(first, first + step if step > 1 else None, last)
-
-    def _balanced(self, left: Iterable[tuple[Expr, str]], right: Iterable[tuple[Expr, str]]) -> str:
-        sides = (self.n.joined(term for term in side if term[0] != 0) for side in (left, right))
-        return " = ".join(sides)
-
-    def _condition(self, node: Node, x: Expr, at: Place) -> Iterator[str]:
-        before, after = at(x), at(x + 1)
-        own = after if node.right else before
-        if node.left and node.right:
-            yield f"{self.n.motion(before, 'tau')} = {self.n.motion(after, 'tau')}"
-        left = [
-            (Integer(node.inertia), self.n.motion(own, "tau2")),
-            (exact(node.damping), self.n.motion(own, "tau")),
-        ]
-        right = []
-        if node.right:
-            right.append((at(Rational(1, 2) * node.beta), self.n.motion(after, "x")))
-        if node.left:
-            right.append((at(-Rational(1, 2) * node.alpha), self.n.motion(before, "x")))
-        for load in node.loads:
-            symbol = self._source(load.kind, load.number, at)
-            right += [(at(c), symbol + self.n.power("tau", k)) for k, c in enumerate(load.coefficients)]
-        yield self._balanced(left, right)
-
-    def _source(self, kind: str, number: Expr | int | None, at: Place) -> str:
-        return kind if number is None else self.n.indexed(kind, at(number))
-
-    def _load(self, source: Source, at: Place) -> str:
-        """H(z), or what of it a load is; the velocities of an impact stand for themselves."""
-        clock = self.n.clock(source.lag)
-        if source.kind == "impact":
-            return f"H{clock}"
-        since = "z" if source.lag == 0 else clock
-        return f"{self._source(source.kind, source.number, at)} H{clock}" + self.n.power(since, source.power)
-
-    def _equation(self, e: DelayEquation, at: Place) -> str:
-        name = self.n.indexed(e.function, at(e.rod))
-        left = [(at(e.own.a), f"{name}''(z)"), (at(e.own.b), f"{name}'(z)")]
-        right = []
-        for wave, operator in e.right.waves.items():
-            term, clock = self.n.indexed(wave.function, at(wave.rod)), self.n.clock(wave.lag)
-            right += [(at(operator.a), f"{term}''{clock}"), (at(operator.b), f"{term}'{clock}")]
-        right += [(at(value), self._load(source, at)) for source, value in e.right.loads.items()]
-        return self._balanced(left, right)
-
-    def _weighted(self, w: SymbolicWeights, function: str, rod: Expr, back: int, at: Place) -> list[tuple[Expr, str]]:
-        return [
-            (at(w.same), self.n.coefficient(function, rod, back, "g", "k")),
-            (at(w.raised), self.n.coefficient(function, rod, back, "g", "k+1")),
-        ]
-
-    def _law(self, law: CoefficientLaw, at: Place) -> Iterator[str]:
-        own = self._weighted(law.own, law.function, at(law.rod), 0, at)
-        right = [part for t in law.terms for part in self._weighted(t.weights, t.function, at(t.rod), t.back, at)]
-        yield self._balanced(own, right)
-        for load in law.loads:
-            source = "" if load.kind == "impact" else self._source(load.kind, load.number, at)
-            yield self.n.gain(load.back + 1, load.power, self.n.joined([(at(load.value), source)]))
-        if law.own.jump != 0:
-            start = self.n.total(self.n.coefficient(law.function, at(law.rod), 0, "g", "0"))
-            jumps = (
-                (at(t.weights.jump), self.n.total(self.n.coefficient(t.function, at(t.rod), t.back, "g", "0")))
-                for t in law.terms
+    def patterns(self, system: System) -> Iterator[Families]:
+        """The families for every pattern; of patterns that are one for this m, the last."""
+        different: dict[tuple[CoefficientLaw, ...], Pattern] = {}
+        for pattern in patterns(system):
+            laws = pattern_laws(system, pattern)
+            here = (placed(law, at) for law in laws for at in self.w.places(law.first, law.last, law.step))
+            different[tuple(here)] = pattern
+        for laws, pattern in different.items():
+            yield self._families(
+                pattern.name,
+                self._size(system),
+                laws,
+                given=tuple(line for equal in pattern.given for line in self.w.equal(equal)),
             )
-            yield f"q = {self.n.expression(at(law.own.same.subs(RATE, 0)))}"
-            yield self._balanced([(Integer(1), start)], jumps)
+
+    def scene(self, name: str, symbols: SymbolicChain) -> Families:
+        """The families of a chain of symbols."""
+        return self._families(
+            name,
+            f"m = {symbols.chain.m}",
+            own_laws(symbols.chain),
+            symbols=tuple(map(self._meaning, meanings(symbols))),
+            given=tuple(map(self._meaning, merged(symbols))),
+        )
+
+    def _meaning(self, meaning: Meaning) -> str:
+        parts = (self.n.expression(part) for part in (meaning.symbol, meaning.stands_for, meaning.value))
+        return " = ".join(dict.fromkeys(parts))
+
+    def _families(
+        self,
+        name: str,
+        size: str,
+        laws: Sequence[CoefficientLaw],
+        symbols: tuple[str, ...] = (),
+        given: tuple[str, ...] = (),
+    ) -> Families:
+        """A line for each rate where they are few, and none stands for several."""
+        found = rates(laws)
+        few = found if len(found) <= MOST_FAMILIES and not any(rate.has(INDEX) for rate in found) else None
+        names = _names(few) if few else {}
+        return Families(
+            name=self.n.word(name),
+            size=size,
+            symbols=symbols,
+            given=given,
+            rates=tuple(self._rates(laws, found, names)),
+            laws=tuple(self._family(law, few, names) for law in laws),
+        )
+
+    def _rates(
+        self, laws: Sequence[CoefficientLaw], found: Iterable[Expr], names: Mapping[Expr, Expr]
+    ) -> Iterator[str]:
+        for rate in found:
+            of = next((law for law in laws if rate.has(INDEX) and own_rate(law) == rate), None)
+            where = self.w.range(of.first, of.last, of.step) if of else ""
+            name = f"{self.n.expression(names[rate])} = " if rate in names else ""
+            yield f"{name}{self.n.expression(rate)}{where}"
+
+
+def _names(found: Iterable[Expr]) -> dict[Expr, Expr]:
+    """gamma_1, gamma_2, ..., as in (4.11), for rates of which one is more than a multiple of a parameter."""
+    own = [rate for rate in found if rate != 0]
+    if all(len(rate.atoms(Indexed)) == 1 for rate in own):
+        return {}
+    return {rate: IndexedBase("gamma")[j] for j, rate in enumerate(own, 1)}

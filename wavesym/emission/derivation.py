@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
 from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
 
 from wavesym.derivation.notation import Latex, Text
-from wavesym.derivation.statement import Statement, statements
+from wavesym.derivation.statement import Statement, scene_statement, statements
 from wavesym.emission.rendering import render
+
+if TYPE_CHECKING:
+    from wavesym.coefficients.symbolic import SymbolicChain
 
 
 @dataclass(frozen=True)
@@ -20,13 +23,19 @@ class Document:
 
 def derivation(name: str, m: int | None, format: str) -> str:
     """The derivation of a system as "text", "latex" or "json"."""
-    if format == "latex":
-        return render("latex/derivation.tex.j2", Document(statements(name, m, Latex())))
-    made = statements(name, m, Text())
+    return _written(statements(name, m, _notation(format)), format)
+
+
+def scene_derivation(name: str, symbols: SymbolicChain, format: str) -> str:
+    """The derivation of the system of a scene, with the families of its own parameters."""
+    return _written((scene_statement(name, symbols, _notation(format)),), format)
+
+
+def _notation(format: str) -> Text:
+    return Latex() if format == "latex" else Text()
+
+
+def _written(made: tuple[Statement, ...], format: str) -> str:
     if format == "json":
-        return json.dumps(_plain(made), indent=2) + "\n"
-    return render("text/derivation.txt.j2", Document(made))
-
-
-def _plain(made: Iterable[Statement]) -> list[dict[str, object]]:
-    return [asdict(statement) for statement in made]
+        return json.dumps([asdict(statement) for statement in made], indent=2) + "\n"
+    return render({"latex": "latex/derivation.tex.j2", "text": "text/derivation.txt.j2"}[format], Document(made))

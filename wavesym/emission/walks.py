@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 
 from flint import fmpq
@@ -41,7 +41,7 @@ class Response:
 
 @dataclass(frozen=True)
 class Walks:
-    """templates/text/walks.txt.j2 and templates/latex/walks.tex.j2."""
+    """The walk polynomials of a chain in its `letters`."""
 
     name: str
     m: int
@@ -50,23 +50,34 @@ class Walks:
     responses: tuple[Response, ...]
 
 
-def walk_polynomials(symbols: SymbolicChain, intervals: int, format: str) -> str:
+@dataclass(frozen=True)
+class Document:
+    """templates/text/walks.txt.j2 and templates/latex/walks.tex.j2."""
+
+    systems: tuple[Walks, ...]
+
+
+def walk_polynomials(chains: Iterable[SymbolicChain], intervals: int, format: str) -> str:
     """The walk polynomials of every function for every source, `intervals` of each, as "text", "latex" or "json".
 
     CostError where they would have more than MOST_TERMS terms.
     """
     write = _latex if format == "latex" else str
+    made = tuple(_walks(symbols, intervals, write) for symbols in chains)
+    if format == "json":
+        return json.dumps([asdict(walks) for walks in made], indent=2) + "\n"
+    return render("latex/walks.tex.j2" if format == "latex" else "text/walks.txt.j2", Document(made))
+
+
+def _walks(symbols: SymbolicChain, intervals: int, write: Callable[[str], str]) -> Walks:
     names = letters(symbols.chain)
-    made = Walks(
+    return Walks(
         symbols.chain.system.name,
         symbols.chain.m,
         intervals,
         tuple(_meanings(names, write)),
         tuple(_response(symbols, unit, names, intervals, write) for unit in units(symbols.chain)),
     )
-    if format == "json":
-        return json.dumps(asdict(made), indent=2) + "\n"
-    return render("latex/walks.tex.j2" if format == "latex" else "text/walks.txt.j2", made)
 
 
 def _meanings(names: Letters, write: Callable[[str], str]) -> Iterator[tuple[str, str]]:
