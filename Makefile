@@ -26,6 +26,8 @@ demo: install
 		echo "$(BIN)/wavesym generate $$scene -o build/demo/$$scene --language all"; \
 		$(BIN)/wavesym generate $$scene -o build/demo/$$scene --language all; \
 	done
+	@echo '== Figs. 6, 7 and 8 of the paper, with what it says of them marked and judged'
+	$(BIN)/wavesym plot --published -o build/demo
 
 test: install
 	$(BIN)/python -m pytest

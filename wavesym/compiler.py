@@ -9,22 +9,24 @@
     merge        Table, outputs       Signals, then an evaluator   evaluators/
     emit         evaluator            C, NumPy, manifest           emission/
     verify       all of these         a verdict                    verification/
+    plot         Scene                a picture                    report/
 
 What follows is one short function for each way through. The heavy libraries load when a way needs them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from difflib import unified_diff
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wavesym.coefficients.symbolic import symbolic
+from wavesym.coefficients.cost import refuse_costly
+from wavesym.coefficients.letters import in_rates
+from wavesym.coefficients.symbolic import generic, symbolic
 from wavesym.coefficients.table import Row, Table, full_table
 from wavesym.emission.files import files
 from wavesym.emission.tables import symbolic_lines, table_lines
@@ -34,13 +36,15 @@ from wavesym.evaluators.reference import Reference
 from wavesym.evaluators.signal import horizon
 from wavesym.mechanics.chain import chain
 from wavesym.scene import Scene
-from wavesym.writing import write_whole
+from wavesym.writing import Difference, write_whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from wavesym.verification.published.record import Claim
 
-LARGEST_SYMBOLIC = 100_000  # coefficients; they may be rational functions of a hundred thousand terms each
+
+MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
 
 
 @dataclass(frozen=True)
@@ -104,20 +108,38 @@ def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tu
 
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """
-    symbols = symbolic(chain(scene))
-    made = full_table(symbols.chain, intervals, rational(horizon(scene)), most=LARGEST_SYMBOLIC)
+    symbols = in_rates(symbolic(chain(scene)))
+    until = rational(horizon(scene))
+    refuse_costly(symbols.chain, intervals, until)
+    made = full_table(symbols.chain, intervals, until, most=MOST_FACTORED)
     merged = [f"{name} = {ratio}" for name, ratio in symbols.meaning.items() if str(ratio) != name]
     return merged, symbolic_lines(made, symbols, scene.name, format)
 
 
-def derive(system: str, m: int | None, format: str = "text") -> str:
-    """The derivation of "collision", "drive" or "building" (both bases) as text, latex or json.
+def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
+    """The derivation of "collision", "drive" or "building" (both bases), or of a scene, as text, latex or json.
 
-    With m, every line is written out. WavesymError for an m that the system does not have.
+    With m, every line is written out; a scene has its own. WavesymError for an m that the system does not have.
     """
-    from wavesym.emission.derivation import derivation
+    from wavesym.emission.derivation import derivation, scene_derivation
 
-    return derivation(system, m, format)
+    if isinstance(source, str):
+        return derivation(source, m, format)
+    return scene_derivation(source.name, symbolic(chain(source)), format)
+
+
+def walks(source: str | Scene, m: int | None, intervals: int, format: str = "text") -> str:
+    """The walk polynomials of `derive`'s systems with m elastic elements, or of a scene, as text, latex or json.
+
+    WavesymError for an m that the system does not have; CostError where the polynomials would be absurd.
+    """
+    from wavesym.derivation.statement import systems
+    from wavesym.emission.walks import walk_polynomials
+
+    if isinstance(source, str):
+        assert m is not None  # polynomials are those of one chain
+        return walk_polynomials((generic(system, m) for system in systems(source, m)), intervals, format)
+    return walk_polynomials([symbolic(chain(source))], intervals, format)
 
 
 def generate(
@@ -140,28 +162,18 @@ def check(
     language: str = "c",
     evaluator: str = "auto",
     precision: str = "double",
+    source: str = "SCENE",
 ) -> str:
-    """The difference between what stands in `directory` and what `generate` would write; empty where there is none."""
+    """The difference between what stands in `directory` and what `generate` would write; empty where there is none.
+
+    Each file that is changed, missing or orphaned is named, with a diff; the last line is the command that mends them,
+    with the scene as it is given by `source`.
+    """
     folder = Path(directory or scene.name)
-    made = files(scene, language, evaluator, precision)
-    found = {path.name for path in folder.glob(f"{scene.name}*")} if folder.is_dir() else set()
-    report: list[str] = []
-    for name in sorted(made.keys() | found):
-        if name not in made:
-            report.append(f"orphaned: {folder / name}\n")
-            continue
-        old = (folder / name).read_text(encoding="utf-8") if name in found else ""
-        if name not in found:
-            report.append(f"missing: {folder / name}\n")
-        report += unified_diff(
-            old.splitlines(keepends=True), made[name].splitlines(keepends=True), str(folder / name), "as generated"
-        )
-    if report:
-        report.append(
-            f"to mend: wavesym generate SCENE -o {folder} --language {language} --evaluator {evaluator} "
-            f"--precision {precision}\n"
-        )
-    return "".join(report)
+    made = {folder / name: text for name, text in files(scene, language, evaluator, precision).items()}
+    difference = Difference(made, (path for path in folder.glob(f"{scene.name}*") if path.is_file()))
+    options = ["--language", language, "--evaluator", evaluator, "--precision", precision]
+    return difference.report(["wavesym", "generate", source, "-o", str(folder), *options])
 
 
 def run(scene: Scene, samples: int, at: Sequence[float] | None = None) -> Iterator[str]:
@@ -188,15 +200,33 @@ def contact_warnings(scene: Scene) -> list[str]:
     ]
 
 
-def verify(scenes: Sequence[Scene]) -> tuple[str, bool]:
+def plot(scene: Scene, path: Path) -> list[str]:
+    """Draw the histories of the outputs as .svg, .png or .pdf; what the picture leaves out, line by line.
+
+    SceneError for another suffix, before the work; ToleranceError, CostError where nothing could be generated either.
+    """
+    from wavesym.report.histories import histories
+    from wavesym.report.panels import draw, notes
+    from wavesym.report.saving import picture_format, save
+
+    picture_format(path)
+    made = histories(scene)
+    save(draw(made), path)
+    return notes(made)
+
+
+def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
     """Evaluators against direct integration: a table of errors, and whether all of them are allowed."""
     from wavesym.verification.report import verify as report
 
     return report(scenes)
 
 
-def published(format: str) -> tuple[str, bool]:
-    """A verdict on every formula of the paper, as text, json or markdown, and whether all of them could be tested."""
+def published(format: str, watch: Callable[[list[Claim[Any]]], Iterable[Claim[Any]]] = iter) -> tuple[str, bool]:
+    """A verdict on every formula of the paper, as text, json or markdown, and whether all of them could be tested.
+
+    `watch` goes through the claims as they are judged.
+    """
     from wavesym.verification.published.report import published as report
 
-    return report(format)
+    return report(format, watch)

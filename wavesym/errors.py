@@ -31,6 +31,10 @@ class CostError(WavesymError):
     """What is asked for would cost too much; the message says how much."""
 
 
+class RangeError(WavesymError, OverflowError):
+    """A number would be beyond the largest one of its floating-point format."""
+
+
 class ToleranceError(WavesymError):
     """The scene's tolerance cannot be met."""
 

@@ -1,18 +1,26 @@
-"""Files written whole or not at all."""
+"""Files written whole or not at all, and how those that were written differ from what would be."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+import shlex
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
+from difflib import unified_diff
 from pathlib import Path
 
+Content = str | bytes | Iterable[str]
 
-def write_whole(files: Mapping[Path, str | Iterable[str]]) -> None:
-    """Write every file, or, where one cannot be made, none: first beside their places, then all into place.
 
-    Content is text or chunks of text, written as UTF-8 with "\\n". Folders that are missing are made. What is there
-    and is no regular file (/dev/stdout, a pipe) cannot be replaced and is written to last, as it is.
+def write_whole(files: Mapping[Path, Content]) -> None:
+    """Write every file, or, where one cannot be made, none.
+
+    All of them are written beside their places, to the disk, before the first takes its place; where one cannot, those
+    before it get their old content back (on disks with hard links). A process that is killed in between leaves every file whole, old or new.
+
+    Content is text or chunks of text, written as UTF-8 with "\\n", or bytes. Folders that are missing are made. What is
+    there and is no regular file (/dev/stdout, a pipe) cannot be replaced and is written to last, as it is.
     Raises OSError.
     """
     special = [path for path in files if path.exists() and not path.is_file()]
@@ -27,17 +35,92 @@ def write_whole(files: Mapping[Path, str | Iterable[str]]) -> None:
             place.parent.mkdir(parents=True, exist_ok=True)
             draft = place.with_name(f".{place.name}.{os.getpid()}.part")
             drafts[draft] = place
-            _write(draft, files[path])
-        for draft, place in drafts.items():
-            os.replace(draft, place)
+            _write(draft, files[path], lasting=True)
+        _put(drafts)
     finally:
         for draft in drafts:
             with suppress(OSError):  # in place by now, or never made
                 draft.unlink()
     for path in special:
-        _write(path, files[path])
+        _write(path, files[path], lasting=False)
 
 
-def _write(path: Path, content: str | Iterable[str]) -> None:
-    with path.open("w", encoding="utf-8", newline="\n") as file:
-        file.writelines([content] if isinstance(content, str) else content)
+def _put(drafts: Mapping[Path, Path]) -> None:
+    """Every draft into its place, or none."""
+    kept: dict[Path, Path] = {}
+    new: list[Path] = []
+    try:
+        for draft, place in drafts.items():
+            old, there = draft.with_suffix(".old"), place.exists()
+            with suppress(OSError):  # not all disks have links; without, what is replaced is gone
+                if there:
+                    os.link(place, old)
+                    kept[old] = place
+            os.replace(draft, place)
+            if not there:
+                new.append(place)
+    except BaseException:
+        for old, place in kept.items():
+            os.replace(old, place)
+        for place in new:
+            place.unlink()
+        raise
+    finally:
+        for old in kept:
+            with suppress(OSError):  # back in place
+                old.unlink()
+
+
+def _write(path: Path, content: Content, *, lasting: bool) -> None:
+    with path.open("wb") as file:
+        match content:
+            case bytes():
+                file.write(content)
+            case str():
+                file.write(content.encode())
+            case _:
+                file.writelines(chunk.encode() for chunk in content)
+        if lasting:
+            file.flush()
+            os.fsync(file.fileno())
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Between files as they should be, by path, and those that are `found`."""
+
+    made: Mapping[Path, str]
+    found: Iterable[Path]
+
+    def report(self, command: Sequence[str]) -> str:
+        """What is changed, missing or orphaned, with diffs, and what mends it; empty where there is nothing.
+
+        `command` writes the files anew; orphans must be removed.
+        """
+        found = set(self.found)
+        lines: list[str] = []
+        stale = False
+        for path in sorted(self.made.keys() | found):
+            old = path.read_bytes() if path in found else b""
+            if path not in self.made:
+                lines.append(f"orphaned: {path}\n")
+            elif path not in found or old != self.made[path].encode():
+                stale = True
+                lines.append(f"{'changed' if path in found else 'missing'}: {path}\n")
+                lines += _diff(old.decode("utf-8", "backslashreplace"), self.made[path], str(path))
+        orphans = sorted(str(path) for path in found - self.made.keys())
+        mending = [["rm", "--", *orphans]] * bool(orphans) + [list(command)] * stale
+        if mending:
+            lines.append(f"to mend: {' && '.join(map(shlex.join, mending))}\n")
+        return "".join(lines)
+
+
+def _diff(old: str, new: str, path: str) -> Iterator[str]:
+    for line in unified_diff(_lines(old), _lines(new), path, "as generated"):
+        yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
+
+
+def _lines(text: str) -> list[str]:
+    """Lines with their ends; nothing but "\\n" ends one."""
+    *whole, last = text.split("\n")
+    return [f"{line}\n" for line in whole] + [last] * bool(last)

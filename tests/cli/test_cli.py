@@ -65,6 +65,10 @@ class Compiler(SimpleNamespace):
             raise ValueError("--m: 0 given, at least 1 expected")
         return f"{system} {m}"
 
+    def plot(self, scene: object, path: Path) -> list[str]:
+        self.asked.append(path)
+        return ["1 of 2 outputs is drawn"]
+
     def verify(self, scenes: list[wavesym.Scene]) -> tuple[str, bool]:
         self.asked.append([scene.name for scene in scenes])
         return "errors", self.allowed
@@ -156,6 +160,9 @@ def test_scenes_lists_what_is_built_in(capsys: pytest.CaptureFixture[str]) -> No
             "wavesym tables: Invalid value for '--format': 'xml' is not one of",
         ),
         (["generate", "mine.toml", "--language", "ada"], "wavesym generate: Invalid value for '--language'"),
+        (["plot", "mine.toml"], "wavesym plot: Missing option '-o'"),
+        (["plot", "-o", "x.svg"], "wavesym plot: Missing argument 'SCENE'"),
+        (["plot", "mine.toml", "--published", "-o", "x"], "wavesym plot: --published takes no SCENE"),
         (["derive", "train"], "wavesym derive: Invalid value for '{collision|drive|building}'"),
         (["derive", "drive", "--m", "x"], "wavesym derive: Invalid value for '--m'"),
         (["derive", "drive", "--m", "0"], "wavesym derive: --m: 0 given, at least 1 expected"),
@@ -169,12 +176,14 @@ def test_wrong_usage(
     assert line.endswith(" --help)")
 
 
-@pytest.mark.parametrize("command", ["tables", "generate", "run", "verify"])
+@pytest.mark.parametrize("command", ["tables", "generate", "run", "verify", "plot"])
 def test_a_wrong_scene_is_refused_by_every_command(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     Path("bad.toml").write_text(SCENE.replace("[1, 2]", "[1]"))
-    assert refused(capsys, command, "bad.toml") == "bad.toml: system.inertia: 1 numbers given, 2 expected (m + 1)"
-    assert refused(capsys, command, "nowhere.toml").startswith("nowhere.toml: No such file or directory, ")
-    assert refused(capsys, command, ".").startswith(".: Is a directory, ")
+    more = ["-o", "mine.svg"] if command == "plot" else []
+    expected = "bad.toml: system.inertia: 1 numbers given, 2 expected (m + 1)"
+    assert refused(capsys, command, "bad.toml", *more) == expected
+    assert refused(capsys, command, "nowhere.toml", *more).startswith("nowhere.toml: No such file or directory, ")
+    assert refused(capsys, command, ".", *more).startswith(".: Is a directory, ")
 
 
 def test_generate(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
@@ -216,6 +225,23 @@ def test_run_puts_values_out_and_warnings_aside(compiler: Compiler, capsys: pyte
     assert compiler.asked == [(1001, None), (7, None)]
 
 
+def test_plot_says_aside_what_its_picture_leaves_out(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plot", "mine.toml", "-o", "mine.svg"]) == 0
+    assert compiler.asked == [Path("mine.svg")]
+    assert capsys.readouterr() == ("", "mine: a contact opens\nmine: 1 of 2 outputs is drawn\n")
+
+
+def test_plot_of_another_kind_of_file(capsys: pytest.CaptureFixture[str]) -> None:
+    assert refused(capsys, "plot", "mine.toml", "-o", "mine.txt").endswith(".svg, .png, .pdf expected")
+
+
+def test_plot_without_matplotlib(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr("wavesym.cli.plot.find_spec", lambda name: None)
+    assert "matplotlib is not installed: pip install 'wavesym[plot]'" in refused(
+        capsys, "plot", "mine.toml", "-o", "mine.svg"
+    )
+
+
 def test_run_at_given_times(compiler: Compiler) -> None:
     Path("at.txt").write_bytes(b"# times\r\n0\r\n\r\n 0.1 # a tenth\n-1e-3\n+2.50\n")
     assert main(["run", "mine.toml", "--at", "at.txt"]) == 0
@@ -245,9 +271,9 @@ def test_errors_of_the_compiler(compiler: Compiler, capsys: pytest.CaptureFixtur
         return generate
 
     compiler.generate = failing(ToleranceError("11 digits are lost\nfrom tau = 9 on"))
-    assert refused(capsys, "generate", "mine.toml", status=1) == "11 digits are lost from tau = 9 on"
+    assert refused(capsys, "generate", "mine.toml", status=1) == "mine.toml: 11 digits are lost from tau = 9 on"
     compiler.generate = failing(CostError("1e12 intervals"))
-    assert refused(capsys, "generate", "mine.toml") == "1e12 intervals"
+    assert refused(capsys, "generate", "mine.toml") == "mine.toml: 1e12 intervals"
     compiler.generate = failing(KeyboardInterrupt())  # type: ignore[arg-type]
     assert main(["generate", "mine.toml"]) == 130
 

@@ -180,7 +180,7 @@ def test_formats_agree(records):
     made = json.loads(report.published("json")[0])
     markdown = report.published("markdown")[0]
     assert [entry["id"] for entry in made] == [record.id for record in records]
-    assert {"id", "where", "printed", "verdict", "corrected", "evidence", "cases"} <= made[0].keys()
+    assert {"id", "where", "printed", "scan", "verdict", "corrected", "evidence", "cases"} <= made[0].keys()
     counts = Counter(record.verdict for record in records)
     for verdict, count in counts.items():
         assert f"{count:4} {verdict}:" in text
@@ -191,9 +191,28 @@ def test_formats_agree(records):
     assert "fails" not in text.splitlines()[-1]
 
 
+def test_what_the_scan_has_otherwise_stands_beside(records):
+    """For these the transcription is not the scan's, but for words, spaces and line breaks."""
+    scanned = {record.id: record.scan for record in records if record.scan is not None}
+    assert scanned.keys() >= {"T1.I.x_0", "T1.I.tau_0", "T1.I.v", "(4.12)", "III.14", "text.5", "text.6", "text.12"}
+    text, made, markdown = (report.published(name)[0] for name in ("text", "json", "markdown"))
+    assert {entry["id"]: entry["scan"] for entry in json.loads(made) if entry["scan"] is not None} == scanned
+    for record in records:
+        assert record.scan != record.printed
+        if record.scan is not None:
+            assert f"scan       {record.scan}" in text
+            assert f"scan: `{record.scan}`" in markdown
+    assert text.count("    scan       ") == markdown.count("scan: `") == len(scanned)
+
+
+def test_a_reading_of_the_scan_is_kept():
+    assert judge(_claim(_sum)).scan is None
+    assert judge(_claim(_sum, scan="l + 1")).scan == "l + 1"
+
+
 def test_an_untested_formula_fails_the_run(monkeypatch, records, capsys):
     spoilt = (replace(records[0], problems=("no case tells anything",)), *records[1:])
-    monkeypatch.setattr(report, "records", lambda: spoilt)
+    monkeypatch.setattr(report, "records", lambda *_: spoilt)
     assert main(["verify", "--published", "--format", "json"]) == 1
     capsys.readouterr()
 

@@ -15,7 +15,7 @@ import click
 from wavesym import __version__
 from wavesym.errors import WavesymError
 
-COMMANDS = ("scenes", "derive", "tables", "generate", "run", "verify", "chart", "stability")
+COMMANDS = ("scenes", "derive", "tables", "generate", "run", "verify", "plot", "chart", "stability")
 
 DONE, FAILED, WRONG_REQUEST, INTERRUPTED = 0, 1, 2, 130
 
@@ -43,6 +43,10 @@ def cli() -> None:
     \b
     Example:
       wavesym generate building_m2 -o building --language all
+
+    \b
+    Completion in bash; in zsh and fish with their names:
+      eval "$(_WAVESYM_COMPLETE=bash_source wavesym)"
     """
 
 

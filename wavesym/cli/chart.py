@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from wavesym.cli.parameters import PATH, SCENE
+from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -41,20 +41,14 @@ def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
     if not find_spec("matplotlib"):
         raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context())
 
-    from wavesym.report.chart import draw
-    from wavesym.report.measure import measure, to_csv
-    from wavesym.report.saving import picture_format, save
-    from wavesym.writing import write_whole
+    with progress(scene.name) as line:
+        from wavesym.report.chart import draw
+        from wavesym.report.measure import measure, to_csv
+        from wavesym.report.saving import picture_format, save
+        from wavesym.writing import write_whole
 
-    picture_format(out)  # before the work, not after it
-    measured = measure(scene, samples, _tell)
-    _tell("")
-    save(draw(scene, measured), out)
+        picture_format(out)  # before the work, not after it
+        measured = measure(scene, samples, line.tell)
+        save(draw(scene, measured), out)
     if table is not None:
         write_whole({table: to_csv(measured)})
-
-
-def _tell(what: str) -> None:
-    """What is measured at present, on a terminal."""
-    if sys.stderr.isatty():
-        click.echo(f"\r\x1b[K{what}", nl=False, err=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, put
+from wavesym.cli.parameters import PATH, SCENE, put, scene_argument
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -37,7 +37,7 @@ def generate(
     from wavesym import compiler
 
     if only_check:
-        difference = compiler.check(scene, directory, language, evaluator, precision)
+        difference = compiler.check(scene, directory, language, evaluator, precision, scene_argument())
         if difference:
             put(difference)
         return 1 if difference else 0

@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from glob import escape, glob
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.shell_completion import CompletionItem
+
+from wavesym.errors import SceneError, WavesymError
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
+
+
+_ARGUMENT = "wavesym.scene"
 
 
 class SceneParameter(click.ParamType[Any]):
@@ -19,10 +27,44 @@ class SceneParameter(click.ParamType[Any]):
     name = "scene"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Scene:
-        """The scene; SceneError, which says more than click would, where it is none."""
+        """The scene; SceneError, which says more than click would, where it is none.
+
+        What a command with one scene finds wrong with it later names its file too.
+        """
         from wavesym.scene import Scene
 
-        return value if isinstance(value, Scene) else Scene.from_toml(value)
+        if isinstance(value, Scene):
+            return value
+        if ctx is not None and param is not None and param.nargs == 1:
+            ctx.meta[_ARGUMENT] = value
+            ctx.with_resource(_blamed("<stdin>" if value == "-" else value))
+        return Scene.from_toml(value)
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        """Built-in scenes and files of TOML, and folders where there are none of these."""
+        from wavesym.scene import builtin_names
+
+        names = [
+            CompletionItem(name, help=what) for name, what in builtin_names().items() if name.startswith(incomplete)
+        ]
+        files = [CompletionItem(file) for file in sorted(glob(f"{escape(incomplete)}*.toml"))]
+        return [CompletionItem(incomplete, type="dir"), *names, *files]
+
+
+@contextmanager
+def _blamed(file: str) -> Iterator[None]:
+    try:
+        yield
+    except SceneError:  # has its file
+        raise
+    except WavesymError as error:
+        # keeps its class, and so its exit status
+        raise type(error)(str(SceneError(str(error), file=file))) from None
+
+
+def scene_argument() -> str:
+    """How the scene of the present command was given."""
+    return str(click.get_current_context().meta[_ARGUMENT])
 
 
 SCENE = SceneParameter()

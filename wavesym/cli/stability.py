@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from importlib.util import find_spec
 from pathlib import Path
 
 import click
 
 from wavesym.cli.parameters import PATH
+from wavesym.cli.progress import progress
 
 
 @click.command()
@@ -25,15 +25,9 @@ def stability(directory: Path) -> None:
     if not find_spec("matplotlib"):
         raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context())
 
-    from wavesym.report.stability import atlas
+    with progress("stability") as line:
+        from wavesym.report.stability import atlas
 
-    paths = atlas(directory, progress=_tell)
-    _tell("")
+        paths = atlas(directory, line.tell)
     for path in paths:
         click.echo(path)
-
-
-def _tell(what: str) -> None:
-    """What is computed at present, on a terminal."""
-    if sys.stderr.isatty():
-        click.echo(f"\r\x1b[K{what}", nl=False, err=True)

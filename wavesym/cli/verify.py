@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import click
 
 from wavesym.cli.parameters import SCENE, put
+from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -25,17 +27,18 @@ def verify(scenes: tuple[Scene, ...], published: bool, format: str | None) -> in
     Example:
       wavesym verify collision_m4 drive_m1
     """
-    from wavesym import compiler
-    from wavesym.scene import Scene, builtin_names
-
-    if published:
-        if scenes:
-            raise click.UsageError("--published takes no SCENE")
-        verdicts, tested = compiler.published(format or "text")
-        put(verdicts)
-        return 0 if tested else 1
-    if format:
+    if published and scenes:
+        raise click.UsageError("--published takes no SCENE")
+    if format and not published:
         raise click.UsageError("--format is for --published")
-    table, allowed = compiler.verify(scenes or [Scene.from_toml(name) for name in builtin_names()])
-    put(table)
-    return 0 if allowed else 1
+    with progress("verify") as line:
+        from wavesym import compiler
+        from wavesym.scene import Scene, builtin_names
+
+        if published:
+            text, passed = compiler.published(format or "text", lambda claims: line.each(claims, attrgetter("id")))
+        else:
+            chosen = scenes or [Scene.from_toml(name) for name in builtin_names()]
+            text, passed = compiler.verify(line.each(chosen, attrgetter("name")))
+    put(text)
+    return 0 if passed else 1

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import os
 import platform
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -24,6 +23,7 @@ from wavesym.report.timing import medians
 from wavesym.rivals.native import FAST, address, library
 from wavesym.scene import Scene
 from wavesym.verification.compiled import imported
+from wavesym.verification.toolchain import Compiler, at_hand
 
 SAMPLES = 10_001
 PLAIN = ("-O2",)
@@ -137,8 +137,7 @@ def _machine() -> Iterator[str]:
     yield f"- {cpu}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
     yield f"- Python {platform.python_version()}, NumPy {np.__version__}"
     for compiler in _compilers():
-        version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=False).stdout
-        yield f"- {version.splitlines()[0]}"
+        yield f"- {compiler.version}"
 
 
 def _lines(path: str) -> list[str]:
@@ -148,8 +147,8 @@ def _lines(path: str) -> list[str]:
         return []
 
 
-def _compilers() -> list[str]:
-    return [name for name in ("gcc", "clang") if shutil.which(name)]
+def _compilers() -> list[Compiler]:
+    return [compiler for compiler in at_hand() if compiler.name in _UNROLLED]
 
 
 def _table(header: Sequence[str], rows: Iterator[Sequence[str]]) -> Iterator[str]:
@@ -169,13 +168,13 @@ def _evaluating(three: dict[str, Scene]) -> Iterator[Sequence[str]]:
         taus = np.linspace(0.0, form.tau_max, SAMPLES)
         for compiler in _compilers():
             for flags in (FAST, PLAIN):
-                with _compiler(compiler):
+                with _compiler(compiler.name):
                     calls: list[Callable[[], object]] = [
                         _many("lines", each, made, flags),
                         _many("many", each, made, flags),
                         _each(each, made, flags, form.tau_max),
                         partial(module.evaluate, taus),
-                        _peak(compiler, flags),
+                        _peak(compiler.name, flags),
                     ]
                 low, sample, random, numpy, peak = medians(calls)
                 low, sample = low / _CALLS, sample / _CALLS
@@ -183,7 +182,7 @@ def _evaluating(three: dict[str, Scene]) -> Iterator[Sequence[str]]:
                 share = (form.work - 2) * values / sample / (64 * 10_000 / peak)
                 yield (
                     label,
-                    compiler,
+                    compiler.name,
                     f"`{' '.join(flags)}`",
                     *(f"{1e9 * seconds / values:.3f}" for seconds in (low, sample)),
                     f"{sample / low:.2f}",
@@ -194,7 +193,7 @@ def _evaluating(three: dict[str, Scene]) -> Iterator[Sequence[str]]:
 
 
 class _compiler:
-    """The C compiler that `verification.compiled` is to choose, for a while."""
+    """The C compiler that `toolchain` is to choose, for a while."""
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -28,10 +28,4 @@ def save(figure: Figure, path: Path) -> None:
     content = BytesIO()
     with mpl.rc_context({"svg.hashsalt": "wavesym"}):
         figure.savefig(content, format=suffix[1:], metadata=FORMATS[suffix])
-    if suffix == ".svg":
-        write_whole({path: content.getvalue().decode()})
-    else:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        draft = path.with_name(f".{path.name}.part")
-        draft.write_bytes(content.getvalue())
-        draft.replace(path)
+    write_whole({path: content.getvalue()})

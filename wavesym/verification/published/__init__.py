@@ -5,11 +5,12 @@ truth.py            the exact tables that formulas are tested on
 signals.py          formulas about waves: read once, tested in numbers and in symbols
 motion.py           (2.1)-(2.5), (3.1), (3.2), (4.1), (4.2), and the constants that go with them
 clocks.py           Table 1
-conditions.py       (2.3), (2.4), (4.3)-(4.5)
+node_motion.py      what conditions are written in; conditions.py has (2.3), (2.4), (4.3)-(4.5)
 delays.py           (4.6)-(4.8)
 forms.py            (4.9)-(4.12)
 *_powers.py         Tables 2, 3, 4
-building_lines.py   III.1 ... III.22 as data; building_list.py tests them; building_alone.py runs them from nothing
+recurrence.py       what recurrences are written in; building_lines.py has III.1 ... III.22, building_list.py tests
+                    them, building_alone.py runs them from nothing
 prose.py            statements in the text, figures.py those about the figures
 report.py           text, JSON, Markdown
 """

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterable
 from functools import cache
+from typing import Any
 
 from wavesym.verification.published import (
     building_list,
@@ -18,7 +20,7 @@ from wavesym.verification.published import (
     motion,
     prose,
 )
-from wavesym.verification.published.record import Record, judge
+from wavesym.verification.published.record import Claim, Record, judge
 
 _PARTS = (
     motion,
@@ -35,11 +37,15 @@ _PARTS = (
 )
 
 
+def records(watch: Callable[[list[Claim[Any]]], Iterable[Claim[Any]]] = iter) -> tuple[Record, ...]:
+    """The verdict on everything that the paper prints, in its order; `watch` goes through it as it is judged."""
+    return _judged(watch)
+
+
 @cache
-def records() -> tuple[Record, ...]:
-    """The verdict on everything that the paper prints, in its order."""
-    judged = (judge(claim) for part in _PARTS for claim in part.claims())
-    return tuple(sorted(judged, key=lambda record: _place(record.id)))
+def _judged(watch: Callable[[list[Claim[Any]]], Iterable[Claim[Any]]]) -> tuple[Record, ...]:
+    claims = [claim for part in _PARTS for claim in part.claims()]
+    return tuple(sorted(map(judge, watch(claims)), key=lambda record: _place(record.id)))
 
 
 def _place(id: str) -> tuple[int, int]:

@@ -7,7 +7,8 @@ from functools import cache
 
 from flint import fmpq
 
-from wavesym.verification.published.building_lines import CORRECTIONS, PRINTED, At, Line
+from wavesym.verification.published.building_lines import CORRECTIONS, PRINTED
+from wavesym.verification.published.recurrence import At, Line
 from wavesym.verification.published.truth import Exact, building
 
 Key = tuple[str, str, int, int, int]

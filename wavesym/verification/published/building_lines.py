@@ -1,167 +1,35 @@
-"""III.1 ... III.22: the coefficient recurrences of example III as they are printed, term by term, and as corrected.
-
-A line says: coefficient = sum of factor * H(...) * coefficient. Superscript k (the piece of the load) is left out; n+1
-is the interval of the coefficient on the left, and a term is `back` = 0 or 1 intervals earlier.
-"""
+"""III.1 ... III.22: the coefficient recurrences of example III as they are printed, term by term, and as corrected."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-
 from flint import fmpq
 
-from wavesym.verification.published.record import Slipped
+from wavesym.verification.published.recurrence import (
+    At,
+    Correction,
+    Count,
+    Family,
+    Line,
+    Target,
+    Term,
+    down,
+    first,
+    minus,
+    n_1,
+    n_2,
+    plus,
+    rod,
+    roof,
+    second,
+    this_rod,
+    top_rod,
+    under_roof,
+    up,
+    visits,
+    zero,
+)
 
-Family = str
-"""`c` constant, `0` linear (rate 0); `1` rate 2 kappa_1; `m` rate kappa_m."""
-
-
-@dataclass(frozen=True)
-class At:
-    """Where a line is evaluated: the building and the indices."""
-
-    m: int
-    n: int
-    j: int
-    i: int
-    kappa: Mapping[int, fmpq]
-
-    @property
-    def gap(self) -> fmpq:
-        """2 kappa_1 - kappa_m."""
-        return 2 * self.kappa[1] - self.kappa[self.m]
-
-
-Count = Callable[[At], int]
-Factor = Callable[[At], fmpq | int]
-
-
-@dataclass(frozen=True)
-class Term:
-    """factor * product of H(guard) * coefficient, e.g. -H(n-2-i) f_(m,i)^(m,n)."""
-
-    text: str
-    factor: Factor
-    letter: str
-    family: Family
-    rod: Count
-    back: int
-    power: Count = lambda at: at.i
-    guards: tuple[Count, ...] = ()
-
-    def on(self, at: At) -> bool:
-        """The product of the H, with H(0) = 1."""
-        return all(guard(at) >= 0 for guard in self.guards)
-
-
-@dataclass(frozen=True)
-class Target:
-    """A coefficient on the left: for rods first(m) ... last(m), n >= start, powers top ... bottom.
-
-    Without `top` it is a single coefficient (power 0), and no range is claimed.
-    """
-
-    letter: str
-    family: Family
-    first: Callable[[int], int]
-    last: Callable[[int], int]
-    start: int = 0
-    top: Count | None = None
-    bottom: int = 0
-
-    def powers(self, at: At) -> range:
-        """The powers of the line, downwards."""
-        return range(self.top(at) if self.top else 0, self.bottom - 1, -1)
-
-
-@dataclass(frozen=True)
-class Line:
-    """A printed line. `loads` is the constant part of III.1, by source. `strict` is the first n of the range's test."""
-
-    number: int
-    printed: str
-    ranges: str
-    targets: tuple[Target, ...]
-    terms: tuple[Term, ...]
-    loads: Mapping[tuple[str, Family], Factor] | None = None
-    strict: int = 0
-
-
-@dataclass(frozen=True)
-class Correction:
-    """The terms and the text of a line as it should be; `kind` and how sure."""
-
-    kind: Slipped
-    corrected: str
-    line: Line
-    note: str
-
-
-def _rod(shift: int = 0) -> Count:
-    return lambda at: at.j + shift
-
-
-def _fixed(rod: int) -> Count:
-    return lambda at: rod
-
-
-def _last(shift: int = 0) -> Count:
-    return lambda at: at.m + shift
-
-
-def _up(at: At) -> int:
-    return at.i + 1
-
-
-def _down(at: At) -> int:
-    return at.i - 1
-
-
-def _zero(at: At) -> int:
-    return 0
-
-
-def _one(m: int) -> int:
-    return 1
-
-
-def _two(m: int) -> int:
-    return 2
-
-
-def _roof(m: int) -> int:
-    return m
-
-
-def _under_roof(m: int) -> int:
-    return m - 1
-
-
-def _plus(at: At) -> int:
-    return 1
-
-
-def _minus(at: At) -> int:
-    return -1
-
-
-def _second(at: At) -> int:
-    """The argument n - 1 of H."""
-    return at.n - 1
-
-
-def _third(at: At) -> int:
-    """The argument n - 2 of H."""
-    return at.n - 2
-
-
-def _visits(at: At) -> fmpq:
-    """2 kappa_1 / i."""
-    return 2 * at.kappa[1] / at.i
-
-
-_FIRST = (Target("f", "c", _one, _one), Target("f", "0", _one, _one))
+_FIRST = (Target("f", "c", first, first), Target("f", "0", first, first))
 
 
 def _constants(number: int, family: Family) -> Line:
@@ -171,11 +39,11 @@ def _constants(number: int, family: Family) -> Line:
         number,
         f"f{mark}^{{k,1,n+1}} = f{mark}^{{k,2,n}} + H(n-2) g{mark}^{{k,2,n}} - f{mark}^{{k,1,n}}",
         "n >= 1",
-        (Target("f", family, _one, _one, start=1),),
+        (Target("f", family, first, first, start=1),),
         (
-            Term(f"f{mark}^{{k,2,n}}", _plus, "f", family, _fixed(2), 1, _zero),
-            Term(f"H(n-2) g{mark}^{{k,2,n}}", _plus, "g", family, _fixed(2), 1, _zero, (_third,)),
-            Term(f"-f{mark}^{{k,1,n}}", _minus, "f", family, _fixed(1), 1, _zero),
+            Term(f"f{mark}^{{k,2,n}}", plus, "f", family, rod(2), 1, zero),
+            Term(f"H(n-2) g{mark}^{{k,2,n}}", plus, "g", family, rod(2), 1, zero, (n_2,)),
+            Term(f"-f{mark}^{{k,1,n}}", minus, "f", family, rod(1), 1, zero),
         ),
     )
 
@@ -187,11 +55,11 @@ def _left_going(number: int, family: Family) -> Line:
         number,
         f"g{mark}^{{k,j,n+1}} = H(n-1) (f{mark}^{{k,j+1,n}} - f{mark}^{{k,j,n}}) + H(n-2) g{mark}^{{k,j+1,n}}",
         "j = 2, 3, ..., m-1",
-        (Target("g", family, _two, _under_roof),),
+        (Target("g", family, second, under_roof),),
         (
-            Term(f"H(n-1) f{mark}^{{k,j+1,n}}", _plus, "f", family, _rod(1), 1, _zero, (_second,)),
-            Term(f"-H(n-1) f{mark}^{{k,j,n}}", _minus, "f", family, _rod(), 1, _zero, (_second,)),
-            Term(f"H(n-2) g{mark}^{{k,j+1,n}}", _plus, "g", family, _rod(1), 1, _zero, (_third,)),
+            Term(f"H(n-1) f{mark}^{{k,j+1,n}}", plus, "f", family, this_rod(1), 1, zero, (n_1,)),
+            Term(f"-H(n-1) f{mark}^{{k,j,n}}", minus, "f", family, this_rod(), 1, zero, (n_1,)),
+            Term(f"H(n-2) g{mark}^{{k,j+1,n}}", plus, "g", family, this_rod(1), 1, zero, (n_2,)),
         ),
     )
 
@@ -203,18 +71,18 @@ def _roof_constant(family: Family) -> Line:
         5,
         rf"g^{{k,m,n+1}} = H(n-1) (f^{{k,m,n}} - \frac{{2}}{{\kappa_m}} f{mark}^{{k,m,n}})",
         "",
-        (Target("g", "c", _roof, _roof),),
+        (Target("g", "c", roof, roof),),
         (
-            Term("H(n-1) f^{k,m,n}", _plus, "f", "c", _last(), 1, _zero, (_second,)),
+            Term("H(n-1) f^{k,m,n}", plus, "f", "c", top_rod(), 1, zero, (n_1,)),
             Term(
                 rf"-H(n-1) \frac{{2}}{{\kappa_m}} f{mark}^{{k,m,n}}",
                 lambda at: -2 / at.kappa[at.m],
                 "f",
                 family,
-                _last(),
+                top_rod(),
                 1,
-                _zero,
-                (_second,),
+                zero,
+                (n_1,),
             ),
         ),
     )
@@ -231,40 +99,40 @@ def _right_constant(letter: str) -> Line:
         r"f^{k,j,n+1} = f^{k,j-1,n+1} - \frac{1}{2\kappa_1} "
         f"[H(n-1) {letter}_0^{{k,j,n+1}} + f_0^{{k,j-1,n+1}}]",
         "j = 2, 3, ..., m",
-        (Target("f", "c", _two, _roof),),
+        (Target("f", "c", second, roof),),
         (
-            Term("f^{k,j-1,n+1}", _plus, "f", "c", _rod(-1), 0, _zero),
+            Term("f^{k,j-1,n+1}", plus, "f", "c", this_rod(-1), 0, zero),
             Term(
                 rf"-\frac{{1}}{{2\kappa_1}} H(n-1) {letter}_0^{{k,j,n+1}}",
                 lag,
                 letter,
                 "0",
-                _rod(),
+                this_rod(),
                 0,
-                _zero,
-                (_second,),
+                zero,
+                (n_1,),
             ),
-            Term(r"-\frac{1}{2\kappa_1} f_0^{k,j-1,n+1}", lag, "f", "0", _rod(-1), 0, _zero),
+            Term(r"-\frac{1}{2\kappa_1} f_0^{k,j-1,n+1}", lag, "f", "0", this_rod(-1), 0, zero),
         ),
     )
 
 
-def _left_power(second: int, begun: tuple[Count, ...] = ()) -> Line:
+def _left_power(shift: int, begun: tuple[Count, ...] = ()) -> Line:
     """III.12; the rod of the wave that returns is j+1 as printed. `begun`: see `_next_to_roof`."""
 
     def guard(at: At) -> int:
         return 2 * at.n + at.j - 4 - at.i
 
-    returned = "f_{1,i}^{k,j+1,n}" if second else "f_{1,i}^{k,j,n}"
+    returned = "f_{1,i}^{k,j+1,n}" if shift else "f_{1,i}^{k,j,n}"
     return Line(
         12,
         f"g_{{1,i}}^{{k,j,n+1}} = f_{{1,i}}^{{k,j+1,n}} + H(2n+j-4-i)(g_{{1,i}}^{{k,j+1,n}} - {returned})",
         "j = 2, 3, ..., m-2; i = 2n+j-3, 2n+j-4, ..., 0",
-        (Target("g", "1", _two, lambda m: m - 2, top=lambda at: 2 * at.n + at.j - 3),),
+        (Target("g", "1", second, lambda m: m - 2, top=lambda at: 2 * at.n + at.j - 3),),
         (
-            Term("f_{1,i}^{k,j+1,n}", _plus, "f", "1", _rod(1), 1),
-            Term("H(2n+j-4-i) g_{1,i}^{k,j+1,n}", _plus, "g", "1", _rod(1), 1, guards=(guard, *begun)),
-            Term(f"-H(2n+j-4-i) {returned}", _minus, "f", "1", _rod(second), 1, guards=(guard,)),
+            Term("f_{1,i}^{k,j+1,n}", plus, "f", "1", this_rod(1), 1),
+            Term("H(2n+j-4-i) g_{1,i}^{k,j+1,n}", plus, "g", "1", this_rod(1), 1, guards=(guard, *begun)),
+            Term(f"-H(2n+j-4-i) {returned}", minus, "f", "1", this_rod(shift), 1, guards=(guard,)),
         ),
         strict=1,
     )
@@ -276,24 +144,24 @@ def _next_to_roof(begun: tuple[Count, ...] = ()) -> Line:
         13,
         "g_{1,i}^{k,m-1,n+1} = f_{1,i}^{k,m,n} + H(2n+m-6-i)g_{1,i}^{k,m,n} - H(2n+m-5-i)f_{1,i}^{k,m-1,n}",
         "i = 2n+m-4, 2n+m-5, ..., 0",
-        (Target("g", "1", _under_roof, _under_roof, top=lambda at: 2 * at.n + at.m - 4),),
+        (Target("g", "1", under_roof, under_roof, top=lambda at: 2 * at.n + at.m - 4),),
         (
-            Term("f_{1,i}^{k,m,n}", _plus, "f", "1", _last(), 1),
+            Term("f_{1,i}^{k,m,n}", plus, "f", "1", top_rod(), 1),
             Term(
                 "H(2n+m-6-i)g_{1,i}^{k,m,n}",
-                _plus,
+                plus,
                 "g",
                 "1",
-                _last(),
+                top_rod(),
                 1,
                 guards=(lambda at: 2 * at.n + at.m - 6 - at.i, *begun),
             ),
             Term(
                 "-H(2n+m-5-i)f_{1,i}^{k,m-1,n}",
-                _minus,
+                minus,
                 "f",
                 "1",
-                _last(-1),
+                top_rod(-1),
                 1,
                 guards=(lambda at: 2 * at.n + at.m - 5 - at.i,),
             ),
@@ -316,14 +184,14 @@ def _roof_power(index: str, power: Count) -> Line:
         rf"g_{{1,i}}^{{k,m,n+1}} = \frac{{1}}{{2\kappa_1 - \kappa_m}} [(i+1)(g_{{1,{index}}}^{{k,m,n+1}} + "
         r"f_{1,i+1}^{k,m,n})H(2n+m-5-i) - (2\kappa_1 + \kappa_m)f_{1,i}^{k,m,n}]",
         "i = 2n+m-4, 2n+m-5, ..., 0",
-        (Target("g", "1", _roof, _roof, top=lambda at: 2 * at.n + at.m - 4),),
+        (Target("g", "1", roof, roof, top=lambda at: 2 * at.n + at.m - 4),),
         (
             Term(
                 rf"\frac{{i+1}}{{2\kappa_1 - \kappa_m}} H(2n+m-5-i) g_{{1,{index}}}^{{k,m,n+1}}",
                 raised,
                 "g",
                 "1",
-                _last(),
+                top_rod(),
                 0,
                 power,
                 (guard,),
@@ -333,9 +201,9 @@ def _roof_power(index: str, power: Count) -> Line:
                 raised,
                 "f",
                 "1",
-                _last(),
+                top_rod(),
                 1,
-                _up,
+                up,
                 (guard,),
             ),
             Term(
@@ -343,11 +211,12 @@ def _roof_power(index: str, power: Count) -> Line:
                 lambda at: -(2 * at.kappa[1] + at.kappa[at.m]) / at.gap,
                 "f",
                 "1",
-                _last(),
+                top_rod(),
                 1,
             ),
         ),
         strict=1,
+        scan=r"H(2n+m-5-i) + - (2\kappa_1 + \kappa_m)f_{1,i}^{k,m,n}",
     )
 
 
@@ -357,10 +226,10 @@ def _roof_start(own: str, family: Family) -> Line:
         17,
         f"g_{{m,0}}^{{k,m,n+1}} = -{own}^{{k,m,n+1}} - g_{{1,0}}^{{k,m,n+1}}H(n-1)",
         "n >= 1, where III.16 ends",
-        (Target("g", "m", _roof, _roof, start=1),),
+        (Target("g", "m", roof, roof, start=1),),
         (
-            Term(f"-{own}^{{k,m,n+1}}", _minus, "g", family, _last(), 0, _zero),
-            Term("-g_{1,0}^{k,m,n+1}H(n-1)", _minus, "g", "1", _last(), 0, _zero, (_second,)),
+            Term(f"-{own}^{{k,m,n+1}}", minus, "g", family, top_rod(), 0, zero),
+            Term("-g_{1,0}^{k,m,n+1}H(n-1)", minus, "g", "1", top_rod(), 0, zero, (n_1,)),
         ),
     )
 
@@ -372,17 +241,17 @@ def _floor_start(own: str, family: Family, shift: int) -> Line:
         22,
         f"f_{{1,0}}^{{k,j,n+1}} = -{own}^{{k,j,n+1}} - {guard}f_{{m,0}}^{{k,j,n+1}}",
         "j = 2, 3, ..., m",
-        (Target("f", "1", _two, _roof),),
+        (Target("f", "1", second, roof),),
         (
-            Term(f"-{own}^{{k,j,n+1}}", _minus, "f", family, _rod(), 0, _zero),
+            Term(f"-{own}^{{k,j,n+1}}", minus, "f", family, this_rod(), 0, zero),
             Term(
                 f"-{guard}f_{{m,0}}^{{k,j,n+1}}",
-                _minus,
+                minus,
                 "f",
                 "m",
-                _rod(),
+                this_rod(),
                 0,
-                _zero,
+                zero,
                 (lambda at: at.n - at.m + at.j - shift,),
             ),
         ),
@@ -408,45 +277,37 @@ PRINTED: tuple[Line, ...] = (
         8,
         "g_0^{k,m,n+1} = H(n-1) f_0^{k,m,n}",
         "",
-        (Target("g", "0", _roof, _roof),),
-        (Term("H(n-1) f_0^{k,m,n}", _plus, "f", "0", _last(), 1, _zero, (_second,)),),
+        (Target("g", "0", roof, roof),),
+        (Term("H(n-1) f_0^{k,m,n}", plus, "f", "0", top_rod(), 1, zero, (n_1,)),),
     ),
     Line(
         9,
         "f_0^{k,j,n+1} = f_0^{k,j-1,n+1}",
         "j = 2, 3, ..., m",
-        (Target("f", "0", _two, _roof),),
-        (Term("f_0^{k,j-1,n+1}", _plus, "f", "0", _rod(-1), 0, _zero),),
+        (Target("f", "0", second, roof),),
+        (Term("f_0^{k,j-1,n+1}", plus, "f", "0", this_rod(-1), 0, zero),),
     ),
     Line(
         10,
         "f_{1,i}^{k,1,n+1} = f_{1,i}^{k,2,n} + H(2n-3-i) g_{1,i}^{k,2,n} - H(2n-4-i) f_{1,i}^{k,1,n}",
         "i = 2n-2, 2n-3, ..., 0",
-        (Target("f", "1", _one, _one, top=lambda at: 2 * at.n - 2),),
+        (Target("f", "1", first, first, top=lambda at: 2 * at.n - 2),),
         (
-            Term("f_{1,i}^{k,2,n}", _plus, "f", "1", _fixed(2), 1),
-            Term("H(2n-3-i) g_{1,i}^{k,2,n}", _plus, "g", "1", _fixed(2), 1, guards=(lambda at: 2 * at.n - 3 - at.i,)),
-            Term(
-                "-H(2n-4-i) f_{1,i}^{k,1,n}", _minus, "f", "1", _fixed(1), 1, guards=(lambda at: 2 * at.n - 4 - at.i,)
-            ),
+            Term("f_{1,i}^{k,2,n}", plus, "f", "1", rod(2), 1),
+            Term("H(2n-3-i) g_{1,i}^{k,2,n}", plus, "g", "1", rod(2), 1, guards=(lambda at: 2 * at.n - 3 - at.i,)),
+            Term("-H(2n-4-i) f_{1,i}^{k,1,n}", minus, "f", "1", rod(1), 1, guards=(lambda at: 2 * at.n - 4 - at.i,)),
         ),
     ),
     Line(
         11,
         "f_{m,i}^{k,1,n+1} = f_{m,i}^{k,2,n} + g_{m,i}^{k,2,n} - H(n-m-1-i) f_{m,i}^{k,1,n}",
         "i = n-m, n-m-1, ..., 0",
-        (Target("f", "m", _one, _one, top=lambda at: at.n - at.m),),
+        (Target("f", "m", first, first, top=lambda at: at.n - at.m),),
         (
-            Term("f_{m,i}^{k,2,n}", _plus, "f", "m", _fixed(2), 1),
-            Term("g_{m,i}^{k,2,n}", _plus, "g", "m", _fixed(2), 1),
+            Term("f_{m,i}^{k,2,n}", plus, "f", "m", rod(2), 1),
+            Term("g_{m,i}^{k,2,n}", plus, "g", "m", rod(2), 1),
             Term(
-                "-H(n-m-1-i) f_{m,i}^{k,1,n}",
-                _minus,
-                "f",
-                "m",
-                _fixed(1),
-                1,
-                guards=(lambda at: at.n - at.m - 1 - at.i,),
+                "-H(n-m-1-i) f_{m,i}^{k,1,n}", minus, "f", "m", rod(1), 1, guards=(lambda at: at.n - at.m - 1 - at.i,)
             ),
         ),
     ),
@@ -457,16 +318,16 @@ PRINTED: tuple[Line, ...] = (
         15,
         "g_{m,i}^{k,j,n+1} = f_{m,i}^{k,j+1,n} + g_{m,i}^{k,j+1,n} - H(n-2-m+j-i)f_{m,i}^{k,j,n}",
         "j = 2, 3, ..., m-1; i = n-m+j-1, n-m+j-2, ..., 0",
-        (Target("g", "m", _two, _under_roof, top=lambda at: at.n - at.m + at.j - 1),),
+        (Target("g", "m", second, under_roof, top=lambda at: at.n - at.m + at.j - 1),),
         (
-            Term("f_{m,i}^{k,j+1,n}", _plus, "f", "m", _rod(1), 1),
-            Term("g_{m,i}^{k,j+1,n}", _plus, "g", "m", _rod(1), 1),
+            Term("f_{m,i}^{k,j+1,n}", plus, "f", "m", this_rod(1), 1),
+            Term("g_{m,i}^{k,j+1,n}", plus, "g", "m", this_rod(1), 1),
             Term(
                 "-H(n-2-m+j-i)f_{m,i}^{k,j,n}",
-                _minus,
+                minus,
                 "f",
                 "m",
-                _rod(),
+                this_rod(),
                 1,
                 guards=(lambda at: at.n - 2 - at.m + at.j - at.i,),
             ),
@@ -476,17 +337,17 @@ PRINTED: tuple[Line, ...] = (
         16,
         r"g_{m,i}^{k,m,n+1} = -H(n-2-i)f_{m,i}^{k,m,n} + \frac{2\kappa_m}{i}f_{m,i-1}^{k,m,n}",
         "i = n-1, n-2, ..., 1",
-        (Target("g", "m", _roof, _roof, top=lambda at: at.n - 1, bottom=1),),
+        (Target("g", "m", roof, roof, top=lambda at: at.n - 1, bottom=1),),
         (
-            Term("-H(n-2-i)f_{m,i}^{k,m,n}", _minus, "f", "m", _last(), 1, guards=(lambda at: at.n - 2 - at.i,)),
+            Term("-H(n-2-i)f_{m,i}^{k,m,n}", minus, "f", "m", top_rod(), 1, guards=(lambda at: at.n - 2 - at.i,)),
             Term(
                 r"\frac{2\kappa_m}{i}f_{m,i-1}^{k,m,n}",
                 lambda at: 2 * at.kappa[at.m] / at.i,
                 "f",
                 "m",
-                _last(),
+                top_rod(),
                 1,
-                _down,
+                down,
             ),
         ),
     ),
@@ -496,20 +357,18 @@ PRINTED: tuple[Line, ...] = (
         r"f_{1,i}^{k,2,n+1} = -H(2n-1-i)g_{1,i}^{k,2,n+1} + \frac{2\kappa_1}{i}[g_{1,i-1}^{k,2,n+1} + "
         "H(2n-1-i)f_{1,i-1}^{k,1,n+1}]",
         "i = 2n, 2n-1, ..., 1",
-        (Target("f", "1", _two, _two, top=lambda at: 2 * at.n, bottom=1),),
+        (Target("f", "1", second, second, top=lambda at: 2 * at.n, bottom=1),),
         (
-            Term(
-                "-H(2n-1-i)g_{1,i}^{k,2,n+1}", _minus, "g", "1", _fixed(2), 0, guards=(lambda at: 2 * at.n - 1 - at.i,)
-            ),
-            Term(r"\frac{2\kappa_1}{i} g_{1,i-1}^{k,2,n+1}", _visits, "g", "1", _fixed(2), 0, _down),
+            Term("-H(2n-1-i)g_{1,i}^{k,2,n+1}", minus, "g", "1", rod(2), 0, guards=(lambda at: 2 * at.n - 1 - at.i,)),
+            Term(r"\frac{2\kappa_1}{i} g_{1,i-1}^{k,2,n+1}", visits, "g", "1", rod(2), 0, down),
             Term(
                 r"\frac{2\kappa_1}{i} H(2n-1-i)f_{1,i-1}^{k,1,n+1}",
-                _visits,
+                visits,
                 "f",
                 "1",
-                _fixed(1),
+                rod(1),
                 0,
-                _down,
+                down,
                 (lambda at: 2 * at.n - 1 - at.i,),
             ),
         ),
@@ -519,19 +378,19 @@ PRINTED: tuple[Line, ...] = (
         r"f_{1,i}^{k,j,n+1} = -H(2n+j-3-i)H(n-1)g_{1,i}^{k,j,n+1} + \frac{2\kappa_1}{i}[H(n-1)g_{1,i-1}^{k,j,n+1} + "
         "f_{1,i-1}^{k,j-1,n+1}]",
         "j = 3, 4, ..., m-1; i = 2n+j-2, 2n+j-3, ..., 1",
-        (Target("f", "1", lambda m: 3, _under_roof, top=lambda at: 2 * at.n + at.j - 2, bottom=1),),
+        (Target("f", "1", lambda m: 3, under_roof, top=lambda at: 2 * at.n + at.j - 2, bottom=1),),
         (
             Term(
                 "-H(2n+j-3-i)H(n-1)g_{1,i}^{k,j,n+1}",
-                _minus,
+                minus,
                 "g",
                 "1",
-                _rod(),
+                this_rod(),
                 0,
-                guards=(lambda at: 2 * at.n + at.j - 3 - at.i, _second),
+                guards=(lambda at: 2 * at.n + at.j - 3 - at.i, n_1),
             ),
-            Term(r"\frac{2\kappa_1}{i} H(n-1)g_{1,i-1}^{k,j,n+1}", _visits, "g", "1", _rod(), 0, _down, (_second,)),
-            Term(r"\frac{2\kappa_1}{i} f_{1,i-1}^{k,j-1,n+1}", _visits, "f", "1", _rod(-1), 0, _down),
+            Term(r"\frac{2\kappa_1}{i} H(n-1)g_{1,i-1}^{k,j,n+1}", visits, "g", "1", this_rod(), 0, down, (n_1,)),
+            Term(r"\frac{2\kappa_1}{i} f_{1,i-1}^{k,j-1,n+1}", visits, "f", "1", this_rod(-1), 0, down),
         ),
     ),
     Line(
@@ -539,28 +398,28 @@ PRINTED: tuple[Line, ...] = (
         r"f_{1,i}^{k,m,n+1} = -H(2n+m-4-i)H(n-1)g_{1,i}^{k,m,n+1} + "
         r"\frac{2\kappa_1}{i}[H(2n+m-3-i)H(n-1)g_{1,i-1}^{k,m,n+1} + f_{1,i-1}^{k,m-1,n+1}]",
         "i = 2n+m-2, 2n+m-3, ..., 1",
-        (Target("f", "1", _roof, _roof, top=lambda at: 2 * at.n + at.m - 2, bottom=1),),
+        (Target("f", "1", roof, roof, top=lambda at: 2 * at.n + at.m - 2, bottom=1),),
         (
             Term(
                 "-H(2n+m-4-i)H(n-1)g_{1,i}^{k,m,n+1}",
-                _minus,
+                minus,
                 "g",
                 "1",
-                _last(),
+                top_rod(),
                 0,
-                guards=(lambda at: 2 * at.n + at.m - 4 - at.i, _second),
+                guards=(lambda at: 2 * at.n + at.m - 4 - at.i, n_1),
             ),
             Term(
                 r"\frac{2\kappa_1}{i} H(2n+m-3-i)H(n-1)g_{1,i-1}^{k,m,n+1}",
-                _visits,
+                visits,
                 "g",
                 "1",
-                _last(),
+                top_rod(),
                 0,
-                _down,
-                (lambda at: 2 * at.n + at.m - 3 - at.i, _second),
+                down,
+                (lambda at: 2 * at.n + at.m - 3 - at.i, n_1),
             ),
-            Term(r"\frac{2\kappa_1}{i} f_{1,i-1}^{k,m-1,n+1}", _visits, "f", "1", _last(-1), 0, _down),
+            Term(r"\frac{2\kappa_1}{i} f_{1,i-1}^{k,m-1,n+1}", visits, "f", "1", top_rod(-1), 0, down),
         ),
     ),
     Line(
@@ -568,7 +427,7 @@ PRINTED: tuple[Line, ...] = (
         r"f_{m,i}^{k,j,n+1} = \frac{1}{2\kappa_1 - \kappa_m} [-(i+1)H(n-m+j-2-i)(f_{m,i+1}^{k,j,n+1} + "
         r"g_{m,i+1}^{k,j,n+1}) + \kappa_m g_{m,i}^{k,j,n+1} + 2\kappa_1 H(n-m+j-2-i)f_{m,i}^{k,j-1,n+1}]",
         "j = 2, 3, ..., m; i = n-m+j-1, n-m+j-2, ..., 0",
-        (Target("f", "m", _two, _roof, top=lambda at: at.n - at.m + at.j - 1),),
+        (Target("f", "m", second, roof, top=lambda at: at.n - at.m + at.j - 1),),
         (
             *(
                 Term(
@@ -576,9 +435,9 @@ PRINTED: tuple[Line, ...] = (
                     lambda at: -(at.i + 1) / at.gap,
                     letter,
                     "m",
-                    _rod(),
+                    this_rod(),
                     0,
-                    _up,
+                    up,
                     (lambda at: at.n - at.m + at.j - 2 - at.i,),
                 )
                 for letter in "fg"
@@ -588,7 +447,7 @@ PRINTED: tuple[Line, ...] = (
                 lambda at: at.kappa[at.m] / at.gap,
                 "g",
                 "m",
-                _rod(),
+                this_rod(),
                 0,
             ),
             Term(
@@ -596,7 +455,7 @@ PRINTED: tuple[Line, ...] = (
                 lambda at: 2 * at.kappa[1] / at.gap,
                 "f",
                 "m",
-                _rod(-1),
+                this_rod(-1),
                 0,
                 guards=(lambda at: at.n - at.m + at.j - 2 - at.i,),
             ),
@@ -614,16 +473,16 @@ CORRECTIONS: dict[int, Correction] = {
     5: _corrected(_roof_constant("0"), "The index 0 is missing: the derivative of the linear part is meant."),
     6: _corrected(_right_constant("g"), "Letter: f for g; f_0^{k,j,n+1} stands in the bracket already, by III.9."),
     12: _corrected(
-        _left_power(0, (_third,)),
+        _left_power(0, (n_2,)),
         "Index: j+1 for j in what returns from floor j. H lets in g of the first interval, as in III.13.",
     ),
     13: Correction(
         "convention",
         "as printed, with 0 for the coefficients of g in the first interval: H(n-2) g_{1,i}^{k,m,n}",
-        _next_to_roof((_third,)),
+        _next_to_roof((n_2,)),
         "For n = 1 and m >= 4 H lets in g of the first interval, which has none; the text says that it is 0.",
     ),
-    14: _corrected(_roof_power("i+1", _up), "Index: i+n for i+1."),
+    14: _corrected(_roof_power("i+1", up), "Index: i+n for i+1."),
     17: _corrected(
         _roof_start("g", "c"), "As printed the coefficient stands on both sides; the constant of the rate 0 is meant."
     ),
@@ -633,8 +492,3 @@ CORRECTIONS: dict[int, Correction] = {
         "too early, where f_{m,0} does not exist yet.",
     ),
 }
-
-
-def with_terms(line: Line, place: int, term: Term) -> Line:
-    """The line with another term at `place`."""
-    return replace(line, terms=(*line.terms[:place], term, *line.terms[place + 1 :]))

@@ -8,18 +8,9 @@ from dataclasses import replace
 from flint import fmpq
 
 from wavesym.verification.published.building_alone import consequence
-from wavesym.verification.published.building_lines import (
-    CORRECTIONS,
-    PRINTED,
-    At,
-    Count,
-    Factor,
-    Line,
-    Target,
-    Term,
-    with_terms,
-)
+from wavesym.verification.published.building_lines import CORRECTIONS, PRINTED
 from wavesym.verification.published.record import Case, Claim, Slip, by_size
+from wavesym.verification.published.recurrence import At, Count, Factor, Line, Target, Term, with_terms
 from wavesym.verification.published.truth import Exact, building
 
 MOST_STOREYS, MOST_N = 7, 8
@@ -49,6 +40,7 @@ def claims() -> Iterator[Claim[Line]]:
                 (["H(0) = 1."] if any(term.guards for term in right.terms) else [])
                 + (["Range and H are tested from n = 1 on; for n = 0 the text says g' = 0."] if line.strict else [])
             ),
+            scan=line.scan,
         )
 
 

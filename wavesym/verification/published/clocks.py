@@ -87,6 +87,12 @@ _S: dict[str, tuple[str, Value, Slip[Value] | None]] = {
     "II": ("M_i(t)", lambda c, i: (("M", i),), None),
     "III": ("0", lambda c, i: (), None),
 }
+# where the words between the formulas are part of the reading
+_SCANNED = {
+    "T1.I.x_0": "1 dla i=1 i dla i=2, 4, ..., m-2 i=1 dla i=3, 5, ..., m-1 m-1 dla i=m",
+    "T1.I.tau_0": "1 dla i=1, m 0 dla i=2, 3, ..., m-1",
+    "T1.I.v": r"\bar{v}_i^{-1} dla i=2, 4, ..., m \bar{v}_i dla i=1, 3, ..., m-1",
+}
 _TRUE: dict[str, Value] = {
     "x_0": lambda c, i: c.rod(i).x0,
     "tau_0": lambda c, i: c.rod(i).tau0,
@@ -129,6 +135,7 @@ def _cell(name: str, column: str, text: str, value: Value, slip: Slip[Value] | N
         if text not in ("0",)
         else {"one more": more},
         slip,
+        scan=_SCANNED.get(f"T1.{name}.{column}"),
     )
 
 

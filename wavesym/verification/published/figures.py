@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,11 +46,28 @@ _QUAKES = {
 }
 
 
+class Point(NamedTuple):
+    """A place on a curve: the output, and which of its instants."""
+
+    output: str
+    instant: int
+
+
+class Finding(NamedTuple):
+    """What was measured, and where: each spot is a point, or two that lie as far apart as the measure says."""
+
+    value: float
+    spots: tuple[tuple[Point, ...], ...] = ()
+
+
+Measure = Callable[[Curves], Finding]
+
+
 @dataclass(frozen=True)
 class Said:
     """A statement about curves: what is measured, when that is what is said, and for which loads it is said."""
 
-    measured: Callable[[Curves], float]
+    measured: Measure
     true: Callable[[float], bool]
     loads: tuple[str, ...]
 
@@ -61,14 +78,32 @@ class Statement:
 
     figure: int
     text: str
-    measured: Callable[[Curves], float]
+    measured: Measure
     true: Callable[[float], bool]
     meaning: str
 
+    @property
+    def findings(self) -> dict[str, Finding]:
+        """What is measured under each load that its figure is tried with."""
+        return {load: self.measured(curves(self.figure, load)) for load in loads(self.figure)}
 
-def _apart(one: str, other: str, among: tuple[str, ...] = ()) -> Callable[[Curves], float]:
-    """The largest distance of two curves, in the largest value of those `among` (of the two)."""
-    return lambda c: float(np.max(np.abs(c[one] - c[other])) / max(np.max(np.abs(c[n])) for n in among or (one, other)))
+
+def _apart(*names: str) -> Measure:
+    """The largest distance of curves, in their largest value."""
+
+    def measured(c: Curves) -> Finding:
+        together = np.array([c[name] for name in names])
+        distance = np.ptp(together, axis=0)
+        k = int(np.argmax(distance))
+        return Finding(float(distance[k] / np.max(np.abs(together))), (_across(c, names, k),))
+
+    return measured
+
+
+def _across(c: Curves, names: tuple[str, ...], k: int) -> tuple[Point, ...]:
+    """The lowest and the highest of curves at an instant."""
+    low, *_, high = sorted(names, key=lambda name: float(c[name][k]))
+    return Point(low, k), Point(high, k)
 
 
 def _at_most(bound: float) -> Callable[[float], bool]:
@@ -79,57 +114,83 @@ def _more_than(bound: float) -> Callable[[float], bool]:
     return lambda value: value > bound
 
 
-def _peaks(one: str, other: str) -> Callable[[Curves], float]:
+def _peaks(one: str, other: str) -> Measure:
     """The largest absolute value of one curve over that of the other."""
-    return lambda c: float(np.max(np.abs(c[one])) / np.max(np.abs(c[other])))
+
+    def measured(c: Curves) -> Finding:
+        tops = {name: int(np.argmax(np.abs(c[name]))) for name in (one, other)}
+        high, low = (abs(c[name][k]) for name, k in tops.items())
+        return Finding(float(high / low), tuple((Point(*top),) for top in tops.items()))
+
+    return measured
 
 
-def _turn(name: str, sign: int) -> Callable[[Curves], float]:
+def _turn(name: str, sign: int) -> Measure:
     """How far a curve goes one way first and back later, the smaller of both in its largest value."""
 
-    def measured(c: Curves) -> float:
+    def measured(c: Curves) -> Finding:
         curve = sign * c[name]
         top = int(np.argmax(curve))
-        return float(min(curve[top] - curve[0], curve[top] - curve[-1]) / np.max(np.abs(curve)))
+        value = min(curve[top] - curve[0], curve[top] - curve[-1]) / np.max(np.abs(curve))
+        return Finding(float(value), ((Point(name, top),),))
 
     return measured
 
 
-def _outside(inner: str, one: str, other: str) -> Callable[[Curves], float]:
-    """How far a curve leaves the band between two others, in their largest value."""
+def _outside(inner: str, one: str, other: str) -> Measure:
+    """How far a curve leaves the band between two others, in their largest value; where it does not, the band."""
 
-    def measured(c: Curves) -> float:
+    def measured(c: Curves) -> Finding:
         low, high = np.minimum(c[one], c[other]), np.maximum(c[one], c[other])
         beyond = np.maximum(c[inner] - high, low - c[inner])
-        return float(np.max(beyond) / np.max(np.abs(high)))
+        worst = int(np.argmax(beyond))
+        band = _across(c, (one, other), int(np.argmax(high - low)))
+        return Finding(
+            float(beyond[worst] / np.max(np.abs(high))), ((Point(inner, worst),) if beyond[worst] > 0 else band,)
+        )
 
     return measured
 
 
-def _spread(names: tuple[str, ...]) -> Callable[[Curves], float]:
+def _spread(names: tuple[str, ...]) -> Measure:
     """The spread of curves at their end, in the largest of them there."""
-    return lambda c: float(np.ptp([c[n][-1] for n in names]) / max(abs(c[n][-1]) for n in names))
+
+    def measured(c: Curves) -> Finding:
+        ends = [c[name][-1] for name in names]
+        return Finding(float(np.ptp(ends) / max(map(abs, ends))), (_across(c, names, SAMPLES - 1),))
+
+    return measured
 
 
-def _unevenness(*names: str) -> Callable[[Curves], float]:
+def _unevenness(*names: str) -> Measure:
     """The largest swing between successive turning points over the smallest; 0 where there are fewer than three swings.
 
     The smallest over several curves.
     """
 
-    def one(curve: Array) -> float:
+    def one(name: str, curve: Array) -> Finding:
         steps = np.diff(curve)
-        signs = np.sign(steps[np.abs(steps) > 1e-9 * np.max(np.abs(curve))])
-        moved = curve[1:][np.abs(steps) > 1e-9 * np.max(np.abs(curve))]
-        turns = moved[:-1][np.diff(signs) != 0]
-        swings = [abs(b - a) for a, b in pairwise(turns)]
-        return float(max(swings) / min(swings)) if len(swings) >= 3 else 0.0
+        moved = np.flatnonzero(np.abs(steps) > 1e-9 * np.max(np.abs(curve)))
+        turns = moved[:-1][np.diff(np.sign(steps[moved])) != 0] + 1
+        swings = sorted(pairwise(turns.tolist()), key=lambda ends: abs(curve[ends[1]] - curve[ends[0]]))
+        if len(swings) < 3:
+            return Finding(0.0)
+        small, large = (abs(curve[b] - curve[a]) for a, b in (swings[0], swings[-1]))
+        spots = tuple((Point(name, a), Point(name, b)) for a, b in (swings[-1], swings[0]))
+        return Finding(float(large / small), spots)
 
-    return lambda c: min(one(c[name]) for name in names)
+    return _both(*(lambda c, name=name: one(name, c[name]) for name in names), worst=min)
 
 
-def _both(*measures: Callable[[Curves], float], worst: Callable[[Any], float] = max) -> Callable[[Curves], float]:
-    return lambda c: worst([measure(c) for measure in measures])
+def _both(*measures: Measure, worst: Callable[[Any], float] = max) -> Measure:
+    """The worst of several measures, and where each of them is."""
+
+    def measured(c: Curves) -> Finding:
+        found = [measure(c) for measure in measures]
+        spots = dict.fromkeys(spot for finding in found for spot in finding.spots)
+        return Finding(worst(finding.value for finding in found), tuple(spots))
+
+    return measured
 
 
 _SLIGHTLY, _CLEARLY = f"at most {SLIGHT:.3g}", f"more than {CLEAR:.3g}"
@@ -195,12 +256,7 @@ STATEMENTS: tuple[Statement, ...] = (
     Statement(
         7,
         "the strains at x = 0; 0.5; 1 differ slightly",
-        _both(
-            *(
-                _apart(one, other, ("strain@0", "strain@0.5", "strain@1"))
-                for one, other in (("strain@0", "strain@0.5"), ("strain@0.5", "strain@1"), ("strain@0", "strain@1"))
-            )
-        ),
+        _apart("strain@0", "strain@0.5", "strain@1"),
         _at_most(SLIGHT),
         f"largest distance {_SLIGHTLY} of the largest value",
     ),
@@ -240,14 +296,19 @@ STATEMENTS: tuple[Statement, ...] = (
 
 def claims() -> Iterator[Claim[Any]]:
     """The statements of section 5, numbered on from those of section 4; the number 8.85 last."""
-    number = _BEFORE
-    for number, statement in enumerate(STATEMENTS, _BEFORE + 1):
-        yield _claim(f"text.{number}", statement)
-    yield _end(f"text.{number + 1}")
+    for id, statement in numbered().items():
+        yield _claim(id, statement)
+    yield _end(END)
 
 
 _BEFORE = 13
-_BASE = {8: " (the base of (4.5))"}
+END = f"text.{_BEFORE + len(STATEMENTS) + 1}"
+"""The id of the number 8.85."""
+
+
+def numbered() -> dict[str, Statement]:
+    """The statements by id."""
+    return {f"text.{number}": statement for number, statement in enumerate(STATEMENTS, _BEFORE + 1)}
 
 
 def loads(figure: int) -> tuple[str, ...]:
@@ -257,17 +318,22 @@ def loads(figure: int) -> tuple[str, ...]:
 
 @cache
 def curves(figure: int, load: str) -> Curves:
-    """The outputs of a figure's scene."""
-    scene = _scene(figure, load)
-    reference = Reference(scene)
-    values = reference.values(np.linspace(0, reference.tau_max, SAMPLES).tolist())
-    return {output.name: np.array(row) for output, row in zip(scene.outputs, values, strict=True)}
+    """The outputs of a figure's scene, at its instants."""
+    reference = Reference(scene(figure, load))
+    values = reference.values(instants(reference.tau_max).tolist())
+    return {output.name: np.array(row) for output, row in zip(reference.scene.outputs, values, strict=True)}
 
 
-def _scene(figure: int, load: str) -> Scene:
+def instants(until: float) -> Array:
+    """The tau at which curves are compared."""
+    return np.linspace(0, until, SAMPLES)
+
+
+def scene(figure: int, load: str) -> Scene:
+    """What the paper says of a figure, under a load."""
     if figure == 6:
         return _collision(
-            str(_contact_end()), {"strain": ["1-", 2, "3+"], "displacement": [0, 1, "3/2", 2, "5/2", 3, 4]}
+            str(contact_end()), {"strain": ["1-", 2, "3+"], "displacement": [0, 1, "3/2", 2, "5/2", 3, 4]}
         )
     if figure == 7:
         times, steps = _MOMENTS[load]
@@ -296,21 +362,21 @@ def _collision(until: str, output: Mapping[str, Any]) -> Scene:
 
 
 @cache
-def _contact_end() -> float:
-    """When the contact at x = 2 opens."""
+def contact_end() -> float:
+    """When the contact at x = 2 of Fig. 6 opens."""
     (end,) = contact_ends(_collision("12", {"strain": [2]}))
     return float(end.digits)
 
 
 def _cases(statement: Statement, said: Said) -> Iterator[Case]:
     for load in said.loads:
-        value = said.measured(curves(statement.figure, load))
+        value = said.measured(curves(statement.figure, load)).value
         yield Case({"load": load, "measured": value, "claim": statement.meaning}, True, said.true(value))
 
 
 def _claim(id: str, statement: Statement) -> Claim[Said]:
     tried = loads(statement.figure)
-    values = {load: statement.measured(curves(statement.figure, load)) for load in tried}
+    values = {load: finding.value for load, finding in statement.findings.items()}
     true = tuple(load for load, value in values.items() if statement.true(value))
     said = Said(statement.measured, statement.true, tried)
     right = Said(statement.measured, statement.true, true)
@@ -338,7 +404,7 @@ def _claim(id: str, statement: Statement) -> Claim[Said]:
 
 def _end(id: str) -> Claim[str]:
     """The number of section 5, as it is printed: to two places."""
-    exact = _contact_end()
+    exact = contact_end()
 
     def cases(printed: str) -> Iterator[Case]:
         yield Case({"x": 2, "claim": "first return of the contact strain to 0, two places"}, printed, f"{exact:.2f}")

@@ -18,6 +18,13 @@ Rates = Callable[[Exact], Any]
 
 def claims() -> Iterator[Claim[Any]]:
     """The forms of the solutions."""
+    yield from _collision()
+    yield from _drive()
+    yield from _rates()
+    yield from _building()
+
+
+def _collision() -> Iterator[Claim[Any]]:
     yield Claim(
         "(4.9)",
         "section 4, (4.9)",
@@ -39,6 +46,9 @@ def claims() -> Iterator[Claim[Any]]:
             "doubt.",
         ),
     )
+
+
+def _drive() -> Iterator[Claim[Any]]:
     yield Claim(
         "(4.10)",
         "section 4, (4.10)",
@@ -57,6 +67,9 @@ def claims() -> Iterator[Claim[Any]]:
             "Table 3 and the text below have d, the sum runs over l: beyond doubt.",
         ),
     )
+
+
+def _rates() -> Iterator[Claim[Any]]:
     yield _gamma(
         "(4.11).1",
         r"\gamma_1 = \kappa_1, \gamma_i = \kappa_1 + \kappa_{i-1} \frac{J_{i-1}}{J_i}",
@@ -78,11 +91,14 @@ def claims() -> Iterator[Claim[Any]]:
         lambda t, i: _transmitted(t, i),
         None,
     )
-    for name, text, value, parity in (
-        ("r_0", "1 for even i, 0 for odd i", lambda i: 1 - i % 2, 0),
-        ("r_1", "0 for even i, 1 for odd i", lambda i: i % 2, 1),
+    for name, even, odd, value, parity in (
+        ("r_0", 1, 0, lambda i: 1 - i % 2, 0),
+        ("r_1", 0, 1, lambda i: i % 2, 1),
     ):
-        yield _flag(name, text, value, parity)
+        yield _flag(name, even, odd, value, parity)
+
+
+def _building() -> Iterator[Claim[Any]]:
     yield Claim(
         "(4.12)",
         "section 4, (4.12)",
@@ -103,6 +119,7 @@ def claims() -> Iterator[Claim[Any]]:
             "coefficient the "
             "index i cannot be read.",
         ),
+        scan=r"z \in (2n, 2n+2)",
     )
 
 
@@ -185,7 +202,7 @@ def _gamma(
     )
 
 
-def _flag(name: str, text: str, value: Callable[[int], int], parity: int) -> Claim[Callable[[int], int]]:
+def _flag(name: str, even: int, odd: int, value: Callable[[int], int], parity: int) -> Claim[Callable[[int], int]]:
     def cases(reading: Callable[[int], int]) -> Iterator[Case]:
         for i in range(1, 7):
             first = next(s for s in (1, 2) if (s - i) % 2 == parity)
@@ -194,12 +211,13 @@ def _flag(name: str, text: str, value: Callable[[int], int], parity: int) -> Cla
     return Claim(
         f"(4.11).{name}",
         "section 4, under (4.11)",
-        f"{name} = {text}",
+        f"{name} = {even} for even i, {odd} for odd i",
         "",
         "the first moment of the right parity in Table 3, s = 2r+1 - flag with r = flag",
         cases,
         value,
         {"turned": lambda i: 1 - value(i)},
+        scan=rf"{name} = {even} dla i parzystych, {odd} dla i nieparzystych",
     )
 
 

@@ -12,8 +12,9 @@ from wavesym.coefficients.increments import start
 from wavesym.evaluators.doubles import rational
 from wavesym.mechanics.chain import chain
 from wavesym.scene import Scene
-from wavesym.verification.published.conditions import DIMENSIONLESS, Ansatz, case, lags
+from wavesym.verification.published.conditions import DIMENSIONLESS
 from wavesym.verification.published.delays import II, III, I
+from wavesym.verification.published.node_motion import Ansatz, case, lags
 from wavesym.verification.published.record import Case, Claim, Slip
 from wavesym.verification.published.truth import Exact
 
@@ -49,6 +50,13 @@ KAPPA: Mapping[str, Constant] = {
 
 def claims() -> Iterator[Claim[Any]]:
     """The equations of motion, their solution, the loads and the constants."""
+    yield from _equations()
+    yield from _loads()
+    yield from _without_dimensions()
+    yield from _constants()
+
+
+def _equations() -> Iterator[Claim[Any]]:
     yield Claim(
         "(2.1)",
         "section 2, (2.1)",
@@ -92,6 +100,9 @@ def claims() -> Iterator[Claim[Any]]:
             "t_0 without i is not defined; (4.2) has tau_(0,i) in both: beyond doubt.",
         ),
     )
+
+
+def _loads() -> Iterator[Claim[Any]]:
     yield _load(
         "(3.1)",
         r"M_i(t) = \sum_{k=0}^{m_i} M_{i,k} H(t-t_{i,k})",
@@ -129,6 +140,9 @@ def claims() -> Iterator[Claim[Any]]:
         "foundation "
         "is meant, likely \\ddot{y}_0. The right side holds.",
     )
+
+
+def _without_dimensions() -> Iterator[Claim[Any]]:
     yield Claim(
         "(4.1)",
         "section 4, (4.1)",
@@ -155,6 +169,9 @@ def claims() -> Iterator[Claim[Any]]:
             "sign of x_0": lambda rod, x: (rod.tau0 + x + rod.x0, rod.tau0 - x - rod.x0),
         },
     )
+
+
+def _constants() -> Iterator[Claim[Any]]:
     yield _kappa("(4.3).kappa", "I", r"\kappa_i = \frac{Fpl}{M_i}", "i = 1, 3, ..., m-1", _with_p(KAPPA["I"]))
     yield _kappa("(4.4).kappa", "II", r"\kappa_i = \frac{J_{0i} \rho l}{J_i}", "i = 1, ..., m", None)
     yield Claim(

@@ -22,6 +22,13 @@ from wavesym.verification.published.truth import Exact, building, collision, dri
 
 def claims() -> Iterator[Claim[Any]]:
     """The statements about the solutions."""
+    yield from _formulas()
+    yield from _dependence()
+    yield from _left_out()
+    yield from _highest_powers()
+
+
+def _formulas() -> Iterator[Claim[Any]]:
     yield Claim(
         "text.1",
         "section 1, (3.1), (3.2), (4.12), III.2-III.22",
@@ -52,19 +59,27 @@ def claims() -> Iterator[Claim[Any]]:
         lambda m: m,
         {"m - 1": lambda m: m - 1},
     )
-    for number, side, said in (
+
+
+def _dependence() -> Iterator[Claim[Any]]:
+    for number, side, said, scan in (
         (
             5,
             "even",
             "for 2n <= z < 2n+1 functions of odd i depend on all odd moments, those of even i on the even ones",
+            "(2n, 2n+1)",
         ),
         (
             6,
             "odd",
             "for 2n+1 <= z < 2n+2 functions of odd i depend on the even moments, those of even i on all odd ones",
+            r"\langle 2n+1, 2n+2 \rangle",
         ),
     ):
-        yield _moments(f"text.{number}", said, side)
+        yield _moments(f"text.{number}", said, side, scan)
+
+
+def _left_out() -> Iterator[Claim[Any]]:
     yield Claim(
         "text.7",
         "section 4, after (4.12)",
@@ -96,7 +111,11 @@ def claims() -> Iterator[Claim[Any]]:
             lambda m, n, i: n == 0,
             "j is read for 1 and n for m; the first interval is the only one for which it can be said: beyond doubt.",
         ),
+        scan="g'_{i,j}(z) = 0 dla i=2, 3, ..., n",
     )
+
+
+def _highest_powers() -> Iterator[Claim[Any]]:
     yield Claim(
         "text.9",
         "section 4, after (4.12)",
@@ -136,6 +155,8 @@ def claims() -> Iterator[Claim[Any]]:
         _slopes,
         (1, 0, -1),
         {"falls first": (-1, 0, 1), "rises throughout": (1, 1, 1)},
+        note="The factor is read with i for l and omega for w: (4.10) has e^{-\\gamma_l w}.",
+        scan=r"e^{-\gamma_i \omega}",
     )
     formulas: dict[str, Formula] = {
         "K_1": lambda at: at.n - at.r + at.l - half(at.i + 1 - at.r_0),
@@ -183,7 +204,7 @@ def _intervals(id: str, text: str, lengths: Mapping[str, int]) -> Claim[Mapping[
     )
 
 
-def _moments(id: str, text: str, side: str) -> Claim[Callable[[int, str, int, int], frozenset[int]]]:
+def _moments(id: str, text: str, side: str, scan: str) -> Claim[Callable[[int, str, int, int], frozenset[int]]]:
     odd = side == "odd"
 
     def parity(m: int, letter: str, i: int, n: int) -> frozenset[int]:
@@ -218,6 +239,7 @@ def _moments(id: str, text: str, side: str) -> Claim[Callable[[int, str, int, in
             arrived,
             "In the first intervals waves of far moments are still on their way.",
         ),
+        scan=scan,
     )
 
 

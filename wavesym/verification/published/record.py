@@ -64,7 +64,8 @@ class Slip(Generic[R]):
 class Claim(Generic[R]):
     """A formula or statement of the paper.
 
-    `printed` is the literal transcription; `ranges` its variables. `cases` come in order of size, the smallest first.
+    `printed` is the literal transcription, `scan` what the scanned text has where that reads otherwise; `ranges` are
+    its variables. `cases` come in order of size, the smallest first.
     `mutations` are faults in the reading that holds, by what was changed. `difference`, where it can be written, is
     printed minus derived. `mathematics` are the cases in which a `model` holds nevertheless.
     """
@@ -82,6 +83,7 @@ class Claim(Generic[R]):
     mathematics: Callable[[R], Iterable[Case]] | None = None
     note: str = ""
     observed: Callable[[], str] | None = None
+    scan: str | None = None
 
 
 @dataclass(frozen=True)
@@ -101,6 +103,7 @@ class Record:
     counterexample: Case | None = None
     difference: str | None = None
     problems: tuple[str, ...] = field(default=())
+    scan: str | None = None
 
 
 def judge(claim: Claim[R]) -> Record:
@@ -162,6 +165,7 @@ def judge(claim: Claim[R]) -> Record:
         tried.wrong,
         difference,
         tuple(problems),
+        claim.scan,
     )
 
 

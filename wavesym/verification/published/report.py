@@ -4,25 +4,30 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from textwrap import fill
+from typing import Any
 
 from wavesym.verification.published.all import records
 from wavesym.verification.published.building_alone import whole
-from wavesym.verification.published.record import VERDICTS, Record, Verdict
+from wavesym.verification.published.record import VERDICTS, Claim, Record, Verdict
 
 _SOURCE = (
     "A. Pielorz, Wykorzystanie jednowymiarowych fal w badaniach dynamicznych wybranych wielomasowych układów "
     "mechanicznych i obiektów budowlanych; formulas as transcribed from a scan, without the arguments (x, t) of U, u, "
-    "theta and y; prose in translation"
+    "theta and y, and with a sign once that is repeated where a line breaks; prose in translation; `scan` is what the "
+    "scan has where it reads otherwise"
 )
 LARGEST_M, MOST_N = 7, 8
 WIDTH = 120
 
 
-def published(format: str) -> tuple[str, bool]:
-    """The verdicts as "text", "json" or "markdown", and whether everything could be tested."""
-    found = records()
+def published(format: str, watch: Callable[[list[Claim[Any]]], Iterable[Claim[Any]]] = iter) -> tuple[str, bool]:
+    """The verdicts as "text", "json" or "markdown", and whether everything could be tested.
+
+    `watch` goes through the claims as they are judged.
+    """
+    found = records(watch)
     text = {"text": _text, "json": _json, "markdown": _markdown}[format](found)
     return text, not any(record.problems for record in found)
 
@@ -32,7 +37,7 @@ def _text(found: Sequence[Record]) -> str:
     lines = [f"{record.id:{width}}  {record.verdict:10}  {record.cases:6}  {record.where}" for record in found]
     lines = [f"{'id':{width}}  {'verdict':10}  {'cases':>6}  where", *lines, ""]
     for record in found:
-        if record.verdict != "holds":
+        if record.verdict != "holds" or record.scan:
             lines += [f"{record.id}: {record.verdict}", *_indented(record), ""]
     for verdict, count in _counts(found):
         lines.append(fill(f"{count:4} {verdict}: {VERDICTS[verdict]}", WIDTH, subsequent_indent=" " * 5))
@@ -46,6 +51,8 @@ def _indented(record: Record) -> Iterator[str]:
 
 def _details(record: Record) -> Iterator[tuple[str, str]]:
     yield "printed", record.printed
+    if record.scan:
+        yield "scan", record.scan
     if record.corrected:
         yield "corrected", record.corrected
     if record.difference:
@@ -63,6 +70,7 @@ def _object(record: Record) -> dict[str, object]:
         "id": record.id,
         "where": record.where,
         "printed": record.printed,
+        "scan": record.scan,
         "ranges": record.ranges,
         "against": record.against,
         "verdict": record.verdict,
@@ -102,7 +110,8 @@ def _entry(record: Record) -> str:
 
 
 def _row(record: Record) -> str:
-    cells = (record.id, _code(record.printed), str(record.cases), str(len(record.mutations)), record.against)
+    printed = _code(record.printed) + (f", scan: {_code(record.scan)}" if record.scan else "")
+    cells = (record.id, printed, str(record.cases), str(len(record.mutations)), record.against)
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 

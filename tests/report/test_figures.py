@@ -1,0 +1,217 @@
+"""Figs. 6, 7 and 8 redrawn: every statement is there, with its number, where it was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from wavesym.verification.published import figures as section_5
+from wavesym.verification.published.record import Record, judge
+
+pytest.importorskip("matplotlib")
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from wavesym.report import figures, panels
+from wavesym.report.histories import histories
+from wavesym.report.labels import Curve
+
+
+@pytest.fixture(scope="module")
+def records() -> Mapping[str, Record]:
+    return {claim.id: judge(claim) for claim in section_5.claims()}
+
+
+def _in_place(axes: Axes, curves: list[Curve], size: float) -> None:
+    for curve in curves:
+        axes.text(*curve.points[0], curve.text)
+
+
+def redrawn(records: Mapping[str, Record]) -> dict[int, Figure]:
+    """The figures, with names written on what they name: where they are put is tested elsewhere, and takes long."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(panels, "label", _in_place)
+        return {number: figures.redrawn(number, records) for number in figures.FIGURES}
+
+
+@pytest.fixture(scope="module")
+def drawn(records: Mapping[str, Record]) -> dict[int, Figure]:
+    return redrawn(records)
+
+
+def listed(figure: Figure) -> set[str]:
+    """The numbers of the statements below the panels."""
+    return {words[0] for text in figure.texts if (words := text.get_text().split("  ")) and words[0].isdigit()}
+
+
+def marked(figure: Figure) -> set[str]:
+    """The numbers in the panels."""
+    texts = {text.get_text().partition(":")[0] for axes in figure.axes for text in axes.texts}
+    return {text for text in texts if text.isdigit()}
+
+
+def missing(found: Mapping[int, Figure], records: Mapping[str, Record]) -> set[str]:
+    """The statements of section 5 that are not both listed and marked in their figure."""
+    return {
+        id
+        for id, record in records.items()
+        for figure in [found[int(record.where.removeprefix("section 5, Fig. "))]]
+        if id.removeprefix("text.") not in listed(figure) & marked(figure)
+    }
+
+
+def test_every_statement_is_listed_and_marked(drawn: dict[int, Figure], records: Mapping[str, Record]) -> None:
+    assert len(records) == 16
+    assert missing(drawn, records) == set()
+
+
+def test_a_statement_left_out_is_missed(monkeypatch: pytest.MonkeyPatch, records: Mapping[str, Record]) -> None:
+    all_but_one = section_5.numbered()
+    left_out, _ = all_but_one.popitem()
+    monkeypatch.setattr(section_5, "numbered", lambda: all_but_one)
+    assert missing(redrawn(records), records) == {left_out}
+
+
+def test_each_statement_is_listed_with_its_verdict_and_its_numbers(
+    drawn: dict[int, Figure], records: Mapping[str, Record]
+) -> None:
+    for id, statement in section_5.numbered().items():
+        text = " ".join(line.get_text().strip() for line in reversed(drawn[statement.figure].texts))
+        assert f"{statement.text}: {records[id].verdict}" in text
+        load = figures.drawn(statement.figure)
+        assert f"{statement.meaning}; measured: {statement.findings[load].value:.4g}" in text
+
+
+def test_each_load_is_said_to_bear_a_statement_out_or_not(
+    drawn: dict[int, Figure], records: Mapping[str, Record]
+) -> None:
+    """As the record says, which was judged apart."""
+    for id, statement in section_5.numbered().items():
+        if statement.figure == 6:
+            continue
+        text = " ".join(line.get_text().strip() for line in reversed(drawn[statement.figure].texts))
+        own = text.partition(statement.text)[2].partition("false for ")
+        false = own[2].partition("  ")[0]
+        for load, finding in statement.findings.items():
+            said = f"{load} ({finding.value:.4g})"
+            refuted = "False for" in records[id].evidence and load in (
+                records[id].evidence.partition("False for ")[2].partition(".")[0].split(", ")
+            )
+            assert said in (false if refuted else own[0])
+
+
+def test_the_loads_drawn_bear_most_out() -> None:
+    for number in (7, 8):
+        said = [statement for statement in section_5.STATEMENTS if statement.figure == number]
+        true = {
+            load: [statement.true(statement.findings[load].value) for statement in said]
+            for load in section_5.loads(number)
+        }
+        assert sum(true[figures.drawn(number)]) == max(map(sum, true.values()))
+
+
+@pytest.mark.parametrize("number", figures.FIGURES)
+def test_marks_lie_on_the_curves_as_drawn(number: int) -> None:
+    """The curves come from generated code, the marks from the exact motion: both sides of a jump are on the curve."""
+    load = figures.drawn(number)
+    made = histories(section_5.scene(number, load))
+    curves = {history.name: history for history in made.outputs}
+    count = 0
+    for statement in section_5.STATEMENTS:
+        if statement.figure != number:
+            continue
+        finding = statement.findings[load]
+        for mark, spot in zip(figures.marks(finding, "", made, load), finding.spots, strict=True):
+            for (tau, value), point in zip(mark.points, spot, strict=True):
+                points = curves[point.output].points
+                sides = np.interp([tau - 1e-9, tau, tau + 1e-9], *points.T)
+                # a line between instants leaves the curve by less than a pixel, of which a panel has 250
+                assert np.min(np.abs(sides - value)) < 1e-3 * np.max(np.abs(points[:, 1]))
+                count += 1
+    assert count >= 3
+
+
+@pytest.mark.parametrize(
+    ("id", "among"),
+    [
+        ("text.14", ("strain@2", "strain@1-")),
+        ("text.16", ("displacement@0", "displacement@1")),
+        ("text.22", ("strain@0", "strain@0.5", "strain@1")),
+        ("text.23", ("displacement@0", "displacement@1")),
+    ],
+)
+def test_a_distance_is_marked_where_it_is_largest(id: str, among: tuple[str, ...]) -> None:
+    """Again from the reference's values, by hand."""
+    statement = section_5.numbered()[id]
+    load = figures.drawn(statement.figure)
+    curves, finding = section_5.curves(statement.figure, load), statement.findings[load]
+    ((low, high),) = finding.spots
+    apart = abs(curves[high.output][high.instant] - curves[low.output][low.instant])
+    largest = max(np.max(np.abs(curves[name])) for name in among)
+    assert low.instant == high.instant
+    assert apart / largest == finding.value
+    assert all(np.max(np.abs(curves[a] - curves[b])) <= apart for a in among for b in among)
+
+
+def test_swings_are_marked_between_turning_points() -> None:
+    """The largest marked one over the smallest is what was measured."""
+    statement = section_5.numbered()["text.26"]
+    load = figures.drawn(8)
+    curves, finding = section_5.curves(8, load), statement.findings[load]
+    ratios = []
+    for (high, low), (other_high, other_low) in zip(finding.spots[::2], finding.spots[1::2], strict=True):
+        curve = curves[high.output]
+        large, small = curve[high.instant] - curve[low.instant], curve[other_high.instant] - curve[other_low.instant]
+        ratios.append(abs(large / small))
+        for turn in (high, low, other_high, other_low):
+            before, here, after = curve[turn.instant - 1 : turn.instant + 2]
+            assert (here - before) * (after - here) < 0
+    assert min(ratios) == finding.value
+
+
+def test_the_end_of_the_collision_is_marked_as_printed_and_as_computed(
+    drawn: dict[int, Figure], records: Mapping[str, Record]
+) -> None:
+    upright = {float(line.get_xdata()[0]) for line in drawn[6].axes[0].lines if line.get_linestyle() in ("-", "--")}
+    assert {8.85, section_5.contact_end()} <= upright
+    assert records[section_5.END].printed == "8.85"
+
+
+def test_the_load_is_drawn_above(drawn: dict[int, Figure]) -> None:
+    """Fig. 8: the pulse, with its end as a jump."""
+    axes = drawn[8].axes[0]
+    assert axes.get_ylabel().startswith("load (3.2)")
+    lines = [np.column_stack(line.get_data()).tolist() for line in axes.lines]
+    assert [[0, 1], [2, 1]] in lines
+    assert [[2, 1], [2, 0]] in lines
+    assert [text.get_text() for text in drawn[7].axes[0].texts] == ["M1 = M2"]
+
+
+@pytest.mark.slow
+def test_published(tmp_path: Path) -> None:
+    """All of them, written twice: the same bytes, and nothing covers a number or a name."""
+    first, second = (figures.published(tmp_path / name) for name in "ab")
+    assert [path.name for path in first] == [f"figure_{n}.{kind}" for n in (6, 7, 8) for kind in ("svg", "png")]
+    for one, other in zip(first, second, strict=True):
+        assert one.read_bytes() == other.read_bytes()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", figures.FIGURES)
+def test_names_and_numbers_keep_clear_of_each_other(number: int, records: Mapping[str, Record]) -> None:
+    figure = figures.redrawn(number, records)
+    figure.canvas.draw()
+    renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
+    for axes in figure.axes:
+        inside = axes.get_window_extent(renderer).padded(1)
+        boxes = [text.get_window_extent(renderer) for text in axes.texts if text.get_text()]
+        for k, box in enumerate(boxes):
+            assert inside.x0 <= box.x0 < box.x1 <= inside.x1
+            assert inside.y0 <= box.y0 < box.y1 <= inside.y1
+            assert not any(box.overlaps(other) for other in boxes[:k])
+    page = figure.bbox
+    assert all(text.get_window_extent(renderer).x1 <= page.x1 for text in figure.texts)

@@ -1,0 +1,53 @@
+"""`wavesym plot`."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from wavesym.cli.parameters import PATH, SCENE
+from wavesym.cli.progress import progress
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+
+@click.command()
+@click.argument("scene", type=SCENE, required=False)
+@click.option("--published", is_flag=True, help="Figs. 6, 7 and 8 of the paper instead, as .svg and .png into DIR.")
+@click.option("-o", "out", type=PATH, metavar="FILE|DIR", required=True, help="The picture: .svg, .png or .pdf.")
+def plot(scene: Scene | None, published: bool, out: Path) -> None:
+    """Draw the histories of a scene's outputs: what jumps is drawn as a jump.
+
+    With --published, the figures of section 5 of the paper, with what it says of them marked and judged; takes half a
+    minute, and prints the paths of what it wrote.
+
+    \b
+    Example:
+      wavesym plot collision_m4 -o collision.svg
+    """
+    context = click.get_current_context()
+    if published and scene:
+        raise click.UsageError("--published takes no SCENE", context)
+    if not find_spec("matplotlib"):
+        raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
+
+    if scene:
+        with progress(f"plot {scene.name}"):
+            from wavesym import compiler
+
+            lines = [*compiler.contact_warnings(scene), *compiler.plot(scene, out)]
+        for line in lines:
+            click.echo(f"{scene.name}: {line}", err=True)
+    elif published:
+        with progress("plot --published"):
+            from wavesym.report import figures
+
+            paths = figures.published(out)
+        for path in paths:
+            click.echo(path)
+    else:
+        raise click.MissingParameter(ctx=context, param_hint="'SCENE'", param_type="argument")

@@ -1,0 +1,124 @@
+"""Outputs over time, ready to be drawn: as right as a picture can show, and broken where they jump.
+
+Values are those of the NumPy that `generate` would write, with a tolerance that no eye can tell from a smaller one: so
+there is a picture of every scene that can be generated. When fronts can arrive is known from the loads and the places
+alone; there an output is asked for its value and for the one just before.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import floor, inf, nextafter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.emission.files import files
+from wavesym.evaluators.contact import ContactEnd, contact_ends
+from wavesym.evaluators.doubles import not_below, rational
+from wavesym.scene import Observable, Scene
+from wavesym.verification.compiled import imported
+
+Points = NDArray[np.float64]
+
+_TOLERANCE = Fraction(1, 10**6)
+_VISIBLE = 1e-5  # smaller jumps, relative to the largest value, are no jumps
+_LEAST, _PER_UNIT, _MOST = 1200, 32, 200_000  # instants
+MOST_FRONTS = 50_000  # more of them lie far closer than the dots of a picture
+
+
+@dataclass(frozen=True)
+class History:
+    """One output over tau, dimensionless.
+
+    `stretches` are polylines (n, 2) of tau and value; from one to the next the output jumps. What comes after
+    `formal` is the formal continuation of a contact that has opened.
+    """
+
+    output: Observable
+    stretches: tuple[Points, ...]
+    formal: float = inf
+
+    @property
+    def name(self) -> str:
+        return self.output.name
+
+    @cached_property
+    def points(self) -> Points:
+        """All vertices, in order."""
+        return np.vstack(self.stretches)
+
+    @property
+    def zero(self) -> bool:
+        """Whether it is 0 throughout."""
+        return not self.points[:, 1].any()
+
+
+@dataclass(frozen=True)
+class Histories:
+    """The outputs of a scene; contacts that open; whether fronts lie too close to be told apart."""
+
+    scene: Scene
+    outputs: tuple[History, ...]
+    contacts: tuple[ContactEnd, ...]
+    dense: bool
+
+
+def histories(scene: Scene) -> Histories:
+    """The histories of all outputs. ToleranceError, CostError where nothing can be generated either."""
+    output = scene.output.model_copy(update={"tolerance": max(scene.output.tolerance, _TOLERANCE)})
+    made = files(scene.model_copy(update={"output": output}), "numpy")
+    program = imported(made[f"{scene.name}.py"], scene.name)
+    contacts = contact_ends(scene)
+    formal = [_formal(place, contacts) for place in scene.outputs]
+    dense = sum(len(_parts(scene, place)) for place in scene.outputs) * scene.output.until > MOST_FRONTS
+    fronts = [[] if dense else arrivals(scene, place) for place in scene.outputs]
+    taus = _instants(program.TAU_MAX, fronts, formal)
+    values = program.evaluate(taus)
+    return Histories(
+        scene,
+        tuple(
+            History(place, _broken(np.column_stack([taus, row]), own), late)
+            for place, row, own, late in zip(scene.outputs, values, fronts, formal, strict=True)
+        ),
+        contacts,
+        dense,
+    )
+
+
+def arrivals(scene: Scene, output: Observable) -> list[float]:
+    """Every tau > 0 on the horizon at which a front can arrive at an output, as doubles at or just above.
+
+    A front leaves a node whole units of tau after a load has changed, and needs the distance to the output more.
+    """
+    until = scene.output.until
+    times = {part + n for part in _parts(scene, output) for n in range(floor(until - part) + 1)}
+    return sorted(not_below(rational(time)) for time in times if 0 < time <= until)
+
+
+def _parts(scene: Scene, output: Observable) -> set[Fraction]:
+    """The parts of a unit of tau at which fronts can arrive."""
+    return {(piece.time + lag) % 1 for piece in scene.pieces for lag in (output.x, -output.x)}
+
+
+def _formal(output: Observable, contacts: tuple[ContactEnd, ...]) -> float:
+    """When what an opened contact sends can first arrive at an output."""
+    return min((end.double + abs(float(output.x) - end.x) for end in contacts), default=inf)
+
+
+def _instants(until: float, fronts: list[list[float]], formal: list[float]) -> Points:
+    count = min(max(_LEAST, int(_PER_UNIT * until)), _MOST)
+    sudden = [tau for own in fronts for tau in own]
+    before = [nextafter(tau, 0) for tau in sudden]
+    late = [tau for tau in formal if tau < until]
+    return np.unique(np.concatenate([np.linspace(0, until, count + 1), sudden, before, late]))
+
+
+def _broken(points: Points, fronts: list[float]) -> tuple[Points, ...]:
+    """A polyline in parts, between the fronts at which it jumps."""
+    tau, value = points.T
+    at = np.searchsorted(tau, fronts)
+    high = np.abs(value[at] - value[at - 1]) > _VISIBLE * np.max(np.abs(value))
+    return tuple(np.split(points, at[high]))
