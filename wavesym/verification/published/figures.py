@@ -2,12 +2,13 @@
 
 The load curves of Figs. 7 and 8 are not in the text: a statement is tried on several shapes of load, and what it says
 holds, or for which of them it does. Words are taken as numbers: two curves differ "slightly" where they are nowhere
-further apart than a third of the largest value, "clearly" where they somewhere are by more than half.
+further apart than a third of the largest value, "clearly" where they somewhere are by more than half. A curve swings
+where it goes by a twentieth of its largest value before it turns.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from itertools import pairwise
@@ -26,6 +27,7 @@ Curves = Mapping[str, Array]
 
 SAMPLES = 801
 SLIGHT, CLEAR = 1 / 3, 1 / 2
+SWING = 1 / 20
 UNTIL = 20
 
 # (times, a, b) of (3.2), in tau; for moments (3.1) only steps
@@ -169,10 +171,8 @@ def _unevenness(*names: str) -> Measure:
     """
 
     def one(name: str, curve: Array) -> Finding:
-        steps = np.diff(curve)
-        moved = np.flatnonzero(np.abs(steps) > 1e-9 * np.max(np.abs(curve)))
-        turns = moved[:-1][np.diff(np.sign(steps[moved])) != 0] + 1
-        swings = sorted(pairwise(turns.tolist()), key=lambda ends: abs(curve[ends[1]] - curve[ends[0]]))
+        turns = _turns(curve.tolist(), SWING * float(np.max(np.abs(curve))))
+        swings = sorted(pairwise(turns), key=lambda ends: abs(curve[ends[1]] - curve[ends[0]]))
         if len(swings) < 3:
             return Finding(0.0)
         small, large = (abs(curve[b] - curve[a]) for a, b in (swings[0], swings[-1]))
@@ -180,6 +180,21 @@ def _unevenness(*names: str) -> Measure:
         return Finding(float(large / small), spots)
 
     return _both(*(lambda c, name=name: one(name, c[name]) for name in names), worst=min)
+
+
+def _turns(curve: Sequence[float], least: float) -> list[int]:
+    """Where a curve turns, after going one way and before going the other, each time by at least `least`."""
+    turns: list[int] = []
+    low = high = way = 0
+    for k, value in enumerate(curve):
+        low, high = (k if value < curve[low] else low), (k if value > curve[high] else high)
+        if way >= 0 and curve[high] - value >= least:
+            turns += [high] * way
+            low, way = k, -1
+        elif way <= 0 and value - curve[low] >= least:
+            turns += [low] * -way
+            high, way = k, 1
+    return turns
 
 
 def _both(*measures: Measure, worst: Callable[[Any], float] = max) -> Measure:
@@ -287,7 +302,8 @@ STATEMENTS: tuple[Statement, ...] = (
             f"the {many} are irregular oscillations",
             _unevenness(f"{one}@0.5", f"{one}@1.5"),
             _more_than(1.5),
-            "at least three swings between turning points, the largest more than 1.5 times the smallest",
+            f"at least three swings of {SWING:.3g} of the largest value or more, the largest more than 1.5 times the "
+            "smallest",
         )
         for one, many in (("velocity", "velocities"), ("strain", "strains"), ("displacement", "displacements"))
     ),
