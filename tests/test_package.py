@@ -1,14 +1,25 @@
-"""`import wavesym` is light, and gives what `interface.md` promises."""
+"""`import wavesym` is light, gives what `interface.md` promises, and does the same wherever it is installed."""
 
 from __future__ import annotations
 
+import os
+import re
+import shutil
 import subprocess
 import sys
+import tomllib
+import venv
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+from zipfile import ZipFile
 
 import pytest
 
 import wavesym
 
+ROOT = Path(wavesym.__file__).parents[1]
+SCENES = ("building_half_roof", "building_m2", "collision_m4", "drive_equal", "drive_m1")
 HEAVY = {"sympy", "numpy", "scipy", "flint", "pydantic", "jinja2"}
 
 
@@ -48,3 +59,128 @@ def test_public_names() -> None:
         assert name in dir(wavesym)
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = wavesym.nothing  # type: ignore[attr-defined]
+
+
+def python(*arguments: str, cwd: Path, program: str = sys.executable, path: tuple[Path, ...] = (ROOT,)) -> str:
+    """What a Python prints in a directory, with `path` before everything else that it finds modules in."""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, path))}
+    done = subprocess.run([program, *arguments], cwd=cwd, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def told(commands: Sequence[Sequence[str]], **how: Any) -> str:
+    """What `wavesym` prints for some commands; each succeeds."""
+    calls = "".join(f"assert main({list(command)}) == 0, {command}\n" for command in commands)
+    return python("-c", f"from wavesym.cli import main\n{calls}", **how)
+
+
+def generated(where: Path, **how: Any) -> dict[str, str]:
+    """The files of all built-in scenes, generated from an empty directory."""
+    where.mkdir()
+    told([("generate", scene, "--language", "all") for scene in SCENES], cwd=where, **how)
+    return {str(path.relative_to(where)): path.read_text() for path in sorted(where.rglob("*.*"))}
+
+
+@pytest.fixture(scope="module")
+def here(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """What the wavesym that is tested generates."""
+    return generated(tmp_path_factory.mktemp("here") / "out")
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The project as it comes, and nothing that was left in it."""
+    copy = tmp_path_factory.mktemp("checkout")
+    for name in ("wavesym", "templates"):
+        shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, copy)
+    return copy
+
+
+def test_a_checkout_finds_its_templates_and_scenes(checkout: Path, here: dict[str, str], tmp_path: Path) -> None:
+    found = python("-c", "import wavesym; print(wavesym.__file__)", cwd=tmp_path, path=(checkout,))
+    assert Path(found.strip()).is_relative_to(checkout)
+    listed = python("-m", "wavesym", "scenes", cwd=tmp_path, path=(checkout,)).splitlines()
+    assert [line.split()[0] for line in listed] == list(SCENES)
+    assert len(here) == len(SCENES) * 5
+    assert generated(tmp_path / "out", path=(checkout,)) == here
+
+
+def wheel(project: Path, folder: Path) -> Path:
+    """The wheel that a project makes."""
+    options = ("--quiet", "--disable-pip-version-check", "--no-deps", "-w", str(folder))
+    python("-m", "pip", "wheel", *options, str(project), cwd=folder)
+    (made,) = folder.glob("*.whl")
+    return made
+
+
+def contents(project: Path) -> set[str]:
+    """What belongs into the wheel: modules, the C of one of them, built-in scenes, templates, the marker for types."""
+    modules = {path.relative_to(project).as_posix() for path in project.glob("wavesym/**/*.py")}
+    templates = {path.relative_to(project).as_posix() for path in project.glob("templates/**/*.*")}
+    info = f"wavesym-{wavesym.__version__}.dist-info"
+    return {
+        *modules,
+        *(f"wavesym/{template}" for template in templates),
+        *(f"wavesym/scene/builtin/{scene}.toml" for scene in SCENES),
+        "wavesym/rivals/characteristics.c",
+        "wavesym/py.typed",
+        *(f"{info}/{name}" for name in ("METADATA", "RECORD", "WHEEL", "entry_points.txt", "licenses/LICENSE")),
+    }
+
+
+@pytest.mark.slow
+def test_the_wheel_has_what_belongs_into_it_and_works(checkout: Path, here: dict[str, str], tmp_path: Path) -> None:
+    made = wheel(checkout, tmp_path)
+    with ZipFile(made) as archive:
+        assert set(archive.namelist()) == contents(checkout)
+    venv.create(tmp_path / "fresh", with_pip=True)
+    fresh = str(tmp_path / "fresh" / "bin" / "python")
+    install = ("-m", "pip", "install", "--quiet", "--disable-pip-version-check")
+    python(*install, "-c", str(ROOT / "constraints.txt"), str(made), cwd=tmp_path, program=fresh)
+    found = python("-c", "import wavesym; print(wavesym.__file__)", cwd=tmp_path, program=fresh, path=())
+    assert Path(found.strip()).is_relative_to(tmp_path / "fresh")
+    assert generated(tmp_path / "out", program=fresh, path=()) == here
+
+
+@pytest.mark.slow
+def test_what_does_not_belong_into_the_wheel_is_seen(checkout: Path, tmp_path: Path) -> None:
+    project = shutil.copytree(checkout, tmp_path / "project")
+    (project / "wavesym" / "notes.txt").write_text("left behind")
+    (project / "templates" / "c" / "table.j2").unlink()
+    with ZipFile(wheel(project, tmp_path)) as archive:
+        assert set(archive.namelist()) ^ contents(checkout) == {"wavesym/notes.txt", "wavesym/templates/c/table.j2"}
+
+
+def oldest(name: str) -> str:
+    """The oldest release of a dependency that pyproject.toml allows."""
+    needed = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+    (found,) = (line for line in needed if line.startswith(name))
+    version = re.fullmatch(rf"{name}>=([0-9.]+)", found)
+    assert version
+    return version[1]
+
+
+@pytest.mark.slow
+def test_the_oldest_sympy_allowed_gives_the_same(here: dict[str, str], tmp_path: Path) -> None:
+    version = oldest("sympy")
+    old = tmp_path / "old"
+    options = ("--quiet", "--disable-pip-version-check", "--no-deps", "--target", str(old))
+    python("-m", "pip", "install", *options, f"sympy=={version}", cwd=tmp_path)
+    found = python("-c", "import sympy; print(sympy.__version__)", cwd=tmp_path, path=(old, ROOT)).strip()
+    assert found.removesuffix(".0") == version.removesuffix(".0")
+    commands = [
+        *(
+            ("derive", system, "--format", format, *more)
+            for system in ("drive", "collision", "building")
+            for format in ("text", "json", "latex")
+            for more in ((), ("--m", "4"))
+        ),
+        *(("tables", scene, *more) for scene in SCENES for more in ((), ("--symbolic", "--intervals", "2"))),
+    ]
+    text = told(commands, cwd=tmp_path)
+    assert len(text) > 100_000
+    assert told(commands, cwd=tmp_path, path=(old, ROOT)) == text
+    assert generated(tmp_path / "out", path=(old, ROOT)) == here

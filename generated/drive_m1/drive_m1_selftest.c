@@ -7,7 +7,7 @@
 
 typedef double real;
 
-enum { OUTPUTS = DRIVE_M1_OUTPUTS, COUNT = 253, STEPS = 5 };
+enum { OUTPUTS = DRIVE_M1_OUTPUTS, COUNT = 253, STEPS = 70 };
 
 static const real taus[] = {
     0.0, 0.0625, 0.12499999999999999, 0.125, 0.1875, 0.24999999999999997, 0.25, 0.3125, 0.37499999999999994, 0.375,
@@ -325,23 +325,35 @@ static int refused(real tau)
     return drive_m1_eval(tau, out) == 1 && isnan(out[0]);
 }
 
-/* Out of range is refused and told by NaN, by eval as by sample, and sample gives what eval gives. */
+/* Whether sample does not give what eval gives, or says otherwise where that is out of range. */
+static int differs(real tau0, real dtau, size_t count)
+{
+    static real sampled[OUTPUTS * STEPS];
+    const int told = drive_m1_sample(tau0, dtau, count, sampled);
+    int outside = 0;
+    int wrong = 0;
+    for (size_t k = 0; k < count; ++k) {
+        const volatile real product = (real)k * dtau;
+        real out[OUTPUTS];
+        const int refusal = drive_m1_eval(tau0 + product, out);
+        for (size_t output = 0; output < OUTPUTS; ++output) {
+            const double value = (double)sampled[output * count + k];
+            const double difference = fabs((double)out[output] - value);
+            wrong |= refusal ? !isnan(value) : !(difference <= 2.0 * allowed[output]);
+        }
+        outside |= refusal;
+    }
+    return wrong || told != outside;
+}
+
+/* Out of range is refused and told by NaN, by eval as by sample, and sample gives what eval gives: far apart and, with
+ * many samples on the way of one wave, close together. */
 static int broken(void)
 {
-    const real step = DRIVE_M1_TAU_MAX / (real)4;
-    real out[OUTPUTS];
-    real sampled[OUTPUTS * STEPS];
-    int wrong = !refused((real)-1) || !refused(DRIVE_M1_TAU_MAX * (real)2) || !refused((real)NAN);
-    wrong |= drive_m1_sample((real)0, -step, 0, sampled) != 0;
-    wrong |= drive_m1_sample(-step, step, STEPS, sampled) != 1 || !isnan(sampled[0]);
-    for (size_t k = 1; k < STEPS; ++k) {
-        const volatile real product = (real)k * step;
-        wrong |= drive_m1_eval(-step + product, out) != 0;
-        for (size_t output = 0; output < OUTPUTS; ++output) {
-            const double difference = fabs((double)out[output] - (double)sampled[output * STEPS + k]);
-            wrong |= !(difference <= 2.0 * allowed[output]);
-        }
-    }
+    const real end = DRIVE_M1_TAU_MAX;
+    const int wrong = !refused((real)-1) || !refused(end * (real)2) || !refused((real)NAN) ||
+                      differs((real)0, -end, 0) || differs(-end / (real)4, end / (real)4, 5) ||
+                      differs(end, -end / (real)4, 6) || differs(end / (real)2, end / (real)4096, STEPS);
     if (wrong) {
         printf("out-of-range rules or sample broken\n");
     }

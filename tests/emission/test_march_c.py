@@ -1,6 +1,6 @@
 """The march in C: strict compilers take it, it gives what NumPy gives, and it can be driven window by window."""
 
-import shutil
+import shlex
 import subprocess
 from fractions import Fraction
 from itertools import pairwise
@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from tests.emission.builds import STRICT, needs_binutils
 from wavesym.emission.description import describe
 from wavesym.emission.march import c_header, c_source, numpy_source
 from wavesym.emission.selftest import selftest
@@ -15,8 +16,9 @@ from wavesym.evaluators.march import marched
 from wavesym.evaluators.reals import DOUBLE, SINGLE
 from wavesym.scene import Scene
 from wavesym.verification.compiled import FLAGS, compiled, imported
+from wavesym.verification.toolchain import at_hand
 
-COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
+COMPILERS = at_hand()
 
 
 def scene(system, load=(), until=9, **outputs):
@@ -59,11 +61,11 @@ def with_selftest(scene, made):
     return sources(scene, made) | {"made_selftest.c": selftest(scene, description, made)}
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("compiler", COMPILERS, ids=lambda each: each.name)
 @pytest.mark.parametrize("real", [DOUBLE, SINGLE], ids=["double", "single"])
 @SCENES
 def test_c_passes_its_self_test(scene, real, compiler, monkeypatch):
-    monkeypatch.setenv("CC", compiler)
+    monkeypatch.setenv("CC", shlex.join(compiler.command))
     with compiled(with_selftest(scene, marched(scene, real)), len(scene.outputs)) as program:
         assert program.selftest() == 0
 
@@ -135,7 +137,7 @@ def driven(folder, scene, made, loads=None, compiler=COMPILERS[0]):
     """Status, energy, and the outputs at 0, 0.4 and 0.75 after the start of every window."""
     for name, text in {**sources(scene, made), "driver.c": DRIVER}.items():
         (folder / name).write_text(text)
-    subprocess.run([compiler, *FLAGS, "driver.c", "made.c", "-o", "driver"], cwd=folder, check=True)
+    compiler.run([*FLAGS, "driver.c", "made.c", "-o", "driver"], folder)
     command = [folder / "driver", "out.bin"]
     if loads is not None:
         loads.tofile(folder / "loads.bin")
@@ -192,15 +194,12 @@ def test_a_degree_that_is_too_low_is_reported(tmp_path):
     assert status == 1
 
 
-@pytest.mark.skipif(not shutil.which("g++"), reason="no C++ compiler")
+@needs_binutils
 @SCENES
 def test_it_is_cpp_too_and_exports_only_its_prefix(scene, tmp_path):
     for name, text in sources(scene, marched(scene)).items():
         (tmp_path / name).write_text(text)
-    strict = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
-    subprocess.run(
-        ["g++", "-std=c++11", *strict, "-x", "c++", "-c", "made.c", "-o", "made.o"], cwd=tmp_path, check=True
-    )
+    COMPILERS[0].run(["-x", "c++", "-std=c++11", *STRICT, "-c", "made.c", "-o", "made.o"], tmp_path)
     listed = subprocess.run(["nm", "-g", "made.o"], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
     symbols = [line.split() for line in listed.splitlines()]
     assert {name for *_, kind, name in symbols if kind != "U"} == {

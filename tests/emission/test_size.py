@@ -1,15 +1,18 @@
 """The sizes that the manifest states for a small machine, against what a compiler for it makes."""
 
 import json
-import shutil
-import subprocess
 
 import pytest
 
 import wavesym
+from tests.emission.builds import needs_binutils, sections
 from wavesym.emission.files import files
+from wavesym.verification.toolchain import at_hand
 
-needs_clang = pytest.mark.skipif(not shutil.which("clang") or not shutil.which("llvm-size"), reason="no clang here")
+TARGETS = {
+    "clang": ("--target=thumbv7em-none-eabi", "-mcpu=cortex-m4"),
+    "ziglang": ("-target", "thumb-freestanding-eabi", "-mcpu=cortex_m4"),
+}
 SCENE = wavesym.Scene(
     name="small",
     system={"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"},
@@ -18,26 +21,22 @@ SCENE = wavesym.Scene(
 )
 
 
-@needs_clang
+@needs_binutils
+@pytest.mark.parametrize("compiler", [each for each in at_hand() if each.name in TARGETS], ids=lambda each: each.name)
 @pytest.mark.parametrize("evaluator", ["closed", "pieces"])
 @pytest.mark.parametrize("precision", ["double", "single"])
-def test_code_and_data_are_no_larger_than_stated(evaluator, precision, tmp_path):
+def test_code_and_data_are_no_larger_than_stated(evaluator, precision, compiler, tmp_path):
     made = files(SCENE, "c", evaluator, precision)
     for name, text in made.items():
         (tmp_path / name).write_text(text)
     # no C library for the target is needed to count bytes
     (tmp_path / "math.h").write_text('#define NAN (__builtin_nanf(""))\ndouble exp(double);\nfloat expf(float);\n')
-    target = ["--target=thumbv7em-none-eabi", "-mcpu=cortex-m4", "-ffreestanding", "-std=c99", "-Os", "-I."]
-    subprocess.run(["clang", *target, "-c", "small.c", "-o", "small.o"], cwd=tmp_path, check=True)
-    listed = subprocess.run(["llvm-size", "-A", "small.o"], cwd=tmp_path, capture_output=True, text=True, check=True)
-    sections = {
-        words[0]: int(words[1])
-        for words in map(str.split, listed.stdout.splitlines())
-        if len(words) == 3 and words[1].isdigit()
-    }
+    flags = [*TARGETS[compiler.name], "-ffreestanding", "-std=c99", "-Os", "-I."]
+    compiler.run([*flags, "-c", "small.c", "-o", "small.o"], tmp_path)
+    sizes = sections(tmp_path / "small.o")
     stated = json.loads(made["small.json"])["size"]
-    assert sum(size for name, size in sections.items() if name.startswith(".text")) <= stated["code_at_most"]
-    tables = sum(size for name, size in sections.items() if name.startswith(".rodata"))
-    # the outputs' names and their addresses are not tables, nor is what the linker joins
-    assert stated["data"] <= tables + 4 <= stated["data"] + 256
-    assert sections.get(".data", 0) == sections.get(".bss", 0) == 0
+    assert sum(size for name, size in sizes.items() if name.startswith(".text")) <= stated["code_at_most"]
+    tables = sum(size for name, size in sizes.items() if name.startswith(".rodata"))
+    # the outputs' names and their addresses are not tables; what is 0 or the same twice some compilers leave out
+    assert 0.9 * stated["data"] <= tables <= stated["data"] + 256
+    assert not sizes.keys() & {".data", ".bss"}

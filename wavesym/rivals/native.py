@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import subprocess
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -11,7 +10,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.verification.compiled import CompilerError, c_compiler
+from wavesym.verification.toolchain import compiler
 
 FAST = ("-O3", "-march=native", "-ffp-contract=fast")
 
@@ -24,10 +23,7 @@ def library(source: str, flags: tuple[str, ...] = FAST, header: tuple[str, str] 
         (folder / "source.c").write_text(source, encoding="utf-8")
         if header:
             (folder / header[0]).write_text(header[1], encoding="utf-8")
-        command = [*c_compiler(), "-std=c99", *flags, "-fPIC", "-shared", "source.c", "-o", "library.so", "-lm"]
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", check=False)
-        if done.returncode != 0:
-            raise CompilerError(f"{command[0]} does not accept the C: {done.stderr.strip() or 'no message'}")
+        compiler().run(["-std=c99", *flags, "-fPIC", "-shared", "source.c", "-o", "library.so", "-lm"], folder)
         # once loaded it stays, though the file goes
         return ctypes.CDLL(str(folder / "library.so"))
 

@@ -1,14 +1,8 @@
-"""Generated text made to run: C compiled as a user would, strictly, and loaded; NumPy imported.
-
-Which C compiler that is, is decided here and nowhere else.
-"""
+"""Generated text made to run: C compiled as a user would, strictly, and loaded; NumPy imported."""
 
 from __future__ import annotations
 
 import ctypes
-import os
-import shlex
-import shutil
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -16,33 +10,14 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import ModuleType
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.errors import WavesymError
+from wavesym.verification.toolchain import compiler
 
 _WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Wmissing-prototypes", "-Werror")
 FLAGS = ("-std=c99", "-O2", *_WARNINGS)
-_COMPILERS = ("cc", "gcc", "clang")
-
-
-class CompilerError(WavesymError):
-    """There is no C compiler, or it does not accept what was generated."""
-
-    status: ClassVar[int] = 1
-
-
-def c_compiler() -> list[str]:
-    """The command of the C compiler: the environment's CC, or else the first of cc, gcc and clang that there is."""
-    chosen = shlex.split(os.environ.get("CC", ""))
-    if not chosen:
-        chosen = [name for name in _COMPILERS if shutil.which(name)][:1]
-    if not chosen or not shutil.which(chosen[0]):
-        missing = chosen[0] if chosen else ", ".join(_COMPILERS)
-        raise CompilerError(f"no C compiler: {missing} not found; install one, or name one in the variable CC")
-    return chosen
 
 
 class Compiled:
@@ -84,14 +59,14 @@ def compiled(files: Mapping[str, str], outputs: int) -> Iterator[Compiled]:
 
     CompilerError where there is no compiler, or where it finds anything to warn of.
     """
-    command = [*c_compiler(), *FLAGS]
+    chosen = compiler()
     (name,) = (file.removesuffix(".h") for file in files if file.endswith(".h"))
     with TemporaryDirectory() as directory:
         folder = Path(directory)
         for file, text in files.items():
             (folder / file).write_text(text, encoding="utf-8")
-        _run([*command, "-fPIC", "-shared", f"{name}.c", "-o", "library.so", "-lm"], folder)
-        _run([*command, f"{name}.c", f"{name}_selftest.c", "-o", "selftest", "-lm"], folder)
+        chosen.run([*FLAGS, "-fPIC", "-shared", f"{name}.c", "-o", "library.so", "-lm"], folder)
+        chosen.run([*FLAGS, f"{name}.c", f"{name}_selftest.c", "-o", "selftest", "-lm"], folder)
         yield Compiled(folder / "library.so", folder / "selftest", name, outputs)
 
 
@@ -106,14 +81,6 @@ def imported(text: str, name: str) -> ModuleType:
         module = module_from_spec(spec)
         spec.loader.exec_module(module)
     return module
-
-
-def _run(command: Sequence[str], folder: Path) -> None:
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", check=False)
-    if done.returncode != 0:
-        messages = done.stderr.splitlines()
-        first = next((line for line in messages if "error" in line), messages[0] if messages else "no message")
-        raise CompilerError(f"{command[0]} does not accept the generated C: {first}")
 
 
 def _pointer(values: NDArray[np.float64]) -> ctypes._Pointer[ctypes.c_double]:
