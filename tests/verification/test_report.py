@@ -1,9 +1,12 @@
 """The verdict of `verify`: what it says when all is well, and that it can say otherwise."""
 
+import re
+
 import pytest
 
 from wavesym.scene import Scene
 from wavesym.verification import checks
+from wavesym.verification.checks import CHECKS
 from wavesym.verification.report import verify
 
 
@@ -16,38 +19,59 @@ def drive(until=3, tolerance="1e-10", **outputs):
     )
 
 
-def rows(text):
-    header, *lines = text.split("\n\n")[0].splitlines()
-    columns = header.replace("at ", "at").split()
-    return [dict(zip(columns, line.split(), strict=True)) for line in lines]
+def found(text):
+    """The tables of a report, one for each check, as rows by column."""
+    tables = [block.splitlines() for block in text.split("\n\n") if block.startswith("scene ")]
+    assert len(tables) == len(CHECKS)
+    rows = []
+    for header, *lines in tables:
+        columns = re.split("  +", header)
+        rows.append([dict(zip(columns, re.split("  +", line), strict=True)) for line in lines])
+    return rows
 
 
 def test_all_is_well():
     text, passed = verify([drive(), drive(until=2)])
     assert passed
     assert text.isascii()
-    found = rows(text)
-    assert [row["output"] for row in found] == ["strain@0", "strain@1/3", "displacement@1"] * 2
-    for row in found:
-        assert row["verdict"] == "PASS"
+    assert max(map(len, text.splitlines())) <= 120
+    for check in CHECKS:
+        assert check.title in text
+    generated, integration, spacetime, invariants = found(text)
+    for table in (generated, integration, spacetime):
+        assert [row["of"] for row in table] == ["strain@0", "strain@1/3", "displacement@1"] * 2
+    for row in generated:
         assert max(float(row["C"]), float(row["NumPy"])) <= float(row["bound"])
-        assert float(row["at4N"]) <= float(row["allowed"]) <= 1e-6
+    for row in integration:
+        assert float(row["at 4N"]) <= float(row["allowed"]) <= 1e-6
         assert row["order"] in ("-", "3.9", "4.0", "4.1")
-    assert len({len(line) for line in text.split("\n\n")[0].splitlines()}) <= 2  # aligned: PASS and verdict end it
+    for row in spacetime:
+        assert float(row["extrapolated"]) <= float(row["allowed"]) <= 1e-6 < float(row["at 4N"])
+        assert row["order"] == "2.0"
+    assert [(row["of"], row["to"]) for row in invariants] == [(of, to) for to in "32" for of in ("momentum", "energy")]
+    for row in invariants:
+        assert float(row["reference"]) <= float(row["allowed"]) < 1e-12
+        assert float(row["NumPy"]) <= float(row["its bound"]) < 1e-8
+    assert {row["verdict"] for table in (generated, integration, spacetime, invariants) for row in table} == {"PASS"}
+    for block in text.split("\n\n"):
+        if block.startswith("scene "):  # aligned: PASS and verdict end it
+            assert len({len(line) for line in block.splitlines()}) <= 2
 
 
 def test_an_output_that_is_0_throughout():
     text, passed = verify([drive(until=2, velocity=["5/2"], displacement=[0])])
     assert passed
-    zero, other = rows(text)
-    assert [zero[column] for column in ("C", "NumPy", "bound", "at4N")] == ["0"] * 4
-    assert float(other["at4N"]) > 0
+    generated, integration, spacetime, _ = found(text)
+    assert [generated[0][column] for column in ("C", "NumPy", "bound")] == ["0"] * 3
+    assert integration[0]["at 4N"] == spacetime[0]["at 4N"] == "0"
+    assert float(integration[1]["at 4N"]) > 0
+    assert float(spacetime[1]["at 4N"]) > 0
 
 
 def test_a_closed_form_that_refuses_is_no_failure():
     text, passed = verify([drive(tolerance="1e-17")])
     assert passed
-    assert {row["C"] for row in rows(text)} == {"refused"}
+    assert {row["C"] for row in found(text)[0]} == {"refused"}
     assert "closed: loses" in text
 
 
@@ -82,7 +106,12 @@ def test_values_that_are_no_numbers_fail(monkeypatch):
     monkeypatch.setattr(checks, "files", tampered)
     text, passed = verify([drive()])
     assert not passed
-    assert [row["verdict"] for row in rows(text)] == ["FAIL", "PASS", "PASS"]
+    assert [[row["verdict"] for row in table] for table in found(text)] == [
+        ["FAIL", "PASS", "PASS"],
+        ["PASS"] * 3,
+        ["PASS"] * 3,
+        ["PASS"] * 2,
+    ]
 
 
 def test_an_integration_too_coarse_to_tell_fails(monkeypatch):

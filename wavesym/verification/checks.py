@@ -1,46 +1,68 @@
-"""The checks of `verify`: each compares one kind of evaluator with the reference, output by output.
+"""The checks of `verify`: evaluators against the reference, and the reference against what is not derived at all.
 
-A new evaluator or an invariant is one more function in `CHECKS`.
+A new one is one more `Check` in `CHECKS`.
 """
 
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from wavesym.emission.files import files
+from wavesym.emission.description import describe
+from wavesym.emission.files import EMITTERS, files
 from wavesym.errors import ToleranceError
+from wavesym.evaluators.choice import choose
+from wavesym.evaluators.reference import Reference as Exact
 from wavesym.mechanics.chain import chain
+from wavesym.scene import Scene
 from wavesym.verification.characteristics import COARSEST, Motion, integrate
 from wavesym.verification.compiled import compiled, imported
-from wavesym.verification.reference import Output, Reference
+from wavesym.verification.invariants import Balance, Evaluate, balances, values_per_window, watched
+from wavesym.verification.reference import Reference
+from wavesym.verification.refinement import Refinement, Solutions, shown
+from wavesym.verification.spacetime import Displaced, Instants, grid
 
 # the reference is rounded once
 _ROUNDED = 2.0**-53
 
-# the integration is refined until its own bound is as small as this, as long as it takes no more doubles than that
+# integrations are refined until their own bound is as small as this, as long as they take no more doubles than that,
+# or move no more points
 _FINE = 1e-6
 _MOST_DOUBLES = 10_000_000
+_MOST_MOVED = 2e8
+
+# central differences lag ever further behind: beyond this tau the grids would have to be finer
+_LONGEST = 60.0
+
+# of the instants away from fronts, so many are enough to begin with, and so many are looked at
+_FEWEST_INSTANTS, _MOST_INSTANTS = 20, 200
+
+# what is kept is looked at as long as it takes no more values at nodes, and no more windows of outputs
+_MOST_VALUES, _MOST_WINDOWS = 50_000, 240
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a check found for one output: cells of the table by column, and whether all is within what is allowed.
+    """What a check found for a subject, an output or another: cells by column, and whether all is as it may be.
 
     `note` is for what does not fit into a column.
     """
 
+    subject: str
     cells: Mapping[str, str]
     passed: bool
     note: str = ""
 
 
-Check = Callable[[Reference], Sequence[Outcome]]
-"""One outcome for every output."""
+@dataclass(frozen=True)
+class Check:
+    """A check, and what stands over the table of its outcomes."""
+
+    title: str
+    run: Callable[[Reference], Sequence[Outcome]]
 
 
 def generated(reference: Reference) -> list[Outcome]:
@@ -49,8 +71,8 @@ def generated(reference: Reference) -> list[Outcome]:
     try:
         made = files(scene, language="all")
     except ToleranceError as error:  # an evaluator that says where it ends has not failed
-        refused = Outcome({"C": "refused", "NumPy": "refused", "bound": "-"}, True, str(error))
-        return [refused] * len(reference.outputs)
+        cells = {"C": "refused", "NumPy": "refused", "bound": "-"}
+        return [Outcome(output.observable.name, cells, True, str(error)) for output in reference.outputs]
     bounds = [output["error_bound"] for output in json.loads(made[f"{scene.name}.json"])["outputs"]]
     numpy = imported(made[f"{scene.name}.py"], scene.name).evaluate(np.array(reference.taus))
     with compiled(made, len(reference.outputs)) as program:
@@ -61,48 +83,147 @@ def generated(reference: Reference) -> list[Outcome]:
     for output, bound, *values in zip(reference.outputs, bounds, c, numpy, strict=True):
         errors = [output.error(each) for each in values]
         allowed = 0.0 if output.zero else bound + _ROUNDED
-        cells = dict(zip(("C", "NumPy", "bound"), map(_shown, (*errors, bound)), strict=True))
-        outcomes.append(Outcome(cells, sound and all(error <= allowed for error in errors), note))
+        cells = dict(zip(("C", "NumPy", "bound"), map(shown, (*errors, bound)), strict=True))
+        passed = sound and all(error <= allowed for error in errors)
+        outcomes.append(Outcome(output.observable.name, cells, passed, note))
     return outcomes
 
 
 def integration(reference: Reference) -> list[Outcome]:
-    """Characteristics with N, 2N and 4N steps per unit of tau, against the bound they give themselves.
-
-    Where the error falls at least in proportion to the step, what lies between the last two solutions is more than the
-    error of the last. N is doubled until that is little.
-    """
-    system = chain(reference.scene)
+    """Characteristics with N, 2N and 4N steps per unit of tau; N is doubled until their own bound is little."""
+    scene = reference.scene
+    system = chain(scene)
 
     def motion(steps: int) -> Motion:
-        return integrate(system, reference.scene.pieces, reference.until, steps)
+        return integrate(system, scene.pieces, reference.until, steps)
+
+    def refined() -> list[Refinement]:
+        found = []
+        for output in reference.outputs:
+            coarse, half, quarter = (each.at(output.observable, reference.taus) for each in motions)
+            rounding = motions[-1].roundoff(output.observable)
+            found.append(Solutions((coarse, half, quarter), output.values, rounding, output.scale).plain())
+        return found
 
     steps = COARSEST
     motions = [motion(steps), motion(2 * steps), motion(4 * steps)]
-    while True:
-        outcomes = [_integrated(reference, output, steps, motions) for output in reference.outputs]
-        if not any(outcome.note for outcome in outcomes) or 2 * motions[-1].size > _MOST_DOUBLES:
-            return outcomes
+    while any(not each.between <= _FINE for each in refined()) and 2 * motions[-1].size <= _MOST_DOUBLES:
         steps *= 2
         motions = [*motions[1:], motion(4 * steps)]
+    return [
+        Outcome(output.observable.name, each.cells(steps), each.right)
+        if each.between <= _FINE
+        else Outcome(output.observable.name, each.cells(steps), False, _coarse(scene, "integration"))
+        for output, each in zip(reference.outputs, refined(), strict=True)
+    ]
 
 
-def _integrated(reference: Reference, output: Output, steps: int, motions: Sequence[Motion]) -> Outcome:
-    values = [motion.at(output.observable, reference.taus) for motion in motions]
-    errors = [output.error(each) for each in values]
-    between = float(np.max(np.abs(values[2] - values[1]))) / output.scale
-    rounding = motions[2].roundoff(output.observable) / output.scale
-    seen = [error for error in errors if error > rounding]
-    order = f"{math.log2(seen[-2] / seen[-1]):.1f}" if len(seen) > 1 else "-"
-    columns = ("N", "at N", "at 2N", "at 4N", "allowed", "order")
-    cells = dict(zip(columns, (str(steps), *map(_shown, (*errors, between + rounding)), order), strict=True))
-    if not between <= _FINE:
-        return Outcome(cells, False, f"{reference.scene.name}: the integration is too coarse to tell")
-    return Outcome(cells, errors[2] <= between + rounding)
+def spacetime(reference: Reference) -> list[Outcome]:
+    """Central differences with N, 2N and 4N cells a rod, at instants away from fronts.
+
+    As far as they can be had; where they stay coarse that is said, but no failure: what they allow is in the table.
+    """
+    scene = reference.scene
+    first = grid(scene)
+    until = min(reference.until, _LONGEST, _MOST_MOVED / first.finer(4).cost(1.0))
+    while len(first.instants(until)) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= _MOST_MOVED:
+        first = first.finer(2)
+    instants = _some(first.instants(until))
+    if not len(instants):
+        note = f"{scene.name}: to step between the fronts, central differences would take too long"
+        return [Outcome(output.observable.name, {"to": "refused"}, True, note) for output in reference.outputs]
+    truth = [np.array(values) for values in Exact(scene).values([k / first.cells for k in instants.tolist()])]
+
+    def motion(finer: int) -> Displaced:
+        return first.finer(finer).integrate(finer * instants)
+
+    def refined() -> list[Refinement]:
+        found = []
+        for k, output in enumerate(reference.outputs):
+            coarse, half, quarter = (each.values[k] for each in motions)
+            rounding = float(motions[-1].roundoff[k])
+            solutions = Solutions((coarse, half, quarter), truth[k], rounding, output.scale)
+            found.append(solutions.extrapolated() if first.aligned else solutions.wandering())
+        return found
+
+    finer = 1
+    motions = [motion(1), motion(2), motion(4)]
+    while any(not each.between <= _FINE for each in refined()) and first.finer(8 * finer).cost(until) <= _MOST_MOVED:
+        finer *= 2
+        motions = [*motions[1:], motion(4 * finer)]
+    return [
+        Outcome(
+            output.observable.name,
+            {"to": f"{until:.4g}", **each.cells(first.cells * finer)},
+            each.right,
+            "" if each.between <= _FINE else _coarse(scene, "space-time grid"),
+        )
+        for output, each in zip(reference.outputs, refined(), strict=True)
+    ]
 
 
-CHECKS: tuple[Check, ...] = (generated, integration)
+def invariants(reference: Reference) -> list[Outcome]:
+    """The balances of momentum and energy, in the reference itself and in generated NumPy."""
+    scene = reference.scene
+    outputs, values = values_per_window(scene)
+    windows = min(int(reference.until), _MOST_VALUES // values, _MOST_WINDOWS // outputs)
+    if windows < 1:
+        why = "its horizon is shorter than 1" if reference.until < 1 else "too many rods"
+        return [Outcome("momentum, energy", {"to": "refused"}, True, f"{scene.name}: no balances, as {why}")]
+    seen = watched(scene, windows)
+    exact = Exact(seen)
+    truth = balances(
+        seen,
+        lambda taus: np.array(exact.values(taus.tolist())),
+        [_ROUNDED * float(size.upper()) for size in exact.largest()],
+    )
+    note = ""
+    made: Sequence[Balance | None] = (None, None)
+    try:
+        made = balances(seen, *_numpy(seen))
+    except ToleranceError as error:
+        note = str(error)
+    outcomes = []
+    for right, ours in zip(truth, made, strict=True):
+        cells = {"to": str(windows), "reference": shown(right.error), "allowed": shown(right.allowed)}
+        cells |= {"NumPy": shown(ours.error), "its bound": shown(ours.allowed)} if ours else {"NumPy": "refused"}
+        passed = all(each.error <= each.allowed for each in (right, ours) if each)
+        outcomes.append(Outcome(right.name, cells, passed, note))
+    return outcomes
 
 
-def _shown(error: float) -> str:
-    return f"{error:.1e}" if error else "0"
+def _numpy(scene: Scene) -> tuple[Evaluate, list[float]]:
+    """The generated NumPy of a scene, and the proved errors of its outputs, absolute."""
+    name, chosen, reason = choose(scene)
+    text = EMITTERS[name].numpy_source(describe(scene, chosen, reason, ()), chosen)
+    return imported(text, scene.name).evaluate, [output.bound * output.largest for output in chosen.outputs]
+
+
+def _some(instants: Instants) -> Instants:
+    """No more than are looked at, evenly spread."""
+    count = min(len(instants), _MOST_INSTANTS)
+    return np.asarray(instants[np.linspace(0, len(instants) - 1, count).round().astype(int)])
+
+
+def _coarse(scene: Scene, what: str) -> str:
+    return f"{scene.name}: the {what} is too coarse to tell errors below {_FINE:.0e}"
+
+
+CHECKS = (
+    Check("Generated code, against its proved bound:", generated),
+    Check(
+        "Integration along characteristics with N, 2N and 4N steps per unit of tau. Allowed at 4N: the difference\n"
+        "from 2N, and rounding:",
+        integration,
+    ),
+    Check(
+        "Central differences in x and tau with N, 2N and 4N cells a rod, where no front is within a cell. Allowed:\n"
+        "the difference from what N and 2N extrapolate to (fronts off the grid: from N and 2N), and rounding:",
+        spacetime,
+    ),
+    Check(
+        "Momentum less impulse and energy less work of the whole chain at tau = 1, 2, ...: in the reference, and in\n"
+        "generated NumPy. Allowed is what the errors of their values come to:",
+        invariants,
+    ),
+)

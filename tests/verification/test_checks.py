@@ -1,0 +1,158 @@
+"""Every main check is made to fail: a coefficient, a sign in a template, a digit in a table, a wrong rule."""
+
+import re
+
+import pytest
+from flint import fmpq
+from jinja2 import FunctionLoader
+
+from wavesym.coefficients import table as tables
+from wavesym.coefficients.table import Function, full_table
+from wavesym.emission import rendering
+from wavesym.emission.files import files
+from wavesym.errors import ToleranceError
+from wavesym.evaluators.choice import choose
+from wavesym.mechanics.chain import chain
+from wavesym.scene import Scene
+from wavesym.verification import checks
+from wavesym.verification.node_law import differences
+from wavesym.verification.reference import reference
+from wavesym.verification.substitution import jumps, residuals
+
+DRIVE = Scene(
+    name="small",
+    system={"type": "drive", "m": 3, "kappa": [1, 2, 1], "inertia": [1, 1, 2, 1]},
+    load=[{"body": 1, "times": [0, "1/2"], "steps": [1, -1]}],
+    output={"until": 4, "strain": [0, "1/3"], "displacement": [1]},
+)
+BUILDING = Scene(
+    name="small",
+    system={"type": "building", "m": 2, "kappa": [1, "1/2", "1/2"], "base": "force"},
+    load=[{"times": [0], "a": [1], "b": [0]}],
+    output={"until": 9, "strain": ["1/2"], "velocity": [2]},
+)
+COLLISION = Scene(
+    name="small",
+    system={"type": "collision", "m": 4, "kappa": ["1/2", "1/3"], "velocity": [1, 0]},
+    output={"until": 5, "strain": [2], "velocity": ["1/2"], "displacement": [4]},
+)
+
+
+def verdicts(check, truth):
+    return [outcome.passed for outcome in check(truth)]
+
+
+@pytest.mark.parametrize("scene", [DRIVE, BUILDING, COLLISION], ids=["drive", "building", "collision"])
+def test_all_is_well(scene):
+    truth = reference(scene)
+    for check in checks.CHECKS:
+        assert all(verdicts(check.run, truth)), check.title
+
+
+def made_with(monkeypatch, evaluator, change=lambda made: made):
+    """Let the checks see code of one evaluator, its files changed."""
+    monkeypatch.setattr(checks, "files", lambda scene, language: change(files(scene, language, evaluator)))
+    monkeypatch.setattr(checks, "choose", lambda scene: choose(scene, evaluator))
+
+
+@pytest.mark.parametrize(
+    ("template", "right", "wrong"),
+    [
+        ("c/closed.c.j2", "sum += polynomial", "sum -= polynomial"),
+        ("numpy/closed.py.j2", "row[late] += polynomial", "row[late] -= polynomial"),
+        ("c/pieces.c.j2", "tau - centre[first_piece", "tau + centre[first_piece"),
+        ("numpy/pieces.py.j2", "powers[:, 1:] + powers[:, :1]", "powers[:, 1:] - powers[:, :1]"),
+        pytest.param(
+            "c/march.c.j2", "STRAIN ? leftward - rightward", "STRAIN ? leftward + rightward", marks=pytest.mark.slow
+        ),
+        pytest.param(
+            "numpy/march.py.j2",
+            "left - right if quantity == _STRAIN",
+            "left + right if quantity == _STRAIN",
+            marks=pytest.mark.slow,
+        ),
+    ],
+)
+def test_a_sign_in_a_template_is_seen(template, right, wrong, monkeypatch):
+    truth = reference(DRIVE)
+    language, evaluator = re.split(r"[/.]", template)[:2]
+    made_with(monkeypatch, evaluator)
+    assert all(verdicts(checks.generated, truth) + verdicts(checks.invariants, truth))
+    environment = rendering._environment()
+
+    def changed(name):
+        text = environment.loader.get_source(environment, name)[0]
+        assert name != template or right in text
+        return text.replace(right, wrong) if name == template else text
+
+    broken = environment.overlay(loader=FunctionLoader(changed))
+    monkeypatch.setattr(rendering, "_environment", lambda: broken)
+    assert not all(verdicts(checks.generated, truth))
+    assert all(verdicts(checks.invariants, truth)) == (language == "c")  # which look at NumPy
+
+
+def a_digit_changed(text, file):
+    """The same program with another fifth digit in the last long decimal of its tables that is not tiny."""
+    numbers = list(re.finditer(r"(?<![\w.])\d\.\d{12,}(?![\de])", text))
+    assert numbers, file
+    at = numbers[-1].start() + 5
+    return f"{text[:at]}{(int(text[at]) + 5) % 10}{text[at + 1 :]}"
+
+
+@pytest.mark.parametrize("file", ["small.c", "small.py"])
+@pytest.mark.parametrize("evaluator", ["closed", "pieces", pytest.param("march", marks=pytest.mark.slow)])
+def test_a_digit_in_a_generated_table_is_seen(evaluator, file, monkeypatch):
+    truth = reference(BUILDING)
+    made_with(monkeypatch, evaluator, lambda made: {**made, file: a_digit_changed(made[file], file)})
+    assert not all(verdicts(checks.generated, truth))
+
+
+def test_a_digit_in_the_generated_numpy_breaks_the_balances(monkeypatch):
+    truth = reference(DRIVE)
+    right = checks.imported
+    monkeypatch.setattr(checks, "imported", lambda text, name: right(a_digit_changed(text, name), name))
+    assert not all(verdicts(checks.invariants, truth))
+
+
+@pytest.mark.parametrize("scene", [DRIVE, COLLISION], ids=["drive", "collision"])
+def test_a_wrong_rule_is_seen_by_all_that_is_not_derived(scene, monkeypatch):
+    """Tables of which every start is a little wrong, and all that follows from it."""
+    right = tables.solve
+
+    def wrong(own, right_side, jump):
+        return right(own, right_side, jump + fmpq(1, 100000))
+
+    monkeypatch.setattr(tables, "solve", wrong)
+    system = chain(scene)
+    table = full_table(system, 4, fmpq(0))
+    assert list(differences(system, table))
+    assert list(jumps(system, table))
+    truth = reference(scene)
+    assert not all(verdicts(checks.integration, truth))
+    assert not all(verdicts(checks.spacetime, truth))
+    assert not all(verdicts(checks.invariants, truth))
+
+
+@pytest.mark.parametrize("power", [0, 1])
+def test_a_coefficient_of_a_table_is_seen(power):
+    system = chain(BUILDING)
+    table = full_table(system, 6, fmpq(0))
+    assert not [*differences(system, table), *residuals(system, table), *jumps(system, table)]
+    row = [row for row in table.rows() if row.power == power][-1]
+    table.responses[row.source][Function(row.function, row.rod)][row.interval - 1][row.rate][power] += fmpq(1, 10**12)
+    assert list(differences(system, table))
+    assert [*residuals(system, table), *jumps(system, table)]
+
+
+def test_a_refusal_is_no_failure(monkeypatch):
+    truth = reference(DRIVE)
+
+    def refuse(scene, *_, **__):
+        raise ToleranceError("small: cannot be met")
+
+    monkeypatch.setattr(checks, "files", refuse)
+    monkeypatch.setattr(checks, "choose", refuse)
+    for outcome in (*checks.generated(truth), *checks.invariants(truth)):
+        assert outcome.passed
+        assert outcome.cells["NumPy"] == "refused"
+        assert outcome.note == "small: cannot be met"

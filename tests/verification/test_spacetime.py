@@ -1,0 +1,182 @@
+"""Central differences: exact where they should be, sharp at fronts, of the order they claim, and able to say no."""
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from scipy.special import eval_laguerre
+
+from tests.evaluators.drawn import scenes
+from wavesym.evaluators.reference import Reference as Exact
+from wavesym.rivals.problem import Event, Problem, Watch
+from wavesym.scene import Scene
+from wavesym.verification import checks, spacetime
+from wavesym.verification.reference import reference
+from wavesym.verification.spacetime import Grid, grid
+
+
+def building(load, until=6, base="ground", **outputs):
+    system = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": base}
+    return Scene(name="scene", system=system, load=[load], output={"until": until, **outputs})
+
+
+ALL_KINDS = {"strain": ["1/3", "1-", "1+", 0, 2], "velocity": [0, 1, "9/7"], "displacement": ["2/3", 2]}
+BUILDING = building({"times": [0, "5/2", "13/3"], "a": [1, "1/2", 0], "b": [0, "-1/3", "1/7"]}, **ALL_KINDS)
+FORCE = building({"times": [0, "5/2"], "a": [1, "1/2"], "b": [0, "-1/3"]}, base="force", **ALL_KINDS)
+COLLISION = Scene(
+    name="scene",
+    system={"type": "collision", "m": 4, "kappa": ["1/10", "2"], "velocity": [1, "-1/2"]},
+    output={"until": 7, "strain": ["1-", "1+", 2], "velocity": ["1/2", 3], "displacement": [4]},
+)
+DRIVE = Scene(
+    name="scene",
+    system={"type": "drive", "m": 2, "kappa": [1, "1/2"], "inertia": [1, 2, 1]},
+    load=[{"body": 1, "times": [0, "1/3"], "steps": [1, -2]}, {"body": 3, "times": ["10/7"], "steps": [1]}],
+    output={"until": 7, "strain": ["1/2", "1-", 2], "velocity": [1, "5/4"], "displacement": [0]},
+)
+FOUR = pytest.mark.parametrize("scene", [BUILDING, FORCE, COLLISION, DRIVE], ids=["ground", "force", "impact", "drive"])
+
+
+def errors(first, finer, scene, until):
+    """The largest error of every output on grids finer than the first."""
+    instants = first.instants(until)
+    truth = np.array(Exact(scene).values([k / first.cells for k in instants.tolist()]))
+    found = [first.finer(times).integrate(times * instants).values for times in finer]
+    return [np.abs(values - truth).max(axis=1) for values in found]
+
+
+@FOUR
+def test_the_order_is_two(scene):
+    first = grid(scene)
+    assert first.aligned
+    for coarse, fine in pairwise(errors(first, (1, 2, 4), scene, 6.0)):
+        seen = fine > 1e-10
+        assert np.count_nonzero(seen) > len(seen) / 2
+        np.testing.assert_allclose(np.log2(coarse[seen] / fine[seen]), 2, atol=0.1)
+
+
+@FOUR
+def test_what_is_extrapolated_is_of_order_four(scene):
+    assert all(outcome.passed for outcome in checks.spacetime(reference(scene)))
+    first = grid(scene)
+    instants = first.instants(6.0)
+    truth = np.array(Exact(scene).values([k / first.cells for k in instants.tolist()]))
+    n, n2, n4 = (first.finer(times).integrate(times * instants).values for times in (1, 2, 4))
+    coarse, fine = (np.abs(b + (b - a) / 3 - truth).max(axis=1) for a, b in ((n, n2), (n2, n4)))
+    seen = fine > 1e-10
+    np.testing.assert_allclose(np.log2(coarse[seen] / fine[seen]), 4, atol=0.5)
+
+
+def test_a_struck_bar():
+    """A mass on a bar fixed at its other end, after an impulse: Boussinesq's solution, by Laguerre functions."""
+    alpha, until = 1.0, 8.0
+
+    def displacement(tau):
+        """The response to a unit step of force is the integral of the velocity after an impulse."""
+        w = tau - 2 * np.arange(int(tau // 2) + 1)
+        return sum(np.exp(-alpha * each) * eval_laguerre(k, 2 * alpha * each) for k, each in enumerate(w))
+
+    problem = Problem(
+        inertia=np.array([1.0, 0.0]),
+        alpha=np.zeros(2),
+        beta=np.array([2 * alpha, 0.0]),
+        damping=np.array([0.0, 1.0]),
+        rods=np.zeros(1),
+        events=(Event(Fraction(0), 0, (1.0, 0.0, 0.0)),),
+        watches=(Watch("strain", 1, 0.0),),
+        until=until,
+    )
+    found = []
+    for cells in (20, 40, 80):
+        instants = Grid(problem, 20).instants(until) * (cells // 20)
+        # (2.4) of the mass: its acceleration is 1 + alpha dU/dx under a step, so its velocity after an impulse
+        velocity = 1 + alpha * Grid(problem, cells).integrate(instants).values[0]
+        exact = [displacement(k / cells) - (displacement(k / cells - 2) if k >= 2 * cells else 0) for k in instants]
+        found.append(np.abs(velocity - exact).max())
+    assert found[-1] < 2e-3
+    np.testing.assert_allclose(np.log2(np.array(found[:-1]) / found[1:]), 2, atol=0.1)
+
+
+def test_a_front_is_as_sharp_as_it_is():
+    """A step of force at the base sends a step of strain up: one cell before it nothing, one cell after it all."""
+    scene = building({"times": [0], "a": [1], "b": [0]}, base="force", strain=["1/2"], velocity=["1/2"], until=1)
+    for cells in (16, 64):
+        half = cells // 2
+        around = np.array([half - 1, half, half + 1])
+        strain, velocity = Grid(grid(scene).problem, cells).integrate(around).values
+        np.testing.assert_allclose(strain, [0, 2, 4], atol=1e-12)
+        np.testing.assert_allclose(velocity, [0, -2, -4], atol=1e-12)
+        assert not set(around[1:2]) & set(Grid(grid(scene).problem, cells).instants(1.0))
+        assert {half - 1, half + 1} <= set(Grid(grid(scene).problem, cells).instants(1.0))
+
+
+def test_fronts_off_the_grid_are_kept_away_from_and_allowed_for():
+    scene = building({"times": ["517/1009"], "a": [1], "b": [0]}, base="force", strain=["1/2"], velocity=[1], until=5)
+    first = grid(scene)
+    assert not first.aligned
+    front = 517 / 1009 + 0.5
+    assert min(abs(k / first.cells - front) for k in first.instants(5.0)) >= 1 / first.cells
+    for outcome in checks.spacetime(reference(scene)):
+        assert outcome.passed
+        assert "extrapolated" not in outcome.cells
+
+
+def test_places_off_the_grid_are_read_off_a_polynomial():
+    scene = building(
+        {"times": [0], "a": [1], "b": [0]}, strain=["0.1234"], velocity=["0.4321"], displacement=["1.9877"]
+    )
+    for outcome in checks.spacetime(reference(scene)):
+        assert outcome.passed
+        assert float(outcome.cells["extrapolated"]) < 1e-7
+        assert outcome.cells["order"] == "2.0"
+
+
+@settings(max_examples=20)
+@given(scenes())
+def test_agreement_with_the_reference(scene):
+    for outcome in checks.spacetime(reference(scene)):
+        assert outcome.passed, outcome
+
+
+def changed(name, x, factor):
+    def change(problem):
+        values = getattr(problem, name).copy()
+        values[x] *= factor
+        return replace(problem, **{name: values})
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("scene", "change"),
+    [
+        pytest.param(DRIVE, changed("alpha", 1, 1 + 1e-5), id="alpha"),
+        pytest.param(DRIVE, changed("beta", 1, -0.5), id="sign"),
+        pytest.param(COLLISION, changed("beta", 2, 1 + 1e-5), id="contact"),
+        pytest.param(COLLISION, changed("rods", 3, 1 + 1e-5), id="velocity"),
+        pytest.param(BUILDING, changed("inertia", 2, 1 + 1e-5), id="inertia"),
+        pytest.param(FORCE, lambda problem: replace(problem, events=problem.events[:-1]), id="load"),
+    ],
+)
+def test_a_wrong_problem_is_caught(scene, change, monkeypatch):
+    truth = reference(scene)
+    assert all(outcome.passed for outcome in checks.spacetime(truth))
+    right = spacetime.scene_problem
+    monkeypatch.setattr(spacetime, "scene_problem", lambda scene: change(right(scene)))
+    assert not all(outcome.passed for outcome in checks.spacetime(truth))
+
+
+def test_what_would_take_too_long_is_said(monkeypatch):
+    truth = reference(DRIVE)
+    monkeypatch.setattr(checks, "_MOST_MOVED", 5e6)
+    shorter = checks.spacetime(truth)
+    assert all(outcome.passed and float(outcome.cells["to"]) < 7 for outcome in shorter)
+    monkeypatch.setattr(checks, "_FINE", 1e-12)
+    assert all("too coarse to tell errors below 1e-12" in outcome.note for outcome in checks.spacetime(truth))
+    monkeypatch.setattr(checks, "_MOST_MOVED", 1e3)
+    refused = checks.spacetime(truth)
+    assert all(outcome.passed and "too long" in outcome.note for outcome in refused)
+    assert {outcome.cells["to"] for outcome in refused} == {"refused"}
