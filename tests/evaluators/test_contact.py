@@ -3,6 +3,7 @@
 from fractions import Fraction
 
 import numpy as np
+import pytest
 from scipy.optimize import brentq
 
 import wavesym
@@ -20,8 +21,9 @@ def test_the_papers_collision():
     assert end.digits == "8.9018784785056660529"  # numerics, section 8; the paper reads 8.85 off its figure
 
 
-def test_the_strain_is_zero_there_and_negative_before():
-    scene = collision(["1/7", "1/5", "2/3"], [1, "1/4", -1], until=12, strain=[2, 4])
+@pytest.mark.parametrize("kappa", [["1/7", "1/5", "2/3"], ["1/5", "1000001/5000000", "1/5"]])
+def test_the_strain_is_zero_there_and_negative_before(kappa):
+    scene = collision(kappa, [1, "1/4", -1], until=12, strain=[2, 4])
     response = wavesym.evaluator(scene)
     ends = {end.x: end.double for end in contact_ends(scene)}
     for x in (2, 4):
@@ -45,3 +47,9 @@ def test_what_cannot_reach_an_output_is_not_reported():
 
 def test_bodies_at_one_speed_do_not_collide():
     assert contact_ends(collision(["1/10", "1/5"], [1, 1])) == ()
+
+
+def test_rates_that_nearly_meet_move_the_end_no_further_than_they_differ():
+    (equal,) = contact_ends(collision(["1/5", "1/5"], [1, "-1/2"]))
+    (near,) = contact_ends(collision(["1/5", "2000000001/10000000000"], [1, "-1/2"]))
+    assert 0 < abs(near.double - equal.double) < 1e-7

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
+from math import factorial
 
-from flint import arb, ctx, fmpq
+from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.coefficients.increments import Increment, apply, start, trimmed
 from wavesym.derivation.rule import DERIVATIVE
@@ -90,8 +91,8 @@ def _first_return(strain: Signal, until: fmpq) -> arb | None:
             if not start < 0:  # over zero by a jump, or on it
                 return arb(piece.start)
         opening = _not_compressed(piece, calm, end - piece.start)
-        if opening is not None:
-            return arb(piece.start) + opening
+        if opening is None or opening.is_finite():
+            return None if opening is None else arb(piece.start) + opening
     return arb.pos_inf()
 
 
@@ -115,15 +116,69 @@ def _compressed_at_first(increment: Increment) -> fmpq | None:
 
 
 def _not_compressed(piece: Segment, low: fmpq, high: fmpq) -> arb | None:
-    """The first interval of width `_WIDTH`, a ball in u, where the strain is not certainly negative."""
+    """The first interval of width `_WIDTH`, a ball in u, where the strain is not certainly negative; infinite for none.
+
+    Where families cancel, as for nearly equal rates, only their sum tells: it is searched as a power series as soon as
+    an interval is short for the fastest of them. None where the working precision does not tell.
+    """
+    fastest = max(piece.families, default=fmpq(0))
     stack = [(low, high)]
     while stack:
         low, high = stack.pop()
-        interval = arb(low).union(arb(high))
-        if piece.at(interval) < 0:
+        if piece.at(arb(low).union(arb(high))) < 0:
             continue
-        if high - low < _WIDTH:
-            return interval
+        if fastest * (high - low) <= 1:
+            opening = _zero(_Series.of(piece.shifted(low), high - low), high - low)
+            if opening is None or opening.is_finite():
+                return None if opening is None else arb(low) + opening
+            continue
         middle = (low + high) / 2
         stack += [(middle, high), (low, middle)]
-    return None
+    return arb.pos_inf()
+
+
+@dataclass(frozen=True)
+class _Series:
+    """A strain on a short interval: |strain - polynomial| <= error."""
+
+    polynomial: arb_poly
+    error: arb
+
+    @staticmethod
+    def of(families: dict[fmpq, arb_poly], length: fmpq) -> _Series:
+        """sum exp(-g u) P_g(u) on [0, length], with g length <= 1, cut off where that is less than the precision."""
+        terms = 2
+        while factorial(terms) >> ctx.prec == 0:
+            terms += 1
+        total, error = arb_poly(), arb(0)
+        for rate, polynomial in families.items():
+            g = arb(rate)
+            total += polynomial * arb_poly([(-g) ** k / factorial(k) for k in range(terms)])
+            cut = (g * arb(length)) ** terms / factorial(terms)  # the exponential series alternates
+            error += cut * sum((abs(c) * arb(length) ** k for k, c in enumerate(polynomial.coeffs())), arb(0))
+        return _Series(total, error.upper())
+
+    def at(self, u: arb) -> arb:
+        """An enclosure of the strain on an interval."""
+        return self.polynomial(u) + arb(0, self.error)
+
+    @property
+    def vague(self) -> arb:
+        """A radius beyond which a value at a point tells nothing: the size of the series at a width below `_WIDTH`."""
+        return sum((abs(c).upper() for c in self.polynomial.coeffs()), arb(0)) * arb(_WIDTH) / 2**10
+
+
+def _zero(series: _Series, length: fmpq) -> arb | None:
+    """The first interval of width `_WIDTH` where a series is not certainly negative; infinite or None as above."""
+    stack = [(fmpq(0), length)]
+    while stack:
+        low, high = stack.pop()
+        interval = arb(low).union(arb(high))
+        if series.at(interval) < 0:
+            continue
+        if high - low < _WIDTH:
+            here = series.at(arb(low))
+            return None if here.contains(0) and here.rad() > series.vague else interval
+        middle = (low + high) / 2
+        stack += [(middle, high), (low, middle)]
+    return arb.pos_inf()
