@@ -1,9 +1,15 @@
 """generated/ holds what would be made now; `make generated` mends it."""
 
+import re
+import shlex
+import subprocess
+import sys
+from importlib.resources import files as files_of
 from pathlib import Path
 
 import pytest
 
+from wavesym.cli import main
 from wavesym.compiler import published, tables_text
 from wavesym.emission.files import files
 from wavesym.scene import Scene
@@ -28,3 +34,44 @@ def test_the_errata_are_what_is_found_now():
 
 def test_nothing_else_is_kept():
     assert sorted(path.name for path in KEPT.iterdir()) == sorted([*EXAMPLES, "errata.md"]), "make generated"
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_check_holds_what_is_kept(name, capsys):
+    assert main(["generate", name, "-o", str(KEPT / name), "--language", "all", "--check"]) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+def test_check_names_what_is_wrong_and_the_command_it_prints_mends_it(tmp_path, monkeypatch, capsys):
+    """Changed, absent and orphaned files, in a folder whose name a shell would take apart."""
+    folder, source = tmp_path / "it's $(here)", tmp_path / "my scene.toml"
+    folder.mkdir()
+    source.write_text((files_of("wavesym.scene") / "builtin" / "drive_m1.toml").read_text())
+    monkeypatch.chdir(tmp_path)
+    request = ["generate", source.name, "-o", folder.name, "--evaluator", "closed"]
+    assert main(request) == 0
+    assert main([*request, "--check"]) == 0
+    capsys.readouterr()
+    other = folder / "other.txt"
+    other.write_text("not mine")
+    (folder / "drive_m1_folder").mkdir()
+    (folder / "drive_m1.h").unlink()
+    (folder / "drive_m1.c").write_bytes((folder / "drive_m1.c").read_bytes().replace(b"0.5", b"0.6", 1) + b"\xff")
+    (folder / "drive_m1.py").write_text("of an earlier time")
+    before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
+    assert main([*request, "--check"]) == 1
+    found, warned = capsys.readouterr()
+    assert not warned
+    assert {path: path.stat().st_mtime_ns for path in folder.rglob("*")} == before
+    named = [line for line in found.splitlines() if re.match("changed|missing|orphaned", line)]
+    place = folder.name
+    assert named == [f"changed: {place}/drive_m1.c", f"missing: {place}/drive_m1.h", f"orphaned: {place}/drive_m1.py"]
+    assert "\n-" in found
+    assert "\n+" in found
+    last = found.splitlines()[-1]
+    assert last.startswith("to mend: rm -- ")
+    command = last.removeprefix("to mend: ").replace("wavesym ", f"{shlex.quote(sys.executable)} -m wavesym ", 1)
+    assert subprocess.run(command, shell=True, capture_output=True, check=False).returncode == 0
+    assert main([*request, "--check"]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert other.read_text() == "not mine"

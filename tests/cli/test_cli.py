@@ -109,7 +109,7 @@ def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(f"  {command} " in text for command in COMMANDS)
 
 
-LONG = ("chart", "stability")  # their examples run for a minute and more
+LONG = ("chart", "stability")  # their examples have no use for a stand-in; tests/test_documents.py runs all as they are
 
 
 def example(command: str, capsys: pytest.CaptureFixture[str]) -> list[str]:
@@ -125,16 +125,6 @@ def test_every_command_has_an_example_that_works(
     command: str, compiler: Compiler, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(example(command, capsys)) == 0
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("command", LONG)
-def test_long_examples_work_too(
-    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert main(example(command, capsys)) == 0
-    assert list(tmp_path.rglob("*.svg"))
 
 
 def test_scenes_lists_what_is_built_in(capsys: pytest.CaptureFixture[str]) -> None:

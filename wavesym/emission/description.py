@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from textwrap import wrap
 
+import numpy as np
 from flint import fmpq
 
 from wavesym.emission.literals import c_literal, literal
@@ -72,7 +73,7 @@ def describe(scene: Scene, evaluator: Evaluator, reason: str, contacts: Sequence
         real="double" if real is DOUBLE else "float",
         numpy_real="float64" if real is DOUBLE else "float32",
         reason=reason,
-        outputs=tuple(Output(output.name, literal(output.bound)) for output in evaluator.outputs),
+        outputs=tuple(Output(output.name, literal(_not_below(output.bound, DOUBLE))) for output in evaluator.outputs),
         output_count=str(len(evaluator.outputs)),
         tau_max=literal(evaluator.tau_max, real),
         c_tau_max=c_literal(evaluator.tau_max, real),
@@ -83,7 +84,9 @@ def describe(scene: Scene, evaluator: Evaluator, reason: str, contacts: Sequence
 
 
 def _not_below(value: float, real: Real) -> float:
-    return real.not_below(rational(value))
+    """The smallest number not below a bound; the largest for an infinite one, which no program can write down."""
+    largest = float(np.finfo(np.float64 if real is DOUBLE else np.float32).max)
+    return real.not_below(rational(value)) if value <= largest else largest
 
 
 def _contact(end: ContactEnd, real: Real) -> Contact:

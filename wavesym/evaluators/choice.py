@@ -7,10 +7,10 @@ from typing import NamedTuple, Protocol
 
 from flint import fmpq
 
-from wavesym.errors import CostError, ToleranceError
-from wavesym.evaluators.closed import ClosedForm, closed_form
-from wavesym.evaluators.doubles import nearest, rational
-from wavesym.evaluators.march import MarchEvaluator, marched
+from wavesym.errors import CostError, RangeError
+from wavesym.evaluators.closed import ClosedForm, closed_form, refuse_many
+from wavesym.evaluators.doubles import rational
+from wavesym.evaluators.march import MarchEvaluator, marched, unmet
 from wavesym.evaluators.pieces import Pieces, pieces
 from wavesym.evaluators.reals import REALS, Real
 from wavesym.evaluators.signal import signals
@@ -76,7 +76,8 @@ class Choice(NamedTuple):
 def choose(scene: Scene, name: str = "auto", precision: str = "double") -> Choice:
     """The evaluator `name` of a scene, or with "auto" the cheapest that meets its tolerance.
 
-    ToleranceError where none does: it says what can be had. CostError where one is asked for that would cost too much.
+    ToleranceError where none does: it says what can be had. CostError, RangeError where one is asked for that would
+    cost too much or need numbers beyond those of its format.
     """
     real = REALS[precision]
     tolerance = rational(scene.output.tolerance)
@@ -87,23 +88,29 @@ def choose(scene: Scene, name: str = "auto", precision: str = "double") -> Choic
             break  # it takes as long for a value as for all windows before it
         try:
             evaluator = MAKERS[each](scene, real, name != "auto")
-        except (CostError, OverflowError):
+        except CostError:
             if name != "auto":
                 raise
             refused.append(f"{each}: costs too much")
+            continue
+        except OverflowError:
+            if name != "auto":
+                raise RangeError(f"output: {each} needs numbers beyond the largest in {precision} precision") from None
+            refused.append(f"{each}: numbers beyond the largest in {precision} precision")
             continue
         if rational(min(evaluator.error_bound, 2.0)) <= tolerance:
             found.append((each, evaluator))
         else:
             refused.append(evaluator.shortfall(tolerance))
     if not found:
-        raise ToleranceError(f"{scene.name}: tolerance {nearest(tolerance):g} cannot be met: {'; '.join(refused)}")
+        raise unmet(tolerance, "; ".join(refused))
     name, best = min(found, key=lambda one: one[1].work)
     dearer = [f"{evaluator.summary}, takes longer" for _, evaluator in found if evaluator is not best]
     return Choice(name, best, "; ".join([*refused, *dearer, best.summary]))
 
 
 def _closed(scene: Scene, real: Real, asked: bool) -> ClosedForm:
+    refuse_many(scene, 1e5 if asked else _WORTH_TRYING)
     merged = signals(scene) if asked else signals(scene, _WORTH_TRYING)
     return closed_form(merged, real.not_below(rational(scene.output.until)), real)
 

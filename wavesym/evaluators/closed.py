@@ -24,10 +24,12 @@ from itertools import pairwise
 from flint import arb, arb_poly, fmpq
 
 from wavesym.coefficients.increments import Increment
+from wavesym.errors import CostError
 from wavesym.evaluators.ball import largest, polynomials, segments, shifted
 from wavesym.evaluators.doubles import bound, rational
 from wavesym.evaluators.reals import DOUBLE, Real
 from wavesym.evaluators.signal import Signal
+from wavesym.scene import Scene
 
 _EXP = 20  # an exponential, in multiplications
 # all that is of second order in u, as long as no factor of u reaches 2**40
@@ -120,6 +122,19 @@ class ClosedForm:
             middle = self.real.nearest(rational(start) / 2 + rational(end) / 2)
             points |= {middle, self.real.next_to(end, start)}
         return sorted(points)
+
+
+def refuse_many(scene: Scene, most: float) -> None:
+    """CostError where loads would bring increments to the outputs more than about `most` times.
+
+    The first load of each source is not counted: what that costs is known from its table.
+    """
+    until = scene.output.until
+    first = {piece.source: piece.time for piece in reversed(scene.pieces)}
+    later = [piece.time for piece in scene.pieces if first[piece.source] < piece.time <= until]
+    windows = sum(float(until - time) + 1 for time in later)
+    if (arrivals := 2 * len(scene.outputs) * windows) > most:
+        raise CostError(f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected")
 
 
 def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) -> ClosedForm:

@@ -7,7 +7,11 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
+from wavesym.errors import RangeError
+
 UNIT_ROUNDOFF = fmpq(1, 2**53)
+_FAR = 4096  # no double has an exponent like this
+_OVERFLOW = arb(2**1024 - 2**970)  # and all beyond round to no double
 
 
 def rational(value: float | Fraction) -> fmpq:
@@ -21,8 +25,11 @@ def fraction(value: fmpq | Fraction) -> Fraction:
 
 
 def nearest(value: fmpq) -> float:
-    """The double nearest to an exact number, ties to even. OverflowError beyond the largest double."""
-    return int(value.p) / int(value.q)
+    """The double nearest to an exact number, ties to even. RangeError beyond the largest double."""
+    try:
+        return int(value.p) / int(value.q)
+    except OverflowError:
+        raise RangeError("output: a number beyond the largest double, about 1.8e308, would be needed") from None
 
 
 def not_below(value: fmpq) -> float:
@@ -32,7 +39,12 @@ def not_below(value: fmpq) -> float:
 
 
 def _exact(point: arb) -> fmpq:
+    """The number itself; far beyond the doubles another that is too large or too small for them as well."""
     mantissa, exponent = (int(part) for part in point.man_exp())
+    if abs(exponent) > _FAR and mantissa:  # exp(-1e300) has more digits than there is memory
+        sign, size = (1 if mantissa > 0 else -1), mantissa.bit_length() + exponent
+        if abs(size) > _FAR:
+            return fmpq(sign << _FAR) if size > 0 else fmpq(sign, 1 << _FAR)
     return fmpq(mantissa << exponent) if exponent >= 0 else fmpq(mantissa, 1 << -exponent)
 
 
@@ -62,6 +74,16 @@ def bound(ball: arb) -> float:
 
 
 def rounded(ball: arb) -> float | None:
-    """The double that everything in the ball rounds to, None where there is not one."""
-    low, high = nearest(_exact(ball.lower())), nearest(_exact(ball.upper()))
+    """The double that everything in the ball rounds to, None where there is not one.
+
+    RangeError where all of it is beyond the largest double.
+    """
+    if not ball.is_finite():
+        return None
+    try:
+        low, high = nearest(_exact(ball.lower())), nearest(_exact(ball.upper()))
+    except RangeError:
+        if abs(ball).lower() < _OVERFLOW:  # some of it is not
+            return None
+        raise
     return low if low == high else None

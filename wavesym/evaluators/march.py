@@ -17,10 +17,10 @@ from flint import arb, fmpq
 
 from wavesym.errors import CostError, ToleranceError
 from wavesym.evaluators.doubles import bound, nearest, rational
-from wavesym.evaluators.march_bound import judge
+from wavesym.evaluators.march_bound import Verdict, judge
 from wavesym.evaluators.march_operator import Operator
 from wavesym.evaluators.march_plan import Plan, plan
-from wavesym.evaluators.march_run import operators
+from wavesym.evaluators.march_run import operator_count, operators
 from wavesym.evaluators.reals import DOUBLE, Real
 from wavesym.scene import Scene
 
@@ -28,6 +28,7 @@ _HIGHEST_DEGREE = 2000
 _MOST_WORK = 2e10  # nodes * coefficients * windows, ten minutes or so
 _LARGEST_STATE = 1 << 22  # bytes; programs keep it on the stack
 _OVERHEAD = 1000  # of a window, in units of a coefficient
+_SETTLED = 0.8  # a bound that a higher degree does not bring below so much of it is left as it is
 
 
 @dataclass(frozen=True)
@@ -107,10 +108,13 @@ def march(scene: Scene, real: Real = DOUBLE) -> MarchEvaluator:
     made = marched(scene, real)
     tolerance = rational(scene.output.tolerance)
     if not (math.isfinite(made.error_bound) and rational(made.error_bound) <= tolerance):
-        raise ToleranceError(
-            f"{scene.name}: tolerance {nearest(tolerance):g} cannot be met: {made.shortfall(tolerance)}"
-        )
+        raise unmet(tolerance, made.shortfall(tolerance))
     return made
+
+
+def unmet(tolerance: fmpq, why: str) -> ToleranceError:
+    """The error that says that a tolerance cannot be met."""
+    return ToleranceError(f"output.tolerance: {nearest(tolerance):g} cannot be met: {why}")
 
 
 def marched(scene: Scene, real: Real = DOUBLE, degree: int | None = None) -> MarchEvaluator:
@@ -119,21 +123,25 @@ def marched(scene: Scene, real: Real = DOUBLE, degree: int | None = None) -> Mar
     if degree is not None:
         return _made(prepared, degree, real)[0]
     degree = _first_degree(prepared, real)
+    before = math.inf
     while True:
         _refuse_long(prepared, degree)
-        made, enough = _made(prepared, degree, real)
-        if enough:
+        made, verdict = _made(prepared, degree, real)
+        # where bodies are very light, what is lost is mostly rounding that no degree mends
+        settled = verdict.truncated <= verdict.rounded or _SETTLED * before < made.error_bound < math.inf
+        if verdict.quiet and settled:
             return made
+        before = made.error_bound
         degree += degree // 6
 
 
-def _made(prepared: Plan, degree: int, real: Real) -> tuple[MarchEvaluator, bool]:
+def _made(prepared: Plan, degree: int, real: Real) -> tuple[MarchEvaluator, Verdict]:
     verdict = judge(prepared, degree, nearest(real.roundoff))
     outputs = tuple(
         MarchOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)
         for output, error, size in zip(prepared.outputs, verdict.bounds, verdict.sizes, strict=True)
     )
-    return MarchEvaluator(prepared, degree, real, outputs), verdict.quiet and verdict.truncated <= verdict.rounded
+    return MarchEvaluator(prepared, degree, real, outputs), verdict
 
 
 def _first_degree(prepared: Plan, real: Real) -> int:
@@ -146,10 +154,22 @@ def _first_degree(prepared: Plan, real: Real) -> int:
 
 def _refuse_long(prepared: Plan, degree: int) -> None:
     work = prepared.windows * len(prepared.panels) * (_OVERHEAD + len(prepared.junctions) * degree)
-    if degree > _HIGHEST_DEGREE or work > _MOST_WORK:
-        raise CostError(f"march: degree {degree} to tau = {prepared.tau_max:g} would cost {work:.0e} operations")
+    if degree > _HIGHEST_DEGREE:
+        raise CostError(
+            f"output.until: march: bodies of rates up to {nearest(prepared.rate):g} would need polynomials of degree "
+            f"{degree:.2g} to tau = {prepared.tau_max:g}, at most {_HIGHEST_DEGREE} expected"
+        )
+    bounding = operator_count(prepared) * degree**3
+    if work + bounding > _MOST_WORK:
+        raise CostError(
+            f"output.until: march: degree {degree} to tau = {prepared.tau_max:g} would cost {work + bounding:.0e} "
+            f"operations, at most {_MOST_WORK:.0e} expected"
+        )
     if 8 * _state(prepared, degree) > _LARGEST_STATE:
-        raise CostError(f"march: its state would have {8 * _state(prepared, degree):.0e} bytes")
+        raise CostError(
+            f"system.m: march: its state would have {8 * _state(prepared, degree):.0e} bytes, at most "
+            f"{_LARGEST_STATE:.0e} expected"
+        )
 
 
 def _state(prepared: Plan, degree: int) -> int:

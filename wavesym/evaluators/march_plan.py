@@ -175,7 +175,7 @@ def _panels(times: Iterable[fmpq]) -> tuple[Panel, ...]:
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise CostError(
-            f"march: the load times have {len(cuts) - 1} different fractional parts, at most {MOST_PANELS} expected"
+            f"load: march: the times have {len(cuts) - 1} different fractional parts, at most {MOST_PANELS} expected"
         )
     return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
 

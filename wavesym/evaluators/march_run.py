@@ -84,9 +84,17 @@ class Run:
 
 def operators(plan: Plan, degree: int) -> dict[fmpq, Operator]:
     """One for every different rate times length of a panel."""
+    return {step: operator(step, degree) for step in _steps(plan)}
+
+
+def operator_count(plan: Plan) -> int:
+    """How many those are."""
+    return len(_steps(plan))
+
+
+def _steps(plan: Plan) -> dict[fmpq, None]:
     rates = dict.fromkeys(node.rate for node in plan.junctions if node.rate is not None)
-    steps = dict.fromkeys(rate * panel.length for panel in plan.panels for rate in rates)
-    return {step: operator(step, degree) for step in steps}
+    return dict.fromkeys(rate * panel.length for panel in plan.panels for rate in rates)
 
 
 class _Step:

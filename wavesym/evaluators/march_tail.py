@@ -46,7 +46,7 @@ def tail(plan: Plan) -> Tail:
     mass = sum(nearest(node.mass) for node in plan.junctions)
     r = np.linspace(0.001, 0.999, 999) / rate
     growth = (plan.windows + 2) * np.log((1 + rate * r) / (1 - rate * r))
-    start = np.log(sum(jump * r**order for order, jump in enumerate(jumps)))
+    start = np.logaddexp.reduce([log(jump) + order * np.log(r) for order, jump in enumerate(jumps) if jump])
     injected = log(sqrt(mass / 2 / impedance) * (plan.windows + 2) * len(plan.panels))
 
     def size(degree: int) -> float:

@@ -126,10 +126,11 @@ def pieces(scene: Scene, real: Real, tolerance: fmpq) -> Pieces:
 
     CostError where the tables would be larger than `MOST_BYTES`.
     """
-    fits = _Fits(scene, real, tolerance)
+    # no finer than rounding: what is asked for beyond that is not had by more bits or more pieces
+    fits = _Fits(scene, real, max(tolerance, real.roundoff / 8))
     found = _smallest(fits, tolerance) if real is SINGLE else _fastest(fits)
     for shorter in _SHORTER:
-        if shorter > found.per_unit and rational(found.error_bound) > tolerance:
+        if shorter > found.per_unit and rational(found.error_bound) > tolerance > real.roundoff / 8:
             found = fits.fitted(shorter)
     if found.bytes > MOST_BYTES:
         raise CostError(f"output.until: pieces would take {found.bytes >> 20} MiB, at most {MOST_BYTES >> 20} expected")

@@ -10,30 +10,45 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import cached_property, partial
 
-from flint import arb
+from flint import arb, fmpq
 
-from wavesym.errors import CostError
+from wavesym.errors import CostError, RangeError
 from wavesym.evaluators.ball import Segment, largest, segments, values
-from wavesym.evaluators.doubles import not_below, rational
+from wavesym.evaluators.closed import refuse_many
+from wavesym.evaluators.doubles import fraction, not_below, rational
 from wavesym.evaluators.motion import Motion
 from wavesym.evaluators.signal import Signal, horizon, signals
+from wavesym.evaluators.windows import number, stored
 from wavesym.mechanics.chain import chain
 from wavesym.mechanics.cone import light_cone
 from wavesym.scene import Scene
 
-# nodes times windows that are known in seconds
-_QUICK = 6000
+# bytes of waves that are known in a second or two
+_QUICK = 10**8
 # coefficients of the tables from which on windows are cheaper
 _MODERATE = 50_000
+_SHORTEST = Fraction(8)
 
 
 def beginning(scene: Scene) -> Scene:
     """The scene, or as much of its horizon as takes little time to know exactly."""
-    nodes = len(light_cone(chain(scene), scene.outputs, scene.output.until))
-    if nodes * scene.output.until <= _QUICK:
+    until = scene.output.until
+    while until > _SHORTEST and _size(scene, until) > _QUICK:
+        until = max(_SHORTEST, Fraction(3 * until // 4))
+    if until == scene.output.until:
         return scene
-    shorter = {"until": Fraction(max(8, _QUICK // nodes))}
-    return scene.model_copy(update={"output": scene.output.model_copy(update=shorter)})
+    return scene.model_copy(update={"output": scene.output.model_copy(update={"until": until})})
+
+
+def _size(scene: Scene, until: Fraction) -> int:
+    """About how many bytes the waves take until then: a window costs two bits, and e**(2 rate) where a body swings."""
+    system = chain(scene)
+    nodes = light_cone(system, scene.outputs, until)
+    bodies = [node for x in nodes if (node := system.nodes[x]).inertia]
+    rates = [number(node.damping) + (number(node.alpha) + number(node.beta)) / 2 for node in bodies]
+    bits = 128 + int(3 * until * (1 + fraction(max(rates, default=fmpq(0)))))
+    panels = len({piece.time % 1 for piece in scene.pieces if piece.time <= until} | {Fraction(0)})
+    return stored(2 * len(nodes) * (int(until) + 1) * panels, bits // 4, bits)
 
 
 class Reference:
@@ -47,6 +62,7 @@ class Reference:
     def signals(self) -> tuple[Signal, ...] | None:
         """The outputs as exact sums of arrivals; None where their tables would be large."""
         try:
+            refuse_many(self.scene, _MODERATE)
             return signals(self.scene, _MODERATE)
         except CostError:
             return None
@@ -59,8 +75,13 @@ class Reference:
         return [partial(motion.segments, place) for place in motion.places]
 
     def values(self, taus: Sequence[float]) -> list[list[float]]:
-        """Each output at doubles 0 <= tau <= tau_max, correctly rounded."""
-        return [values(source, taus, self.tau_max) for source in self._sources]
+        """Each output at doubles 0 <= tau <= tau_max, correctly rounded. RangeError where one is beyond all doubles."""
+        try:
+            return [values(source, taus, self.tau_max) for source in self._sources]
+        except RangeError:
+            raise
+        except ArithmeticError as error:
+            raise CostError(f"output.until: right to the last bit would take minutes, as {error}") from None
 
     def largest(self) -> list[arb]:
         """A lower bound of the largest absolute value of each output; 0 where it is 0 throughout."""

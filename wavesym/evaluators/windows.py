@@ -21,12 +21,15 @@ from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
-from flint import arb, arb_poly, fmpq, fmpq_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
+from wavesym.errors import CostError
 from wavesym.evaluators.doubles import rational
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Node, Quantity, Rod
 from wavesym.scene import Piece
+
+_LARGEST = 5 << 27  # bytes
 
 
 class Wave(NamedTuple):
@@ -82,10 +85,15 @@ class Windows:
 def windows(chain: Chain, nodes: range, pieces: Sequence[Piece], count: int, terms: int) -> Windows:
     """The waves of a chain on the windows [0, 1), ... [count - 1, count), in `terms` terms at the working precision.
 
-    What reaches the first and last of `nodes` from outside must not matter.
+    What reaches the first and last of `nodes` from outside must not matter. CostError where they would fill the memory.
     """
     loads = _Loads(chain, nodes, pieces)
     panels = _panels(loads.times)
+    if (size := stored(2 * len(nodes) * count * len(panels), terms, ctx.prec)) > _LARGEST:
+        raise CostError(
+            f"output.until: the waves of {len(nodes)} nodes on {count} windows with {ctx.prec} bits would take "
+            f"{size:.1e} bytes, at most {_LARGEST:.1e} expected"
+        )
     result = Windows(chain, nodes, panels, {x: [] for x in nodes}, {x: [] for x in nodes})
     bodies = {x: _Body(chain.nodes[x]) for x in nodes}
     for step in range(count * len(panels)):
@@ -100,6 +108,11 @@ def windows(chain: Chain, nodes: range, pieces: Sequence[Piece], count: int, ter
             result.left[x].append(Wave(q.polynomial - a.polynomial, q.error + a.error))
             result.right[x].append(Wave(q.polynomial - b.polynomial, q.error + b.error))
     return result
+
+
+def stored(waves: int, terms: int, bits: int) -> int:
+    """About how many bytes so many waves take: of each power middle and radius, and the words of the middle."""
+    return waves * terms * (48 + bits // 8)
 
 
 def number(value: Quantity) -> fmpq:

@@ -63,7 +63,7 @@ def key_path(keys: Sequence[str | int]) -> str:
         if isinstance(key, int):
             path += f"[{key}]"
         else:
-            path += f".{key}" if _BARE_KEY.fullmatch(key) else f".{shown(key)}"
+            path += f".{key}" if len(key) <= _SHOWN and _BARE_KEY.fullmatch(key) else f".{shown(key)}"
     return path.removeprefix(".")
 
 

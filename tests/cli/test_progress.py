@@ -1,0 +1,168 @@
+"""The line that says what is being done: on a terminal, after a while, gone at the end; nowhere else."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+
+import pytest
+
+from wavesym.cli import main, progress
+from wavesym.verification.published import all as everything
+from wavesym.verification.published import forms
+
+pty = pytest.importorskip("pty", reason="no terminals to open here")
+
+
+class Terminal:
+    """A terminal that a test opens, and what has been written to it so far."""
+
+    def __init__(self) -> None:
+        self._reading, writing = pty.openpty()
+        self.stream = os.fdopen(writing, "w", buffering=1)
+        self.written = ""
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        try:
+            while data := os.read(self._reading, 1 << 16):
+                self.written += data.decode()
+        except OSError:  # the other end is closed
+            pass
+
+    def close(self) -> str:
+        """Everything that was written."""
+        self.stream.close()
+        self._reader.join()
+        os.close(self._reading)
+        return self.written
+
+
+def screen(written: str) -> list[str]:
+    """What is seen on a terminal after that: a carriage return goes back, and what comes then is written over."""
+    lines = []
+    for line in written.split("\r\n"):
+        seen = ""
+        for part in line.split("\r"):
+            seen = part + seen[len(part) :]
+        lines.append(seen.rstrip())
+    return lines
+
+
+def shown(written: str) -> list[str]:
+    """The states of the line, one after the other."""
+    return [part.rstrip() for part in written.split("\r") if part.strip()]
+
+
+@pytest.fixture
+def soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(progress, "QUIET", 0.05)
+    monkeypatch.setattr(progress, "STEP", 0.01)
+
+
+def opened(monkeypatch: pytest.MonkeyPatch) -> Terminal:
+    """A terminal in the place of standard error."""
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal.stream)
+    return terminal
+
+
+def work(seconds: float = 0.1, failing: bool = False) -> None:
+    with progress.progress("work") as line:
+        for _ in line.each("abc", str.upper):
+            time.sleep(seconds)
+        if failing:
+            raise ValueError("wrong")
+
+
+def test_it_tells_the_steps_and_is_gone_at_the_end(soon: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = opened(monkeypatch)
+    work()
+    print("done", file=sys.stderr)
+    written = terminal.close()
+    assert screen(written) == ["done", ""]
+    told = [line.partition(" (")[0] for line in shown(written)]
+    assert list(dict.fromkeys(told)) == ["work: A, 1 of 3", "work: B, 2 of 3", "work: C, 3 of 3", "done"]
+
+
+def test_what_is_not_taken_away_would_be_seen() -> None:
+    assert screen("\rwork (2 s)   \rdone\r\n") == ["done (2 s)", ""]
+
+
+def test_it_says_nothing_before_two_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = opened(monkeypatch)
+    assert progress.QUIET == 2
+    work(seconds=0.01)
+    assert terminal.close() == ""
+
+
+def test_it_is_gone_before_an_error_is_told(soon: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = opened(monkeypatch)
+    with pytest.raises(ValueError, match="wrong"):
+        work(failing=True)
+    print("wrong", file=sys.stderr)
+    written = terminal.close()
+    assert "work" in written
+    assert screen(written) == ["wrong", ""]
+
+
+def test_a_line_too_long_for_the_terminal_is_cut(soon: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = opened(monkeypatch)
+    monkeypatch.setattr(progress, "_columns", lambda: 20)
+    with progress.progress("a" * 99):
+        time.sleep(0.1)
+    assert set(shown(terminal.close())) == {"a" * 19}
+
+
+def test_a_terminal_that_has_gone_stops_nothing(soon: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = opened(monkeypatch)
+    monkeypatch.setattr(progress.click, "echo", gone)
+    work()
+    assert terminal.close() == ""
+
+
+def gone(*_: object, **__: object) -> None:
+    raise OSError(5, "Input/output error")
+
+
+def test_it_is_quiet_where_there_is_no_terminal(soon: None, capsys: pytest.CaptureFixture[str]) -> None:
+    work()
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "step"),
+    [
+        (["generate", "drive_m1", "-o", "made"], "generate drive_m1"),
+        (["generate", "drive_m1", "-o", "made", "--check"], "check drive_m1"),
+        (["run", "collision_m4", "--samples", "3"], "run collision_m4"),
+        (["tables", "drive_m1", "--symbolic"], "tables drive_m1"),
+        (["derive", "drive"], "derive drive"),
+        (["verify", "drive_m1"], "verify: drive_m1, 1 of 1"),
+        (["verify", "--published"], "verify: "),
+        (["plot", "drive_m1", "-o", "made.svg"], "plot drive_m1"),
+    ],
+)
+def test_commands_put_out_the_same_with_it_and_without(
+    arguments: list[str],
+    step: str,
+    tmp_path_factory: pytest.TempPathFactory,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(everything, "_PARTS", (forms,))  # the others take longer, and no other way
+    monkeypatch.chdir(tmp_path_factory.mktemp("pipe"))
+    status = main(arguments)
+    out, aside = capsys.readouterr()
+    monkeypatch.chdir(tmp_path_factory.mktemp("terminal"))
+    monkeypatch.setattr(progress, "QUIET", 0.0)
+    monkeypatch.setattr(progress, "STEP", 0.001)
+    terminal = opened(monkeypatch)
+    assert main(arguments) == status
+    written = terminal.close()
+    assert capsys.readouterr().out == out
+    assert screen(written) == aside.split("\n")
+    assert any(line.startswith(step) for line in shown(written))
