@@ -187,4 +187,4 @@ def _counts_from(stretch: Stretch, real: Real) -> float:
 def _cosines(degree: int) -> Sequence[fmpq]:
     """cos(pi j / degree), to many more digits than are written."""
     with ctx.workprec(200):
-        return [middle((arb.pi() * j / degree).cos()) for j in range(degree + 1)]
+        return [middle(arb.cos_pi_fmpq(fmpq(j, degree))) for j in range(degree + 1)]

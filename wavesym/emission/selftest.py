@@ -13,6 +13,7 @@ from wavesym.evaluators.reference import Reference, beginning
 from wavesym.scene import Scene
 
 _MOST_POINTS = 2000
+_MOST_VALUES = 40_000
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,8 @@ class SelfTest:
 def selftest(scene: Scene, description: Description, evaluator: Evaluator) -> str:
     """NAME_selftest.c. On very long horizons it covers only the beginning."""
     reference = Reference(beginning(scene))
-    taus = _thinned([tau for tau in evaluator.check_points if tau <= reference.tau_max])
+    most = max(10, min(_MOST_POINTS, _MOST_VALUES // len(evaluator.outputs)))
+    taus = _thinned([tau for tau in evaluator.check_points if tau <= reference.tau_max], most)
     values = reference.values(taus)
     # the reference is rounded once, and the largest value is too
     allowed = [(output.bound + 2.0**-52) * output.largest for output in evaluator.outputs]
@@ -43,7 +45,7 @@ def selftest(scene: Scene, description: Description, evaluator: Evaluator) -> st
     return render("c/selftest.c.j2", context)
 
 
-def _thinned(points: Sequence[float]) -> Sequence[float]:
+def _thinned(points: Sequence[float], most: int) -> Sequence[float]:
     """No more points than a self-test should carry, spread evenly over those there are."""
-    step = -(-len(points) // _MOST_POINTS)
+    step = -(-len(points) // most)
     return [*points[::step], points[-1]] if step > 1 else points

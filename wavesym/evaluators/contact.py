@@ -21,6 +21,8 @@ from wavesym.scene import Collision, Observable, Scene
 _WIDTH = fmpq(1, 2**80)
 # a strain at a front that is 0 to as many bits is 0
 _BITS_FOR_ZERO = 2048
+# how far is looked at first
+_FIRST = fmpq(16)
 
 
 @dataclass(frozen=True)
@@ -52,8 +54,12 @@ def contact_ends(scene: Scene) -> tuple[ContactEnd, ...]:
         # to matter, the opening must have the time to reach the nearest output
         latest = until - min(abs(rational(output.x) - x) for output in scene.outputs)
         place = Observable("strain", Fraction(x), 0, f"strain@{x}")
-        (strain,) = observed(model, (place,), scene.pieces, latest)
-        tau = precise(partial(_first_return, strain, latest))
+        tau, reached = arb.pos_inf(), fmpq(0)
+        while not tau.is_finite() and reached < latest:
+            # most open early, and tables grow like the cube of the time
+            reached = min(latest, max(_FIRST, 2 * reached))
+            (strain,) = observed(model, (place,), scene.pieces, reached)
+            tau = precise(partial(_first_return, strain, reached))
         if tau.is_finite():
             ends.append(ContactEnd(x, tau))
     return tuple(ends)
