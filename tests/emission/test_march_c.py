@@ -12,7 +12,7 @@ from tests.emission.builds import STRICT, needs_binutils
 from wavesym.emission.description import describe
 from wavesym.emission.march import c_header, c_source, numpy_source
 from wavesym.emission.selftest import selftest
-from wavesym.evaluators.march import marched
+from wavesym.evaluators.march.evaluator import marched
 from wavesym.evaluators.reals import DOUBLE, SINGLE
 from wavesym.scene import Scene
 from wavesym.verification.compiled import FLAGS, compiled, imported

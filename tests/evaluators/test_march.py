@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from wavesym.emission.description import describe
 from wavesym.emission.march import numpy_source
 from wavesym.errors import CostError, ToleranceError
-from wavesym.evaluators.march import march, marched
-from wavesym.evaluators.march_bound import judge
-from wavesym.evaluators.march_operator import operator
-from wavesym.evaluators.march_plan import plan
-from wavesym.evaluators.march_run import LEFT, RIGHT, Run
-from wavesym.evaluators.march_zero import silent
+from wavesym.evaluators.march.bound import judge
+from wavesym.evaluators.march.evaluator import march, marched
+from wavesym.evaluators.march.operator import operator
+from wavesym.evaluators.march.plan import plan
+from wavesym.evaluators.march.run import LEFT, RIGHT, Run
+from wavesym.evaluators.march.zero import silent
 from wavesym.evaluators.reals import SINGLE
 from wavesym.mechanics.chain import chain
 from wavesym.scene import Scene

@@ -12,7 +12,7 @@ import wavesym
 from tests.evaluators.drawn import scenes
 from wavesym.emission.description import describe
 from wavesym.emission.march import numpy_source
-from wavesym.evaluators.march import marched
+from wavesym.evaluators.march.evaluator import marched
 from wavesym.mechanics.chain import chain
 from wavesym.scene import Scene
 from wavesym.verification import checks

@@ -11,8 +11,8 @@ from wavesym.emission.description import Description
 from wavesym.emission.literals import c_literal, firsts, lines, literal
 from wavesym.emission.rendering import render
 from wavesym.evaluators.doubles import middle, rational
-from wavesym.evaluators.march import MarchEvaluator
-from wavesym.evaluators.march_plan import Stretch
+from wavesym.evaluators.march.evaluator import MarchEvaluator
+from wavesym.evaluators.march.plan import Stretch
 from wavesym.evaluators.reals import Real
 
 _QUANTITIES = ("strain", "velocity", "displacement")

@@ -10,7 +10,7 @@ from flint import fmpq
 from wavesym.errors import CostError, RangeError
 from wavesym.evaluators.closed import ClosedForm, closed_form, refuse_many
 from wavesym.evaluators.doubles import rational
-from wavesym.evaluators.march import MarchEvaluator, marched, unmet
+from wavesym.evaluators.march.evaluator import MarchEvaluator, marched, unmet
 from wavesym.evaluators.pieces import Pieces, pieces
 from wavesym.evaluators.reals import REALS, Real
 from wavesym.evaluators.signal import signals

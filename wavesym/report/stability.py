@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 
 from wavesym.report.atlas import endurance, extremes, fronts, gaps, limits, reflections
@@ -28,10 +29,14 @@ def atlas(directory: Path, progress: Progress = lambda _: None) -> list[Path]:
     CompilerError where there is no C compiler, OSError.
     """
     written = []
-    for name, make in FAMILIES.items():
-        family = make(progress)
+    for number, (name, make) in enumerate(FAMILIES.items(), 1):
+        family = make(partial(_told, progress, number))
         picture, table = directory / f"{name}.svg", directory / f"{name}.csv"
         write_whole({table: to_csv(family)})
         save(draw(family), picture)
         written += [picture, table]
     return written
+
+
+def _told(progress: Progress, number: int, step: str) -> None:
+    progress(f"{step}, family {number} of {len(FAMILIES)}")

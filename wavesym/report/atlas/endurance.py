@@ -14,7 +14,7 @@ import numpy as np
 
 from wavesym.emission.description import describe
 from wavesym.emission.march import c_header, c_source
-from wavesym.evaluators.march import MarchEvaluator, marched
+from wavesym.evaluators.march.evaluator import MarchEvaluator, marched
 from wavesym.report.atlas import twist
 from wavesym.report.atlas.attempts import printable
 from wavesym.report.atlas.family import Axis, Family, Point, Progress

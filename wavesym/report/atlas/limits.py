@@ -15,7 +15,7 @@ import numpy as np
 
 from wavesym.emission.description import describe
 from wavesym.emission.march import numpy_source
-from wavesym.evaluators.march import marched
+from wavesym.evaluators.march.evaluator import marched
 from wavesym.report.atlas.family import Axis, Family, Point, Progress
 from wavesym.report.atlas.lumped import strains
 from wavesym.report.atlas.scenes import made

@@ -13,7 +13,7 @@ from collections import defaultdict
 from flint import fmpq
 
 from wavesym.evaluators.doubles import rational
-from wavesym.evaluators.march_plan import Plan, Watched
+from wavesym.evaluators.march.plan import Plan, Watched
 
 _PRIME = 2**127 - 1
 _S = 0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357 % _PRIME  # drawn once, so that the same scene makes the same files

@@ -1,9 +1,9 @@
 """The march: waves window by window, for long horizons and many rods, in constant memory and with a proved bound.
 
 On each window [n, n + 1) what arrives at a node was sent on the window before, so the nodes are independent of each
-other and each needs one short recurrence (march_operator.py). The degree of the polynomials that hold the waves grows
+other and each needs one short recurrence (operator.py). The degree of the polynomials that hold the waves grows
 like the square root of the horizon, as fronts gather ever finer detail: it is chosen by marching once over the whole
-horizon and adding up what was lost (march_bound.py), and raised until that is no more than what rounding costs.
+horizon and adding up what was lost (bound.py), and raised until that is no more than what rounding costs.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from flint import arb, fmpq
 
 from wavesym.errors import CostError, ToleranceError
 from wavesym.evaluators.doubles import bound, nearest, rational
-from wavesym.evaluators.march_bound import Verdict, judge
-from wavesym.evaluators.march_operator import Operator
-from wavesym.evaluators.march_plan import Plan, plan
-from wavesym.evaluators.march_run import operator_count, operators
+from wavesym.evaluators.march.bound import Verdict, judge
+from wavesym.evaluators.march.operator import Operator
+from wavesym.evaluators.march.plan import Plan, plan
+from wavesym.evaluators.march.run import operator_count, operators
 from wavesym.evaluators.reals import DOUBLE, Real
 from wavesym.scene import Scene
 

@@ -13,8 +13,8 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.evaluators.doubles import nearest
-from wavesym.evaluators.march_operator import Array, Operator, Sweeps, operator
-from wavesym.evaluators.march_plan import Plan
+from wavesym.evaluators.march.operator import Array, Operator, Sweeps, operator
+from wavesym.evaluators.march.plan import Plan
 
 LEFT, RIGHT = 0, 1
 

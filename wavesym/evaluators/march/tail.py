@@ -20,7 +20,7 @@ from math import lgamma, log, sqrt
 import numpy as np
 
 from wavesym.evaluators.doubles import nearest
-from wavesym.evaluators.march_plan import Plan
+from wavesym.evaluators.march.plan import Plan
 
 _SMALL = log(2.0**-80)
 _HIGHEST = 100_000

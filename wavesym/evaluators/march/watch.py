@@ -6,9 +6,9 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.evaluators.doubles import nearest
-from wavesym.evaluators.march_operator import Array
-from wavesym.evaluators.march_plan import Plan, Watched
-from wavesym.evaluators.march_run import LEFT, RIGHT, Block
+from wavesym.evaluators.march.operator import Array
+from wavesym.evaluators.march.plan import Plan, Watched
+from wavesym.evaluators.march.run import LEFT, RIGHT, Block
 
 SAMPLES = 17
 """Points per window, both ends among them, at which the generator looks for an output's largest value."""

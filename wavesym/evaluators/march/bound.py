@@ -15,7 +15,7 @@ not grow in E, and the error of the march is at most the sum, over windows and p
   with a matrix T and a vector t without negative entries, and q - a by u |q - a| more. In L2 over a panel a series has
   at most sqrt(pi h) / 2 times its norm (2 c_0**2 + c_1**2 + ...)**0.5, as (1 - u**2)**-0.5 >= 1.
 
-From energy to values: the true wave on a panel is a polynomial of degree K up to some tail (march_tail.py), K for the
+From energy to values: the true wave on a panel is a polynomial of degree K up to some tail (tail.py), K for the
 horizon; so its difference from the computed one is, and a polynomial of degree K in [-1, 1] is nowhere larger than
 (K + 1)/sqrt(2) times its L2 norm. Reading a value adds the rounding of Clenshaw's recurrence, at most
 12 u sum ((k + 1)(k + 2) + d) |c_k| with that of the local variable. A displacement is an integral, so L2 will do.
@@ -31,12 +31,12 @@ from math import ceil, inf, log2, pi, sqrt
 import numpy as np
 
 from wavesym.evaluators.doubles import nearest
-from wavesym.evaluators.march_operator import Array, Operator
-from wavesym.evaluators.march_plan import Plan
-from wavesym.evaluators.march_run import LEFT, RIGHT, Block, Run
-from wavesym.evaluators.march_tail import Tail, tail
-from wavesym.evaluators.march_watch import Watch
-from wavesym.evaluators.march_zero import silent
+from wavesym.evaluators.march.operator import Array, Operator
+from wavesym.evaluators.march.plan import Plan
+from wavesym.evaluators.march.run import LEFT, RIGHT, Block, Run
+from wavesym.evaluators.march.tail import Tail, tail
+from wavesym.evaluators.march.watch import Watch
+from wavesym.evaluators.march.zero import silent
 
 _MARGIN = 1.01
 

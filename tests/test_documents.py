@@ -1,0 +1,278 @@
+"""README.md and GUIDE.md: what they tell a reader to type is run, and what they show is what comes out.
+
+The first word after ``` says what a block is, a second one the file that it is saved as:
+toml, c     a scene, a program in C; a later command uses the file
+python      a program, which runs
+sh          commands, line by line
+text        all that the block before it puts out, to the character
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import shlex
+import shutil
+import stat
+import subprocess
+import sys
+from contextlib import chdir, redirect_stderr, redirect_stdout
+from pathlib import Path
+from typing import NamedTuple
+
+import click
+import pytest
+
+import wavesym
+from tests.cli.test_cli import example
+from wavesym.cli import COMMANDS, cli, main
+from wavesym.scene import Scene
+from wavesym.verification.toolchain import compiler
+
+ROOT = Path(wavesym.__file__).parents[1]
+DOCUMENTS = ("README.md", "GUIDE.md")
+LONG = re.compile(r"wavesym (chart|stability|plot --published|verify --published)\b")  # half a minute and more
+SHELL = set("|<>;&$`*?~=")  # what a line is for a shell with
+
+BLOCK = re.compile(r"^```(.*)\n((?:.*\n)*?)^```$\n", re.MULTILINE)
+SPAN = re.compile(r"`([^`\n]+)`")
+HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
+LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
+
+
+class Block(NamedTuple):
+    """A block of code: what it is, the file that it is saved as, if any, and its text."""
+
+    language: str
+    file: str
+    text: str
+
+
+def document(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def blocks(text: str) -> list[Block]:
+    """The blocks of code of a document, all of them."""
+    left = BLOCK.sub("\n\n", f"\n\n{text}")
+    assert "```" not in left, "a block has no end"
+    assert "~~~" not in left, "a block between other marks"
+    assert not re.search(r"\n\n(?: {4}|\t)", left), "code that is only indented"
+    return [Block(*(*words.split(maxsplit=1), "", "")[:2], code) for words, code in BLOCK.findall(text)]
+
+
+class Reader:
+    """Does in a folder what a document says; with `patience` what takes long too, and each command as a process."""
+
+    def __init__(self, folder: Path, patience: bool) -> None:
+        self.folder, self.patience = folder, patience
+        self.unused: set[str] = set()
+        programs = folder / "bin"
+        programs.mkdir()
+        program, *given = compiler().command
+        cc = programs / "cc"  # the compiler of this machine, whatever it is called
+        cc.write_text(f'#!/bin/sh\nexec {shlex.join([shutil.which(program) or program, *given])} "$@"\n')
+        cc.chmod(cc.stat().st_mode | stat.S_IXUSR)
+        path = [str(programs), str(Path(sys.executable).parent), os.environ["PATH"]]
+        self.environment = os.environ | {"PATH": os.pathsep.join(path)}
+
+    def read(self, text: str) -> None:
+        printed = None
+        for block in blocks(text):
+            printed = self.follow(block, printed)
+        assert not self.unused, "saved and never used"
+
+    def follow(self, block: Block, before: str | None) -> str | None:
+        """What a block puts out; None of one that runs nothing, or not all."""
+        if block.file:
+            (self.folder / block.file).write_text(block.text, encoding="utf-8")
+        match block.language:
+            case "toml":
+                Scene.from_toml(self.folder / block.file)
+                self.unused.add(block.file)
+            case "c":
+                self.unused.add(block.file)
+            case "python":
+                return self.process([sys.executable, "-c", block.text])
+            case "sh":
+                lines = [self.line(line) for line in block.text.splitlines() if line.partition("#")[0].strip()]
+                return None if None in lines else "".join(filter(None, lines))
+            case "text":
+                assert block.text == before
+            case _:
+                raise AssertionError(f"no way to run {block.language or 'what has no language'}")
+        return None
+
+    def line(self, line: str) -> str | None:
+        """What a command puts out; None of one that is not run."""
+        self.unused -= set(re.split(r"[\s/]+", line))
+        words = shlex.split(line, comments=True)
+        if words[0] == "make":
+            assert_made(words[1:])
+            return None
+        if LONG.match(line) and not self.patience:
+            assert_spelt(words)
+            return None
+        if words[0] == "wavesym" and not self.patience and not SHELL & set(" ".join(words)):
+            return self.here(words[1:])
+        return self.process(["bash", "-c", line])
+
+    def here(self, arguments: list[str]) -> str:
+        """What a command of wavesym puts out, without the second that a process takes to start."""
+        out = io.StringIO()
+        with chdir(self.folder), redirect_stdout(out), redirect_stderr(out):
+            status = main(arguments)
+        assert status == 0, out.getvalue()
+        return out.getvalue()
+
+    def process(self, command: list[str]) -> str:
+        done = subprocess.run(
+            command,
+            cwd=self.folder,
+            env=self.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            encoding="utf-8",
+            check=False,
+        )
+        assert done.returncode == 0, f"{command[-1]}\n{done.stdout}"
+        return done.stdout
+
+
+def assert_made(targets: list[str]) -> None:
+    """These are targets of the Makefile."""
+    known = set(re.findall(r"^([a-z-]+):", document("Makefile"), re.MULTILINE))
+    assert targets
+    assert known >= set(targets)
+
+
+def options(command: click.Command) -> set[str]:
+    return {"--help", *(option for parameter in command.params for option in parameter.opts)}
+
+
+def command(name: str) -> click.Command:
+    found = cli.get_command(click.Context(cli), name)
+    assert found, f"no command {name}"
+    return found
+
+
+def assert_spelt(words: list[str]) -> None:
+    """This names a command of wavesym, and options that it has."""
+    assert words[0] == "wavesym"
+    if words[1].startswith("-"):
+        assert words[1] in options(cli)
+        return
+    assert {word for word in words if word.startswith("-") and word != "-"} <= options(command(words[1]))
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_what_a_document_says_works(name: str, tmp_path: Path) -> None:
+    Reader(tmp_path, patience=False).read(document(name))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_all_that_a_document_says_works(name: str, tmp_path: Path) -> None:
+    Reader(tmp_path, patience=True).read(document(name))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_example_in_the_help_of_a_command_works(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    line = shlex.join(["wavesym", *example(name, capsys)])
+    if line not in re.findall(r"^(wavesym .*?) *(?:#.*)?$", document("GUIDE.md"), re.MULTILINE):
+        Reader(tmp_path, patience=True).line(line)  # what is in the guide too is run there
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_what_a_document_names_exists(name: str) -> None:
+    text = BLOCK.sub("", document(name))
+    everything = options(cli).union(*(options(command(name)) for name in COMMANDS))
+    for span in SPAN.findall(text):
+        words = span.split()
+        if words[0] == "make":
+            assert_made(words[1:])
+        elif words[0].endswith("wavesym") and len(words) > 1:
+            assert_spelt(["wavesym", *words[1:]])
+        elif words[0].startswith("--"):
+            assert words[0] in everything, span
+    headings = {re.sub(r"[^a-z0-9 -]", "", line.lower()).replace(" ", "-") for line in HEADING.findall(text)}
+    assert headings >= set(re.findall(r"\]\(#([^)]+)\)", text))
+    for file in LINK.findall(text):
+        assert (ROOT / file).exists(), file
+
+
+def test_the_readme_is_one_screen() -> None:
+    assert document("README.md").count("\n") <= 60
+    assert {"`make demo`", "`make test`"} <= set(re.findall(r"`make [a-z]+`", document("README.md")))
+
+
+def test_the_guide_has_every_command() -> None:
+    code = "".join(block.text for block in blocks(document("GUIDE.md")) if block.language == "sh")
+    assert {name for name in COMMANDS if f"wavesym {name}" in code} == set(COMMANDS)
+
+
+SCENE = """```toml rod.toml
+name = "rod"
+[system]
+type = "drive"
+m = 1
+kappa = [1]
+inertia = [1, 2]
+[output]
+until = 2
+strain = [0.5]
+```
+"""
+RUN = "```sh\nwavesym run rod.toml --samples 1   # a comment\n```\n"
+SHOWN = "```text\ntau,strain@0.5\n0.0,0.0\n```\n"
+PROGRAM = "```c main.c\nint main(void) { return 0; }\n```\n```sh\ncc main.c -o main\n./main\n```\n"
+SOUND = SCENE + RUN + SHOWN + PROGRAM + "```python\nprint(1)\n```\n```text\n1\n```\n"
+
+
+@pytest.mark.parametrize("patience", [False, True])
+def test_a_sound_document_passes(patience: bool, tmp_path: Path) -> None:
+    Reader(tmp_path, patience).read(SOUND)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("```python", "```pyhton"),
+        ("```python", "```"),
+        ("print(1)", "print(2)"),
+        ("print(1)", "raise ValueError"),
+        ("kappa = [1]", "kappa = []"),
+        ("0.0,0.0\n", "0.0,0.1\n"),
+        ("0.0,0.0\n", ""),
+        (RUN, ""),
+        (RUN, "```sh\nmake demo\n```\n"),
+        ("--samples 1", "--sample_s 1"),
+        ("run rod.toml", "run rot.toml"),
+        ("wavesym run", "true; wavesym ran"),
+        ("return 0;", "return 1;"),
+        ("return 0;", "return zero;"),
+        ("./main", "./mean"),
+        ("cc main.c -o main\n./main", "true"),
+        ("cc main.c", "make dmeo\ncc main.c"),
+        ("cc main.c", "wavesym chart rod.toml -u rod.svg\ncc main.c"),
+        ("```python\n", "    wavesym indented\n\n```python\n"),
+        ("```python\n", "~~~\n~~~\n```python\n"),
+        ("1\n```\n", "1\n"),
+    ],
+)
+def test_a_broken_document_is_seen(old: str, new: str, tmp_path: Path) -> None:
+    assert old in SOUND
+    with pytest.raises((AssertionError, wavesym.SceneError)):
+        Reader(tmp_path, patience=False).read(SOUND.replace(old, new))
+
+
+@pytest.mark.parametrize(
+    "words", ["wavesym rnu x", "wavesym run --sample 3", "wavesym --versoin", "wavesym verify --csv x"]
+)
+def test_a_wrong_spelling_is_seen(words: str) -> None:
+    with pytest.raises(AssertionError):
+        assert_spelt(words.split())
