@@ -28,7 +28,7 @@ import wavesym
 from tests.cli.test_cli import example
 from wavesym.cli import COMMANDS, cli, main
 from wavesym.scene import Scene
-from wavesym.verification.toolchain import compiler
+from wavesym.toolchain import compiler
 
 ROOT = Path(wavesym.__file__).parents[1]
 DOCUMENTS = ("README.md", "GUIDE.md")

@@ -17,8 +17,6 @@ What follows is one short function for each way through. The heavy libraries loa
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,60 +24,25 @@ import numpy as np
 
 from wavesym.coefficients.cost import refuse_costly
 from wavesym.coefficients.letters import in_rates
-from wavesym.coefficients.symbolic import generic, symbolic
 from wavesym.coefficients.table import Row, Table, full_table
 from wavesym.emission.files import files
 from wavesym.emission.tables import symbolic_lines, table_lines
 from wavesym.evaluators.contact import contact_ends
 from wavesym.evaluators.doubles import fraction, nearest, rational
-from wavesym.evaluators.reference import Reference
+from wavesym.evaluators.response import Response
 from wavesym.evaluators.signal import horizon
 from wavesym.mechanics.chain import chain
+from wavesym.mechanics.symbolic import generic, symbolic
 from wavesym.scene import Scene
 from wavesym.writing import Difference, write_whole
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from wavesym.verification.published.record import Claim
 
 
 MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
-
-
-@dataclass(frozen=True)
-class Response:
-    """A scene's outputs as one function: the exact tables in ball arithmetic, each value rounded once.
-
-    `outputs` are their names, `tau_max` the end of the horizon; `error_bound` is relative to an output's largest value.
-    """
-
-    scene: Scene
-
-    @cached_property
-    def _reference(self) -> Reference:
-        return Reference(self.scene)
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        return tuple(output.name for output in self.scene.outputs)
-
-    @property
-    def tau_max(self) -> float:
-        return horizon(self.scene)
-
-    @property
-    def error_bound(self) -> float:
-        return 2.0**-53
-
-    def __call__(self, tau: ArrayLike) -> NDArray[np.float64]:
-        """Values at tau (dimensionless): shape (len(outputs), *tau.shape), NaN where tau is out of [0, tau_max]."""
-        taus = np.asarray(tau, dtype=np.float64)
-        flat = taus.ravel()
-        inside = (flat >= 0.0) & (flat <= self.tau_max)
-        out = np.full((len(self.outputs), flat.size), np.nan)
-        out[:, inside] = self._reference.values(flat[inside].tolist())
-        return out.reshape(len(self.outputs), *taus.shape)
 
 
 def evaluator(scene: Scene) -> Response:
@@ -177,11 +140,18 @@ def check(
 
 
 def run(scene: Scene, samples: int, at: Sequence[float] | None = None) -> Iterator[str]:
-    """The outputs as CSV lines: at `at`, or at `samples` equally spaced tau from 0 to the end of the horizon."""
+    """The outputs as CSV lines: at `at`, or at `samples` equally spaced tau from 0 to the end of the horizon.
+
+    CostError where right to the last bit would cost too much, before there is a line.
+    """
     response = evaluator(scene)
     taus = list(at) if at is not None else grid(scene, samples)
-    yield ",".join(("tau", *response.outputs)) + "\n"
-    for row in np.vstack([np.asarray(taus), response(taus)]).T.tolist():
+    return _csv(("tau", *response.outputs), np.vstack([np.asarray(taus), response(taus)]).T)
+
+
+def _csv(names: Sequence[str], rows: NDArray[np.float64]) -> Iterator[str]:
+    yield ",".join(names) + "\n"
+    for row in rows.tolist():
         yield ",".join(map(repr, row)) + "\n"
 
 

@@ -17,7 +17,8 @@ def write_whole(files: Mapping[Path, Content]) -> None:
     """Write every file, or, where one cannot be made, none.
 
     All of them are written beside their places, to the disk, before the first takes its place; where one cannot, those
-    before it get their old content back (on disks with hard links). A process that is killed in between leaves every file whole, old or new.
+    before it get their old content back (on disks with hard links). A process that is killed in between leaves every
+    file whole, old or new.
 
     Content is text or chunks of text, written as UTF-8 with "\\n", or bytes. Folders that are missing are made. What is
     there and is no regular file (/dev/stdout, a pipe) cannot be replaced and is written to last, as it is.

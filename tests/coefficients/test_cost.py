@@ -3,21 +3,20 @@
 import pytest
 from flint import fmpq
 
+from wavesym.algebra.ratio import Ratio
 from wavesym.coefficients.cost import LARGEST_SYMBOLIC, refuse_costly, symbolic_terms
-from wavesym.coefficients.factored import factored
 from wavesym.coefficients.letters import in_rates
-from wavesym.coefficients.ratio import Ratio
-from wavesym.coefficients.symbolic import generic
 from wavesym.coefficients.table import full_table
 from wavesym.errors import CostError
 from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.mechanics.collision import COLLISION
 from wavesym.mechanics.drive import DRIVE
+from wavesym.mechanics.symbolic import generic
 
 
 def counted(chain, intervals):
     values = [row.value for row in full_table(chain, intervals, fmpq(0)).rows()]
-    return sum(len(factor) for v in values if isinstance(v, Ratio) for factor, _ in factored(v).above)
+    return sum(len(factor) for v in values if isinstance(v, Ratio) for factor, _ in v.factored.above)
 
 
 @pytest.mark.parametrize(

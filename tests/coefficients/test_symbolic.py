@@ -8,19 +8,18 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wavesym.coefficients import ratio
-from wavesym.coefficients import symbolic as symbolic_module
-from wavesym.coefficients.factored import factored, tell
+from wavesym.algebra.forms import Forms
+from wavesym.algebra.ratio import Ratio, Ring
 from wavesym.coefficients.letters import in_rates
-from wavesym.coefficients.ratio import Ratio, Ring
-from wavesym.coefficients.symbolic import generic, symbolic
 from wavesym.coefficients.table import full_table
 from wavesym.errors import SceneError
+from wavesym.mechanics import symbolic as symbolic_module
 from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.collision import COLLISION
 from wavesym.mechanics.drive import DRIVE
 from wavesym.mechanics.node import Parameters
+from wavesym.mechanics.symbolic import generic, symbolic
 
 NOWHERE = fmpq(0)
 # few values, so that equal parameters and meeting rates (2 kappa_1 = kappa_m) are always among them
@@ -62,7 +61,7 @@ def told(table, values):
     def at(value):
         if not isinstance(value, Ratio):
             return value
-        content, above, below = factored(value)
+        content, above, below = value.factored
         point = [values[name] for name in value.ring.told.names()]
         return (
             content
@@ -96,7 +95,8 @@ def test_a_coefficient_told_wrongly_is_seen(monkeypatch):
     symbols = in_rates(symbolic(chain))
     table = full_table(symbols.chain, 4, NOWHERE)
     assert told(table, symbols.values) == exact(chain, 4)
-    monkeypatch.setattr(ratio, "tell", lambda ring, factor: (1, tell(ring, factor)[1], tell(ring, factor)[2]))
+    true = Forms.tell
+    monkeypatch.setattr(Forms, "tell", lambda ring, factor: (1, *true(ring, factor)[1:]))
     again = in_rates(symbolic(chain))
     assert told(full_table(again.chain, 4, NOWHERE), again.values) != exact(chain, 4)
 

@@ -9,7 +9,6 @@ import pytest
 from flint import fmpq
 
 from wavesym.coefficients.increments import integrated
-from wavesym.coefficients.symbolic import symbolic
 from wavesym.coefficients.table import full_table
 from wavesym.derivation.families import integral, own_rate, solved
 from wavesym.derivation.numbers import expression, number, symbol
@@ -22,6 +21,7 @@ from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.collision import COLLISION
 from wavesym.mechanics.drive import DRIVE
 from wavesym.mechanics.node import Parameters
+from wavesym.mechanics.symbolic import symbolic
 
 INTERVALS = 4
 NOWHERE = fmpq(0)

@@ -17,7 +17,7 @@ from wavesym.evaluators.choice import choose
 from wavesym.evaluators.doubles import midpoint
 from wavesym.evaluators.reference import Reference
 from wavesym.scene import Scene
-from wavesym.verification.toolchain import Compiler
+from wavesym.toolchain import Compiler
 
 needs_binutils = pytest.mark.skipif(not shutil.which("nm") or not shutil.which("size"), reason="no nm, no size here")
 

@@ -8,8 +8,8 @@ from collections import Counter
 import pytest
 
 from tests.emission.builds import LANGUAGES, SOURCES, STRICT, built, needs_binutils, sections, source
+from wavesym.toolchain import CompilerError, at_hand, compiler
 from wavesym.verification.compiled import FLAGS
-from wavesym.verification.toolchain import CompilerError, at_hand, compiler
 
 KNOWN = ("gcc", "clang", "ziglang")
 OPTIMISED = {"-O0": ("-O0",), "-O2": ("-O2",), "-O3": ("-O3", "-march=native")}

@@ -7,10 +7,10 @@ import subprocess
 
 import pytest
 
-from wavesym.coefficients.symbolic import symbolic
 from wavesym.emission.derivation import derivation, scene_derivation
 from wavesym.errors import WavesymError
 from wavesym.mechanics.chain import chain
+from wavesym.mechanics.symbolic import symbolic
 from wavesym.scene import Scene, builtin_names
 
 SYSTEMS = ("collision", "drive", "building")

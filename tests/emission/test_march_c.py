@@ -15,8 +15,8 @@ from wavesym.emission.selftest import selftest
 from wavesym.evaluators.march.evaluator import marched
 from wavesym.evaluators.reals import DOUBLE, SINGLE
 from wavesym.scene import Scene
+from wavesym.toolchain import at_hand
 from wavesym.verification.compiled import FLAGS, compiled, imported
-from wavesym.verification.toolchain import at_hand
 
 COMPILERS = at_hand()
 

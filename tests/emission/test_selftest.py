@@ -18,8 +18,8 @@ import pytest
 from tests.emission.builds import scene
 from wavesym.emission import selftest
 from wavesym.emission.files import files
+from wavesym.toolchain import compiler
 from wavesym.verification.compiled import FLAGS
-from wavesym.verification.toolchain import compiler
 
 SAMPLES = 2001
 # no wave arrives there, so that every coefficient has time to act

@@ -7,7 +7,7 @@ import pytest
 import wavesym
 from tests.emission.builds import needs_binutils, sections
 from wavesym.emission.files import files
-from wavesym.verification.toolchain import at_hand
+from wavesym.toolchain import at_hand
 
 TARGETS = {
     "clang": ("--target=thumbv7em-none-eabi", "-mcpu=cortex-m4"),

@@ -7,13 +7,13 @@ import subprocess
 
 import pytest
 
-from wavesym.coefficients.symbolic import generic
 from wavesym.coefficients.table import Function
 from wavesym.coefficients.walks import departures, function_walks, letters, units, walks_until
 from wavesym.emission.walks import walk_polynomials
 from wavesym.errors import CostError
 from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.mechanics.drive import DRIVE
+from wavesym.mechanics.symbolic import generic
 
 
 def test_what_is_written_reads_back():

@@ -7,8 +7,8 @@ import pytest
 
 from wavesym.emission.files import files
 from wavesym.scene import Scene
+from wavesym.toolchain import CompilerError
 from wavesym.verification.compiled import compiled, imported
-from wavesym.verification.toolchain import CompilerError
 
 OUTPUTS = ("strain@0", "strain@1/3", "displacement@1")
 

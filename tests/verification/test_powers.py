@@ -8,7 +8,6 @@ import pytest
 from flint import fmpq, fmpz_poly, nmod_poly
 from sympy import Add, Rational, binomial
 
-from wavesym.coefficients.symbolic import generic
 from wavesym.coefficients.table import Function, Rules
 from wavesym.coefficients.walks import Unit, departures, function_walks, letters, units, walks_until
 from wavesym.derivation.delay import COUNT, INDEX
@@ -18,6 +17,7 @@ from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.collision import COLLISION
 from wavesym.mechanics.node import Parameters
+from wavesym.mechanics.symbolic import generic
 from wavesym.verification.powers import steps
 
 BY_NAME = {system.name: system for systems in SYSTEMS.values() for system in systems}

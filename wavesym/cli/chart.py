@@ -41,7 +41,7 @@ def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
     if not find_spec("matplotlib"):
         raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context())
 
-    with progress(scene.name) as line:
+    with progress(f"chart {scene.name}") as line:
         from wavesym.report.chart import draw
         from wavesym.report.measure import measure, to_csv
         from wavesym.report.saving import picture_format, save

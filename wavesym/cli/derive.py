@@ -9,6 +9,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from wavesym.cli.parameters import SCENE, put
+from wavesym.cli.progress import progress
 from wavesym.errors import SceneError
 
 if TYPE_CHECKING:
@@ -72,9 +73,11 @@ def derive(source: str | Scene, m: int | None, format: str, walks: bool, interva
     if intervals is not None and not walks:
         raise click.UsageError("--intervals: without --walks, which it is for")
     try:
-        if walks:
-            put(compiler.walks(source, m, intervals or WALKED, format))
-        else:
-            put(compiler.derive(source, m, format))
+        with progress(f"derive {source if isinstance(source, str) else source.name}"):
+            if walks:
+                text = compiler.walks(source, m, intervals or WALKED, format)
+            else:
+                text = compiler.derive(source, m, format)
     except ValueError as error:  # no such m
         raise click.UsageError(str(error), click.get_current_context()) from None
+    put(text)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from wavesym.cli.parameters import PATH, SCENE, put, scene_argument
+from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -36,12 +37,15 @@ def generate(
     """
     from wavesym import compiler
 
+    asked = (scene, directory, language, evaluator, precision)
     if only_check:
-        difference = compiler.check(scene, directory, language, evaluator, precision, scene_argument())
+        with progress(f"check {scene.name}"):
+            difference = compiler.check(*asked, scene_argument())
         if difference:
             put(difference)
         return 1 if difference else 0
-    written = compiler.generate(scene, directory, language, evaluator, precision)
+    with progress(f"generate {scene.name}"):
+        written = compiler.generate(*asked)
     for path in written:
         click.echo(path)
     for manifest in (path for path in written if path.suffix == ".json"):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from wavesym.cli.parameters import PATH, SCENE, put
+from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -43,13 +44,15 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
     from wavesym import compiler
     from wavesym.writing import write_whole
 
-    for warning in compiler.contact_warnings(scene):
+    with progress(f"run {scene.name}"):
+        warnings = compiler.contact_warnings(scene)
+        lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus)
+        if out is not None:
+            write_whole({out: lines})
+    for warning in warnings:
         click.echo(f"{scene.name}: {warning}", err=True)
-    lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus)
     if out is None:
         put(lines)
-    else:
-        write_whole({out: lines})
 
 
 def _decimals(path: Path) -> list[float]:

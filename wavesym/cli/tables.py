@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from wavesym.cli.parameters import PATH, SCENE, put
+from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -37,13 +38,15 @@ def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, out
 
     if symbolic and format == "latex":
         raise click.UsageError("--format: latex given, csv or json expected with --symbolic")
-    if symbolic:
-        merged, lines = symbolic_tables_text(scene, intervals, format)
-        for equation in merged:
-            click.echo(equation, err=True)
-    else:
-        lines = tables_text(scene, intervals, format)
+    equations: list[str] = []
+    with progress(f"tables {scene.name}"):
+        if symbolic:
+            equations, lines = symbolic_tables_text(scene, intervals, format)
+        else:
+            lines = tables_text(scene, intervals, format)
+        if out is not None:
+            write_whole({out: lines})
+    for equation in equations:
+        click.echo(equation, err=True)
     if out is None:
         put(lines)
-    else:
-        write_whole({out: lines})

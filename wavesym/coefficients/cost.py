@@ -12,7 +12,7 @@ from math import factorial, inf, log2
 
 from flint import fmpq
 
-from wavesym.coefficients.ratio import Ratio
+from wavesym.algebra.ratio import Ratio
 from wavesym.errors import CostError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Node

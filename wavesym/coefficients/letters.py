@@ -12,8 +12,8 @@ from dataclasses import replace
 
 from flint import fmpq_mpoly
 
-from wavesym.coefficients.ratio import Ratio, Ring
-from wavesym.coefficients.symbolic import SymbolicChain, parameters, rates
+from wavesym.algebra.ratio import Ratio, Ring
+from wavesym.mechanics.symbolic import SymbolicChain, parameters, rates
 
 
 def in_rates(symbols: SymbolicChain) -> SymbolicChain:

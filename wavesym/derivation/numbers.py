@@ -12,7 +12,7 @@ from sympy import Add, Expr, Indexed, IndexedBase, Integer, Mul, Pow, Rational, 
 from wavesym.mechanics.node import Parameters
 
 if TYPE_CHECKING:
-    from wavesym.coefficients.ratio import Ratio
+    from wavesym.algebra.ratio import Ratio
 
 _FIELDS = {"kappa": "kappa", "J": "inertia", "v": "velocity"}
 

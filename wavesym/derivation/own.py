@@ -18,8 +18,8 @@ from wavesym.derivation.rule import Linear, Rule, Weights
 from wavesym.mechanics.chain import Chain
 
 if TYPE_CHECKING:
-    from wavesym.coefficients.ratio import Ratio
-    from wavesym.coefficients.symbolic import SymbolicChain
+    from wavesym.algebra.ratio import Ratio
+    from wavesym.mechanics.symbolic import SymbolicChain
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from wavesym.mechanics.drive import DRIVE
 from wavesym.mechanics.node import Node, System
 
 if TYPE_CHECKING:
-    from wavesym.coefficients.symbolic import SymbolicChain
+    from wavesym.mechanics.symbolic import SymbolicChain
 
 LARGEST_WRITTEN_OUT = 100
 MOST_FAMILIES = 6  # beyond that the law at one rate g is easier to read than a line for each

@@ -11,7 +11,7 @@ from wavesym.derivation.statement import Statement, scene_statement, statements
 from wavesym.emission.rendering import render
 
 if TYPE_CHECKING:
-    from wavesym.coefficients.symbolic import SymbolicChain
+    from wavesym.mechanics.symbolic import SymbolicChain
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
-from wavesym.coefficients.factored import factored, written
-from wavesym.coefficients.ratio import Ratio
-from wavesym.coefficients.symbolic import SymbolicChain
+from wavesym.algebra.factored import written
+from wavesym.algebra.ratio import Ratio
 from wavesym.coefficients.table import Row, Table
 from wavesym.emission.rendering import render_stream
+from wavesym.mechanics.symbolic import SymbolicChain
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def _symbolic_json(table: Table, symbols: SymbolicChain, name: str) -> Iterator[
     forms: dict[str, None] = {}
     for row in table.rows():
         value = row.value if isinstance(row.value, Ratio) else symbols.ring.constant(fmpq(str(row.value)))
-        told = factored(value)
+        told = value.factored
         forms |= dict.fromkeys(written(form) for form, _ in told.below)
         above, below = told.parts
         fields = row._asdict() | {"rate": str(row.rate), "numerator": above, "denominator": below}

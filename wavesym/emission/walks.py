@@ -9,13 +9,13 @@ from dataclasses import asdict, dataclass
 
 from flint import fmpq
 
-from wavesym.coefficients.ratio import Ratio
-from wavesym.coefficients.symbolic import SymbolicChain
+from wavesym.algebra.ratio import Ratio
 from wavesym.coefficients.table import Function, Rules
 from wavesym.coefficients.walks import Letters, Unit, departures, function_walks, letters, units, walks
 from wavesym.emission.rendering import render
 from wavesym.errors import CostError
 from wavesym.mechanics.node import Quantity
+from wavesym.mechanics.symbolic import SymbolicChain
 
 MOST_TERMS = 1_000_000  # about 200 MB
 

@@ -22,8 +22,8 @@ from wavesym.evaluators.pieces import Pieces
 from wavesym.report.timing import medians
 from wavesym.rivals.native import FAST, address, library
 from wavesym.scene import Scene
+from wavesym.toolchain import Compiler, at_hand
 from wavesym.verification.compiled import imported
-from wavesym.verification.toolchain import Compiler, at_hand
 
 SAMPLES = 10_001
 PLAIN = ("-O2",)

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.compiler import Response
 from wavesym.emission.files import files
 from wavesym.errors import WavesymError
 from wavesym.evaluators.choice import MAKERS
 from wavesym.evaluators.reals import REALS
+from wavesym.evaluators.response import Response
 from wavesym.rivals.all import RIVALS
 from wavesym.rivals.native import address, library
 from wavesym.rivals.problem import Problem, Rival, scene_problem

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.verification.toolchain import compiler
+from wavesym.toolchain import compiler
 
 FAST = ("-O3", "-march=native", "-ffp-contract=fast")
 

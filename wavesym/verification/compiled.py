@@ -14,7 +14,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.verification.toolchain import compiler
+from wavesym.toolchain import compiler
 
 _WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Wmissing-prototypes", "-Werror")
 FLAGS = ("-std=c99", "-O2", *_WARNINGS)

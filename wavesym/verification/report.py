@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from wavesym.scene import Scene
+from wavesym.toolchain import compiler
 from wavesym.verification.checks import CHECKS
 from wavesym.verification.reference import reference
-from wavesym.verification.toolchain import compiler
 
 _LEGEND = "Errors are against ball arithmetic rounded once, relative to the output's largest value."
 

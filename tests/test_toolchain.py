@@ -7,10 +7,10 @@ import sys
 
 import pytest
 
+from wavesym import toolchain
 from wavesym.cli import main
 from wavesym.rivals.native import library
-from wavesym.verification import toolchain
-from wavesym.verification.toolchain import CompilerError, at_hand, compiler
+from wavesym.toolchain import CompilerError, at_hand, compiler
 
 
 @pytest.fixture

@@ -13,8 +13,8 @@ from itertools import combinations
 
 from flint import fmpq, fmpq_mpoly
 
-from wavesym.coefficients.factored import written
-from wavesym.coefficients.ratio import Ratio, Ring
+from wavesym.algebra.factored import written
+from wavesym.algebra.ratio import Ratio, Ring
 from wavesym.errors import SceneError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters, Quantity, System

@@ -5,13 +5,13 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wavesym.coefficients import factored as module
-from wavesym.coefficients.factored import factored, irreducible
+from wavesym.algebra import factored as module
+from wavesym.algebra.factored import irreducible
 from wavesym.coefficients.letters import in_rates
-from wavesym.coefficients.symbolic import generic
 from wavesym.coefficients.table import full_table
 from wavesym.mechanics.building import BUILDING_FORCE
 from wavesym.mechanics.drive import DRIVE
+from wavesym.mechanics.symbolic import generic
 
 CONTEXT = fmpq_mpoly_ctx.get(["x", "y", "z"], Ordering.lex)
 X, Y, Z = CONTEXT.gens()
@@ -50,7 +50,7 @@ def wrong(symbols, intervals):
     for row in full_table(symbols.chain, intervals, fmpq(0)).rows():
         if not hasattr(row.value, "ring"):
             continue
-        told = factored(row.value)
+        told = row.value.factored
         again = [factor.factor()[1] for factor, _ in (*told.above, *told.below)]
         itself = all(len(one) == 1 and one[0][1] == 1 for one in again)
         shared = any(above == below for above, _ in told.above for below, _ in told.below)

@@ -12,28 +12,15 @@ from functools import cached_property
 from math import prod
 from typing import Any
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import fmpq, fmpq_mpoly
 from flint.utils.flint_exceptions import DomainError
 
-from wavesym.coefficients.factored import Telling, factored, tell
+from wavesym.algebra.factored import Factored, factored
+from wavesym.algebra.forms import Denominator, Forms
 
-Denominator = dict[int, int]  # number of a form: its exponent, at least 1
 
-
-class Ring:
-    """The rational functions of `names` over the rationals, with the irreducible forms met so far.
-
-    The first forms are the names themselves. A ring that computes in other letters than its functions are told in has
-    `images`: what each letter is, a polynomial with integer coefficients in the symbols that a reader knows.
-    """
-
-    def __init__(self, names: Sequence[str], images: Sequence[fmpq_mpoly] | None = None) -> None:
-        self.names = tuple(names)
-        self.context = fmpq_mpoly_ctx.get(self.names, Ordering.lex)
-        self.forms: list[fmpq_mpoly] = list(self.context.gens())
-        self.images = images
-        self.told: fmpq_mpoly_ctx = images[0].context() if images else self.context
-        self._tellings: list[Telling] = []
+class Ring(Forms):
+    """The rational functions of `names` over the rationals."""
 
     def symbols(self) -> dict[str, Ratio]:
         """The symbols by name."""
@@ -42,26 +29,6 @@ class Ring:
     def constant(self, value: fmpq | int) -> Ratio:
         """A number."""
         return Ratio(self, self.context.constant(value))
-
-    def telling(self, form: int) -> Telling:
-        """What a form is in the symbols that a reader knows (see `factored`)."""
-        for number in range(len(self._tellings), form + 1):
-            self._tellings.append(tell(self, self.forms[number]))
-        return self._tellings[form]
-
-    def product(self, exponents: Denominator) -> fmpq_mpoly:
-        """The product of forms with these exponents."""
-        return prod(
-            (self.forms[form] ** power for form, power in exponents.items() if power), start=self.context.constant(1)
-        )
-
-    def form(self, polynomial: fmpq_mpoly) -> int:
-        """The number of an irreducible polynomial among the forms, a new one where it is new."""
-        for number, form in enumerate(self.forms):
-            if form == polynomial:
-                return number
-        self.forms.append(polynomial)
-        return len(self.forms) - 1
 
 
 class Ratio:
@@ -240,4 +207,9 @@ class Ratio:
         return other._order() < self._order()
 
     def __str__(self) -> str:
-        return str(factored(self))
+        return str(self.factored)
+
+    @property
+    def factored(self) -> Factored:
+        """This in lowest terms, for a reader."""
+        return factored(self.ring, self.numerator, self.denominator)

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from string import ascii_letters
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from flint import fmpq, fmpq_mpoly, fmpq_poly, fmpz
 from flint.utils.flint_exceptions import DomainError
 
-if TYPE_CHECKING:
-    from wavesym.coefficients.ratio import Ratio, Ring
+from wavesym.algebra.forms import Denominator, Forms
 
 # more terms than that hardly ever come back as a factor of another coefficient
 _RECURRING = 20
@@ -45,18 +44,17 @@ class Factored(NamedTuple):
         return f"{above}/({below})" if below.strip("_0123456789" + ascii_letters) else f"{above}/{below}"
 
 
-def factored(ratio: Ratio) -> Factored:
+def factored(ring: Forms, numerator: fmpq_mpoly, denominator: Denominator) -> Factored:
     """A rational function in the symbols that its ring is told in."""
-    ring = ratio.ring
-    if not ratio.numerator:
+    if not numerator:
         return Factored(fmpq(0), (), ())
-    content, known, rest = _factors(ratio)
-    powers = known | {form: -power for form, power in ratio.denominator.items()}
+    content, known, rest = _factors(ring, numerator, denominator)
+    powers = known | {form: -power for form, power in denominator.items()}
     exponents = [0] * ring.told.nvars()
     above: list[Factor] = []
     below: list[Factor] = []
     factors = [(*ring.telling(form), power) for form, power in sorted(powers.items())]
-    for sign, monomial, polynomial, power in (*factors, *((*tell(ring, factor), power) for factor, power in rest)):
+    for sign, monomial, polynomial, power in (*factors, *((*ring.tell(factor), power) for factor, power in rest)):
         content *= sign ** abs(power)
         exponents = [old + power * int(new) for old, new in zip(exponents, monomial, strict=True)]
         if not polynomial.is_constant():
@@ -67,26 +65,13 @@ def factored(ratio: Ratio) -> Factored:
     return Factored(content, above, below)
 
 
-Telling = tuple[int, Sequence[int], fmpq_mpoly]
-
-
-def tell(ring: Ring, factor: fmpq_mpoly) -> Telling:
-    """An irreducible polynomial in a ring's letters as sign * monomial * an irreducible polynomial in symbols, or 1."""
-    polynomial = factor.compose(*ring.images, ctx=ring.told) if ring.images else factor
-    monomial = polynomial.term_content()
-    polynomial = polynomial / monomial
-    sign = 1 if polynomial.leading_coefficient() > 0 else -1
-    return sign, monomial.degrees(), polynomial * sign
-
-
-def _factors(ratio: Ratio) -> tuple[fmpq, dict[int, int], list[Factor]]:
+def _factors(ring: Forms, numerator: fmpq_mpoly, denominator: Denominator) -> tuple[fmpq, dict[int, int], list[Factor]]:
     """The numerator's content, the exponents of known forms in it, and what other factors it has."""
-    ring = ratio.ring
-    monomial = ratio.numerator.term_content()
-    rest = ratio.numerator / monomial
+    monomial = numerator.term_content()
+    rest = numerator / monomial
     known = {form: int(power) for form, power in enumerate(monomial.degrees()) if power}
     for number in range(len(ring.names), len(ring.forms)):
-        if number not in ratio.denominator:
+        if number not in denominator:
             power, rest = _divided(rest, ring.forms[number])
             if power:
                 known[number] = power
