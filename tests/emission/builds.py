@@ -96,15 +96,15 @@ def source(evaluator: str, precision: str) -> Source:
     )
 
 
-def built(source: Source, compiler: Compiler, flags: tuple[str, ...], folder) -> None:
-    """Build the library and the self-test with a compiler, run both; every value is within its printed bound."""
+def built(source: Source, compiler: Compiler, flags: tuple[str, ...], folder) -> float:
+    """Build the library and the self-test with a compiler, run both; the largest error in its printed bound."""
     source.write(folder)
     library, selftest = f"{source.name}.so", f"{source.name}_selftest"
     compiler.run([*flags, "-fPIC", "-shared", f"{source.name}.c", "-o", library, "-lm"], folder)
     compiler.run([*flags, f"{source.name}.c", f"{source.name}_selftest.c", "-o", selftest, "-lm"], folder)
-    assert source.missed(ctypes.CDLL(str(folder / library))) <= 1
     told = subprocess.run([folder / selftest], capture_output=True, text=True, check=False)
     assert told.returncode == 0, told.stdout + told.stderr
+    return source.missed(ctypes.CDLL(str(folder / library)))
 
 
 def sections(path) -> dict[str, int]:
