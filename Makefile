@@ -1,4 +1,4 @@
-# `make demo` and `make test` on a fresh clone need Python 3.11 or newer and a C compiler, nothing else.
+# `make demo` and `make test` on a fresh clone need Python 3.11 or newer, nothing else.
 
 PYTHON ?= python3
 BIN := .venv/bin
