@@ -39,6 +39,7 @@ from wavesym.writing import Difference, write_whole
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wavesym.mechanics.node import System
     from wavesym.verification.published.record import Claim
 
 
@@ -190,6 +191,16 @@ def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
     from wavesym.verification.report import verify as report
 
     return report(scenes)
+
+
+def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:
+    """The proofs of the derivation and other routes to its tables, a line each, and whether all of them hold.
+
+    `watch` goes through the systems as they are proved.
+    """
+    from wavesym.verification.derived import derived as report
+
+    return report(watch)
 
 
 def published(format: str, watch: Callable[[list[Claim[Any]]], Iterable[Claim[Any]]] = iter) -> tuple[str, bool]:

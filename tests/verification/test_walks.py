@@ -7,29 +7,14 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wavesym.coefficients.increments import Increment, add, trimmed
-from wavesym.coefficients.table import Function, Table, full_table
-from wavesym.coefficients.walks import Letters, departures, function_walks, letters, units, walks_until
+from wavesym.coefficients.table import full_table
+from wavesym.coefficients.walks import letters, units, walks_until
 from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.collision import COLLISION
 from wavesym.mechanics.drive import DRIVE
 from wavesym.mechanics.node import Parameters
-from wavesym.verification.expansion import expanded
-
-
-def by_walks(chain: Chain, table: Table, intervals: int, names: Letters) -> dict[str, dict[Function, list[Increment]]]:
-    """The table's responses from walk polynomials, the contacts of an impact summed."""
-    responses = {source: {f: [{} for _ in gains] for f, gains in r.items()} for source, r in table.responses.items()}
-    for unit in units(chain):
-        sent = walks_until(chain, unit, departures(chain, table.interval, intervals), names, names.symbols)
-        response = responses["impact" if unit.name.startswith("impact") else unit.name]
-        for function, gains in response.items():
-            for n, gain in enumerate(gains):
-                polynomial = function_walks(chain, sent, function, n + 1, table.interval)
-                add(gain, expanded(polynomial, unit, names))
-    return {source: {f: list(map(trimmed, gains)) for f, gains in r.items()} for source, r in responses.items()}
-
+from wavesym.verification.derived import by_walks
 
 NUMBERS = st.builds(fmpq, st.integers(1, 9), st.integers(1, 5)) | st.just(fmpq(1, 2)) | st.just(fmpq(1001, 2000))
 

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("scenes", type=SCENE, nargs=-1, metavar="[SCENE]...")
 @click.option("--published", is_flag=True, help="A verdict on every formula of the paper instead.")
+@click.option("--derived", is_flag=True, help="The derivation proved, and its tables by other routes, instead.")
 @click.option("--format", type=click.Choice(["text", "json", "markdown"]), help="With --published.  [default: text]")
-def verify(scenes: tuple[Scene, ...], published: bool, format: str | None) -> int:
+def verify(scenes: tuple[Scene, ...], published: bool, derived: bool, format: str | None) -> int:
     """Compare evaluators with direct integration; exit 1 where one is out of tolerance.
 
     Without SCENE, all built-in scenes. With --published, exit 1 only where a formula could not be tested.
@@ -27,8 +28,8 @@ def verify(scenes: tuple[Scene, ...], published: bool, format: str | None) -> in
     Example:
       wavesym verify collision_m4 drive_m1
     """
-    if published and scenes:
-        raise click.UsageError("--published takes no SCENE")
+    if published + derived + bool(scenes) > 1:
+        raise click.UsageError("one of SCENE, --published and --derived expected")
     if format and not published:
         raise click.UsageError("--format is for --published")
     with progress("verify") as line:
@@ -37,6 +38,8 @@ def verify(scenes: tuple[Scene, ...], published: bool, format: str | None) -> in
 
         if published:
             text, passed = compiler.published(format or "text", lambda claims: line.each(claims, attrgetter("id")))
+        elif derived:
+            text, passed = compiler.derived(lambda systems: line.each(systems, attrgetter("name")))
         else:
             chosen = scenes or [Scene.from_toml(name) for name in builtin_names()]
             text, passed = compiler.verify(line.each(chosen, attrgetter("name")))

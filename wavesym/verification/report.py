@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from wavesym.scene import Scene
 from wavesym.toolchain import compiler
 from wavesym.verification.checks import CHECKS
 from wavesym.verification.reference import reference
+from wavesym.verification.tabled import Row, table
 
 _LEGEND = "Errors are against ball arithmetic rounded once, relative to the output's largest value."
-
-Row = dict[str, str]
 
 
 def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
@@ -33,21 +32,5 @@ def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
                 passed = passed and outcome.passed
     lines = [_LEGEND, f"The C compiler is {chosen.version}.", *dict.fromkeys(notes), ""]
     for check, rows in zip(CHECKS, tables, strict=True):
-        lines += [check.title, "", *_table(rows), ""]
+        lines += [check.title, "", *table(rows, ("scene", "of", "verdict")), ""]
     return "\n".join(lines[:-1]) + "\n", passed
-
-
-def _table(rows: Sequence[Row]) -> list[str]:
-    """Aligned columns: names to the left, numbers to the right."""
-    columns = [column for column in dict.fromkeys(column for row in rows for column in row) if column != "verdict"]
-    columns.append("verdict")  # last, where a row has fewer columns too
-    grid = [columns, *([row.get(column, "-") for column in columns] for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*grid, strict=True)]
-    names = ("scene", "of", "verdict")
-    return [
-        "  ".join(
-            cell.ljust(width) if column in names else cell.rjust(width)
-            for cell, width, column in zip(line, widths, columns, strict=True)
-        ).rstrip()
-        for line in grid
-    ]
