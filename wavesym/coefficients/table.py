@@ -7,16 +7,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 from graphlib import TopologicalSorter
 from heapq import heapify, heappop, heappush
+from math import inf
 from typing import NamedTuple
 
 from flint import fmpq
 
 from wavesym.coefficients.increments import Increment, add, apply, solve, start
+from wavesym.coefficients.size import refuse_large
 from wavesym.derivation.rule import Rule
-from wavesym.errors import CostError
 from wavesym.mechanics.chain import Chain
-
-MOST_COEFFICIENTS = 20_000_000
 
 
 class Function(NamedTuple):
@@ -131,10 +130,11 @@ def _increment(rule: Rule, source: str, response: Mapping[Function, list[Increme
     return solve(rule.own, right, jump)
 
 
-def full_table(chain: Chain, intervals: int | None, until: fmpq, most: int = MOST_COEFFICIENTS) -> Table:
+def full_table(chain: Chain, intervals: int | None, until: fmpq, most: float = inf) -> Table:
     """All functions of all rods, all sources: `intervals` of each, or those that reach its rod until tau = `until`.
 
-    CostError beyond about `most` coefficients. The numbers are of the chain's kind: exact, or symbolic (`symbolic`).
+    CostError beyond about `most` coefficients, or what half a minute makes (size.py). The numbers are of the chain's
+    kind: exact, or symbolic (`symbolic`).
     """
     rules = Rules(chain)
     wanted = {}
@@ -148,30 +148,9 @@ def full_table(chain: Chain, intervals: int | None, until: fmpq, most: int = MOS
                 intervals if intervals is not None else max(0, int((fmpq(latest) / rules.interval).floor()) + 1)
             )
     asked = "output.until" if intervals is None else "--intervals"
-    refuse_absurd(rules, wanted, chain.m, asked, len(chain.sources), most)
+    refuse_large(chain, rules.interval, wanted, chain.sources, asked, most)
     responses = {}
     for source in chain.sources:
         response = unit_response(rules, source, wanted)
         responses[source] = {function: response.get(function, [])[:count] for function, count in wanted.items()}
     return Table(rules.interval, responses)
-
-
-def refuse_absurd(
-    rules: Rules,
-    wanted: Mapping[Function, int],
-    m: int,
-    asked: str = "output.until",
-    sources: int = 1,
-    most: int = MOST_COEFFICIENTS,
-) -> None:
-    """CostError where the tables would be absurdly large; counted before they are made.
-
-    An increment of interval n has about n / 2 powers for every rate, and as many rates as bodies can be met by then.
-    """
-    intervals = needed(rules, wanted)
-    coefficients = sources * sum(n * n * min(n, m + 1) // 4 for n in intervals.values())
-    if coefficients > most:
-        raise CostError(
-            f"{asked}: the tables would hold about {coefficients:.1e} coefficients ({len(intervals)} wave functions in "
-            f"up to {max(intervals.values())} intervals), at most {most:.0e} expected"
-        )

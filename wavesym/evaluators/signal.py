@@ -9,13 +9,15 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import NamedTuple
 
 from flint import fmpq
 
 from wavesym.coefficients.increments import Increment, combined, integrated
 from wavesym.coefficients.increments import start as start_of
-from wavesym.coefficients.table import MOST_COEFFICIENTS, Function, Rules, refuse_absurd, unit_response
+from wavesym.coefficients.size import refuse_large
+from wavesym.coefficients.table import Function, Rules, unit_response
 from wavesym.evaluators.doubles import not_below, rational
 from wavesym.mechanics.chain import Chain, chain
 from wavesym.mechanics.cone import rod_of
@@ -51,7 +53,7 @@ def horizon(scene: Scene) -> float:
     return not_below(rational(scene.output.until))
 
 
-def signals(scene: Scene, most: int = MOST_COEFFICIENTS) -> tuple[Signal, ...]:
+def signals(scene: Scene, most: float = inf) -> tuple[Signal, ...]:
     """The outputs of a scene on its horizon, exact. CostError where the tables would have more than `most` numbers."""
     return observed(Modelled(chain(scene)), scene.outputs, scene.pieces, rational(horizon(scene)), most)
 
@@ -69,7 +71,7 @@ def observed(
     outputs: Sequence[Observable],
     pieces: Sequence[Piece],
     until: fmpq,
-    most: int = MOST_COEFFICIENTS,
+    most: float = inf,
 ) -> tuple[Signal, ...]:
     """The signals at `outputs` until tau = `until` under the loads `pieces`."""
     parts = [_parts(model.chain, output) for output in outputs]
@@ -81,7 +83,7 @@ def observed(
         for part in waves:
             reach = (until - start - part.delay) / model.rules.interval
             wanted[part.function] = max(wanted[part.function], int(reach.floor()) + 1)
-        refuse_absurd(model.rules, wanted, model.chain.m, most=most)
+        refuse_large(model.chain, model.rules.interval, wanted, [source], "output.until", most)
         responses[source] = unit_response(model.rules, source, wanted)
     signals = []
     for output, group in zip(outputs, parts, strict=True):
