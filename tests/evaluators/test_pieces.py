@@ -13,6 +13,7 @@ import wavesym
 from tests.evaluators.drawn import scenes
 from wavesym.emission.files import files
 from wavesym.errors import CostError, ToleranceError
+from wavesym.evaluators import pieces
 from wavesym.evaluators.ball import Balls, segments
 from wavesym.evaluators.choice import choose
 from wavesym.evaluators.doubles import rational
@@ -180,3 +181,31 @@ def test_pieces_that_would_take_minutes_are_refused():
     with pytest.raises(CostError, match="1024 bits"):
         choose(heavy, "pieces")
     assert choose(heavy).name == "march"
+
+
+def test_an_output_that_cancels_throughout_is_nothing():
+    """In the middle of what is symmetric waves arrive, and no number of bits tells that they add up to 0."""
+    symmetric = wavesym.Scene(
+        name="symmetric",
+        system={"type": "collision", "m": 6, "kappa": ["1/2", "1/2", "1/2"], "velocity": [1, 0, -1]},
+        output={"until": 3, "tolerance": "1e-10", "strain": [3], "velocity": [3]},
+    )
+    _, form, _ = choose(symmetric, "pieces")
+    assert [output.largest > 0 for output in form.outputs] == [True, False]
+    assert [powers for grid in form.grids for piece in grid.powers for powers in piece if powers == (0.0,)]
+
+
+def test_more_pieces_than_can_be_fitted_soon_are_refused(monkeypatch):
+    monkeypatch.setattr(pieces, "_MOST_WORK", 128 * 100)
+    choose(short(places=1), "pieces")
+    with pytest.raises(CostError, match="pieces would be fitted"):
+        choose(short(places=10), "pieces")
+
+
+def short(places):
+    return wavesym.Scene(
+        name="short",
+        system={"type": "drive", "m": 1, "kappa": [1], "inertia": [1, 1]},
+        load=[{"body": 1, "times": [0], "steps": [1]}],
+        output={"until": 10, "tolerance": "1e-6", "strain": [f"{k + 1}/{places + 1}" for k in range(places)]},
+    )

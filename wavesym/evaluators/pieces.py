@@ -24,6 +24,8 @@ from wavesym.errors import CostError
 from wavesym.evaluators import chebyshev
 from wavesym.evaluators.ball import Segment, precise
 from wavesym.evaluators.doubles import bound, middle, rational
+from wavesym.evaluators.march.plan import plan
+from wavesym.evaluators.march.zero import silent
 from wavesym.evaluators.motion import Motion, is_zero
 from wavesym.evaluators.reals import SINGLE, Real
 from wavesym.scene import Scene
@@ -37,9 +39,13 @@ _USUAL = (8, 4, 2, 1)
 _SHORTER = (2, 4, 8, 16, 32)
 # A fit at so many bits takes seconds, at twice as many the better part of a minute (the terms double with the bits).
 _MOST_BITS = 1024
+# Pieces times bits: ten seconds or so.
+_MOST_WORK = 10_000_000
 # In double precision the fastest are taken whose tables are no larger than this; single is for small machines.
 _FAST_BYTES = 128 << 10
 _SECOND_ORDER = arb(fmpq(1001, 1000))
+# of the largest value; far below what any tolerance asks for
+_NEGLIGIBLE = arb(2) ** -200
 
 
 @dataclass(frozen=True)
@@ -124,7 +130,7 @@ class Pieces:
 def pieces(scene: Scene, real: Real, tolerance: fmpq) -> Pieces:
     """The pieces of a scene in `real` numbers, with degrees for `tolerance`, met or not: see `error_bound`.
 
-    CostError where the tables would be larger than `MOST_BYTES`.
+    CostError where the tables would be larger than `MOST_BYTES`, or take long to fit.
     """
     # no finer than rounding: what is asked for beyond that is not had by more bits or more pieces
     fits = _Fits(scene, real, max(tolerance, real.roundoff / 8))
@@ -139,6 +145,8 @@ def pieces(scene: Scene, real: Real, tolerance: fmpq) -> Pieces:
 
 def _fastest(fits: _Fits) -> Pieces:
     for per_unit in _USUAL:
+        if per_unit > _USUAL[-1] and fits.least_bytes(per_unit) > _FAST_BYTES:
+            continue
         found = fits.fitted(per_unit)
         if found.bytes <= _FAST_BYTES:
             break
@@ -155,6 +163,7 @@ class _Fits:
     """The outputs of a scene at the precision that its tolerance needs, and fits to them."""
 
     def __init__(self, scene: Scene, real: Real, tolerance: fmpq) -> None:
+        self._scene = scene
         self._real = real
         # a little of it is left for printing the bound in two digits, rounded up
         self._tolerance = arb(tolerance) * arb(fmpq(9, 10))
@@ -162,17 +171,38 @@ class _Fits:
         self._motion = Motion(scene, rational(self._tau_max))
         self._bits = 128
 
+    @cached_property
+    def _silent(self) -> set[int]:
+        """The outputs that are 0 throughout though waves arrive, which no number of bits tells; as far as is known."""
+        try:
+            return {k for k, nothing in enumerate(silent(plan(self._scene, self._real))) if nothing}
+        except CostError:
+            return set()
+
     def fitted(self, per_unit: int) -> Pieces:
         """Pieces, about `per_unit` of them in a unit of tau."""
 
         def attempt() -> Pieces | None:
             self._bits = ctx.prec  # what did for one number of pieces is where the next one starts
+            if self._least(per_unit) * self._bits > _MOST_WORK:
+                raise CostError(
+                    f"output.until: {self._least(per_unit):.0e} pieces would be fitted with {self._bits} bits, "
+                    f"at most {_MOST_WORK // self._bits:.0e} expected"
+                )
             return self._fit(per_unit)
 
         try:
             return precise(attempt, self._bits, _MOST_BITS)
         except ArithmeticError as error:
             raise CostError(f"output.until: pieces would take minutes to fit, as {error}") from None
+
+    def least_bytes(self, per_unit: int) -> int:
+        """What tables of constants would take."""
+        return self._least(per_unit) * self._real.bytes
+
+    def _least(self, per_unit: int) -> int:
+        """How many pieces there are at least, of all outputs."""
+        return len(self._motion.places) * int(self._motion.until.floor()) * per_unit
 
     def _fit(self, per_unit: int) -> Pieces | None:
         places = self._motion.places
@@ -187,6 +217,8 @@ class _Fits:
                 segments = self._motion.segments(places[k])
                 cuts = _Cuts([segment.start for segment in segments], self._motion.until, per_unit, self._real)
                 fit = self._output(segments, cuts)
+                if fit is None and k in self._silent:
+                    fit = _nothing(cuts)
                 if fit is None:
                     return None
                 bounds[k], powers = fit
@@ -200,13 +232,14 @@ class _Fits:
     ) -> tuple[tuple[float, float], list[tuple[float, ...]]] | None:
         """Bound and largest value of an output, and its powers on every piece; None where the precision does not do."""
         if is_zero(segments):
-            return (0.0, 0.0), [(0.0,)] * len(cuts.centres)
+            return _nothing(cuts)
+        if self._too_blurred(segments, cuts):
+            return None
         local = list(_on_pieces(segments, cuts))
         scale = max(abs(polynomial(arb(t))).lower() for polynomial in local for t in (-1, 0, 1))
         if not scale > 0:
             return None
-        allowed = self._tolerance * scale
-        enough = allowed.max(arb(self._real.roundoff) * scale) / 1000
+        allowed, enough = self._allowed(scale)
         worst = arb(0)
         powers = []
         for coefficients, half in zip(chebyshev.coefficients(local), cuts.halves, strict=True):
@@ -218,14 +251,44 @@ class _Fits:
             powers.append(tuple(self._real.nearest(middle(c / arb(half) ** k)) for k, c in enumerate(kept)))
         return (bound(worst / scale), float(scale)), powers
 
+    def _allowed(self, scale: arb) -> tuple[arb, arb]:
+        """The error that is allowed where the largest value is `scale`, and what of it balls may take."""
+        allowed = self._tolerance * scale
+        return allowed, allowed.max(arb(self._real.roundoff) * scale) / 1000
 
-def _on_pieces(segments: Sequence[Segment], cuts: _Cuts) -> Iterator[arb_poly]:
-    """The output on every piece, in t."""
+    def _too_blurred(self, segments: Sequence[Segment], cuts: _Cuts) -> bool:
+        """Whether balls, which grow with time, hide the last piece, however large the largest value is."""
+        largest = arb(0)
+        for segment, end in zip(segments, [*(s.start for s in segments[1:]), self._motion.until], strict=True):
+            (polynomial,) = segment.families.values()
+            largest = largest.max(abs(polynomial(arb(0).union(arb(end - segment.start)))).upper())
+        (last,) = chebyshev.coefficients(list(_on_pieces(segments, cuts, len(cuts.middles) - 1)))
+        return not sum((c.rad() for c in last), arb(0)) < self._allowed(largest)[1]
+
+
+def _nothing(cuts: _Cuts) -> tuple[tuple[float, float], list[tuple[float, ...]]]:
+    """What fits an output that is 0 throughout."""
+    return (0.0, 0.0), [(0.0,)] * len(cuts.centres)
+
+
+def _on_pieces(segments: Sequence[Segment], cuts: _Cuts, first: int = 0) -> Iterator[arb_poly]:
+    """The output on every piece from the `first` on, in t; what is negligible is in the balls."""
     starts = [segment.start for segment in segments]
-    for start, centre, half in zip(cuts.exact, cuts.middles, cuts.halves, strict=False):
+    negligible = max(abs(p[0]).lower() for segment in segments for p in segment.families.values()) * _NEGLIGIBLE
+    for start, centre, half in list(zip(cuts.exact, cuts.middles, cuts.halves, strict=False))[first:]:
         segment = segments[bisect_right(starts, start) - 1]
         (polynomial,) = segment.families.values()
-        yield polynomial(arb_poly([arb(centre - segment.start), arb(half)]))
+        yield _shortened(polynomial(arb_poly([arb(centre - segment.start), arb(half)])), negligible)
+
+
+def _shortened(polynomial: arb_poly, negligible: arb) -> arb_poly:
+    """A polynomial on [-1, 1] without its highest powers, as far as they are negligible in all."""
+    powers = polynomial.coeffs()
+    rest = arb(0)
+    while powers and (more := rest + abs(powers[-1]).upper()) < negligible:
+        rest = more
+        powers.pop()
+    return arb_poly([powers[0] + arb(0, rest.upper()), *powers[1:]]) if powers else arb_poly()
 
 
 class _Cuts:
