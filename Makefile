@@ -4,6 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 DEMO := collision_m4 drive_m1 building_m2
+CORES := -n auto --dist loadfile
 
 .PHONY: install demo test lint generated bench peers check-all
 
@@ -30,7 +31,7 @@ demo: install
 	$(BIN)/wavesym plot --published -o build/demo
 
 test: install
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest $(CORES)
 
 lint: install
 	$(BIN)/ruff check
@@ -47,7 +48,7 @@ generated: install
 	$(BIN)/wavesym verify --published --format markdown > generated/errata.md
 
 check-all: lint
-	$(BIN)/python -m pytest --run-slow
+	$(BIN)/python -m pytest $(CORES) --run-slow
 
 # speed, as ratios within one run, and the charts of the same scenes
 bench: install
