@@ -77,11 +77,13 @@ class Reader:
         path = [str(programs), str(Path(sys.executable).parent), os.environ["PATH"]]
         self.environment = os.environ | {"PATH": os.pathsep.join(path)}
 
-    def read(self, text: str) -> None:
-        printed = None
-        for block in blocks(text):
+    def read(self, text: str) -> int:
+        """How many blocks there are, each of them followed."""
+        printed, followed = None, 0
+        for followed, block in enumerate(blocks(text), 1):
             printed = self.follow(block, printed)
         assert not self.unused, "saved and never used"
+        return followed
 
     def follow(self, block: Block, before: str | None) -> str | None:
         """What a block puts out; None of one that runs nothing, or not all."""
@@ -168,13 +170,13 @@ def assert_spelt(words: list[str]) -> None:
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_what_a_document_says_works(name: str, tmp_path: Path) -> None:
-    Reader(tmp_path, patience=False).read(document(name))
+    assert Reader(tmp_path, patience=False).read(document(name)) > 0
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_all_that_a_document_says_works(name: str, tmp_path: Path) -> None:
-    Reader(tmp_path, patience=True).read(document(name))
+    assert Reader(tmp_path, patience=True).read(document(name)) > 0
 
 
 @pytest.mark.slow
@@ -184,7 +186,7 @@ def test_the_example_in_the_help_of_a_command_works(
 ) -> None:
     line = shlex.join(["wavesym", *example(name, capsys)])
     if line not in re.findall(r"^(wavesym .*?) *(?:#.*)?$", document("GUIDE.md"), re.MULTILINE):
-        Reader(tmp_path, patience=True).line(line)  # what is in the guide too is run there
+        assert Reader(tmp_path, patience=True).line(line) is not None  # what is in the guide too is run there
 
 
 @pytest.mark.parametrize("name", DOCUMENTS)
@@ -235,7 +237,7 @@ SOUND = SCENE + RUN + SHOWN + PROGRAM + "```python\nprint(1)\n```\n```text\n1\n`
 
 @pytest.mark.parametrize("patience", [False, True])
 def test_a_sound_document_passes(patience: bool, tmp_path: Path) -> None:
-    Reader(tmp_path, patience).read(SOUND)
+    assert Reader(tmp_path, patience).read(SOUND) == SOUND.count("```") // 2
 
 
 @pytest.mark.parametrize(
