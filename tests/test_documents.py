@@ -80,8 +80,9 @@ class Reader:
     def read(self, text: str) -> int:
         """How many blocks there are, each of them followed."""
         printed, followed = None, 0
-        for followed, block in enumerate(blocks(text), 1):
+        for block in blocks(text):
             printed = self.follow(block, printed)
+            followed += 1
         assert not self.unused, "saved and never used"
         return followed
 
