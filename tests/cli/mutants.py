@@ -23,7 +23,18 @@ SOURCES = {name: (files("wavesym.scene") / "builtin" / f"{name}.toml").read_text
 NUMBERS = [
     *("0", "-0.0", "1", "-1", "2", "3", "0.5", "1e-9", "1.0000000001", "7.25", "1e5", "1e9", "1e39", "1e-46", "5e-324"),
     *("1e300", "1e-300", "1e301", "1e999999999", "-1e999999999", "1e-999999999", "nan", "-inf", "inf", "0x10", "0b1"),
-    *("1_0", "9" * 90, "9" * 4000, "9" * 5000, "0." + "3" * 90, "0." + "3" * 500, "18446744073709551616"),
+    *(
+        "1_0",
+        "1_000",
+        "1e2",
+        "1e3",
+        "9" * 90,
+        "9" * 4000,
+        "9" * 5000,
+        "0." + "3" * 90,
+        "0." + "3" * 500,
+        "18446744073709551616",
+    ),
     *('"1/3"', '"1/0"', '"-7/2"', '"1/99999999999999999999999"', '"2e1"', '"0x1p3"', '" 1"', '"1/-2"', '"\u0661"'),
 ]
 TEXTS = [
@@ -196,7 +207,7 @@ def _larger(tree: Any, rng: random.Random) -> None:
     """A chain of another length, its lists to match."""
     system = tree.get("system")
     if isinstance(system, dict) and isinstance(old := system.get("m"), int):
-        new = rng.choice([1, 2, 3, 4, 6, 10])
+        new = rng.choice([1, 2, 3, 4, 6, 10, 10, 40, 300])
         system["m"] = new
         for key, numbers in system.items():
             if isinstance(numbers, list) and numbers:
@@ -207,7 +218,7 @@ def _larger(tree: Any, rng: random.Random) -> None:
 def _horizon(tree: Any, rng: random.Random) -> None:
     output = tree.get("output")
     if isinstance(output, dict):
-        output["until"] = Raw(rng.choice(["1e-9", "0.1", "1", "20", "33.3", "1e9"]))
+        output["until"] = Raw(rng.choice(["1e-9", "0.1", "1", "20", "33.3", "100", "1e3", "1e9"]))
 
 
 def _tolerance(tree: Any, rng: random.Random) -> None:

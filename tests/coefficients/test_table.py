@@ -2,14 +2,12 @@
 
 from dataclasses import replace
 
-import pytest
 from flint import fmpq
 from sympy import Integer
 
 from wavesym.coefficients.table import Function, Rules, full_table, needed, unit_response
 from wavesym.derivation import recurrence as derivation
 from wavesym.emission.derivation import derivation as written
-from wavesym.errors import CostError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.drive import DRIVE
 from wavesym.mechanics.node import Parameters
@@ -54,8 +52,3 @@ def test_only_the_light_cone_is_run():
     cone = needed(Rules(chain), {Function("f", 20): 3})
     assert {function.rod for function in cone} <= set(range(17, 24))
     assert cone[Function("f", 20)] == 3
-
-
-def test_an_absurd_table_is_refused_before_it_is_made():
-    with pytest.raises(CostError, match="coefficients"):
-        full_table(drive([1], [1, 1]), 10**9, fmpq(0))

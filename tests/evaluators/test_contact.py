@@ -7,6 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 import wavesym
+from wavesym.errors import CostError
+from wavesym.evaluators import contact
 from wavesym.evaluators.contact import contact_ends
 
 
@@ -53,3 +55,17 @@ def test_rates_that_nearly_meet_move_the_end_no_further_than_they_differ():
     (equal,) = contact_ends(collision(["1/5", "1/5"], [1, "-1/2"]))
     (near,) = contact_ends(collision(["1/5", "2000000001/10000000000"], [1, "-1/2"]))
     assert 0 < abs(near.double - equal.double) < 1e-7
+
+
+def test_a_search_that_does_not_end_is_refused(monkeypatch):
+    scene = wavesym.Scene.from_toml("collision_m4")
+    assert contact.contact_ends(scene)
+    monkeypatch.setattr(contact, "_first_return", lambda strain, until: None)  # no precision tells
+    with pytest.raises(CostError, match=r"output.until: when the contact at x = 2 opens takes minutes"):
+        contact.contact_ends(scene)
+
+
+def test_a_contact_whose_table_would_be_large_is_refused(monkeypatch):
+    monkeypatch.setattr(contact, "_MOST_COEFFICIENTS", 10)
+    with pytest.raises(CostError, match="coefficients"):
+        contact.contact_ends(wavesym.Scene.from_toml("collision_m4"))

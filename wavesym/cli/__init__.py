@@ -9,6 +9,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from io import TextIOWrapper
 
 import click
 
@@ -52,6 +53,8 @@ def cli() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and give its exit status; what goes wrong for a user is one line on standard error."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="surrogateescape")  # the name of a file may be no UTF-8
     try:
         status = cli.main(arguments, prog_name="wavesym", standalone_mode=False)
         sys.stdout.flush()  # here, where a reader that has gone can still be met in silence

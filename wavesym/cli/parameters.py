@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from glob import escape, glob
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 
 _ARGUMENT = "wavesym.scene"
+_FILES = "wavesym.scenes"
 
 
 class SceneParameter(click.ParamType[Any]):
@@ -35,9 +36,12 @@ class SceneParameter(click.ParamType[Any]):
 
         if isinstance(value, Scene):
             return value
+        file = "<stdin>" if value == "-" else value
         if ctx is not None and param is not None and param.nargs == 1:
             ctx.meta[_ARGUMENT] = value
-            ctx.with_resource(_blamed("<stdin>" if value == "-" else value))
+            ctx.with_resource(_blamed(file))
+        elif ctx is not None:
+            ctx.meta.setdefault(_FILES, []).append(file)
         return Scene.from_toml(value)
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
@@ -65,6 +69,14 @@ def _blamed(file: str) -> Iterator[None]:
 def scene_argument() -> str:
     """How the scene of the present command was given."""
     return str(click.get_current_context().meta[_ARGUMENT])
+
+
+def each_blamed(scenes: Iterable[Scene], stack: ExitStack) -> Iterator[Scene]:
+    """The scenes that a command was given; what is found wrong in `stack` with the one just taken names its file."""
+    for scene, file in zip(scenes, click.get_current_context().meta[_FILES], strict=True):
+        stack.pop_all()
+        stack.enter_context(_blamed(file))
+        yield scene
 
 
 SCENE = SceneParameter()

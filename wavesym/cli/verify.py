@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import SCENE, put
+from wavesym.cli.parameters import SCENE, each_blamed, put
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 @click.option("--derived", is_flag=True, help="The derivation proved, and its tables by other routes, instead.")
 @click.option("--format", type=click.Choice(["text", "json", "markdown"]), help="With --published.  [default: text]")
 def verify(scenes: tuple[Scene, ...], published: bool, derived: bool, format: str | None) -> int:
-    """Compare evaluators with direct integration; exit 1 where one is out of tolerance.
+    """Check evaluators against integration and invariants; exit 1 where one is out of tolerance.
 
     Without SCENE, all built-in scenes. With --published, exit 1 only where a formula could not be tested.
 
@@ -42,6 +43,8 @@ def verify(scenes: tuple[Scene, ...], published: bool, derived: bool, format: st
             text, passed = compiler.derived(lambda systems: line.each(systems, attrgetter("name")))
         else:
             chosen = scenes or [Scene.from_toml(name) for name in builtin_names()]
-            text, passed = compiler.verify(line.each(chosen, attrgetter("name")))
+            told = line.each(chosen, attrgetter("name"))
+            with ExitStack() as blame:
+                text, passed = compiler.verify(each_blamed(told, blame) if scenes else told)
     put(text)
     return 0 if passed else 1

@@ -11,6 +11,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.coefficients.increments import Increment, apply, start, trimmed
 from wavesym.derivation.rule import DERIVATIVE
+from wavesym.errors import CostError
 from wavesym.evaluators.ball import Segment, polynomials, precise, segments
 from wavesym.evaluators.doubles import midpoint, rational
 from wavesym.evaluators.signal import Modelled, Signal, horizon, observed
@@ -21,6 +22,10 @@ from wavesym.scene import Collision, Observable, Scene
 _WIDTH = fmpq(1, 2**80)
 # a strain at a front that is 0 to as many bits is 0
 _BITS_FOR_ZERO = 2048
+# at so many a search takes seconds
+_MOST_BITS = 1 << 14
+# of one contact's table, a second or two
+_MOST_COEFFICIENTS = 100_000
 # how far is looked at first
 _FIRST = fmpq(16)
 
@@ -44,7 +49,10 @@ class ContactEnd:
 
 
 def contact_ends(scene: Scene) -> tuple[ContactEnd, ...]:
-    """The contacts whose opening can reach an output of the scene within its horizon, from left to right."""
+    """The contacts whose opening can reach an output of the scene within its horizon, from left to right.
+
+    CostError where that takes more than some seconds to know.
+    """
     if not isinstance(scene.system, Collision):
         return ()
     model = Modelled(chain(scene))
@@ -58,8 +66,11 @@ def contact_ends(scene: Scene) -> tuple[ContactEnd, ...]:
         while not tau.is_finite() and reached < latest:
             # most open early, and tables grow like the cube of the time
             reached = min(latest, max(_FIRST, 2 * reached))
-            (strain,) = observed(model, (place,), scene.pieces, reached)
-            tau = precise(partial(_first_return, strain, reached))
+            (strain,) = observed(model, (place,), scene.pieces, reached, _MOST_COEFFICIENTS)
+            try:
+                tau = precise(partial(_first_return, strain, reached), most=_MOST_BITS)
+            except ArithmeticError as error:
+                raise CostError(f"output.until: when the contact at x = {x} opens takes minutes, as {error}") from None
         if tau.is_finite():
             ends.append(ContactEnd(x, tau))
     return tuple(ends)

@@ -39,8 +39,8 @@ _USUAL = (8, 4, 2, 1)
 _SHORTER = (2, 4, 8, 16, 32)
 # A fit at so many bits takes seconds, at twice as many the better part of a minute (the terms double with the bits).
 _MOST_BITS = 1024
-# Pieces times bits: ten seconds or so.
-_MOST_WORK = 10_000_000
+# Pieces times bits: some seconds.
+_MOST_WORK = 3_000_000
 # In double precision the fastest are taken whose tables are no larger than this; single is for small machines.
 _FAST_BYTES = 128 << 10
 _SECOND_ORDER = arb(fmpq(1001, 1000))

@@ -25,7 +25,8 @@ from wavesym.evaluators.reals import DOUBLE, Real
 from wavesym.scene import Scene
 
 _HIGHEST_DEGREE = 2000
-_MOST_WORK = 2e10  # nodes * coefficients * windows, ten minutes or so
+_MOST_WORK = 1e9  # nodes * coefficients * windows, half a minute or so
+_BOUNDING = 1 / 20  # of an operator, in the same units per third power of the degree
 _LARGEST_STATE = 1 << 22  # bytes; programs keep it on the stack
 _OVERHEAD = 1000  # of a window, in units of a coefficient
 _SETTLED = 0.8  # a bound that a higher degree does not bring below so much of it is left as it is
@@ -159,7 +160,7 @@ def _refuse_long(prepared: Plan, degree: int) -> None:
             f"output.until: march: bodies of rates up to {nearest(prepared.rate):g} would need polynomials of degree "
             f"{degree:.2g} to tau = {prepared.tau_max:g}, at most {_HIGHEST_DEGREE} expected"
         )
-    bounding = operator_count(prepared) * degree**3
+    bounding = _BOUNDING * operator_count(prepared) * degree**3
     if work + bounding > _MOST_WORK:
         raise CostError(
             f"output.until: march: degree {degree} to tau = {prepared.tau_max:g} would cost {work + bounding:.0e} "
