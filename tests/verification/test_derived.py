@@ -30,7 +30,7 @@ def test_all_holds(capsys):
 
 
 def test_a_power_too_low_fails(monkeypatch):
-    (family,) = module.POWERS["drive"]
+    family = module.POWERS["drive"][0]
     rows = tuple(replace(row, budget=row.budget - 2) for row in family.rows[:1])
     monkeypatch.setitem(module.POWERS, "drive", (replace(family, rows=rows + family.rows[1:]),))
     text, passed = derived(only_the_drive)

@@ -16,6 +16,7 @@ from wavesym.derivation.statement import SYSTEMS
 from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.collision import COLLISION
+from wavesym.mechanics.drive import DRIVE
 from wavesym.mechanics.node import Parameters
 from wavesym.mechanics.symbolic import generic
 from wavesym.verification.powers import steps
@@ -61,7 +62,7 @@ def stated(family: PowerFamily, row: PowerRow, m: int, rod: int, n: int, body: i
     """The formula's highest power, -1 for none; where an odd time is left for ways there and back, nothing arrives."""
     at = {COUNT: m, INDEX: rod, INTERVAL: n, BODY: body, SOURCE: source}
     budget, since = (int(value.xreplace(at)) for value in (row.budget, row.since))
-    arrives = since >= 0 and (family.period != 2 or since % 2 == 0)
+    arrives = since >= 0 and since % 2 == 0
     return max(-1, budget // family.period) if arrives else -1
 
 
@@ -108,15 +109,17 @@ def count(family: PowerFamily, m: int, highest: int, node: int, source: int) -> 
     return total
 
 
-def leading(chain: Chain, unit: Unit, family: PowerFamily) -> Iterator[tuple[PowerRow, Function, int, int, int]]:
-    """Row, function, interval, and for T_1 alone (1 for other letters) the degree and its coefficient."""
-    names = letters(chain)
-    values = {name: fmpz_poly([0, 1] if name == "T_1" else [1]) for name in names.names}
-    sent = walks_until(chain, unit, departures(chain, 2, INTERVALS), names, values)
+def leading(
+    chain: Chain, unit: Unit, family: PowerFamily, letter: str = "T_1"
+) -> Iterator[tuple[PowerRow, Function, int, int, int]]:
+    """Row, function, interval, and for one letter alone (1 for others) the highest power and its coefficient."""
+    names, step = letters(chain), Rules(chain).interval
+    values = {name: fmpz_poly([0, 1] if name == letter else [1]) for name in names.names}
+    sent = walks_until(chain, unit, departures(chain, step, INTERVALS), names, values)
     for row, function in places(family, chain.m):
         for n in range(1, INTERVALS + 1):
-            power = stated(family, row, chain.m, function.rod, n, 0, unit.x)
-            polynomial = function_walks(chain, sent, function, n, 2)
+            power = stated(family, row, chain.m, function.rod, n, 0, unit.x + family.offset)
+            polynomial = function_walks(chain, sent, function, n, step)
             assert polynomial.degree() <= power + 1
             if power >= 0:
                 yield row, function, n, power, int(polynomial[power + 1])
@@ -138,6 +141,22 @@ def test_leading_coefficients_between_equal_floors_count_walks(system):
             assert abs(coefficient) == count(family, m, power, node, 0) > 0
             if m == 5:
                 assert abs(coefficient) in fibonacci
+
+
+def test_leading_coefficients_between_equal_discs_count_walks():
+    told = 0
+    for m in range(3, 8):
+        ones = {i: fmpq(1) for i in range(1, m + 2)}
+        chain = Chain(DRIVE, m, Parameters({i: ones[i] for i in range(1, m + 1)}, ones))
+        for family in POWERS["drive"][1:]:
+            first, last = (int(value.subs(COUNT, m)) for value in family.sources)
+            for unit in units(chain):
+                if first <= (source := unit.x + family.offset) <= last:
+                    for row, function, _, power, coefficient in leading(chain, unit, family, "T_2"):
+                        node = max(2, min(m, int(row.node.xreplace({INDEX: function.rod, COUNT: m}))))
+                        assert coefficient == count(family, m, power, node, source) > 0
+                        told += 1
+    assert told > 500
 
 
 def test_leading_coefficients_between_equal_bodies_count_walks():

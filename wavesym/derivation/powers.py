@@ -51,8 +51,9 @@ class PowerFamily:
 
     `of` says it in words. `period` is what a further visit takes from the budget; `offset` the number of the body at
     x = 0. `merged` families are those of equal bodies. `smallest` is the least m that it is about. Where every
-    step is a visit, the coefficient of T**(K + 1), K the highest power, counts walks of K steps to y (by reflection, a
-    sum over images): `leading`, over all whole j, of `walks`; a binomial with a half in it is 0.
+    step is a visit, T**(K + 1), K the highest power, has with 1 for other letters the number of `walks` of K steps to y
+    (by reflection, a sum over images): the sum of `leading` over all whole j; a binomial with a half in it is 0.
+    Where sources are numbered, `sources` are the first and the last one that the family is about.
     """
 
     of: str
@@ -67,6 +68,7 @@ class PowerFamily:
     rows: tuple[PowerRow, ...]
     walks: str = ""
     leading: Expr | None = None
+    sources: tuple[Expr, Expr] = (Integer(1), COUNT + 1)
 
 
 def plain(family: PowerFamily, row: PowerRow) -> Expr:
@@ -118,6 +120,45 @@ _DRIVE = PowerFamily(
         source=_s,
     ),
 )
+
+
+def _equal_discs(moment: str, first: Expr, last: Expr, start: Expr) -> PowerFamily:
+    """The inner discs of a drive of equal shafts and discs: every step is a visit but those to and from its ends."""
+    early = Integer(first == last)  # the first step, from an end
+    rows = (
+        ("f", 1, _n - 2, Integer(1), ()),
+        ("f", _i, _n - 1, _i, (2, _m, 1)),
+        ("g", _i, _n - 2, _i + 1, (1, _m - 1, 1)),
+        ("g", _m, _n - 3, _m + 1, ()),
+    )
+    apart = {Integer(1): lambda y: y - 1, exact(_m + 1): lambda y: _m + 1 - y}
+    return PowerFamily(
+        f"inner discs of equal shafts and discs, for the moment {moment}",
+        2 * _KAPPA[1],
+        Integer(2),
+        _m,
+        1,
+        True,
+        1,
+        1,
+        3,
+        tuple(
+            _row(
+                function,
+                rod,
+                y,
+                budget - early,
+                budget + (0 if places else 1) - (apart[first](y) if first == last else Abs(_s - y)),
+                *places,
+            )
+            for function, rod, budget, y, places in rows
+        ),
+        f"walks of $K$ steps from disc ${start}$ to disc $y$ within $2, ..., m$; $y$ is $i$ for $f_i$, $i+1$ for "
+        "$g_i$, but 2 for $f_1$ and $m$ for $g_m$",
+        binomial(_K, (_K + _y - start) * _HALF + _j * _m) - binomial(_K, (_K + _y + start - 2) * _HALF + _j * _m),
+        (first, last),
+    )
+
 
 # the source is the base; floors in the paper's numbers 1 ... m
 _BUILDING = PowerFamily(
@@ -211,7 +252,12 @@ POWERS: dict[str, tuple[PowerFamily, ...]] = {
         _collision("an inner body $l$", 3, exact(_m - 3), 4, 6),
         _EQUAL_BODIES,
     ),
-    "drive": (_DRIVE,),
+    "drive": (
+        _DRIVE,
+        _equal_discs("on inner disc $s$", Integer(2), _m, _s),
+        _equal_discs("on the first disc", Integer(1), Integer(1), Integer(2)),
+        _equal_discs("on the last disc", exact(_m + 1), exact(_m + 1), _m),
+    ),
     "building-force": (_BUILDING, _EQUAL_FLOORS),
     "building-ground": (_BUILDING, _EQUAL_FLOORS),
 }

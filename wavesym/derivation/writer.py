@@ -12,7 +12,7 @@ from wavesym.derivation.families import Coefficient, Solved, own_rate, solved
 from wavesym.derivation.line import Line, Source, exact
 from wavesym.derivation.notation import Text
 from wavesym.derivation.patterns import Equal
-from wavesym.derivation.powers import SOURCE, PowerFamily, PowerRow, plain
+from wavesym.derivation.powers import PowerFamily, PowerRow, plain
 from wavesym.derivation.recurrence import POWER, RATE, CoefficientLaw, SymbolicLoad, SymbolicWeights
 from wavesym.derivation.rods import RodKind
 from wavesym.mechanics.node import Node
@@ -204,5 +204,6 @@ class Writer:
             highest = self.n.divided(self.n.expression(budget), True, Integer(family.period))
         if family.period > 2:  # there and back is even, so that half of it is whole
             highest = self.n.whole(highest)
-        since = self.n.even(self.n.expression(at(row.since))) if row.since.has(SOURCE) else ""
+        always = all(value % 2 == 0 for value in row.since.as_coefficients_dict().values())
+        since = "" if always else self.n.even(self.n.expression(at(row.since)))
         return f"K = {highest}{since}"

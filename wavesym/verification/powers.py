@@ -54,7 +54,7 @@ def steps(system: System, family: PowerFamily) -> Iterator[Step]:
             row, place = _row(family, law.function, law.rod, places)
             node = _at(row.node, place, places)
             for body in _bodies(family, node, places):
-                for source in _around(SOURCE, node, Integer(1), exact(places[COUNT] + 1), 1, _FAR):
+                for source in _sources(family, node, places):
                     yield from _law_steps(family, law, {**places, **body, **source})
 
 
@@ -80,6 +80,15 @@ def _bodies(family: PowerFamily, node: Expr, places: Region) -> Iterator[Region]
         yield {BODY: first}
     else:
         yield from _around(BODY, node, first, last, family.step, _AWAY)
+
+
+def _sources(family: PowerFamily, node: Expr, places: Region) -> Iterator[Region]:
+    """Where the source is: at its place, or about `node`."""
+    first, last = (exact(value.subs(places)) for value in family.sources)
+    if first == last:
+        yield {SOURCE: first}
+    else:
+        yield from _around(SOURCE, node, first, last, 1, _FAR)
 
 
 def _around(symbol: Symbol, node: Expr, first: Expr, last: Expr, step: int, away: Symbol) -> Iterator[Region]:
@@ -113,6 +122,9 @@ def _law_steps(family: PowerFamily, law: CoefficientLaw, at: Region) -> Iterator
         start = {**at, INTERVAL: Integer(load.back + 1)}
         if load.number is not None:
             start[SOURCE] = exact(load.number.subs(at))
+            first, last = (exact(value.subs(at)) for value in family.sources)
+            if (start[SOURCE] - first).is_negative or (last - start[SOURCE]).is_negative:
+                continue
         for value in (row.since, row.budget) if own else (row.since,):
             yield Step(because=f"load {load.kind}", slack=_at(value, place, start), **said)
 
