@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.report.clear import texts_keep_clear
 from wavesym.coefficients.increments import start
 from wavesym.compiler import evaluator
 from wavesym.evaluators.contact import contact_ends
@@ -194,15 +195,7 @@ def test_every_output_is_named_beside_its_curve_and_titled_with_its_unit(buildin
 
 
 def test_no_name_covers_another_or_leaves_its_panel(figure: Figure) -> None:
-    figure.canvas.draw()
-    renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
-    for axes in figure.axes:
-        inside = axes.get_window_extent(renderer).padded(1)
-        boxes = [text.get_window_extent(renderer) for text in axes.texts if text.get_text()]
-        for k, box in enumerate(boxes):
-            assert inside.x0 <= box.x0 < box.x1 <= inside.x1
-            assert inside.y0 <= box.y0 < box.y1 <= inside.y1
-            assert not any(box.overlaps(other) for other in boxes[:k])
+    assert texts_keep_clear(figure)
 
 
 def test_drawn_lines_do_not_slope_across_a_front(building: Histories, figure: Figure) -> None:
@@ -262,3 +255,9 @@ def test_history_of_a_load_needs_no_scene() -> None:
     figure = stacked([Panel("load", (History(Observable("load", Fraction(0), 0, "a"), (RAMP,)),))], 1.0, ["title"])
     assert [text.get_text() for text in figure.axes[0].texts] == ["a"]
     assert History(Observable("load", Fraction(0), 0, "a"), (RAMP,)).formal == inf
+
+
+def test_a_name_over_another_is_seen(figure: Figure) -> None:
+    first = next(text for text in figure.axes[0].texts if text.get_text())
+    figure.axes[0].text(*first.get_position(), "over it", ha="center", va="center")
+    assert not texts_keep_clear(figure)

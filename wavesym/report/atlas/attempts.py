@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,19 +91,12 @@ def attempt(known: Truth, name: str) -> Attempt:
     met = form.error_bound <= scene.output.tolerance
     refused = "" if met else form.shortfall(rational(scene.output.tolerance))
     bounds = _reached(form, taus) if isinstance(form, ClosedForm) else np.full(len(taus), form.error_bound)
-    form = printable(form)
     text = EMITTERS[name].numpy_source(describe(scene, form, "the atlas", ()), form)
     with np.errstate(over="ignore", invalid="ignore"):
         found = imported(text, scene.name).evaluate(taus)
     wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
     errors = np.where(np.isfinite(wrong), wrong, math.inf)
     return Attempt(name, taus, errors, bounds, refused)
-
-
-def printable(form: Any) -> Any:
-    """An evaluator whose bounds a program can print, which has no way to write down an infinite one."""
-    outputs = tuple(replace(output, bound=min(output.bound, sys.float_info.max)) for output in form.outputs)
-    return replace(form, outputs=outputs)
 
 
 def _reached(form: ClosedForm, taus: Array) -> Array:

@@ -16,7 +16,6 @@ from wavesym.emission.description import describe
 from wavesym.emission.march import c_header, c_source
 from wavesym.evaluators.march.evaluator import MarchEvaluator, marched
 from wavesym.report.atlas import twist
-from wavesym.report.atlas.attempts import printable
 from wavesym.report.atlas.family import Axis, Family, Point, Progress
 from wavesym.rivals.native import FAST, address, library
 from wavesym.scene import Scene
@@ -97,7 +96,7 @@ def follow(kappa: Fraction, evaluator: MarchEvaluator) -> Followed:
 
 def _run(scene: Scene, evaluator: MarchEvaluator, taus: twist.Array) -> tuple[twist.Array, twist.Array, bool]:
     """Outputs (outputs, n), energies and the alarm."""
-    description = describe(scene, printable(evaluator), "the atlas", ())
+    description = describe(scene, evaluator, "the atlas", ())
     text = c_source(description, evaluator) + _FOLLOW.replace("NAME", scene.name)
     program = library(text, FAST, (f"{scene.name}.h", c_header(description, evaluator)))
     out, energy = np.empty((len(taus), len(scene.outputs))), np.empty(len(taus))
