@@ -112,10 +112,14 @@ def generate(
     language: str = "c",
     evaluator: str = "auto",
     precision: str = "double",
+    windows: int | None = None,
 ) -> tuple[Path, ...]:
-    """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written."""
+    """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
+
+    `windows`: a march is to be driven by hand for so many, under loads that are given while it runs.
+    """
     folder = Path(directory or scene.name)
-    made = {folder / name: text for name, text in files(scene, language, evaluator, precision).items()}
+    made = {folder / name: text for name, text in files(scene, language, evaluator, precision, windows).items()}
     write_whole(made)
     return tuple(made)
 
@@ -126,6 +130,7 @@ def check(
     language: str = "c",
     evaluator: str = "auto",
     precision: str = "double",
+    windows: int | None = None,
     source: str = "SCENE",
 ) -> str:
     """The difference between what stands in `directory` and what `generate` would write; empty where there is none.
@@ -134,9 +139,10 @@ def check(
     with the scene as it is given by `source`.
     """
     folder = Path(directory or scene.name)
-    made = {folder / name: text for name, text in files(scene, language, evaluator, precision).items()}
+    made = {folder / name: text for name, text in files(scene, language, evaluator, precision, windows).items()}
     difference = Difference(made, (path for path in folder.glob(f"{scene.name}*") if path.is_file()))
     options = ["--language", language, "--evaluator", evaluator, "--precision", precision]
+    options += [] if windows is None else ["--windows", str(windows)]
     return difference.report(["wavesym", "generate", source, "-o", str(folder), *options])
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 LANGUAGES = ["c", "numpy", "all"]
 EVALUATORS = ["auto", "closed", "pieces", "march"]
 PRECISIONS = ["double", "single"]
+MOST_WINDOWS = 2**31 - 2
 
 
 @click.command()
@@ -25,9 +26,21 @@ PRECISIONS = ["double", "single"]
 @click.option("--language", type=click.Choice(LANGUAGES), default="c", show_default=True, help="What to write.")
 @click.option("--evaluator", type=click.Choice(EVALUATORS), default="auto", show_default=True, help="How it computes.")
 @click.option("--precision", type=click.Choice(PRECISIONS), default="double", show_default=True, help="In what type.")
+@click.option(
+    "--windows",
+    type=click.IntRange(1, MOST_WINDOWS),
+    metavar="N",
+    help="For a march that will be driven by hand for N units of tau, under loads that come while it runs.",
+)
 @click.option("--check", "only_check", is_flag=True, help="Write nothing; print a diff and exit 1 where files differ.")
 def generate(
-    scene: Scene, directory: Path | None, language: str, evaluator: str, precision: str, only_check: bool
+    scene: Scene,
+    directory: Path | None,
+    language: str,
+    evaluator: str,
+    precision: str,
+    windows: int | None,
+    only_check: bool,
 ) -> int:
     """Write source files that evaluate a scene; print their paths, and on standard error why this evaluator.
 
@@ -37,7 +50,7 @@ def generate(
     """
     from wavesym import compiler
 
-    asked = (scene, directory, language, evaluator, precision)
+    asked = (scene, directory, language, evaluator, precision, windows)
     if only_check:
         with progress(f"check {scene.name}"):
             difference = compiler.check(*asked, scene_argument())

@@ -53,6 +53,7 @@ class Description:
     real: str
     numpy_real: str
     reason: str
+    tolerance: str
     outputs: tuple[Output, ...]
     output_count: str
     tau_max: str
@@ -73,9 +74,10 @@ def describe(scene: Scene, evaluator: Evaluator, reason: str, contacts: Sequence
         real="double" if real is DOUBLE else "float",
         numpy_real="float64" if real is DOUBLE else "float32",
         reason=reason,
+        tolerance=_tolerance(scene),
         outputs=tuple(Output(output.name, literal(_not_below(output.bound, DOUBLE))) for output in evaluator.outputs),
         output_count=str(len(evaluator.outputs)),
-        tau_max=literal(evaluator.tau_max, real),
+        tau_max=literal(evaluator.tau_max),  # a double in Python: the shortest text of a float may lie below it
         c_tau_max=c_literal(evaluator.tau_max, real),
         error_bound=literal(bound, real),
         c_error_bound=c_literal(bound, real),
@@ -110,5 +112,8 @@ def _model(scene: Scene) -> list[str]:
     loads = ", ".join(f"{p.weight} {p.source} at {p.time}" for p in scene.pieces if p.source != "impact")
     if loads:
         lines.append(f"unit loads: {loads}")
-    tolerance = literal(nearest(rational(Fraction(scene.output.tolerance))))
-    return [*lines, f"until = {scene.output.until}, tolerance = {tolerance}"]
+    return [*lines, f"until = {scene.output.until}, tolerance = {_tolerance(scene)}"]
+
+
+def _tolerance(scene: Scene) -> str:
+    return literal(nearest(rational(Fraction(scene.output.tolerance))))

@@ -14,14 +14,20 @@ LANGUAGES = {"c": ("c",), "numpy": ("numpy",), "all": ("c", "numpy")}
 EMITTERS = {"closed": closed, "pieces": pieces, "march": march}
 
 
-def files(scene: Scene, language: str = "c", evaluator: str = "auto", precision: str = "double") -> dict[str, str]:
+def files(
+    scene: Scene,
+    language: str = "c",
+    evaluator: str = "auto",
+    precision: str = "double",
+    windows: int | None = None,
+) -> dict[str, str]:
     """What `generate` writes, by file name.
 
     ToleranceError where no evaluator, or not the one asked for, meets the scene's tolerance; CostError where the one
     asked for would cost too much.
     """
-    name, chosen, reason = choose(scene, evaluator, precision)
-    description = describe(scene, chosen, reason, contact_ends(scene))
+    name, chosen, reason = choose(scene, evaluator, precision, windows)
+    description = describe(scene, chosen, reason, contact_ends(scene, chosen.real))
     emitter = EMITTERS[name]
     made = {f"{scene.name}.json": manifest(scene, description, chosen, name)}
     if "c" in LANGUAGES[language]:

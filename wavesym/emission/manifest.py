@@ -6,6 +6,7 @@ import json
 
 from wavesym.emission.description import Description, parameters
 from wavesym.evaluators.choice import Evaluator
+from wavesym.evaluators.march.evaluator import MarchEvaluator
 from wavesym.scene import Building, Scene
 
 SCHEMA_VERSION = 1
@@ -36,6 +37,16 @@ def manifest(scene: Scene, description: Description, evaluator: Evaluator, name:
         "tau_max": evaluator.tau_max,
         "error_bound": evaluator.error_bound,
         "outputs": [{"name": output.name, "error_bound": output.bound} for output in evaluator.outputs],
+        **_driven(evaluator),
         "contact_end": {contact.position: contact.digits for contact in description.contacts},
     }
     return json.dumps(content, indent=2) + "\n"
+
+
+def _driven(evaluator: Evaluator) -> dict[str, object]:
+    """What is proved for loads that are given while a march runs."""
+    given = evaluator.given if isinstance(evaluator, MarchEvaluator) else None
+    if given is None:
+        return {}
+    errors = zip(evaluator.outputs, given.errors, strict=True)
+    return {"windows": given.windows, "given_error": {output.name: error for output, error in errors}}

@@ -12,8 +12,9 @@ from wavesym.emission.literals import c_literal, firsts, lines, literal
 from wavesym.emission.rendering import render
 from wavesym.evaluators.doubles import middle, rational
 from wavesym.evaluators.march.evaluator import MarchEvaluator
+from wavesym.evaluators.march.given import SMOOTH
 from wavesym.evaluators.march.plan import Stretch
-from wavesym.evaluators.reals import Real
+from wavesym.evaluators.reals import DOUBLE, Real
 
 _QUANTITIES = ("strain", "velocity", "displacement")
 _NOTHING = len(_QUANTITIES)  # 0 throughout
@@ -42,7 +43,15 @@ class March:
     source_names: str
     points: str
     events: str
-    allowed: str
+    last_window: str
+    trusted: str
+    smooth: str
+    reach: str
+    noise: str
+    tolerance: str
+    windows: str
+    given_degree: str
+    given_error: str
     bodies: bool
     point: Lines
     cosine: Lines
@@ -92,22 +101,22 @@ class Program:
 
 def c_source(scene: Description, evaluator: MarchEvaluator) -> str:
     """NAME.c."""
-    return render("c/march.c.j2", Program(scene, _march(evaluator, c_literal)))
+    return render("c/march.c.j2", Program(scene, _march(scene, evaluator, c_literal)))
 
 
 def c_header(scene: Description, evaluator: MarchEvaluator) -> str:
     """NAME.h: what every evaluator declares, and the march window by window, for C++ too."""
     common, end, tail = render("c/header.h.j2", Header(scene)).rpartition(_END_OF_DECLARATIONS)
-    streaming = render("c/march.h.j2", Program(scene, _march(evaluator, c_literal)))
+    streaming = render("c/march.h.j2", Program(scene, _march(scene, evaluator, c_literal)))
     return f"{common}\n{streaming}{end.lstrip()}{tail}"
 
 
 def numpy_source(scene: Description, evaluator: MarchEvaluator) -> str:
     """NAME.py."""
-    return render("numpy/march.py.j2", Program(scene, _march(evaluator, literal)))
+    return render("numpy/march.py.j2", Program(scene, _march(scene, evaluator, literal)))
 
 
-def _march(evaluator: MarchEvaluator, text: Callable[[float, Real], str]) -> March:
+def _march(scene: Description, evaluator: MarchEvaluator, text: Callable[[float, Real], str]) -> March:
     plan, real, degree = evaluator.plan, evaluator.real, evaluator.degree
     nodes, panels = plan.junctions, plan.panels
     rows = {step: row for row, step in enumerate(evaluator.operators)}
@@ -133,7 +142,16 @@ def _march(evaluator: MarchEvaluator, text: Callable[[float, Real], str]) -> Mar
         source_names=", ".join(channel.name for channel in plan.channels) or "none",
         points=str(len(panels) * (degree + 1)),
         events=str(len(plan.events)),
-        allowed=text(real.nearest(real.roundoff * len(nodes)), real),
+        last_window="INT_MAX - 1" if real is DOUBLE else str(int(1 / real.roundoff) - 1),
+        trusted=text(real.not_below(rational(plan.trusted)), real),
+        smooth=text(real.not_below(rational(plan.tolerance)), real),
+        reach=text(real.nearest(real.reach), real),
+        # of coefficients that are sums of as many products, each rounded a few times
+        noise=text(real.nearest(4 * (degree + 8) * real.roundoff), real),
+        tolerance=scene.tolerance,
+        windows=str(evaluator.given.windows) if evaluator.given else "",
+        given_degree=str(SMOOTH),
+        given_error=text(real.not_below(rational(max(evaluator.given.errors))), real) if evaluator.given else "",
         bodies=bool(rows),
         point=reals(p.start + p.length * (1 - c) / 2 for p in panels for c in _cosines(degree)),
         cosine=reals(_cosines(degree)),

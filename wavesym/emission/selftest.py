@@ -29,7 +29,7 @@ class SelfTest:
 
 def selftest(scene: Scene, description: Description, evaluator: Evaluator) -> str:
     """NAME_selftest.c. On very long horizons it covers only the beginning."""
-    reference = Reference(beginning(scene))
+    reference = Reference(beginning(scene), evaluator.real)
     most = max(10, min(_MOST_POINTS, _MOST_VALUES // len(evaluator.outputs)))
     taus = _thinned([tau for tau in evaluator.check_points if tau <= reference.tau_max], most)
     values = reference.values(taus)

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 from typing import NamedTuple, Protocol
 
 from flint import fmpq
 
-from wavesym.errors import CostError, RangeError
+from wavesym.errors import CostError, RangeError, WavesymError
 from wavesym.evaluators.closed import ClosedForm, closed_form, refuse_many
 from wavesym.evaluators.doubles import rational
 from wavesym.evaluators.march.evaluator import MarchEvaluator, marched, unmet
 from wavesym.evaluators.pieces import Pieces, pieces
 from wavesym.evaluators.reals import REALS, Real
-from wavesym.evaluators.signal import signals
+from wavesym.evaluators.signal import horizon, signals
 from wavesym.scene import Scene
 
 Made = ClosedForm | Pieces | MarchEvaluator
@@ -73,12 +74,15 @@ class Choice(NamedTuple):
     reason: str
 
 
-def choose(scene: Scene, name: str = "auto", precision: str = "double") -> Choice:
+def choose(scene: Scene, name: str = "auto", precision: str = "double", windows: int | None = None) -> Choice:
     """The evaluator `name` of a scene, or with "auto" the cheapest that meets its tolerance.
 
+    `windows`: for how many of them a march is driven by hand; WavesymError for another evaluator.
     ToleranceError where none does: it says what can be had. CostError, RangeError where one is asked for that would
     cost too much or need numbers beyond those of its format.
     """
+    if windows is not None and name != "march":
+        raise WavesymError(f"--windows goes with --evaluator march, {name} given")
     real = REALS[precision]
     tolerance = rational(scene.output.tolerance)
     found: list[tuple[str, Made]] = []
@@ -87,7 +91,7 @@ def choose(scene: Scene, name: str = "auto", precision: str = "double") -> Choic
         if each == "march" and found and name == "auto":
             break  # it takes as long for a value as for all windows before it
         try:
-            evaluator = MAKERS[each](scene, real, name != "auto")
+            evaluator = MAKERS[each](scene, real, name != "auto", windows)
         except CostError:
             if name != "auto":
                 raise
@@ -95,8 +99,8 @@ def choose(scene: Scene, name: str = "auto", precision: str = "double") -> Choic
             continue
         except OverflowError:
             if name != "auto":
-                raise RangeError(f"output: {each} needs numbers beyond the largest in {precision} precision") from None
-            refused.append(f"{each}: numbers beyond the largest in {precision} precision")
+                raise RangeError(f"output: {each} needs numbers beyond the range of {precision} precision") from None
+            refused.append(f"{each}: numbers beyond the range of {precision} precision")
             continue
         if rational(min(evaluator.error_bound, 2.0)) <= tolerance:
             found.append((each, evaluator))
@@ -109,18 +113,19 @@ def choose(scene: Scene, name: str = "auto", precision: str = "double") -> Choic
     return Choice(name, best, "; ".join([*refused, *dearer, best.summary]))
 
 
-def _closed(scene: Scene, real: Real, asked: bool) -> ClosedForm:
+def _closed(scene: Scene, real: Real, asked: bool, _: int | None) -> ClosedForm:
     refuse_many(scene, 1e5 if asked else _WORTH_TRYING)
-    merged = signals(scene) if asked else signals(scene, _WORTH_TRYING)
-    return closed_form(merged, real.not_below(rational(scene.output.until)), real)
+    merged = signals(scene, inf if asked else _WORTH_TRYING, real)
+    return closed_form(merged, horizon(scene, real), real)
 
 
-def _pieces(scene: Scene, real: Real, asked: bool) -> Pieces:
+def _pieces(scene: Scene, real: Real, asked: bool, _: int | None) -> Pieces:
     return pieces(scene, real, rational(scene.output.tolerance))
 
 
-def _march(scene: Scene, real: Real, asked: bool) -> MarchEvaluator:
-    return marched(scene, real)
+def _march(scene: Scene, real: Real, asked: bool, windows: int | None) -> MarchEvaluator:
+    return marched(scene, real, windows=windows)
 
 
-MAKERS: dict[str, Callable[[Scene, Real, bool], Made]] = {"closed": _closed, "pieces": _pieces, "march": _march}
+Maker = Callable[[Scene, Real, bool, int | None], Made]
+MAKERS: dict[str, Maker] = {"closed": _closed, "pieces": _pieces, "march": _march}

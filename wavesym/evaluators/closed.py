@@ -8,6 +8,9 @@ unit roundoff 2**-53, a term c_k w**k exp(-g w) is wrong by at most (to first or
     Horner's rule                   (2 k + 1) u   g rounded, g w rounded   2 g w u
     exp, within two ulp             4 u         times the polynomial   1 u      and 1 u for every later addition.
 
+What underflows is wrong by at most the smallest number of the format instead, before powers of w multiply it: once for
+each c_k and each step of Horner's rule, and for g, g w and exp on top of the whole polynomial.
+
 The weighted absolute values are themselves exponential polynomials without negative coefficients, so that they merge
 from segment to segment as the output does, and their largest value on a segment is known term by term. Where terms
 cancel (many reflections, nearly equal rates) this bound grows without the output growing: there the form ends.
@@ -164,9 +167,9 @@ def _pulse(time: fmpq, increment: Increment, real: Real) -> Pulse:
 def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]:
     """Upper bounds of the absolute error on each segment; None where Horner's rule might overflow."""
     u = arb(real.roundoff)
-    # Horner's rule must stay within the exponents of the format; what underflows is then below the second number
+    # Horner's rule must stay within the exponents of the format
     largest_power = arb(real.largest) ** fmpq(7, 8)
-    underflow = arb(real.smallest) * largest_power
+    underflow = arb(0)  # the errors of all numbers so far that may be below the normal ones
     sizes: dict[fmpq, arb_poly] = {}  # the absolute values of all terms so far
     weights: dict[fmpq, arb_poly] = {}  # the same, each times its factor of u
     ends = [arrival.time for arrival in signal.arrivals[1:]] + [until]
@@ -181,7 +184,9 @@ def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]
         for rate, polynomial in new.items():
             sizes[rate] = sizes.get(rate, arb_poly()) + polynomial
             weights[rate] = weights.get(rate, arb_poly()) + _weighted(rate, polynomial)
-            representable &= bool(polynomial(arb(until - last).max(arb(1))) < largest_power)
+            farthest = arb(until - last).max(arb(1))
+            representable &= bool(polynomial(farthest) < largest_power)
+            underflow += arb(real.smallest) * _underflows(polynomial, farthest)
             # every family is one more addition for all that came before it
             for older, size in sizes.items():
                 weights[older] = weights[older] + size
@@ -189,6 +194,12 @@ def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]
         error = sum((_largest(rate, polynomial, length) for rate, polynomial in weights.items()), arb(0))
         errors.append((error * u * _SECOND_ORDER + underflow) if representable else None)
     return errors
+
+
+def _underflows(polynomial: arb_poly, farthest: arb) -> arb:
+    """What a family can lose by underflow for w <= `farthest` (at least 1), in smallest numbers."""
+    terms = arb_poly([4 * c + 2 for c in polynomial.coeffs()])
+    return (farthest * terms(farthest)).upper()
 
 
 def _weighted(rate: fmpq, polynomial: arb_poly) -> arb_poly:

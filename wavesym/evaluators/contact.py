@@ -14,6 +14,7 @@ from wavesym.derivation.rule import DERIVATIVE
 from wavesym.errors import CostError
 from wavesym.evaluators.ball import Segment, polynomials, precise, segments
 from wavesym.evaluators.doubles import midpoint, rational
+from wavesym.evaluators.reals import DOUBLE, Real
 from wavesym.evaluators.signal import Modelled, Signal, horizon, observed
 from wavesym.mechanics.chain import chain
 from wavesym.scene import Collision, Observable, Scene
@@ -48,15 +49,15 @@ class ContactEnd:
         return str(self.tau.str(20, radius=False))
 
 
-def contact_ends(scene: Scene) -> tuple[ContactEnd, ...]:
-    """The contacts whose opening can reach an output of the scene within its horizon, from left to right.
+def contact_ends(scene: Scene, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
+    """The contacts whose opening can reach an output within the horizon in `real` numbers, from left to right.
 
     CostError where that takes more than some seconds to know.
     """
     if not isinstance(scene.system, Collision):
         return ()
     model = Modelled(chain(scene))
-    until = rational(horizon(scene))
+    until = rational(horizon(scene, real))
     ends = []
     for x in _contacts(scene, until):
         # to matter, the opening must have the time to reach the nearest output

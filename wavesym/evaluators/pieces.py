@@ -7,7 +7,10 @@ The proved error of a piece of degree d with powers c_k (of t) is the sum of
 - the Chebyshev terms cut off, and the balls that the waves are known in;
 - rounding, with unit roundoff u and to first order: each c_k once, w once (k u), and Horner's rule (2 k + 1) u make
   (3 k + 2) u |c_k|; contraction of a*b + c only makes less of it. NumPy sums products of powers of w with the c_k in
-  any order, c_0 last: (2 k + d + 1) u |c_k|, for c_0 2 u |c_0|. The bound takes the larger of the two.
+  any order, c_0 last: (2 k + d + 1) u |c_k|, for c_0 2 u |c_0|. The bound takes the larger of the two;
+- underflow, which in each coefficient (of w), product and power of w is at most half the smallest number. As
+  |w| <= 1/2, Horner's rule makes no more than 2 of these halves for each coefficient; NumPy's powers of w are wrong
+  by at most 2, times their coefficients.
 """
 
 from __future__ import annotations
@@ -28,6 +31,7 @@ from wavesym.evaluators.march.plan import plan
 from wavesym.evaluators.march.zero import silent
 from wavesym.evaluators.motion import Motion, is_zero
 from wavesym.evaluators.reals import SINGLE, Real
+from wavesym.evaluators.signal import horizon
 from wavesym.scene import Scene
 
 # A table larger than this is for the march.
@@ -167,7 +171,7 @@ class _Fits:
         self._real = real
         # a little of it is left for printing the bound in two digits, rounded up
         self._tolerance = arb(tolerance) * arb(fmpq(9, 10))
-        self._tau_max = real.not_below(rational(scene.output.until))
+        self._tau_max = horizon(scene, real)
         self._motion = Motion(scene, rational(self._tau_max))
         self._bits = 128
 
@@ -236,7 +240,7 @@ class _Fits:
         if self._too_blurred(segments, cuts):
             return None
         local = list(_on_pieces(segments, cuts))
-        scale = max(abs(polynomial(arb(t))).lower() for polynomial in local for t in (-1, 0, 1))
+        scale = max(map(cuts.size, range(len(local)), local))
         if not scale > 0:
             return None
         allowed, enough = self._allowed(scale)
@@ -247,8 +251,9 @@ class _Fits:
             if not blurred < enough:
                 return None
             error, kept = _cut_off([c.mid() for c in coefficients], allowed - blurred, self._real)
-            worst = worst.max((error + blurred).upper())
-            powers.append(tuple(self._real.nearest(middle(c / arb(half) ** k)) for k, c in enumerate(kept)))
+            local_powers = [c / arb(half) ** k for k, c in enumerate(kept)]
+            worst = worst.max((error + blurred + _underflow(local_powers, self._real)).upper())
+            powers.append(tuple(self._real.nearest(middle(c)) for c in local_powers))
         return (bound(worst / scale), float(scale)), powers
 
     def _allowed(self, scale: arb) -> tuple[arb, arb]:
@@ -308,12 +313,23 @@ class _Cuts:
         kept = [k for k in range(len(exact) - 1) if seen[k] < seen[k + 1]]
         self.exact = [exact[k] for k in kept] + [last]
         self.starts = [seen[k] for k in kept] + [seen[-1]]
+        # as far as the output goes on without a breakpoint, and is asked for
+        self.ends = [min(exact[k + 1], until) for k in kept]
         self.centres = [real.nearest((low + high) / 2) for low, high in pairwise(self.exact)]
         self.middles = [rational(centre) for centre in self.centres]
         self.halves = [
             max(high - middle, middle - low)
             for (low, high), middle in zip(pairwise(self.exact), self.middles, strict=True)
         ]
+
+    def size(self, piece: int, polynomial: arb_poly) -> arb:
+        """The largest of an output's values at both ends of a piece and at its centre, from its `polynomial` in t.
+
+        What lies beyond the next breakpoint or the horizon is no value of it.
+        """
+        low, middle, high = self.exact[piece], self.middles[piece], self.ends[piece]
+        places = (low, max(low, min(middle, high)), high)
+        return max(abs(polynomial(arb((tau - middle) / self.halves[piece]))).lower() for tau in places)
 
     def grid(self, outputs: Sequence[int], columns: Sequence[Sequence[tuple[float, ...]]]) -> Grid:
         """The pieces with their powers, output by output."""
@@ -358,6 +374,11 @@ def _cut_off(coefficients: Sequence[arb], allowed: arb, real: Real) -> tuple[arb
             break
     assert best is not None  # all terms are always tried
     return best
+
+
+def _underflow(powers: Sequence[arb], real: Real) -> arb:
+    """What may underflow on a piece with these coefficients of w."""
+    return arb(real.smallest) * sum((2 + 2 * abs(c).upper() for c in powers), arb(0))
 
 
 def _bytes(grid: Grid, real: Real) -> int:

@@ -14,7 +14,10 @@ from wavesym.evaluators.doubles import nearest, rational
 
 @dataclass(frozen=True)
 class Real:
-    """An IEEE format: unit roundoff, smallest positive number, and the number next to another, up or down."""
+    """An IEEE format: unit roundoff, smallest positive number, and the number next to another, up or down.
+
+    `largest` is the largest power of 2.
+    """
 
     name: str
     bytes: int
@@ -22,6 +25,16 @@ class Real:
     smallest: fmpq
     largest: fmpq
     next_to: Callable[[float, float], float]
+
+    @property
+    def least(self) -> fmpq:
+        """From here on a number, and its rounding error too, is rounded as the unit roundoff says."""
+        return self.smallest / self.roundoff**2
+
+    @property
+    def reach(self) -> fmpq:
+        """Up to here a thousand products and their sums stay below the largest number."""
+        return self.largest / 2**40
 
     def nearest(self, value: fmpq) -> float:
         """The number nearest to an exact one, ties to even. OverflowError beyond the largest."""

@@ -17,6 +17,7 @@ from wavesym.evaluators.ball import Segment, largest, segments, values
 from wavesym.evaluators.closed import refuse_many
 from wavesym.evaluators.doubles import fraction, not_below, rational
 from wavesym.evaluators.motion import Motion
+from wavesym.evaluators.reals import DOUBLE, Real
 from wavesym.evaluators.signal import Signal, horizon, signals
 from wavesym.evaluators.windows import number, stored
 from wavesym.mechanics.chain import chain
@@ -52,18 +53,19 @@ def _size(scene: Scene, until: Fraction) -> int:
 
 
 class Reference:
-    """The outputs of a scene on [0, tau_max], in balls. CostError where that would cost too much."""
+    """The outputs of a scene on its horizon in `real` numbers, in balls. CostError where that would cost too much."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, real: Real = DOUBLE) -> None:
         self.scene = scene
-        self.tau_max = horizon(scene)
+        self.real = real
+        self.tau_max = horizon(scene, real)
 
     @cached_property
     def signals(self) -> tuple[Signal, ...] | None:
         """The outputs as exact sums of arrivals; None where their tables would be large."""
         try:
             refuse_many(self.scene, _MODERATE)
-            return signals(self.scene, _MODERATE)
+            return signals(self.scene, _MODERATE, self.real)
         except CostError:
             return None
 

@@ -18,7 +18,8 @@ from wavesym.coefficients.increments import Increment, combined, integrated
 from wavesym.coefficients.increments import start as start_of
 from wavesym.coefficients.size import refuse_large
 from wavesym.coefficients.table import Function, Rules, unit_response
-from wavesym.evaluators.doubles import not_below, rational
+from wavesym.evaluators.doubles import rational
+from wavesym.evaluators.reals import DOUBLE, Real
 from wavesym.mechanics.chain import Chain, chain
 from wavesym.mechanics.cone import rod_of
 from wavesym.scene import Observable, Piece, Scene
@@ -48,14 +49,17 @@ class Part(NamedTuple):
     delay: fmpq
 
 
-def horizon(scene: Scene) -> float:
-    """The last tau of a scene as a double: the smallest that is not below `until`."""
-    return not_below(rational(scene.output.until))
+def horizon(scene: Scene, real: Real = DOUBLE) -> float:
+    """The last tau of a scene in `real` numbers: the smallest of them that is not below `until`."""
+    return real.not_below(rational(scene.output.until))
 
 
-def signals(scene: Scene, most: float = inf) -> tuple[Signal, ...]:
-    """The outputs of a scene on its horizon, exact. CostError where the tables would have more than `most` numbers."""
-    return observed(Modelled(chain(scene)), scene.outputs, scene.pieces, rational(horizon(scene)), most)
+def signals(scene: Scene, most: float = inf, real: Real = DOUBLE) -> tuple[Signal, ...]:
+    """The outputs of a scene on its horizon in `real` numbers, exact.
+
+    CostError where the tables would have more than `most` numbers.
+    """
+    return observed(Modelled(chain(scene)), scene.outputs, scene.pieces, rational(horizon(scene, real)), most)
 
 
 class Modelled:

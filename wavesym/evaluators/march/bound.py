@@ -14,11 +14,15 @@ not grow in E, and the error of the march is at most the sum, over windows and p
 - Rounding, by running the recurrences on absolute values: coefficients of q are wrong by at most u T |p| + u t |start|,
   with a matrix T and a vector t without negative entries, and q - a by u |q - a| more. In L2 over a panel a series has
   at most sqrt(pi h) / 2 times its norm (2 c_0**2 + c_1**2 + ...)**0.5, as (1 - u**2)**-0.5 >= 1.
+- Underflow, which makes a product wrong by up to the smallest number instead, is run through the same recurrences.
 
 From energy to values: the true wave on a panel is a polynomial of degree K up to some tail (tail.py), K for the
 horizon; so its difference from the computed one is, and a polynomial of degree K in [-1, 1] is nowhere larger than
 (K + 1)/sqrt(2) times its L2 norm. Reading a value adds the rounding of Clenshaw's recurrence, at most
-12 u sum ((k + 1)(k + 2) + d) |c_k| with that of the local variable. A displacement is an integral, so L2 will do.
+12 u sum ((k + 1)(k + 2) + d) |c_k| with that of the local variable; and 4 (d + 3)**2 of the smallest number. A
+displacement is an integral, so L2 will do.
+
+Errors are relative to the largest value on the horizon: of the last window only what tau_max reaches counts.
 
 All of it holds to first order in u, and a margin of 1 % is added for the rest.
 """
@@ -27,6 +31,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, inf, log2, pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,15 +42,18 @@ from wavesym.evaluators.march.run import LEFT, RIGHT, Block, Run
 from wavesym.evaluators.march.tail import Tail, tail
 from wavesym.evaluators.march.watch import Watch
 from wavesym.evaluators.march.zero import silent
+from wavesym.evaluators.reals import Real
 
-_MARGIN = 1.01
+MARGIN = 1.01
+# products on the way to a coefficient of p or q that may underflow, besides those of a scan
+_SPARE = 16.0
 
 
 @dataclass(frozen=True)
 class Verdict:
     """What a march at some degree is worth.
 
-    `errors` and `sizes` are, for each output, a bound of its largest error and a lower bound of its largest value; of
+    `errors` and `sizes` are, for each output, a bound of its largest error and the largest value that was seen; of
     the energy norm of the error, `truncated` is the part of the degree, `rounded` that of the arithmetic. `quiet` says
     that the programs, which watch what their polynomials miss as they run, will not complain.
     """
@@ -58,25 +66,32 @@ class Verdict:
     quiet: bool
 
     @property
+    def largest(self) -> tuple[float, ...]:
+        """Lower bounds of the largest true values."""
+        return tuple(max(size - error, 0.0) for error, size in zip(self.errors, self.sizes, strict=True))
+
+    @property
     def bounds(self) -> tuple[float, ...]:
         """Errors relative to the largest values; 0 for an output that is 0 throughout, inf where nothing is left."""
         return tuple(
-            0.0 if error == 0 else error / (size - error) if error < size else inf
-            for error, size in zip(self.errors, self.sizes, strict=True)
+            0.0 if error == 0 else error / largest if largest > 0 else inf
+            for error, largest in zip(self.errors, self.largest, strict=True)
         )
 
 
-def judge(plan: Plan, degree: int, unit: float) -> Verdict:
-    """March once over the horizon at `degree` with unit roundoff `unit`, and bound the errors."""
+def judge(plan: Plan, degree: int, real: Real) -> Verdict:
+    """March once over the horizon at `degree` for a program in `real` numbers, and bound its errors.
+
+    OverflowError where waves grow beyond what programs take.
+    """
     run = Run(plan, degree)
-    roundings = _Roundings(plan, run, unit)
+    unit, smallest = nearest(real.roundoff), nearest(real.smallest)
+    roundings = Roundings(plan, run, real)
     smooth = tail(plan)
     watches = [Watch(plan, output, degree) for output in plan.outputs]
-    k = np.arange(degree + 1)
-    steep, flat = (k + 1) * (k + 2.0) + degree, k + 8 + degree / (k + 1.0)
     displaced = [output.quantity == "displacement" for output in plan.outputs]
     truncated = rounded = summed = 0.0
-    alarm = Alarm(unit * len(plan.junctions))
+    alarm = Alarm(plan.trusted)
     largest, reading, sums = (np.zeros(len(watches)) for _ in range(3))
     for block in run.blocks():
         lost, inexact = roundings.of(block)
@@ -86,18 +101,23 @@ def judge(plan: Plan, degree: int, unit: float) -> Verdict:
         alarm.watch(block, roundings.leak)
         for o, watch in enumerate(watches):
             largest[o] = max(largest[o], float(np.max(np.abs(watch.values(block)))))
-            weighted = watch.size(block, flat if displaced[o] else steep)
+            weighted = watch.size(block, reading_weights(degree, displaced[o]))
             reading[o] = max(reading[o], float(np.max(weighted)))
             sums[o] += float(np.sum(weighted))
+        if not np.max(np.abs(block.after)) < nearest(real.reach):
+            raise OverflowError(f"waves beyond {nearest(real.reach):.1g}")
     errors = []
+    lost_reading = 4.0 * (degree + 3) ** 2 * smallest
     for o, output in enumerate(plan.outputs):
-        impedance = _impedance(plan, output.right)
+        impedance = impedance_at(plan, output.right)
         if displaced[o]:
             stretches = 2.0 * len(plan.panels) + 2
             error = 2 * summed / sqrt(impedance) + unit * (24 * stretches * sums[o] + 2 * plan.windows * largest[o])
+            error += plan.windows * stretches * lost_reading
         else:
-            error = 2 * _largest(smooth, plan, (truncated + rounded) / sqrt(impedance)) + 12 * unit * reading[o]
-        errors.append(_MARGIN * float(error))
+            error = 2 * largest_wave(smooth, plan, (truncated + rounded) / sqrt(impedance)) + 12 * unit * reading[o]
+            error += lost_reading
+        errors.append(MARGIN * float(error))
     # what rounding could have made may be nothing at all: programs then return exactly 0
     if any(size <= error for size, error in zip(largest, errors, strict=True)):
         for o, nothing in enumerate(silent(plan)):
@@ -106,57 +126,63 @@ def judge(plan: Plan, degree: int, unit: float) -> Verdict:
     return Verdict(degree, tuple(errors), tuple(map(float, largest)), truncated, rounded, not alarm.rung)
 
 
-def _largest(smooth: Tail, plan: Plan, energy: float) -> float:
+def reading_weights(degree: int, displaced: bool) -> Array:
+    """What each coefficient of a wave adds to the rounding of a value, or to that of a displacement on a window."""
+    k = np.arange(degree + 1)
+    return k + 8 + degree / (k + 1.0) if displaced else (k + 1) * (k + 2.0) + degree
+
+
+def largest_wave(smooth: Tail, plan: Plan, energy: float) -> float:
     """The largest value of a wave on a window whose L2 norm is `energy`, and whose tail is known."""
     shortest = min(nearest(panel.length) for panel in plan.panels)
     factor = (smooth.degree + 1) / sqrt(2)
     return factor * (sqrt(2 / shortest) * energy + sqrt(2) * smooth.size) + smooth.size
 
 
-def _impedance(plan: Plan, column: int) -> float:
+def impedance_at(plan: Plan, column: int) -> float:
     """That of the rod on the right of a column."""
     return nearest(plan.junctions[column].right)
 
 
 class Alarm:
-    """What the programs watch: the sum of all leaks |eps|, against the largest velocity or mean of a wave so far.
-
-    It may be `allowed` of that per window: what the arithmetic of as many nodes loses anyway.
+    """What the programs watch: the sum of all leaks |eps|, which may be `trusted` of the largest velocity or mean of a
+    wave so far.
     """
 
-    def __init__(self, allowed: float) -> None:
-        self._allowed = allowed
+    def __init__(self, trusted: float) -> None:
+        self._trusted = trusted
         self._leak = self._size = 0.0
-        self._window = 0
         self.rung = False
 
     def watch(self, block: Block, leak: Array) -> None:
         """The windows of a block, with the leak per unit of `excess` of each panel and column."""
         leaks = self._leak + np.cumsum(np.sum(leak * np.abs(block.excess), axis=(1, 2)))
-        means = np.max(np.abs(block.waves[1:, :, :, :, 0]), axis=(1, 2, 3))
+        means = np.max(np.abs(block.after[..., 0]), axis=(1, 2, 3))
         sizes = np.maximum.accumulate(np.maximum(means, np.max(np.abs(block.ends), axis=(1, 2))))
         sizes = np.maximum(sizes, self._size)
-        count = self._window + np.arange(1, len(leaks) + 1)
-        self.rung |= bool(np.any(leaks > self._allowed * count * sizes))
-        self._leak, self._size, self._window = float(leaks[-1]), float(sizes[-1]), int(count[-1])
+        self.rung |= bool(np.any(leaks > self._trusted * sizes))
+        self._leak, self._size = float(leaks[-1]), float(sizes[-1])
 
 
-class _Roundings:
+class Roundings:
     """What a window adds to the error, in energy: for all nodes at once."""
 
-    def __init__(self, plan: Plan, run: Run, unit: float) -> None:
-        self._unit, self._plan = unit, plan
+    def __init__(self, plan: Plan, run: Run, real: Real) -> None:
+        self._unit, self._smallest = nearest(real.roundoff), nearest(real.smallest)
         nodes = plan.junctions
         constants = {step: _constants(operator) for step, operator in run.operators.items()}
         shape = len(plan.panels), len(nodes)
         self._q, self._start, self._end, self._end_start, self.leak = (np.zeros(shape) for _ in range(5))
-        self._lost = np.zeros(shape)
+        self._q_spare, self._end_spare, self._lost = (np.zeros(shape) for _ in range(3))
         self._q[:] = 4.0
+        self._q_spare[:] = _SPARE * sqrt(run.degree + 2)
         for p, panel in enumerate(plan.panels):
             for c, node in enumerate(nodes):
                 if node.rate is not None:
                     step = node.rate * panel.length
-                    self._q[p, c], self._start[p, c], self._end[p, c], self._end_start[p, c] = constants[step]
+                    of = constants[step]
+                    self._q[p, c], self._start[p, c], self._q_spare[p, c] = of.coefficients
+                    self._end[p, c], self._end_start[p, c], self._end_spare[p, c] = of.end
                     self.leak[p, c] = run.operators[step].leak
                     self._lost[p, c] = nearest(node.mass * (4 * step + 2))  # M (rate h (2 eps)^2 + (2 eps)^2 / 2)
         self._length = np.array([[nearest(panel.length)] for panel in plan.panels])
@@ -167,20 +193,29 @@ class _Roundings:
 
     def of(self, block: Block) -> tuple[Array, Array]:
         """By truncation and by rounding; shape (windows,) each."""
-        norms = np.sqrt(np.sum(block.waves**2, axis=-1) + block.waves[..., 0] ** 2)
-        arriving = self._alpha * norms[:-1, RIGHT, :, :-2] + self._beta * norms[:-1, LEFT, :, 2:] + 2 * block.forces
+        before, after = (np.sqrt(np.sum(w**2, axis=-1) + w[..., 0] ** 2) for w in (block.before, block.after))
+        arriving = self._alpha * before[:, RIGHT, :, :-2] + self._beta * before[:, LEFT, :, 2:] + 2 * block.forces
         starts = np.abs(block.starts)
-        q = self._unit * (self._q * arriving + self._start * starts)
-        end = self._unit * (self._end * arriving + self._end_start * starts)
+        q = self._unit * (self._q * arriving + self._start * starts) + self._smallest * self._q_spare
+        end = self._unit * (self._end * arriving + self._end_start * starts) + self._smallest * self._end_spare
         missed = self.leak * (np.abs(block.excess) + q + 4 * self._unit * arriving)
-        left = q + self._unit * norms[1:, LEFT, :, 1:-1]
-        right = q + self._unit * norms[1:, RIGHT, :, 1:-1]
+        left = q + self._unit * after[:, LEFT, :, 1:-1]
+        right = q + self._unit * after[:, RIGHT, :, 1:-1]
         waves = pi / 4 * self._length * (self._left * left**2 + self._right * right**2)
         inexact = np.sum(np.sqrt(np.sum(waves + self._mass / 2 * end**2, axis=-1)), axis=-1)
         return np.sum(np.sqrt(np.sum(self._lost * missed**2, axis=-1)), axis=-1), inexact
 
 
-def _constants(operator: Operator) -> tuple[float, float, float, float]:
+class _Constants(NamedTuple):
+    """How wrong the coefficients of q, and its value at the `end`, may be: per u |p|, per u |start|, and per smallest
+    number that may be lost by underflow.
+    """
+
+    coefficients: tuple[float, float, float]
+    end: tuple[float, float, float]
+
+
+def _constants(operator: Operator) -> _Constants:
     """Norms of T and t for the coefficients of q, and the same for its value at the end.
 
     Counts the roundings of the programs in C (one after the other) and in NumPy (scans and sums in pairs).
@@ -189,33 +224,38 @@ def _constants(operator: Operator) -> tuple[float, float, float, float]:
     levels = ceil(log2(degree + 1))
     ratio, first, last = (np.abs(np.array(table)) for table in (operator.ratio, operator.first, operator.last))
     slack, loss = operator.slack, operator.loss
-    # columns: |p_0| ... |p_d|, |start|
-    given = np.eye(degree + 2)
-    y, y_error = np.zeros((degree + 2, degree + 2)), np.zeros((degree + 2, degree + 2))
+    # columns: |p_0| ... |p_d|, |start|, and a last one that no value has: products that underflow
+    given = np.eye(degree + 3)
+    start, spare = given[-2], (_SPARE + levels) * given[-1]
+    y, y_error = np.zeros((degree + 2, degree + 3)), np.zeros((degree + 2, degree + 3))
     for k in range(degree, 0, -1):
         difference = (2 if k == 1 else 1) * given[k - 1] + (given[k + 1] if k < degree else 0)
         y[k] = ratio[k] * (difference + y[k + 1])
-        y_error[k] = 8 * y[k] + ratio[k] * y_error[k + 1]
+        y_error[k] = 8 * y[k] + ratio[k] * y_error[k + 1] + spare
     y, y_error = y[:-1], y_error[:-1] + levels * y[:-1]
     counts = np.maximum(np.arange(degree + 1), levels) + 3.0
-    begun, ended = given[-1] + first @ y, last @ y
+    summed = (degree + 4) * given[-1]
+    begun, ended = start + first @ y, last @ y
     mean = (1 - slack) * begun
-    mean_error = (1 - slack) * (first @ y_error + (first * counts) @ y) + 3 * begun
+    mean_error = (1 - slack) * (first @ y_error + (first * counts) @ y + summed) + 3 * begun + spare
     end_error = abs(1 - loss) * mean_error + last @ y_error + (last * counts) @ y + 3 * ((1 + loss) * mean + ended)
-    q_error = np.empty((degree + 1, degree + 2))
+    end_error += summed + spare
+    q_error = np.empty((degree + 1, degree + 3))
     q_error[0] = mean_error
     q, error = 2 * mean, 2 * mean_error
     for k in range(1, degree + 1):
         q = y[k] + ratio[k] * q
-        error = y_error[k] + ratio[k] * error + 3 * q
+        error = y_error[k] + ratio[k] * error + 3 * q + spare
         q_error[k] = error + levels * q
     # in the norm that counts c_0 twice
     q_error[0] *= sqrt(2)
     q_error[:, 0] /= sqrt(2)
     end_error[0] /= sqrt(2)
-    return (
-        float(np.linalg.norm(q_error[:, :-1], 2)),
-        float(np.linalg.norm(q_error[:, -1])),
-        float(np.linalg.norm(end_error[:-1])),
-        float(end_error[-1]),
+    return _Constants(
+        (
+            float(np.linalg.norm(q_error[:, :-2], 2)),
+            float(np.linalg.norm(q_error[:, -2])),
+            float(np.linalg.norm(q_error[:, -1])),
+        ),
+        (float(np.linalg.norm(end_error[:-2])), float(end_error[-2]), float(end_error[-1])),
     )

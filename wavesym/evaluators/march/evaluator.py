@@ -9,18 +9,19 @@ horizon and adding up what was lost (bound.py), and raised until that is no more
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from flint import arb, fmpq
 
-from wavesym.errors import CostError, ToleranceError
+from wavesym.errors import CostError, ToleranceError, WavesymError
 from wavesym.evaluators.doubles import bound, nearest, rational
 from wavesym.evaluators.march.bound import Verdict, judge
+from wavesym.evaluators.march.given import Given, batch_size, given
 from wavesym.evaluators.march.operator import Operator
 from wavesym.evaluators.march.plan import Plan, plan
-from wavesym.evaluators.march.run import operator_count, operators
+from wavesym.evaluators.march.run import operator_count, operators, steps
 from wavesym.evaluators.reals import DOUBLE, Real
 from wavesym.scene import Scene
 
@@ -43,12 +44,16 @@ class MarchOutput:
 
 @dataclass(frozen=True)
 class MarchEvaluator:
-    """A march over [0, tau_max] with polynomials of `degree` in `real` numbers."""
+    """A march over [0, tau_max] with polynomials of `degree` in `real` numbers.
+
+    `given` is what is proved for loads that are not the scene's, where that was asked for.
+    """
 
     plan: Plan
     degree: int
     real: Real
     outputs: tuple[MarchOutput, ...]
+    given: Given | None = None
 
     @property
     def tau_max(self) -> float:
@@ -118,12 +123,17 @@ def unmet(tolerance: fmpq, why: str) -> ToleranceError:
     return ToleranceError(f"output.tolerance: {nearest(tolerance):g} cannot be met: {why}")
 
 
-def marched(scene: Scene, real: Real = DOUBLE, degree: int | None = None) -> MarchEvaluator:
-    """The same, whatever its bound, of the least sufficient degree or of the one given (at least 8)."""
+def marched(scene: Scene, real: Real = DOUBLE, degree: int | None = None, windows: int | None = None) -> MarchEvaluator:
+    """The same, whatever its bound, of the least sufficient degree or of the one given (at least 8).
+
+    With `windows` the degree suffices for loads that are given while it runs for so long; WavesymError where none can
+    be. OverflowError where numbers would be beyond those of the format.
+    """
     prepared = plan(scene, real)
+    _refuse_extreme(prepared, real)
     if degree is not None:
         return _made(prepared, degree, real)[0]
-    degree = _first_degree(prepared, real)
+    degree = _first_degree(prepared, prepared.windows, real)
     before = math.inf
     while True:
         _refuse_long(prepared, degree)
@@ -131,30 +141,62 @@ def marched(scene: Scene, real: Real = DOUBLE, degree: int | None = None) -> Mar
         # where bodies are very light, what is lost is mostly rounding that no degree mends
         settled = verdict.truncated <= verdict.rounded or _SETTLED * before < made.error_bound < math.inf
         if verdict.quiet and settled:
-            return made
+            break
         before = made.error_bound
+        degree += degree // 6
+    return made if windows is None else _driven(made, windows)
+
+
+def _driven(made: MarchEvaluator, windows: int) -> MarchEvaluator:
+    """A march of a degree that is enough for given loads too, and what is proved for them."""
+    prepared, real = made.plan, made.real
+    if not prepared.channels:
+        raise WavesymError("--windows: no load can be given here, a system with a load in the light cone expected")
+    degree = max(made.degree, _first_degree(prepared, windows, real))
+    before = math.inf
+    while True:
+        _refuse_long(prepared, degree, windows, batch_size(prepared))
+        proved = given(prepared, degree, real, windows)
+        worst = max(proved.errors)
+        if proved.settled or _SETTLED * before < worst:
+            return replace(_made(prepared, degree, real)[0], given=proved)
+        before = worst
         degree += degree // 6
 
 
 def _made(prepared: Plan, degree: int, real: Real) -> tuple[MarchEvaluator, Verdict]:
-    verdict = judge(prepared, degree, nearest(real.roundoff))
+    verdict = judge(prepared, degree, real)
     outputs = tuple(
         MarchOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)
-        for output, error, size in zip(prepared.outputs, verdict.bounds, verdict.sizes, strict=True)
+        for output, error, size in zip(prepared.outputs, verdict.bounds, verdict.largest, strict=True)
     )
     return MarchEvaluator(prepared, degree, real, outputs), verdict
 
 
-def _first_degree(prepared: Plan, real: Real) -> int:
+def _first_degree(prepared: Plan, windows: int, real: Real) -> int:
     """A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved."""
     rates = [nearest(node.rate) if node.rate is not None else 0.0 for node in prepared.junctions]
     longest = max(nearest(panel.length) for panel in prepared.panels)
-    detail = math.sqrt(2 * float(np.mean(rates)) * longest * prepared.windows)
+    detail = math.sqrt(2 * float(np.mean(rates)) * longest * windows)
     return math.ceil(detail) + (20 if real is DOUBLE else 10)
 
 
-def _refuse_long(prepared: Plan, degree: int) -> None:
-    work = prepared.windows * len(prepared.panels) * (_OVERHEAD + len(prepared.junctions) * degree)
+def _refuse_extreme(prepared: Plan, real: Real) -> None:
+    """OverflowError where a number of the tables is too small for its rounding to be as the unit roundoff says."""
+    nodes = prepared.junctions
+    numbers = [value for node in nodes for value in (node.alpha, node.beta, node.motion)]
+    numbers += [panel.length / 2 for panel in prepared.panels]
+    # the smallest ratio of an operator is about this
+    numbers += [step / (8 * _HIGHEST_DEGREE) for step in steps(prepared)]
+    numbers += [power for event in prepared.events for power in event.powers]
+    numbers += [channel.gain for channel in prepared.channels]
+    if any(0 < abs(value) < real.least for value in (*numbers, *prepared.rods)):
+        raise OverflowError(f"a number of the tables is too small for {real.name} precision")
+
+
+def _refuse_long(prepared: Plan, degree: int, windows: int = 0, marches: int = 1) -> None:
+    count = (windows or prepared.windows) * len(prepared.panels)
+    work = count * (_OVERHEAD + marches * len(prepared.junctions) * degree)
     if degree > _HIGHEST_DEGREE:
         raise CostError(
             f"output.until: march: bodies of rates up to {nearest(prepared.rate):g} would need polynomials of degree "
@@ -163,8 +205,9 @@ def _refuse_long(prepared: Plan, degree: int) -> None:
     bounding = _BOUNDING * operator_count(prepared) * degree**3
     if work + bounding > _MOST_WORK:
         raise CostError(
-            f"output.until: march: degree {degree} to tau = {prepared.tau_max:g} would cost {work + bounding:.0e} "
-            f"operations, at most {_MOST_WORK:.0e} expected"
+            f"{'--windows' if windows else 'output.until'}: march: degree {degree} to tau = "
+            f"{windows or prepared.tau_max:g} would cost {work + bounding:.0e} operations, at most {_MOST_WORK:.0e} "
+            "expected"
         )
     if 8 * _state(prepared, degree) > _LARGEST_STATE:
         raise CostError(

@@ -19,14 +19,17 @@ from itertools import pairwise
 from flint import fmpq, fmpq_poly
 
 from wavesym.errors import CostError
-from wavesym.evaluators.doubles import rational
+from wavesym.evaluators.doubles import nearest, rational
 from wavesym.evaluators.reals import DOUBLE, Real
+from wavesym.evaluators.signal import horizon
 from wavesym.mechanics.chain import Chain, chain
 from wavesym.mechanics.cone import light_cone, rod_of
 from wavesym.mechanics.node import Node, Quantity, Rod
 from wavesym.scene import Observable, Piece, Scene
 
 MOST_PANELS = 16
+# of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
+_ESTIMATED = 100
 
 
 @dataclass(frozen=True)
@@ -116,6 +119,8 @@ class Plan:
     outputs: tuple[Watched, ...]
     tau_max: float
     first: int  # the node at column 0
+    tolerance: float  # of the scene, but no less than what rounding makes of loads that are given
+    trusted: float  # what polynomials may miss in all, of the largest wave, before the programs say so
 
     @property
     def windows(self) -> int:
@@ -151,7 +156,7 @@ class Plan:
 def plan(scene: Scene, real: Real = DOUBLE) -> Plan:
     """The plan of a scene in `real` numbers. CostError where load times have too many different fractional parts."""
     system = chain(scene)
-    tau_max = real.not_below(rational(scene.output.until))
+    tau_max = horizon(scene, real)
     columns = light_cone(system, scene.outputs, tau_max)
     nodes = [system.nodes[x] for x in columns]
     pieces = [piece for piece in scene.pieces if rational(piece.time) <= rational(tau_max)]
@@ -168,6 +173,9 @@ def plan(scene: Scene, real: Real = DOUBLE) -> Plan:
         tuple(_watched(output, columns.start) for output in scene.outputs),
         tau_max,
         columns.start,
+        nearest(max(rational(scene.output.tolerance), 64 * real.roundoff)),
+        # no less than what the arithmetic of so many nodes loses on all windows
+        nearest(max(rational(scene.output.tolerance) / _ESTIMATED, real.roundoff * len(nodes) * (int(tau_max) + 1))),
     )
 
 

@@ -23,13 +23,14 @@ _BLOCK = 64
 
 @dataclass(frozen=True)
 class Block:
-    """Some windows in a row. `waves[0]` are those of the window before, `waves[1 + n]` those of window n of the block.
+    """Some windows, of one march or of many: the waves sent on each of them, and those of the window `before` it.
 
     `starts` and `ends` are the velocities q of the nodes at the start and end of every panel, `excess` the last
     coefficient of q - p, `forces` bounds of what the loads add to p: all of shape (windows, panels, columns).
     """
 
-    waves: Array
+    before: Array
+    after: Array
     starts: Array
     ends: Array
     excess: Array
@@ -48,7 +49,7 @@ class Run:
         self.alpha = np.array([[nearest(node.alpha)] for node in nodes])
         self.beta = np.array([[nearest(node.beta)] for node in nodes])
         rates = [node.rate for node in nodes if node.rate is not None]
-        self._steps = [_Step([self.operators[rate * panel.length] for rate in rates], degree) for panel in plan.panels]
+        self.steps = [_Step([self.operators[rate * panel.length] for rate in rates], degree) for panel in plan.panels]
         self._loads = _Loads(plan)
 
     def blocks(self) -> Iterator[Block]:
@@ -73,26 +74,26 @@ class Run:
                     forces[n, p] = self._loads.add(balance, first + n, p)
                     starts[n, p] = q
                     moved = balance.copy()
-                    moved[self.massive], q[self.massive] = self._steps[p].moved(balance[self.massive], q[self.massive])
+                    moved[self.massive], q[self.massive] = self.steps[p].moved(balance[self.massive], q[self.massive])
                     ends[n, p] = q
                     excess[n, p] = moved[:, -1] - balance[:, -1]
                     waves[n + 1, LEFT, p, 1:-1] = moved - a
                     waves[n + 1, RIGHT, p, 1:-1] = moved - b
             last = waves[-1]
-            yield Block(waves, starts, ends, excess, forces)
+            yield Block(waves[:-1], waves[1:], starts, ends, excess, forces)
 
 
 def operators(plan: Plan, degree: int) -> dict[fmpq, Operator]:
     """One for every different rate times length of a panel."""
-    return {step: operator(step, degree) for step in _steps(plan)}
+    return {step: operator(step, degree) for step in steps(plan)}
 
 
 def operator_count(plan: Plan) -> int:
     """How many those are."""
-    return len(_steps(plan))
+    return len(steps(plan))
 
 
-def _steps(plan: Plan) -> dict[fmpq, None]:
+def steps(plan: Plan) -> dict[fmpq, None]:
     rates = dict.fromkeys(node.rate for node in plan.junctions if node.rate is not None)
     return dict.fromkeys(rate * panel.length for panel in plan.panels for rate in rates)
 
@@ -105,26 +106,26 @@ class _Step:
             return np.array(rows).reshape(len(of), degree + 1)
 
         self.ratio = table([o.ratio for o in of])
-        self.sums = np.stack([table([o.first for o in of]), table([o.last for o in of])])
+        self.first, self.last = table([o.first for o in of]), table([o.last for o in of])
         self.slack = np.array([o.slack for o in of])
         self.loss = np.array([o.loss for o in of])
         self.sweeps = Sweeps(self.ratio)
 
     def moved(self, balance: Array, start: Array) -> tuple[Array, Array]:
-        """q and its value at the end, from p and the value at the start."""
+        """q (..., bodies, coefficient) and its value at the end (..., bodies), from p and the value at the start."""
         difference = np.zeros_like(balance)
-        difference[:, 1:] = balance[:, :-1]
-        difference[:, 1] *= 2
-        difference[:, 1:-1] -= balance[:, 2:]
+        difference[..., 1:] = balance[..., :-1]
+        difference[..., 1] *= 2
+        difference[..., 1:-1] -= balance[..., 2:]
         difference *= self.ratio
         y = self.sweeps.down(difference)
-        first, last = _total(self.sums * y)
-        first = start - first
+        first = start - _total(self.first * y)
         mean = first - self.slack * first
-        y[:, 0] = 2 * mean
+        end = mean + (_total(self.last * y) - self.loss * mean)
+        y[..., 0] = 2 * mean
         y = self.sweeps.up(y)
-        y[:, 0] = mean
-        return y, mean + (last - self.loss * mean)
+        y[..., 0] = mean
+        return y, end
 
 
 class _Loads:

@@ -7,13 +7,14 @@ Q(x) = 2 g x/(1 - g x) J(x). It passes on J + Q: a factor G(x) = (1 + g x)/(1 - 
 the largest rate. Nodes without inertia pass J on as it is. Hence after
 n windows J_k <= r**-k G(r)**n s(r) for any r < 1/g, with s the jumps of the loads and of the start.
 
-Between jumps the energy of the k-th derivative (k > 2: no load has one) does not grow, and jumps add at most
+Between jumps the energy of the k-th derivative (k so high that no load has one) does not grow, and jumps add at most
 (sum of M / 2)**0.5 Q_k each time. That bounds the derivative in L2, with the next one its largest value, and so
 Chebyshev interpolation of degree K = k - 1: 2 (h/4)**k / k! times it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import lgamma, log, sqrt
 
@@ -35,19 +36,26 @@ class Tail:
 
 
 def tail(plan: Plan) -> Tail:
-    """The lowest degree whose tail is below 2**-80 times the jumps of loads and start."""
+    """The tail of a plan's own motion."""
+    return tail_after(plan, plan.windows, _jumps(plan))
+
+
+def tail_after(plan: Plan, windows: int, jumps: Sequence[float]) -> Tail:
+    """The lowest degree whose tail on the first `windows` is below 2**-80 times the jumps of loads and start.
+
+    `jumps[k]` is the sum of those of k-th derivatives; loads have no more of them.
+    """
     rate = nearest(plan.rate)
-    jumps = _jumps(plan)
     if rate == 0 or not any(jumps):
-        return Tail(3, 0.0)  # without bodies waves are as the loads, of degree 2 at most
+        return Tail(len(jumps), 0.0)  # without bodies waves are as the loads
     longest = max(nearest(panel.length) for panel in plan.panels)
     shortest = min(nearest(panel.length) for panel in plan.panels)
     impedance = min(nearest(z) for node in plan.junctions for z in (node.left, node.right) if z)
     mass = sum(nearest(node.mass) for node in plan.junctions)
     r = np.linspace(0.001, 0.999, 999) / rate
-    growth = (plan.windows + 2) * np.log((1 + rate * r) / (1 - rate * r))
+    growth = (windows + 2) * np.log((1 + rate * r) / (1 - rate * r))
     start = np.logaddexp.reduce([log(jump) + order * np.log(r) for order, jump in enumerate(jumps) if jump])
-    injected = log(sqrt(mass / 2 / impedance) * (plan.windows + 2) * len(plan.panels))
+    injected = log(sqrt(mass / 2 / impedance) * (windows + 2) * len(plan.panels))
 
     def size(degree: int) -> float:
         """The logarithm of the tail."""
@@ -57,7 +65,8 @@ def tail(plan: Plan) -> Tail:
         return bound + log(2) + k * log(longest / 4) - lgamma(k + 1)
 
     wanted = _SMALL + log(sum(jumps))
-    low, high = 2, 4
+    low = len(jumps) - 1
+    high = 2 * low
     while size(high) > wanted and high < _HIGHEST:
         low, high = high, 2 * high
     while high - low > 1:

@@ -85,7 +85,7 @@ def attempt(known: Truth, name: str) -> Attempt:
     scene, taus = known.scene, known.taus
     nothing = np.full(len(taus), math.inf)
     try:
-        form = MAKERS[name](aimed(scene, AIM), DOUBLE, True)
+        form = MAKERS[name](aimed(scene, AIM), DOUBLE, True, None)
     except (CostError, OverflowError) as error:
         return Attempt(name, taus, None, nothing, str(error))
     met = form.error_bound <= scene.output.tolerance
