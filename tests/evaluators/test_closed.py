@@ -29,7 +29,7 @@ def test_no_error_is_above_the_bound(scene, random):
     module = imported(numpy_source(describe(scene, form, "test", ()), form), "made")
     found = module.evaluate(np.array(taus))
     for signal, output, row in zip(merged, form.outputs, found, strict=True):
-        expected = np.array(values(partial(segments, signal), taus, form.tau_max))
+        expected = np.array(values(partial(segments, signal), taus))
         error = np.abs(row - expected).max()
         # the reference itself is rounded
         assert error <= (output.bound + 2.0**-53) * np.abs(expected).max() or not signal.arrivals
@@ -57,7 +57,7 @@ def test_the_bound_is_not_idle():
     form = closed_form(merged, horizon(scene))
     module = imported(numpy_source(describe(scene, form, "test", ()), form), "made")
     taus = np.linspace(8, 16, 2001)
-    expected = np.array(values(partial(segments, merged[0]), taus.tolist(), form.tau_max))
+    expected = np.array(values(partial(segments, merged[0]), taus.tolist()))
     error = np.abs(module.evaluate(taus)[0] - expected).max() / np.abs(expected).max()
     assert error <= form.error_bound < 1000 * error
 

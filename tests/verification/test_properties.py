@@ -40,7 +40,7 @@ def made(
 
 def tables(scene, taus=TAUS):
     """By the exact tables, each value rounded once."""
-    return np.array([values(partial(segments, signal), taus, horizon(scene)) for signal in signals(scene)])
+    return np.array([values(partial(segments, signal), taus) for signal in signals(scene)])
 
 
 def windows(scene, taus=TAUS):

@@ -19,7 +19,8 @@ from wavesym.evaluators.signal import Signal
 
 _FIRST_BITS = 128
 _MOST_BITS = 1 << 17
-_NEGLIGIBLE = arb(2) ** -200
+# a quarter of the smallest double
+_NEGLIGIBLE = arb(2) ** -1076
 
 T = TypeVar("T")
 
@@ -106,11 +107,11 @@ def precise(attempt: Callable[[], T | None], bits: int = _FIRST_BITS, most: int 
     raise ArithmeticError(f"{most} bits are not enough")
 
 
-def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float], until: float) -> list[float]:
-    """The correctly rounded values of an output at doubles tau <= until; `source` gives its segments.
+def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float]) -> list[float]:
+    """The correctly rounded values of an output at doubles tau of its horizon; `source` gives its segments.
 
-    Where a value is so near to 0 or to the middle between two doubles that 200 bits more than the largest value's do
-    not tell, it is rounded from there.
+    Where a value is so near to the middle between two doubles that a ball smaller than all of them does not tell, it is
+    rounded from the middle of the ball.
     """
     exact = [rational(tau) for tau in taus]
 
@@ -118,16 +119,15 @@ def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float], until
         balls = Balls(source())
         if balls.zero:
             return [0.0] * len(exact)
-        negligible = balls.largest(rational(until)) * _NEGLIGIBLE
         results = []
         for tau in exact:
             value = balls.at(tau)
             double = rounded(value)
             if double is None:
-                if not value.rad() < negligible:
+                if not value.rad() < _NEGLIGIBLE:
                     return None
-                double = 0.0 if value.contains(0) else midpoint(value)
-            results.append(double)
+                double = midpoint(value)
+            results.append(double + 0.0)  # no -0.0
         return results
 
     return precise(attempt)

@@ -182,8 +182,11 @@ class _Series:
 
     @property
     def vague(self) -> arb:
-        """A radius beyond which a value at a point tells nothing: the size of the series at a width below `_WIDTH`."""
-        return sum((abs(c).upper() for c in self.polynomial.coeffs()), arb(0)) * arb(_WIDTH) / 2**10
+        """A radius beyond which a value at a point tells nothing: the size of the series at a width below `_WIDTH`.
+
+        Of each coefficient only what is certain counts: where families cancel, all of it may be radius.
+        """
+        return sum((abs(c).lower() for c in self.polynomial.coeffs()), arb(0)) * arb(_WIDTH) / 2**10
 
 
 def _zero(series: _Series, length: fmpq) -> arb | None:
@@ -195,8 +198,7 @@ def _zero(series: _Series, length: fmpq) -> arb | None:
         if series.at(interval) < 0:
             continue
         if high - low < _WIDTH:
-            here = series.at(arb(low))
-            return None if here.contains(0) and here.rad() > series.vague else interval
+            return None if series.at(arb(low)).rad() > series.vague else interval
         middle = (low + high) / 2
         stack += [(middle, high), (low, middle)]
     return arb.pos_inf()

@@ -79,7 +79,7 @@ class Reference:
     def values(self, taus: Sequence[float]) -> list[list[float]]:
         """Each output at doubles 0 <= tau <= tau_max, correctly rounded. RangeError where one is beyond all doubles."""
         try:
-            return [values(source, taus, self.tau_max) for source in self._sources]
+            return [values(source, taus) for source in self._sources]
         except RangeError:
             raise
         except ArithmeticError as error:

@@ -70,7 +70,7 @@ def truth(scene: Scene, per_unit: int, around: Sequence[float] = ()) -> Truth:
     taus |= {arrival + by for arrival in arrivals for by in around} or {math.nextafter(tau, 0.0) for tau in arrivals}
     where = sorted(tau for tau in taus if 0.0 <= tau <= until)
     sources = [partial(segments, signal) for signal in merged]
-    exact = [values(source, where, until) for source in sources]
+    exact = [values(source, where) for source in sources]
     sizes = [float(largest(source, until).mid()) or 1.0 for source in sources]
     return Truth(scene, np.array(where), np.array(exact), np.array(sizes), np.array(arrivals))
 
