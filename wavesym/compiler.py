@@ -25,6 +25,7 @@ import numpy as np
 from wavesym.coefficients.cost import refuse_costly
 from wavesym.coefficients.letters import in_rates
 from wavesym.coefficients.table import Row, Table, full_table
+from wavesym.difference import Difference
 from wavesym.emission.files import files
 from wavesym.emission.tables import symbolic_lines, table_lines
 from wavesym.evaluators.contact import contact_ends
@@ -34,7 +35,7 @@ from wavesym.evaluators.signal import horizon
 from wavesym.mechanics.chain import chain
 from wavesym.mechanics.symbolic import generic, symbolic
 from wavesym.scene import Scene
-from wavesym.writing import Difference, write_whole
+from wavesym.writing import write_whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
