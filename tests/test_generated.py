@@ -1,5 +1,6 @@
 """generated/ holds what would be made now; `make generated` mends it."""
 
+import os
 import re
 import shlex
 import subprocess
@@ -75,3 +76,30 @@ def test_check_names_what_is_wrong_and_the_command_it_prints_mends_it(tmp_path, 
     assert main([*request, "--check"]) == 0
     assert capsys.readouterr() == ("", "")
     assert other.read_text() == "not mine"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are of another kind there")
+def test_check_names_what_a_killed_process_left(tmp_path, monkeypatch, capsys):
+    """Drafts, and the locks of their files; the command that is printed removes them."""
+    monkeypatch.chdir(tmp_path)
+    request = ["generate", "drive_m1", "-o", "folder"]
+    assert main(request) == 0
+    written = sorted(path.name for path in Path("folder").iterdir())
+    killed = f"""
+import os, signal
+from wavesym.cli import main
+os.replace = lambda *_: os.kill(os.getpid(), signal.SIGKILL)
+main({request})
+"""
+    assert subprocess.run([sys.executable, "-c", killed], capture_output=True, check=False).returncode == -9
+    Path("folder/.other.c.0123456789abcdef.part").touch()
+    capsys.readouterr()
+    assert main([*request, "--check"]) == 1
+    *named, last = capsys.readouterr().out.splitlines()
+    left = [f".{name}.{end}" for name in written for end in ("*.part", "writing")] + [f".{written[0]}.*.old"]
+    assert [re.sub("[0-9a-f]{16}", "*", line) for line in named] == [
+        f"orphaned: folder/{name}" for name in sorted(left)
+    ]
+    assert subprocess.run(last.removeprefix("to mend: "), shell=True, check=False).returncode == 0
+    assert main([*request, "--check"]) == 0
+    assert sorted(path.name for path in Path("folder").iterdir()) == [".other.c.0123456789abcdef.part", *written]

@@ -25,6 +25,7 @@ import numpy as np
 from wavesym.coefficients.cost import refuse_costly
 from wavesym.coefficients.letters import in_rates
 from wavesym.coefficients.table import Row, Table, full_table
+from wavesym.difference import Difference
 from wavesym.emission.files import files
 from wavesym.emission.tables import symbolic_lines, table_lines
 from wavesym.evaluators.contact import contact_ends
@@ -34,7 +35,7 @@ from wavesym.evaluators.signal import horizon
 from wavesym.mechanics.chain import chain
 from wavesym.mechanics.symbolic import generic, symbolic
 from wavesym.scene import Scene
-from wavesym.writing import Difference, write_whole
+from wavesym.writing import traces, write_whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -135,12 +136,14 @@ def check(
 ) -> str:
     """The difference between what stands in `directory` and what `generate` would write; empty where there is none.
 
-    Each file that is changed, missing or orphaned is named, with a diff; the last line is the command that mends them,
-    with the scene as it is given by `source`.
+    Each file that is changed, missing or orphaned is named, with a diff; so is what a process that was killed left. The
+    last line is the command that mends them, with the scene as it is given by `source`.
     """
     folder = Path(directory or scene.name)
     made = {folder / name: text for name, text in files(scene, language, evaluator, precision, windows).items()}
-    difference = Difference(made, (path for path in folder.glob(f"{scene.name}*") if path.is_file()))
+    found = [path for path in folder.glob(f"{scene.name}*") if path.is_file()]
+    left = [path for path, place in traces(folder) if place.name.startswith(scene.name)]
+    difference = Difference(made, [*found, *left])
     options = ["--language", language, "--evaluator", evaluator, "--precision", precision]
     options += [] if windows is None else ["--windows", str(windows)]
     return difference.report(["wavesym", "generate", source, "-o", str(folder), *options])

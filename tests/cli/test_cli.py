@@ -5,6 +5,7 @@ What is computed is tested elsewhere; here a stand-in takes the compiler's place
 
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 import sys
@@ -250,7 +251,19 @@ def test_where_nothing_can_be_written(compiler: Compiler, capsys: pytest.Capture
     Path("folder").mkdir()
     compiler.contact_warnings = lambda scene: []
     assert refused(capsys, "run", "mine.toml", "-o", "folder") == "folder: Is a directory, a file expected"
-    assert "mine.toml" in refused(capsys, "run", "mine.toml", "-o", "mine.toml/out.csv")
+    assert refused(capsys, "run", "mine.toml", "-o", "mine.toml/out.csv") == "mine.toml/out.csv: Not a directory"
+    Path("loop").symlink_to("loop")
+    assert refused(capsys, "run", "mine.toml", "-o", "loop") == f"loop: {os.strerror(errno.ELOOP)}"
+
+
+def test_a_full_disk(compiler: Compiler, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    Path("folder").mkdir()
+    compiler.contact_warnings = lambda scene: []
+    assert refused(capsys, "run", "mine.toml", "-o", "folder/out.csv") == "folder/out.csv: No space left on device"
 
 
 def test_errors_of_the_compiler(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
