@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import accumulate
-from textwrap import wrap
 
 import numpy as np
 
@@ -25,7 +24,15 @@ def c_literal(value: float, real: Real) -> str:
 
 def lines(items: Iterable[str], width: int = 116) -> tuple[str, ...]:
     """Literals joined by commas, in lines of at most `width`; a lone 0 for none, as C has no empty array."""
-    return tuple(wrap(", ".join(items) or "0", width))
+    made: list[str] = []
+    line = ""
+    for item in items:
+        if line and len(line) + len(item) + 3 > width:  # with ", " before it and "," after it
+            made.append(f"{line},")
+            line = item
+        else:
+            line = f"{line}, {item}" if line else item
+    return (*made, line or "0")
 
 
 def firsts(counts: Iterable[int]) -> tuple[str, ...]:

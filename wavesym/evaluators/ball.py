@@ -17,7 +17,7 @@ from wavesym.coefficients.increments import Increment
 from wavesym.evaluators.doubles import midpoint, rational, rounded
 from wavesym.evaluators.signal import Signal
 
-_FIRST_BITS = 128
+FIRST_BITS = 128
 _MOST_BITS = 1 << 17
 # a quarter of the smallest double
 _NEGLIGIBLE = arb(2) ** -1076
@@ -96,7 +96,7 @@ class Balls:
         return self.segments[place].at(tau - self._starts[place]) if place >= 0 else arb(0)
 
 
-def precise(attempt: Callable[[], T | None], bits: int = _FIRST_BITS, most: int = _MOST_BITS) -> T:
+def precise(attempt: Callable[[], T | None], bits: int = FIRST_BITS, most: int = _MOST_BITS) -> T:
     """The first result of `attempt` that is not None, each time with twice the bits of working precision."""
     while bits <= most:
         with ctx.workprec(bits):
@@ -107,7 +107,7 @@ def precise(attempt: Callable[[], T | None], bits: int = _FIRST_BITS, most: int 
     raise ArithmeticError(f"{most} bits are not enough")
 
 
-def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float]) -> list[float]:
+def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float], bits: int = FIRST_BITS) -> list[float]:
     """The correctly rounded values of an output at doubles tau of its horizon; `source` gives its segments.
 
     Where a value is so near to the middle between two doubles that a ball smaller than all of them does not tell, it is
@@ -117,8 +117,6 @@ def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float]) -> li
 
     def attempt() -> list[float] | None:
         balls = Balls(source())
-        if balls.zero:
-            return [0.0] * len(exact)
         results = []
         for tau in exact:
             value = balls.at(tau)
@@ -130,10 +128,10 @@ def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float]) -> li
             results.append(double + 0.0)  # no -0.0
         return results
 
-    return precise(attempt)
+    return precise(attempt, bits)
 
 
-def largest(source: Callable[[], Sequence[Segment]], until: float) -> arb:
+def largest(source: Callable[[], Sequence[Segment]], until: float, bits: int = FIRST_BITS) -> arb:
     """A lower bound, a ball, of an output's largest absolute value on [0, until]; 0 where it is 0 throughout."""
 
     def attempt() -> arb | None:
@@ -141,4 +139,4 @@ def largest(source: Callable[[], Sequence[Segment]], until: float) -> arb:
         size = balls.largest(rational(until))
         return size if size > 0 or balls.zero else None
 
-    return precise(attempt)
+    return precise(attempt, bits)

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from math import inf
 
 from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.errors import CostError
 from wavesym.evaluators.ball import Segment
 from wavesym.evaluators.doubles import fraction, rational
-from wavesym.evaluators.windows import Wave, Windows, windows
+from wavesym.evaluators.windows import Panel, Wave, Windows, damping, panels_of, sources, windows
 from wavesym.mechanics.chain import chain
 from wavesym.mechanics.cone import light_cone, rod_of
 from wavesym.scene import Observable, Scene
 
 MOST_WINDOWS = 20_000
+MOST_SECONDS = 60
+# measured: seconds for a segment, times its terms to the power of 3/2, and for each term of a value
+_COMPOSED, _EVALUATED = 2.5e-7, 6e-7
 
 
 @dataclass(frozen=True)
@@ -50,19 +54,69 @@ class Motion:
                 f"at most {MOST_WINDOWS:.0e} expected"
             )
 
+    @cached_property
+    def _panels(self) -> tuple[Panel, ...]:
+        return panels_of(self._chain, self._nodes, self._acting)
+
+    @cached_property
+    def first_bits(self) -> int:
+        """With fewer bits nothing would be left at the end of the horizon: a power of 2, at least 128."""
+        return max(128, 1 << int(max(map(self._lost, self._nodes)) * 36 / 25).bit_length())  # not more than 1/log(2)
+
+    def refuse_long(self, taus: int) -> None:
+        """CostError where values of all outputs at so many tau would take minutes."""
+        terms = self.first_bits // 4
+        windows = int(self.until.floor()) + 1
+        sums = any(place.observable.quantity == "displacement" for place in self.places)
+        segments = sum(min(len(self.breaks(place)) * windows, inf if sums else taus) for place in self.places)
+        seconds = segments * terms**1.5 * _COMPOSED + taus * len(self.places) * terms * _EVALUATED
+        if seconds > MOST_SECONDS:
+            raise CostError(
+                f"output: {taus} values of {len(self.places)} outputs to tau = {float(self.until):g} would take about "
+                f"{seconds:.0f} s, at most {MOST_SECONDS} expected; fewer outputs, samples or load times help"
+            )
+
+    def _lost(self, x: int) -> fmpq:
+        """The logarithm of what a body makes of radii: exp(g) in each unit of tau in which it moves and is felt."""
+        node = self._chain.nodes[x]
+        if not node.inertia:
+            return fmpq(0)
+        felt = self.until - min(abs(rational(place.observable.x) - x) for place in self.places)
+        moves = min((time + abs(x - at) for at, time in self._loaded), default=fmpq(1))  # collisions begin at contacts
+        return max(damping(node) * (felt - moves), fmpq(0))
+
+    @cached_property
+    def _loaded(self) -> list[tuple[int, fmpq]]:
+        """The nodes on which loads act, and when the first of them does."""
+        first = {piece.source: rational(piece.time) for piece in reversed(self._acting)}
+        of_nodes = ((x, source) for x in self._nodes for source in sources(self._chain.nodes[x]))
+        return [(x, first[source]) for x, source in of_nodes if source in first]
+
     def breaks(self, place: Place) -> frozenset[fmpq]:
         """The parts of a unit of tau at which an output may jump or bend."""
-        starts = (panel.start for panel in self._waves.panels)
+        starts = (panel.start for panel in self._panels)
         moments = (moment for start in starts for moment in (start + place.lag, start + 1 - place.lag))
         return frozenset(moment - moment.floor() for moment in moments)
 
-    def segments(self, place: Place) -> list[Segment]:
-        """An output between its breakpoints, at the working precision, as polynomials (rate 0) in balls."""
-        times = {n + part for part in self.breaks(place) for n in range(int(self.until.floor()) + 1)}
-        starts = sorted(time for time in times | {fmpq(0)} if time <= self.until)
+    def starts(self, place: Place) -> list[fmpq]:
+        """Where its segments start."""
+        parts = sorted(self.breaks(place))
+        times = [n + part for n in range(int(self.until.floor()) + 1) for part in parts]
+        return [fmpq(0)] * (parts[0] != 0) + [time for time in times if time <= self.until]
+
+    def segments(self, place: Place, taus: Sequence[fmpq] | None = None) -> list[Segment]:
+        """An output between its breakpoints, at the working precision, as polynomials (rate 0) in balls.
+
+        Where `taus` are given, only those on which one of them lies, as far as the others are not needed.
+        """
+        starts = self.starts(place)
+        ends = [*starts[1:], self.until]
+        wanted: Sequence[int] = range(len(starts))
+        if taus is not None and place.observable.quantity != "displacement":
+            wanted = sorted({bisect_right(starts, tau) - 1 for tau in taus})
         result = []
         displacement = arb(0)
-        for start, end in pairwise([*starts, self.until]):
+        for start, end in ((starts[k], ends[k]) for k in wanted):
             value = self._value(place, start)
             polynomial = value.polynomial
             if place.observable.quantity == "displacement":

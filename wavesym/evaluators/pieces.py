@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -43,8 +44,8 @@ _USUAL = (8, 4, 2, 1)
 _SHORTER = (2, 4, 8, 16, 32)
 # A fit at so many bits takes seconds, at twice as many the better part of a minute (the terms double with the bits).
 _MOST_BITS = 1024
-# Pieces times bits: some seconds.
-_MOST_WORK = 3_000_000
+# Pieces times bits: half a minute.
+_MOST_WORK = 15_000_000
 # In double precision the fastest are taken whose tables are no larger than this; single is for small machines.
 _FAST_BYTES = 128 << 10
 _SECOND_ORDER = arb(fmpq(1001, 1000))
@@ -143,24 +144,40 @@ def pieces(scene: Scene, real: Real, tolerance: fmpq) -> Pieces:
         if shorter > found.per_unit and rational(found.error_bound) > tolerance > real.roundoff / 8:
             found = fits.fitted(shorter)
     if found.bytes > MOST_BYTES:
-        raise CostError(f"output.until: pieces would take {found.bytes >> 20} MiB, at most {MOST_BYTES >> 20} expected")
+        raise _too_large(found.bytes, MOST_BYTES)
     return found
+
+
+class _TooLarge(CostError):
+    """Tables larger than they may be."""
+
+
+def _too_large(size: int, most: int) -> _TooLarge:
+    return _TooLarge(
+        f"output.until: pieces would take at least {size / 2**20:.2g} MiB, at most {most / 2**20:.2g} expected; a "
+        "shorter horizon, fewer outputs or load times help"
+    )
 
 
 def _fastest(fits: _Fits) -> Pieces:
-    for per_unit in _USUAL:
-        if per_unit > _USUAL[-1] and fits.least_bytes(per_unit) > _FAST_BYTES:
-            continue
-        found = fits.fitted(per_unit)
-        if found.bytes <= _FAST_BYTES:
-            break
-    return found
+    *shorter, longest = _USUAL
+    for per_unit in shorter:
+        with suppress(_TooLarge):
+            found = fits.fitted(per_unit, _FAST_BYTES)
+            if found.bytes <= _FAST_BYTES:
+                return found
+    return fits.fitted(longest)
 
 
 def _smallest(fits: _Fits, tolerance: fmpq) -> Pieces:
-    tried = [fits.fitted(per_unit) for per_unit in _USUAL]
+    tried = []
+    for per_unit in _USUAL:
+        with suppress(_TooLarge):
+            tried.append(fits.fitted(per_unit))
     good = [found for found in tried if rational(found.error_bound) <= tolerance]
-    return min(good, key=lambda found: found.bytes) if good else tried[0]
+    if good:
+        return min(good, key=lambda found: found.bytes)
+    return tried[0] if tried else fits.fitted(_USUAL[-1])
 
 
 class _Fits:
@@ -173,7 +190,12 @@ class _Fits:
         self._tolerance = arb(tolerance) * arb(fmpq(9, 10))
         self._tau_max = horizon(scene, real)
         self._motion = Motion(scene, rational(self._tau_max))
-        self._bits = 128
+        self._bits = self._motion.first_bits
+        if self._bits > _MOST_BITS:
+            raise CostError(
+                f"output.until: pieces would need {self._bits} bits to be known to tau = {self._tau_max:g}, at most "
+                f"{_MOST_BITS} expected"
+            )
 
     @cached_property
     def _silent(self) -> set[int]:
@@ -183,8 +205,10 @@ class _Fits:
         except CostError:
             return set()
 
-    def fitted(self, per_unit: int) -> Pieces:
-        """Pieces, about `per_unit` of them in a unit of tau."""
+    def fitted(self, per_unit: int, most: int = MOST_BYTES) -> Pieces:
+        """Pieces, about `per_unit` of them in a unit of tau. CostError where they would take more than `most` bytes."""
+        if self._least(per_unit) * self._real.bytes > most:
+            raise _too_large(self._least(per_unit) * self._real.bytes, most)
 
         def attempt() -> Pieces | None:
             self._bits = ctx.prec  # what did for one number of pieces is where the next one starts
@@ -193,29 +217,36 @@ class _Fits:
                     f"output.until: {self._least(per_unit):.0e} pieces would be fitted with {self._bits} bits, "
                     f"at most {_MOST_WORK // self._bits:.0e} expected"
                 )
-            return self._fit(per_unit)
+            return self._fit(per_unit, most)
 
         try:
             return precise(attempt, self._bits, _MOST_BITS)
         except ArithmeticError as error:
             raise CostError(f"output.until: pieces would take minutes to fit, as {error}") from None
 
-    def least_bytes(self, per_unit: int) -> int:
-        """What tables of constants would take."""
-        return self._least(per_unit) * self._real.bytes
-
     def _least(self, per_unit: int) -> int:
         """How many pieces there are at least, of all outputs."""
-        return len(self._motion.places) * int(self._motion.until.floor()) * per_unit
+        in_a_unit = 0
+        for breaks, places in self._shared.items():
+            cuts = sorted(breaks)
+            parts = (((high - low) * per_unit).ceil() for low, high in pairwise([*cuts, cuts[0] + 1]))
+            in_a_unit += len(places) * int(sum(parts))
+        return in_a_unit * int(self._motion.until.floor())
 
-    def _fit(self, per_unit: int) -> Pieces | None:
-        places = self._motion.places
+    @cached_property
+    def _shared(self) -> dict[frozenset[fmpq], list[int]]:
+        """The outputs, by where in a unit of tau they may jump or bend."""
         shared: dict[frozenset[fmpq], list[int]] = {}
-        for k, place in enumerate(places):
+        for k, place in enumerate(self._motion.places):
             shared.setdefault(self._motion.breaks(place), []).append(k)
+        return shared
+
+    def _fit(self, per_unit: int, most: int) -> Pieces | None:
+        places = self._motion.places
         grids: list[Grid] = []
         bounds: dict[int, tuple[float, float]] = {}
-        for members in shared.values():
+        size = 0
+        for members in self._shared.values():
             columns = []
             for k in members:
                 segments = self._motion.segments(places[k])
@@ -227,6 +258,9 @@ class _Fits:
                     return None
                 bounds[k], powers = fit
                 columns.append(powers)
+                size += self._real.bytes * sum(map(len, powers))
+                if size > most:
+                    raise _too_large(size, most)
             grids.append(cuts.grid(members, columns))
         outputs = tuple(PiecesOutput(place.observable.name, *bounds[k]) for k, place in enumerate(places))
         return Pieces(outputs, self._tau_max, self._real, tuple(grids), per_unit)

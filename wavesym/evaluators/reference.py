@@ -13,13 +13,13 @@ from functools import cached_property, partial
 from flint import arb, fmpq
 
 from wavesym.errors import CostError, RangeError
-from wavesym.evaluators.ball import Segment, largest, segments, values
+from wavesym.evaluators.ball import FIRST_BITS, Segment, largest, segments, values
 from wavesym.evaluators.closed import refuse_many
 from wavesym.evaluators.doubles import fraction, not_below, rational
 from wavesym.evaluators.motion import Motion
 from wavesym.evaluators.reals import DOUBLE, Real
 from wavesym.evaluators.signal import Signal, horizon, signals
-from wavesym.evaluators.windows import number, stored
+from wavesym.evaluators.windows import damping, stored
 from wavesym.mechanics.chain import chain
 from wavesym.mechanics.cone import light_cone
 from wavesym.scene import Scene
@@ -46,7 +46,7 @@ def _size(scene: Scene, until: Fraction) -> int:
     system = chain(scene)
     nodes = light_cone(system, scene.outputs, until)
     bodies = [node for x in nodes if (node := system.nodes[x]).inertia]
-    rates = [number(node.damping) + (number(node.alpha) + number(node.beta)) / 2 for node in bodies]
+    rates = [damping(node) for node in bodies]
     bits = 128 + int(3 * until * (1 + fraction(max(rates, default=fmpq(0)))))
     panels = len({piece.time % 1 for piece in scene.pieces if piece.time <= until} | {Fraction(0)})
     return stored(2 * len(nodes) * (int(until) + 1) * panels, bits // 4, bits)
@@ -70,16 +70,26 @@ class Reference:
             return None
 
     @cached_property
-    def _sources(self) -> list[Callable[[], Sequence[Segment]]]:
+    def _motion(self) -> Motion:
+        return Motion(self.scene, rational(self.tau_max))
+
+    def _sources(self, taus: Sequence[float] | None = None) -> list[Callable[[], Sequence[Segment]]]:
+        """The outputs, or as much of them as values at `taus` need."""
         if self.signals is not None:
             return [partial(segments, signal) for signal in self.signals]
-        motion = Motion(self.scene, rational(self.tau_max))
-        return [partial(motion.segments, place) for place in motion.places]
+        exact = None if taus is None else [rational(tau) for tau in taus]
+        return [partial(self._motion.segments, place, exact) for place in self._motion.places]
+
+    @property
+    def _first_bits(self) -> int:
+        return FIRST_BITS if self.signals is not None else self._motion.first_bits
 
     def values(self, taus: Sequence[float]) -> list[list[float]]:
         """Each output at doubles 0 <= tau <= tau_max, correctly rounded. RangeError where one is beyond all doubles."""
+        if self.signals is None:
+            self._motion.refuse_long(len(taus))
         try:
-            return [values(source, taus) for source in self._sources]
+            return [values(source, taus, self._first_bits) for source in self._sources(taus)]
         except RangeError:
             raise
         except ArithmeticError as error:
@@ -87,9 +97,9 @@ class Reference:
 
     def largest(self) -> list[arb]:
         """A lower bound of the largest absolute value of each output; 0 where it is 0 throughout."""
-        return [largest(source, self.tau_max) for source in self._sources]
+        return [largest(source, self.tau_max, self._first_bits) for source in self._sources()]
 
     def breakpoints(self) -> list[float]:
         """All tau at which an output may jump or bend, as doubles at or just above."""
-        starts = {segment.start for source in self._sources for segment in source()}
+        starts = {segment.start for source in self._sources() for segment in source()}
         return sorted(not_below(start) for start in starts)

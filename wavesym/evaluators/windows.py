@@ -88,7 +88,7 @@ def windows(chain: Chain, nodes: range, pieces: Sequence[Piece], count: int, ter
     What reaches the first and last of `nodes` from outside must not matter. CostError where they would fill the memory.
     """
     loads = _Loads(chain, nodes, pieces)
-    panels = _panels(loads.times)
+    panels = panels_of(chain, nodes, pieces)
     if (size := stored(2 * len(nodes) * count * len(panels), terms, ctx.prec)) > _LARGEST:
         raise CostError(
             f"output.until: the waves of {len(nodes)} nodes on {count} windows with {ctx.prec} bits would take "
@@ -132,9 +132,22 @@ def _arriving(sent: dict[int, list[Wave]], x: int, rod: Rod | None, step: int) -
     return sent[x][step]
 
 
-def _panels(times: Iterable[fmpq]) -> tuple[Panel, ...]:
+def panels_of(chain: Chain, nodes: range, pieces: Iterable[Piece]) -> tuple[Panel, ...]:
+    """The parts of a window between the instants of the loads on `nodes`."""
+    acting = {source for x in nodes for source in sources(chain.nodes[x])}
+    times = (rational(piece.time) for piece in pieces if piece.source in acting)
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
+
+
+def sources(node: Node) -> list[str]:
+    """The unit loads that act on a node, as pieces of loads name them."""
+    return [f"{load.kind}{load.number or ''}" for load in node.loads]
+
+
+def damping(node: Node) -> fmpq:
+    """The g of a node's law: what it radiates into its rods, and its own damping."""
+    return number(node.damping) + (number(node.alpha) + number(node.beta)) / 2
 
 
 class _Body:
@@ -142,8 +155,7 @@ class _Body:
 
     def __init__(self, node: Node) -> None:
         self._alpha, self._beta = arb(number(node.alpha)), arb(number(node.beta))
-        gamma = number(node.damping) + (number(node.alpha) + number(node.beta)) / 2
-        self._gamma = arb(gamma)
+        self._gamma = arb(damping(node))
         self._massive = bool(node.inertia)
         rod = node.left or node.right
         self._q = _constant(number(rod.velocity) if rod else fmpq(0))
@@ -185,14 +197,11 @@ class _Loads:
         self._acting: dict[int, tuple[fmpq, fmpq_poly]] = {}
         units = defaultdict(list)
         for x in nodes:
-            for load in chain.nodes[x].loads:
-                unit = fmpq_poly([number(c) for c in load.coefficients])
-                units[f"{load.kind}{load.number or ''}"].append((x, unit))
-        self.times: set[fmpq] = set()
+            for source, load in zip(sources(chain.nodes[x]), chain.nodes[x].loads, strict=True):
+                units[source].append((x, fmpq_poly([number(c) for c in load.coefficients])))
         for piece in sorted(pieces, key=lambda piece: piece.time, reverse=True):
             for x, unit in units[piece.source]:
                 self._coming[x].append((rational(piece.time), rational(piece.weight) * unit))
-                self.times.add(rational(piece.time))
 
     def on(self, x: int, start: fmpq) -> arb_poly:
         """The load on the node at x from tau = start on."""
