@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
-from math import inf
+from math import inf, log10
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -22,17 +22,23 @@ from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Quantity
 
 LARGEST = 400_000_000  # bytes; made and written in half a minute
+MOST_WORK = 1e6  # half a minute
 _ENTRY = 80  # bytes of an increment, if it is empty too
 _COEFFICIENT = 120  # bytes of one without digits
+_DIGITS, _LONG = 4000, 1.6  # from so many bits on coefficients take longer, and by which power
 
 K = TypeVar("K", bound=tuple[str, int])
 
 
 class Size(NamedTuple):
-    """About how many coefficients a table has that are not 0, and how many bytes it takes."""
+    """About how many coefficients a table has that are not 0, how many bytes it takes, and how much work it is.
+
+    Work is counted in coefficients of few digits; one of b bits takes as long as 1 + (b / 4000)**1.6 of them.
+    """
 
     coefficients: float
     bytes: float
+    work: float
 
 
 def table_size(chain: Chain, interval: int, wanted: Mapping[K, int], sources: Iterable[str]) -> Size:
@@ -47,12 +53,12 @@ def table_size(chain: Chain, interval: int, wanted: Mapping[K, int], sources: It
     places = _places(chain, set(sources))
     increments = 2 * len(places) * float(np.sum((last - starts) // interval + 1))
     if _ENTRY * increments > LARGEST:
-        return Size(0, _ENTRY * increments)
+        return Size(0, _ENTRY * increments, 0)
     rates = {(node.damping + (node.alpha + node.beta) / 2) / node.inertia for node in chain.nodes if node.inertia}
     bodies = sum(bool(node.inertia) for node in chain.nodes)
     dense = bodies / len(chain.nodes)
     height = sum(map(_bits, rates)) / max(len(rates), 1)
-    coefficients = bits = 0.0
+    coefficients = bits = work = 0.0
     for nodes in places.values():
         # how far it is from the load to the nearer end of each rod
         near = np.array(nodes)
@@ -67,7 +73,8 @@ def table_size(chain: Chain, interval: int, wanted: Mapping[K, int], sources: It
             powers = np.minimum((e + 1) * np.minimum(bodies, met), len(rates) * dense * (met + e))
             coefficients += 2 * float(np.sum(powers))
             bits += 2 * float(np.sum(powers**2)) * height
-    return Size(coefficients, _ENTRY * increments + _COEFFICIENT * coefficients + bits / 8)
+            work += 2 * float(np.sum(powers * (1 + (powers * height / _DIGITS) ** _LONG)))
+    return Size(coefficients, _ENTRY * increments + _COEFFICIENT * coefficients + bits / 8, work)
 
 
 def refuse_large(
@@ -78,16 +85,19 @@ def refuse_large(
     asked: str,
     most: float = inf,
 ) -> None:
-    """CostError, for the key or option `asked`, where a table is beyond `most` coefficients or `LARGEST` bytes."""
+    """CostError, for the key or option `asked`, where a table is beyond `LARGEST` bytes, `MOST_WORK` or `most` work."""
     size = table_size(chain, interval, wanted, sources)
     if size.bytes > LARGEST:
         raise CostError(
             f"{asked}: the tables of coefficients would take about {size.bytes:.1e} bytes, "
             f"at most {LARGEST:.0e} expected"
         )
-    if size.coefficients > most:
+    if size.work > min(most, MOST_WORK):
+        digits = size.bytes / max(size.coefficients, 1) * log10(2) * 8
         raise CostError(
-            f"{asked}: the tables would hold about {size.coefficients:.1e} coefficients, at most {most:.0e} expected"
+            f"{asked}: the tables would hold about {size.coefficients:.1e} coefficients of {digits:.0e} digits, as much "
+            f"work as {size.work:.1e} short ones, at most {min(most, MOST_WORK):.0e} expected; fewer digits in the "
+            "scene's numbers, or equal numbers, make it less"
         )
 
 

@@ -36,7 +36,11 @@ class Segment:
         """The value, a ball, at a point or on an interval."""
         local = arb(u)
         return sum(
-            (polynomial(local) * (-local * arb(rate)).exp() for rate, polynomial in self.families.items()), arb(0)
+            (
+                polynomial(local) * (-local * arb(rate)).exp() if rate else polynomial(local)
+                for rate, polynomial in self.families.items()
+            ),
+            arb(0),
         )
 
     def shifted(self, by: fmpq) -> dict[fmpq, arb_poly]:
