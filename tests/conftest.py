@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import settings
+from hypothesis import Phase, settings
 
 settings.register_profile("wavesym", deadline=None, derandomize=True)
+# where only the first failure is of interest, not the simplest
+settings.register_profile("first_failure", settings.get_profile("wavesym"), phases=[Phase.explicit, Phase.generate])
 settings.load_profile("wavesym")
 
 

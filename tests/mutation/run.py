@@ -1,0 +1,229 @@
+"""Which mistakes in the proofs of the bounds the tests see: mutants of their rooms, run against the tests of these.
+
+Each mutant is one file in a copy of the project, killed by the first test that fails or hangs. No test among them
+compares with a kept text. known.toml lists, with the reason, mutants that change no value, or only make a bound larger
+than it need be; they are counted and not run. `make mutants`, or `python -m tests.mutation.run --help`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tomllib
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager, suppress
+from importlib.util import cache_from_source
+from pathlib import Path
+from queue import SimpleQueue
+from tempfile import TemporaryDirectory
+from time import perf_counter
+from typing import NamedTuple
+
+from tests.mutation.operators import Mutant, Names, mutants
+
+ROOT = Path(__file__).resolve().parents[2]
+ROOMS = ("wavesym/evaluators/**/*.py", "templates/c/[!s]*.c.j2", "templates/numpy/*.py.j2")
+# All of it is run for a mutant that survives: it may take a minute and a half where a tenth of 300 do.
+TESTS = ("evaluators", "emission/test_march_c.py", "emission/test_selftest.py", "verification/test_properties.py")
+COPIED = ("wavesym", "templates", "tests", "pyproject.toml")
+LONGEST = 30  # seconds, of one test
+PYTEST = f"""ulimit -v {4 << 20}; exec "$0" -m pytest -x -q --tb=short -p no:cacheprovider --basetemp=tmp/pytest \
+--hypothesis-profile=first_failure -o faulthandler_timeout={LONGEST} -o faulthandler_exit_on_timeout=true "$@" """
+WANTED = 0.95  # of the mutants that make a bound false or a value wrong
+
+
+class Verdict(NamedTuple):
+    """What became of a mutant: "killed", "hung", "survived" or "known"; by which test, or for which reason."""
+
+    mutant: Mutant
+    fate: str
+    why: str = ""
+    seconds: float = 0.0
+
+
+class Project:
+    """A copy of the project, in which one file at a time is another."""
+
+    def __init__(self, folder: Path) -> None:
+        # in a folder of this name Hypothesis draws no constants from sources, and so the same examples for all mutants
+        self.folder = folder / "test"
+        (self.folder / "tmp").mkdir(parents=True)
+        for name in COPIED:
+            copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy2
+            copy(ROOT / name, self.folder / name)
+
+    @contextmanager
+    def changed(self, mutant: Mutant) -> Iterator[None]:
+        """The project with a mutant in place of its source."""
+        path = self.folder / mutant.file
+        right = path.read_text()
+        _write(path, mutant.text)
+        try:
+            yield
+        finally:
+            _write(path, right)
+
+    def tested(self, tests: Sequence[str], limit: float | None = None) -> tuple[int | None, str]:
+        """The status of pytest after the first test that fails, None after `limit` seconds, and what it says."""
+        places = {"PYTHONPATH": str(self.folder), "TMPDIR": str(self.folder / "tmp"), "OMP_NUM_THREADS": "1"}
+        told = self.folder / "told"
+        with told.open("w") as out:
+            process = subprocess.Popen(
+                ["sh", "-c", PYTEST, sys.executable, *tests],
+                cwd=self.folder,
+                env=os.environ | places,
+                stdout=out,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+            status = None
+            try:
+                with suppress(subprocess.TimeoutExpired):
+                    status = process.wait(limit)
+            finally:
+                with suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)  # programs that tests have started too
+                process.wait()
+        return status, told.read_text(errors="replace")
+
+    def judge(self, mutant: Mutant, limit: float) -> Verdict:
+        """Whether the tests see a mutant."""
+        begun = perf_counter()
+        with self.changed(mutant):
+            status, told = self.tested(related(mutant.file), limit)
+        failed = re.search(r"^(?:FAILED|ERROR) (\S+)", told, re.MULTILINE)
+        hung = status is None or (not failed and "Timeout (" in told)
+        fate = "survived" if status == 0 else "hung" if hung else "killed"
+        why = failed[1] if failed else "" if status == 0 else f"status {status}"
+        return Verdict(mutant, fate, why, perf_counter() - begun)
+
+
+def _write(path: Path, text: str) -> None:
+    # Python's cache takes two texts of one length in one second for one
+    Path(cache_from_source(str(path))).unlink(missing_ok=True)
+    path.write_text(text)
+
+
+def related(file: str) -> list[str]:
+    """The files of tests, those first whose names have most in common with that of a mutated file."""
+    given = [ROOT / "tests" / name for name in TESTS]
+    files = [path for test in given for path in (sorted(test.rglob("test_*.py")) if test.is_dir() else [test])]
+    names = [path.relative_to(ROOT).as_posix() for path in files]
+    return sorted(names, key=lambda name: -len(_words(file) & _words(name)))
+
+
+def _words(file: str) -> set[str]:
+    return set(re.findall(r"[a-z]+", file)) - {"py", "test", "tests", "emission"}
+
+
+def places(only: Sequence[str] = ()) -> list[list[Mutant]]:
+    """The mutants of every place of the rooms, or of those files whose names contain one of `only`."""
+    files = sorted(path.relative_to(ROOT).as_posix() for room in ROOMS for path in ROOT.glob(room))
+    wanted = [file for file in files if not only or any(part in file for part in only)]
+    return [place for file in wanted for place in mutants(file, (ROOT / file).read_text())]
+
+
+def sample(found: Sequence[Sequence[Mutant]], count: int, seed: int) -> list[Mutant]:
+    """One mutant each of so many places; the same ones whatever changes elsewhere."""
+    drawn = [min(place, key=lambda mutant: mutant.lot(seed)) for place in found]
+    return sorted({mutant.names: mutant for mutant in drawn}.values(), key=lambda mutant: mutant.lot(seed))[:count]
+
+
+def known() -> dict[Names, str]:
+    """Why a mutant need not be killed."""
+    listed = tomllib.loads((ROOT / "tests/mutation/known.toml").read_text())
+    return {
+        (file, each["function"], each["right"], each["wrong"]): f"{each['kind']}: {each['reason']}"
+        for file, entries in listed.items()
+        for each in entries
+    }
+
+
+def judged(chosen: Sequence[Mutant], jobs: int) -> Iterator[Verdict]:
+    """The verdicts as they come, in so many projects at once."""
+    with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(jobs) as pool:
+        free: SimpleQueue[Project] = SimpleQueue()
+        for job in range(jobs):
+            free.put(project := Project(Path(folder) / str(job)))
+        begun = perf_counter()
+        status, told = project.tested(related(""))
+        if status != 0:
+            sys.exit(f"tests fail on the project as it is:\n{told[-3000:]}")
+        limit = 4 * (perf_counter() - begun)
+        print(f"all tests on the project as it is: {limit / 4:.0f} s", flush=True)
+
+        def judge(mutant: Mutant) -> Verdict:
+            project = free.get()
+            try:
+                return project.judge(mutant, limit)
+            finally:
+                free.put(project)
+
+        for future in as_completed([pool.submit(judge, mutant) for mutant in chosen]):
+            yield future.result()
+
+
+def report(verdicts: Sequence[Verdict]) -> str:
+    """Markdown: a row for each file; survivors with their lines; what is known, with its reason."""
+    counts = Counter((verdict.mutant.file, verdict.fate) for verdict in verdicts)
+    files = sorted({verdict.mutant.file for verdict in verdicts})
+    text = ["| file | made | killed | of them by time | known | survived | share |", "|---|---|---|---|---|---|---|"]
+    for name, rows in [*((file, [file]) for file in files), ("all", files)]:
+        total = {fate: sum(counts[file, fate] for file in rows) for fate in ("killed", "hung", "known", "survived")}
+        killed, hung, listed, survived = total.values()
+        share = f"{(killed + hung) / (killed + hung + survived):.1%}" if killed + hung + survived else ""
+        text.append(f"| {name} | {sum(total.values())} | {killed + hung} | {hung} | {listed} | {survived} | {share} |")
+    for fate in ("survived", "known"):
+        found = sorted((each for each in verdicts if each.fate == fate), key=lambda each: each.mutant.names)
+        text += ["", f"## {fate.capitalize()}: {len(found)}", ""]
+        text += [f"{each.mutant}{each.why and f'    {each.why}'}\n" for each in found]
+    return "\n".join(text)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=300, help="how many mutants (300)")
+    parser.add_argument("--seed", type=int, default=1, help="which ones (1)")
+    parser.add_argument("--only", action="append", default=[], metavar="FILE", help="of files whose names contain this")
+    parser.add_argument("--jobs", type=int, default=2, help="how many at once (2)")
+    parser.add_argument("--list", action="store_true", help="name them, run none")
+    parser.add_argument("--known", action="store_true", help="run those in known.toml too")
+    parser.add_argument("--key", help="run one, and show what pytest says")
+    parser.add_argument("--write", type=Path, metavar="PATH", help="write the report there, in Markdown")
+    asked = parser.parse_args()
+    found = places(asked.only)
+    if asked.key:
+        (mutant,) = {mutant.names: mutant for place in found for mutant in place if mutant.key == asked.key}.values()
+        with TemporaryDirectory(prefix="mutants-") as folder, (project := Project(Path(folder))).changed(mutant):
+            status, told = project.tested(related(mutant.file))
+        print(mutant, told, sep="\n")
+        return status or 0
+    chosen = sample(found, asked.count, asked.seed)
+    if asked.list:
+        print(*chosen, sep="\n")
+        return 0
+    print(f"{len(chosen)} mutants of {sum(map(len, found))} at {len(found)} places, seed {asked.seed}", flush=True)
+    begun = perf_counter()
+    reasons = {} if asked.known else known()
+    verdicts = [Verdict(mutant, "known", reasons[mutant.names]) for mutant in chosen if mutant.names in reasons]
+    for verdict in judged([mutant for mutant in chosen if mutant.names not in reasons], asked.jobs):
+        verdicts.append(verdict)
+        mutant, fate, why, seconds = verdict
+        print(f"{len(verdicts):4} {fate:8} {seconds:4.0f} s  {mutant.key} {mutant.file}  {why}", flush=True)
+    print("\n" + (text := report(verdicts)), f"{(perf_counter() - begun) / 60:.0f} min", sep="\n")
+    if asked.write:
+        asked.write.parent.mkdir(parents=True, exist_ok=True)
+        asked.write.write_text(text)
+    fates = Counter(verdict.fate for verdict in verdicts)
+    return int(fates["survived"] > (1 - WANTED) * (len(verdicts) - fates["known"]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
