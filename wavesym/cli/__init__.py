@@ -14,9 +14,9 @@ from io import TextIOWrapper
 import click
 
 from wavesym import __version__
-from wavesym.errors import WavesymError
+from wavesym.errors import WavesymError, did_you_mean
 
-COMMANDS = ("scenes", "derive", "tables", "generate", "run", "verify", "plot", "chart", "stability")
+COMMANDS = ("scenes", "init", "derive", "tables", "generate", "run", "verify", "plot", "chart", "stability")
 
 DONE, FAILED, WRONG_REQUEST, INTERRUPTED = 0, 1, 2, 130
 
@@ -29,7 +29,10 @@ class _Commands(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in COMMANDS:
-            return None
+            if ctx.resilient_parsing:  # a word that is being completed
+                return None
+            meant = did_you_mean(cmd_name, COMMANDS)
+            raise click.UsageError(f"No such command '{cmd_name}'.{meant and f' {meant}'}", ctx)
         command: click.Command = getattr(import_module(f"wavesym.cli.{cmd_name}"), cmd_name)
         return command
 
@@ -53,6 +56,8 @@ def cli() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and give its exit status; what goes wrong for a user is one line on standard error."""
+    if sys.stdout is None:
+        return _refused("wavesym: standard output is closed, an open one expected", WRONG_REQUEST)
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors="surrogateescape")  # the name of a file may be no UTF-8
     try:
