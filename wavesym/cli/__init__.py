@@ -29,12 +29,18 @@ class _Commands(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in COMMANDS:
-            if ctx.resilient_parsing:  # a word that is being completed
-                return None
-            meant = did_you_mean(cmd_name, COMMANDS)
-            raise click.UsageError(f"No such command '{cmd_name}'.{meant and f' {meant}'}", ctx)
+            return None
         command: click.Command = getattr(import_module(f"wavesym.cli.{cmd_name}"), cmd_name)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            meant = did_you_mean(args[0], COMMANDS)
+            raise click.UsageError(f"{error.message} {meant}".rstrip(), ctx) from None
 
 
 @click.command(cls=_Commands, no_args_is_help=False)
