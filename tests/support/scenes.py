@@ -37,13 +37,13 @@ def _ratios(draw, count):
 
 
 @st.composite
-def systems(draw, largest=5):
+def systems(draw, precision, largest=5):
     """The table `system` of a scene."""
     kind = draw(st.sampled_from(["collision", "drive", "building"]))
     if kind == "collision":
         m = draw(st.sampled_from([4, 6]))
         slower = draw(st.lists(st.sampled_from([1, "3/8", 0, -1, "1e-9"]), min_size=m // 2 - 1, max_size=m // 2 - 1))
-        size = draw(sizes())
+        size = draw(sizes(precision))
         velocity = [abs(size) * v for v in (1, *sorted(map(Fraction, slower), reverse=True))]
         return {"type": kind, "m": m, "kappa": draw(_ratios(m // 2)), "velocity": velocity}
     m = draw(st.integers(1 if kind == "drive" else 2, largest))
@@ -53,14 +53,15 @@ def systems(draw, largest=5):
     return {"type": kind, "m": m, "kappa": draw(_ratios(m + 1)), "base": base}
 
 
-def sizes() -> st.SearchStrategy[Fraction]:
+def sizes(precision) -> st.SearchStrategy[Fraction]:
     """Factors of loads, mostly moderate; decimals, since no other number this small can be written in a scene."""
-    exponents = st.sampled_from([0, 0, 0, 0, 0, -12, 12, -200, 200, -290, 290])
+    extremes = [-290, -200, -12, 12, 200, 290] if precision == "double" else [-44, -30, -12, 12, 30, 200]
+    exponents = st.sampled_from([0] * len(extremes) + extremes)
     return st.builds(lambda x, e: Fraction(x) * Fraction(10) ** e, st.sampled_from([1, -1, 2, "-3/8"]), exponents)
 
 
 @st.composite
-def loads(draw, system):
+def loads(draw, system, precision):
     """The tables `load` of a scene; times nearly coincide with each other or differ by nearly whole units."""
     if system["type"] == "collision":
         return []
@@ -73,8 +74,8 @@ def loads(draw, system):
         times.add(max(after, Fraction(0)))
     times = sorted(times)
     # one size, or a size for each time
-    common = draw(st.one_of(st.just(None), sizes()))
-    weights = [draw(sizes()) if common is None else common for _ in times]
+    common = draw(st.one_of(st.just(None), sizes(precision)))
+    weights = [draw(sizes(precision)) if common is None else common for _ in times]
     if system["type"] == "drive":
         return [{"body": draw(st.integers(1, system["m"] + 1)), "times": times, "steps": weights}]
     kind = draw(st.sampled_from(["a", "b", "both"]))
@@ -109,9 +110,9 @@ def _just_after(tau: Fraction, real: type) -> Fraction:
 
 
 @st.composite
-def _horizons(draw, system, load, watched):
+def _horizons(draw, system, load, watched, longest):
     """The end of the horizon: most often at a front in one of the places watched, or hardly before or after it."""
-    kind = draw(st.sampled_from(["front"] * 7 + ["fixed"] * 3 + ["long"]))
+    kind = draw(st.sampled_from(["front"] * 7 + ["fixed"] * 3 + ["long"] * longest))
     if kind == "fixed":
         return draw(st.sampled_from(_HORIZONS))
     if kind == "long":
@@ -138,10 +139,10 @@ def _horizons(draw, system, load, watched):
 
 
 @st.composite
-def scenes(draw, precision="double"):
-    """A scene with a tolerance that a precision can often meet."""
-    system = draw(systems())
-    load = draw(loads(system))
+def scenes(draw, precision="double", longest=True):
+    """A scene with a tolerance that a precision can often meet; without `longest`, no horizon above 15."""
+    system = draw(systems(precision))
+    load = draw(loads(system, precision))
     output: dict[str, object] = {}
     for quantity in sorted(draw(st.sets(st.sampled_from(["strain", "velocity", "displacement"]), min_size=1))):
         several = st.lists(
@@ -149,7 +150,7 @@ def scenes(draw, precision="double"):
         )
         output[quantity] = draw(several)
     watched = sorted(place for several in output.values() for place in several)
-    output["until"] = draw(_horizons(system, load, watched))
+    output["until"] = draw(_horizons(system, load, watched, longest))
     output["tolerance"] = Fraction(10) ** -draw(st.integers(2, 13 if precision == "double" else 5))
     return Scene(name="drawn", system=system, load=load, output=output)
 
@@ -199,7 +200,6 @@ def _decimal(value: Fraction) -> str:
     digits, exponent = value, 0
     while digits.denominator > 1:
         digits, exponent = digits * 10, exponent - 1
-    whole = digits.numerator
-    while whole % 10 == 0:
-        whole, exponent = whole // 10, exponent + 1
-    return f"{whole}e{exponent}"
+    first, *others = str(abs(digits.numerator))
+    sign = "-" if value < 0 else ""
+    return f"{sign}{first}.{''.join(others).rstrip('0') or 0}e{exponent + len(others)}"
