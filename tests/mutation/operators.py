@@ -26,7 +26,9 @@ COSTS |= {"_bytes", "_least", "_size", "_state", "_refuse_long", "_first_degree"
 TEXTS = {"summary", "shortfall", "check_points"}  # and where a self-test looks
 
 # what in a template does not compute: texts, comments, errors, sizes of blocks, and the template's own language
-NO_CODE = re.compile(r'"""[\s\S]*?"""|/\*[\s\S]*?\*/|"[^"\n]*"|(#|raise|return f|_(BLOCK|SAMPLES) =).*|\{%.*?%\}|\{\{.*?\}\}')
+NO_CODE = re.compile(
+    r'"{3}[\s\S]*?"{3}|/\*[\s\S]*?\*/|"[^"\n]*"|(#|raise|return f|_(BLOCK|SAMPLES) =).*|\{%.*?%\}|\{\{.*?\}\}'
+)
 FUNCTION = re.compile(r"^(?:[ ]*def |[a-z].*?)(\w+)\(", re.MULTILINE)
 TEMPLATE = [
     (re.compile(r"(?<=\S )([+-])(?==? )"), lambda sign: ["-" if sign == "+" else "+"]),

@@ -98,11 +98,13 @@ class Project:
         begun = perf_counter()
         with self.changed(mutant):
             status, told = self.tested(related(mutant.file), limit)
-        failed = re.search(r"^(?:FAILED|ERROR) (\S+)", told, re.MULTILINE)
-        hung = status is None or (not failed and "Timeout (" in told)
-        fate = "survived" if status == 0 else "hung" if hung else "killed"
-        why = failed[1] if failed else "" if status == 0 else f"status {status}"
-        return Verdict(mutant, fate, why, perf_counter() - begun)
+        seconds = perf_counter() - begun
+        if status == 0:
+            return Verdict(mutant, "survived", "", seconds)
+        if failed := re.search(r"^(?:FAILED|ERROR) (\S+)", told, re.MULTILINE):
+            return Verdict(mutant, "killed", failed[1], seconds)
+        hung = status is None or "Timeout (" in told
+        return Verdict(mutant, "hung" if hung else "killed", f"status {status}", seconds)
 
 
 def _write(path: Path, text: str) -> None:
