@@ -168,8 +168,11 @@ def judged(chosen: Sequence[Mutant], jobs: int) -> Iterator[Verdict]:
             finally:
                 free.put(project)
 
-        for future in as_completed([pool.submit(judge, mutant) for mutant in chosen]):
-            yield future.result()
+        try:
+            for future in as_completed([pool.submit(judge, mutant) for mutant in chosen]):
+                yield future.result()
+        finally:
+            pool.shutdown(cancel_futures=True)  # where this ends early
 
 
 def report(verdicts: Sequence[Verdict]) -> str:
