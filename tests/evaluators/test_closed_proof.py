@@ -89,7 +89,7 @@ def test_underflow_is_what_is_counted(k, size):
     """Where w <= 1 the proof gives a factor of 2 away, further on a little more."""
     for families in (1, 2):
         arrivals = [arrival(0, fmpq(rate, 1000), alone(k, size)) for rate in range(families)]
-        for until, given in ((1, 2.01), (3, 6)):
+        for until, given in ((1, 2.01), (3, 9.01)):
             count = computed(arrivals, fmpq(until)).error(0, EXACT.smallest)
             assert count <= proved(arrivals, until, EXACT)[-1] <= count * arb(given)
 
