@@ -83,6 +83,15 @@ def test_every_term_adds_its_own():
         assert count <= float(proved(arrivals, until, DOUBLE)[n] / u) <= 1.3 * count
 
 
+@pytest.mark.parametrize("rate", [fmpq(0), fmpq(1, 3), fmpq(3)], ids=str)
+def test_what_came_long_ago_is_as_wrong_as_it_is_large_by_now(rate):
+    """Just where the last of three segments begins, so that no term is taken where it is larger."""
+    u, until = DOUBLE.roundoff, fmpq(7, 2)
+    arrivals = [NOTHING, arrival(1, rate, alone(3)), arrival(until, 0, [0])]
+    count = computed(arrivals, until, u).error(u, 0)
+    assert count <= proved(arrivals, until, DOUBLE)[-1] <= CLOSE * count
+
+
 @pytest.mark.parametrize("k", [0, 1, 4])
 @pytest.mark.parametrize("size", [fmpq(1, 10**60), fmpq(1), fmpq(1000)], ids=float)
 def test_underflow_is_what_is_counted(k, size):
@@ -129,7 +138,8 @@ def test_what_might_overflow_is_refused():
     # the factor of what cannot be is not taken from the segment, nor from w < 1
     early = [arrival(0, 1, [fmpq(2) ** 1000, 0, 1]), arrival(fmpq(1, 2), 1, [1])]
     assert proved(early, fmpq(1, 2) + fmpq(1, 4), DOUBLE) == [None, None]
-    form = closed_form([Signal("huge", tuple(huge))], 5.0)
+    form = closed_form([Signal("small", (NOTHING, arrival(1, 0, [1]))), Signal("huge", tuple(huge))], 5.0)
+    assert form.outputs[0].bound < 1e-14
     assert form.error_bound == inf
 
 
