@@ -1,4 +1,4 @@
-"""Each term of the pieces' proof is needed: Horner's rule and NumPy's products, run with numbers that count, lose it."""
+"""Each term of the pieces' proof is needed: Horner's rule and NumPy's products, run with counted numbers, lose it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import wavesym
 from tests.support.counted import Counted
 from wavesym.evaluators import chebyshev
 from wavesym.evaluators.ball import Segment
-from wavesym.evaluators.pieces import _Cuts, _cut_off, _Fits, _shortened, _underflow
+from wavesym.evaluators.pieces import _cut_off, _Cuts, _Fits, _shortened, _underflow
 from wavesym.evaluators.reals import DOUBLE, SINGLE
 
 CLOSE = arb(fmpq(1002, 1000))  # the proof's second order, and a little
