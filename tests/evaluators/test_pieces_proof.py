@@ -112,7 +112,7 @@ def test_underflow_is_what_is_counted(degree, size):
     """At |w| = 1/2; powers of w are lost as well, which matters where their coefficients are large."""
     powers = [size / 2**k for k in range(degree + 1)]
     counts = [horner(powers, fmpq(1, 2)), *(product(powers, fmpq(1, 2), k) for k in range(1, degree + 1))]
-    lost = _underflow([arb(size)] * (degree + 1), SINGLE) / SINGLE.smallest
+    lost = _underflow([arb(-size)] * (degree + 1), SINGLE) / SINGLE.smallest
     assert max(float(count.underflow) for count in counts) <= float(lost)
 
 
@@ -183,3 +183,20 @@ def test_what_is_left_out_as_negligible_is_in_the_balls():
         assert _shortened(full, arb(5e-70) * fmpq(99, 100)).length() == 4
         assert _shortened(full, arb(9e-70)).length() == 2
         assert _shortened(arb_poly([arb(1e-70)]), arb(1e-60)).length() == 0
+
+
+def test_a_largest_value_is_looked_for_on_every_piece():
+    """At both ends and at the centre, negative ones too, with a lower bound of it printed."""
+    one, bump = arb_poly([arb(1)]), arb_poly([arb(-3), arb(2) * 7, arb(-2) * 7])
+    for polynomials in ([one, bump], [bump, one], [bump, bump]):
+        (_, largest), _ = fitted(polynomials, fmpq(1, 100))
+        assert largest == pytest.approx(3, rel=1e-12)
+        assert largest <= 3
+    # 1/2 at the centre of the first piece
+    (_, largest), _ = fitted([arb_poly([0, -2, 2]), arb_poly([arb(fmpq(1, 4))])], fmpq(1, 100))
+    assert largest == 0.5
+
+
+def test_what_is_zero_throughout_has_nothing_to_be_wrong():
+    found = fitted([arb_poly(), arb_poly()], fmpq(1, 100))
+    assert found == ((0.0, 0.0), [(0.0,), (0.0,)])
