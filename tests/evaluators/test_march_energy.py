@@ -59,7 +59,8 @@ def test_truncation_is_no_less_than_what_a_step_loses(step, degree):
     """A disc, on which T_d arrives."""
     prepared = plan(drive([step]))
     run, node = Run(prepared, degree), prepared.junctions[0]
-    assert node.rate == (step := fmpq(*Fraction(step).as_integer_ratio()))
+    step = fmpq(*Fraction(step).as_integer_ratio())
+    assert node.rate == step
     block = blank(prepared, degree)
     p = np.zeros((len(prepared.junctions), degree + 1))
     p[0, degree] = 1

@@ -77,7 +77,7 @@ def in_numpy(step, degree, monkeypatch):
 
 
 def norms(q, end):
-    """Of what is counted, as in `_Constants`: per |p|, |start| and smallest number, in the norm that counts c_0 twice."""
+    """Of what is counted, as in `_Constants`: per |p|, |start|, smallest number; in the norm that counts c_0 twice."""
     twice = np.ones(len(q))
     twice[0] = np.sqrt(2)
     errors = twice[:, np.newaxis] * np.array([number.error for number in q])

@@ -76,6 +76,8 @@ class Rounded:
         )
 
     def __add__(self, other: Any) -> Rounded:
+        if other is self:
+            return self._scaled(2)
         return self if _nothing(other) else self._plus(_number(other))._rounded()
 
     __radd__ = __add__
