@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from math import inf
 
 import numpy as np
@@ -29,7 +30,7 @@ PLACES = [0, "1/3", "1/2", 1, "8/5", 2]
 
 
 def building(until, load=LOAD, **outputs):
-    outputs = outputs or {quantity: PLACES for quantity in ("strain", "velocity", "displacement")}
+    outputs = outputs or dict.fromkeys(("strain", "velocity", "displacement"), PLACES)
     if "strain" in outputs:
         outputs |= {"strain": [f"{x}-" if x == 1 else x for x in outputs["strain"]]}
     return Scene(
@@ -113,10 +114,11 @@ def drive(until, time=0, tolerance="1e-10"):
 
 
 @pytest.mark.parametrize("until", ["3.1", "3.01", "3.001", "3.000001"])
-@pytest.mark.parametrize("language", ["c", "numpy"])
 @pytest.mark.parametrize("evaluator", ["march", "auto"])
-def test_what_has_just_arrived_is_within_its_bound(until, language, evaluator):
-    check_arrived(drive(until), evaluator, language)
+def test_what_has_just_arrived_is_within_its_bound(until, evaluator):
+    check_arrived(drive(until), evaluator, "numpy")
+    if until == "3.01":
+        check_arrived(drive(until), evaluator, "c")
 
 
 @pytest.mark.parametrize("start", [60, pytest.param(30000, marks=pytest.mark.slow)])
@@ -174,7 +176,7 @@ def test_stretches_cover_the_window_once(delay, panels, expected):
     cuts = [*map(exact, panels), fmpq(1)]
     made = replace(
         marched(building(1)).plan,
-        panels=tuple(Panel(low, high - low) for low, high in zip(cuts, cuts[1:], strict=False)),
+        panels=tuple(Panel(low, high - low) for low, high in pairwise(cuts)),
     )
     assert made.stretches(exact(delay)) == tuple(Stretch(exact(start), back, p) for start, back, p in expected)
 
