@@ -1,4 +1,4 @@
-"""What is proved of a march under loads that are given while it runs: sums over single loads, and marches that happen."""
+"""What is proved of a march under loads that are given while it runs: sums of single loads; and marches so driven."""
 
 from fractions import Fraction
 from itertools import product
