@@ -90,12 +90,15 @@ class March:
 
 
 @cache
-def library(name, real=DOUBLE, degree=None):
-    """Compiled once; the folder may go when it is loaded."""
+def library(name, real=DOUBLE, degree=None, change=None):
+    """Compiled once; the folder may go when it is loaded. With a change, one text stands for another in the C."""
     made_from = SCENES[name] if isinstance(name, str) else name
     made = marched(made_from, real, degree)
     description = describe(made_from, made, "test", ())
     sources = {"made.h": c_header(description, made), "made.c": c_source(description, made), "size.c": SIZE}
+    if change:
+        assert change[0] in sources["made.c"]
+        sources["made.c"] = sources["made.c"].replace(*change)
     with TemporaryDirectory() as folder:
         for file, text in sources.items():
             Path(folder, file).write_text(text)
