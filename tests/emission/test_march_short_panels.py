@@ -1,4 +1,4 @@
-"""Waves put by hand into a march, on a panel of a billionth: they are read from exact instants, not from rounded ones."""
+"""Waves put by hand into a march, on a panel of a billionth: read from exact instants, not from rounded ones."""
 
 from fractions import Fraction
 from functools import cache
