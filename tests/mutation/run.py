@@ -31,7 +31,8 @@ from tests.mutation.operators import Mutant, Names, mutants
 ROOT = Path(__file__).resolve().parents[2]
 ROOMS = ("wavesym/evaluators/**/*.py", "templates/c/[!s]*.c.j2", "templates/numpy/*.py.j2")
 # All of it is run for a mutant that survives: it may take a minute and a half where a tenth of 300 do.
-TESTS = ("evaluators", "emission/test_march_c.py", "emission/test_selftest.py", "verification/test_properties.py")
+TESTS = ("evaluators", "emission/test_march_c.py", "emission/test_march_hand.py", "emission/test_march_short_panels.py")
+TESTS += ("emission/test_selftest.py", "verification/test_properties.py")
 COPIED = ("wavesym", "templates", "tests", "pyproject.toml")
 PYTEST = f"""ulimit -v {4 << 20}; exec "$0" -m pytest -x -q --tb=short -p no:cacheprovider --basetemp=tmp/pytest \
 --hypothesis-profile=first_failure -o faulthandler_exit_on_timeout=true "$@" """
