@@ -98,11 +98,13 @@ class Project:
         begun = perf_counter()
         with self.changed(mutant):
             status, told = self.tested(related(mutant.file), limit)
-        failed = re.search(r"^(?:FAILED|ERROR) (\S+)", told, re.MULTILINE)
-        hung = status is None or (not failed and "Timeout (" in told)
-        fate = "survived" if status == 0 else "hung" if hung else "killed"
-        why = failed[1] if failed else "" if status == 0 else f"status {status}"
-        return Verdict(mutant, fate, why, perf_counter() - begun)
+        seconds = perf_counter() - begun
+        if status == 0:
+            return Verdict(mutant, "survived", "", seconds)
+        if failed := re.search(r"^(?:FAILED|ERROR) (\S+)", told, re.MULTILINE):
+            return Verdict(mutant, "killed", failed[1], seconds)
+        hung = status is None or "Timeout (" in told
+        return Verdict(mutant, "hung" if hung else "killed", f"status {status}", seconds)
 
 
 def _write(path: Path, text: str) -> None:
@@ -166,8 +168,11 @@ def judged(chosen: Sequence[Mutant], jobs: int) -> Iterator[Verdict]:
             finally:
                 free.put(project)
 
-        for future in as_completed([pool.submit(judge, mutant) for mutant in chosen]):
-            yield future.result()
+        try:
+            for future in as_completed([pool.submit(judge, mutant) for mutant in chosen]):
+                yield future.result()
+        finally:
+            pool.shutdown(cancel_futures=True)  # where this ends early
 
 
 def report(verdicts: Sequence[Verdict]) -> str:

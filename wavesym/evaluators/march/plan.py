@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -132,6 +132,18 @@ class Plan:
         """The largest rate of a body, 0 without one."""
         return max((node.rate for node in self.junctions if node.rate is not None), default=fmpq(0))
 
+    def scaled(self, factor: fmpq) -> Plan:
+        """The same with all that moves it `factor` times as large; every motion is, then."""
+        return replace(
+            self,
+            junctions=tuple(replace(node, motion=factor * node.motion) for node in self.junctions),
+            rods=tuple(factor * velocity for velocity in self.rods),
+            events=tuple(
+                replace(event, powers=_three(factor * fmpq_poly(list(event.powers)))) for event in self.events
+            ),
+            channels=tuple(replace(channel, gain=factor * channel.gain) for channel in self.channels),
+        )
+
     def changes(self, panel: int) -> Iterator[tuple[int, int, tuple[fmpq, fmpq, fmpq]]]:
         """Window, force and powers of what is new with each event on a panel."""
         now: dict[int, tuple[fmpq, fmpq_poly]] = {}
@@ -227,6 +239,12 @@ def _events(
             window = int(time.floor())
             events.append(Event(window, places[time - window], force, _three(total)))
     return events
+
+
+def power_of_two(numbers: Iterable[fmpq]) -> fmpq:
+    """About the largest absolute value of some numbers; 1 where all are 0."""
+    size = max(map(abs, numbers), default=fmpq(0))
+    return fmpq(2) ** (int(size.p).bit_length() - int(size.q).bit_length()) if size else fmpq(1)
 
 
 def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:
