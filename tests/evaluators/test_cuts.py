@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wavesym.evaluators.doubles import rational
-from wavesym.evaluators.pieces import _Cuts
+from wavesym.evaluators.pieces import Pieces, _Cuts
 from wavesym.evaluators.reals import DOUBLE, SINGLE, Real
 
 FORMATS = {DOUBLE: np.float64, SINGLE: np.float32}
@@ -122,3 +122,13 @@ def test_parts_are_as_fine_as_the_pieces():
     crowd = _Cuts([fmpq(k, 1000) for k in range(20)], fmpq(50), 1, DOUBLE)
     grid = crowd.grid([0], [[(0.0,)] * len(crowd.centres)])
     assert len(grid.first) > 4 * len(crowd.centres)
+
+
+@both
+def test_it_is_checked_at_both_ends_of_every_piece_and_at_its_centre(real):
+    cuts = _Cuts([fmpq(0), fmpq(3, 2)], fmpq(5, 2), 1, real)
+    grid = cuts.grid([0], [[(0.0,)] * len(cuts.centres)])
+    form = Pieces((), 2.5, real, (grid,), 1)
+    before = [real.next_to(end, 0.0) for end in cuts.starts[1:]]
+    assert before[-1] == 2.5
+    assert form.check_points == sorted({*cuts.starts[:-1], *cuts.centres, *before})

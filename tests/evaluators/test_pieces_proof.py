@@ -13,7 +13,7 @@ import wavesym
 from tests.support.counted import Counted
 from wavesym.evaluators import chebyshev
 from wavesym.evaluators.ball import Segment
-from wavesym.evaluators.pieces import _cut_off, _Cuts, _Fits, _shortened, _underflow
+from wavesym.evaluators.pieces import Pieces, PiecesOutput, _cut_off, _Cuts, _Fits, _shortened, _underflow
 from wavesym.evaluators.reals import DOUBLE, SINGLE
 
 CLOSE = arb(fmpq(1002, 1000))  # the proof's second order, and a little
@@ -104,6 +104,12 @@ def test_where_none_is_allowed_the_best_is_taken(size):
     error, powers = _cut_off(terms, arb(3 * min(errors) / 4), SINGLE)
     assert 5 < len(powers) == errors.index(min(errors)) + 1 < 30
     assert min(errors) <= float(error) <= 1.002 * min(errors)
+
+
+def test_where_balls_leave_nothing_to_allow_all_terms_are_taken():
+    error, powers = _cut_off([arb(1), arb(fmpq(1, 2))], arb(-1), DOUBLE)
+    assert powers == [1, 0.5]
+    assert error > 0
 
 
 @pytest.mark.parametrize("degree", [0, 1, 2, 5, 30])
@@ -200,3 +206,8 @@ def test_a_largest_value_is_looked_for_on_every_piece():
 def test_what_is_zero_throughout_has_nothing_to_be_wrong():
     found = fitted([arb_poly(), arb_poly()], fmpq(1, 100))
     assert found == ((0.0, 0.0), [(0.0,), (0.0,)])
+
+
+def test_a_program_is_as_wrong_as_its_worst_output():
+    outputs = (PiecesOutput("a", 0.1, 1.0), PiecesOutput("b", 0.3, 1.0), PiecesOutput("c", 0.2, 1.0))
+    assert Pieces(outputs, 1.0, DOUBLE, (), 1).error_bound == 0.3

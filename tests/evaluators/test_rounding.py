@@ -12,7 +12,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wavesym.errors import RangeError
-from wavesym.evaluators.doubles import above, bound, fraction, midpoint, nearest, not_below, rational, rounded
+from wavesym.evaluators.doubles import (
+    UNIT_ROUNDOFF,
+    above,
+    bound,
+    fraction,
+    midpoint,
+    nearest,
+    not_below,
+    rational,
+    rounded,
+)
 from wavesym.evaluators.reals import DOUBLE, SINGLE
 
 FORMATS = {DOUBLE: np.float64, SINGLE: np.float32}
@@ -83,6 +93,11 @@ def test_a_format_is_what_numpy_says(real):
     assert real.reach * 1000 * 1000 < real.largest
 
 
+def test_the_unit_roundoff_is_that_of_doubles():
+    assert 1.0 + float(UNIT_ROUNDOFF) == 1.0 < 1.0 + 1.001 * float(UNIT_ROUNDOFF)
+    assert DOUBLE.roundoff == UNIT_ROUNDOFF
+
+
 def test_beyond_the_largest_number_there_is_none():
     with pytest.raises(RangeError, match=r"1\.8e308"):
         nearest(fmpq(2) ** 1024)
@@ -139,11 +154,19 @@ def test_what_is_far_beyond_all_doubles_costs_no_memory():
         gone = arb(2) ** -(10**12)
         assert rounded(gone) == midpoint(gone) == 0.0
         assert above(gone) == 5e-324
+        assert above(-gone) == 0.0
         for far in (arb(2) ** 10**6, -(arb(2) ** 10**6), arb(2) ** 1024):
             with pytest.raises(RangeError):
                 rounded(far)
-        assert rounded(arb(2) ** 1024 * arb(1, 0.5)) is None
+
+
+def test_a_ball_may_lie_on_both_sides_of_the_largest_double():
+    with ctx.workprec(64):
         assert rounded(arb(2**1024 - 2**971)) == float(LARGEST[DOUBLE])
+        with pytest.raises(RangeError):
+            rounded(arb(2**1024 - 2**970))
+        for width in (0.1, 0.5):
+            assert rounded(arb(2) ** 1024 * arb(1, width)) is None
 
 
 @given(st.fractions())
