@@ -111,7 +111,7 @@ class Exam:
                     if not np.isfinite(value):
                         return np.inf, k, tau
                     error = (arb(value) - self._values[tau][k]).abs_lower()
-                    ratio = float((error / allowed).upper()) if allowed > 0 else (np.inf if error > 0 else 0.0)
+                    ratio = float((error / allowed).lower()) if allowed > 0 else (np.inf if error > 0 else 0.0)
                     worst = max(worst, (ratio, k, tau), key=lambda at: at[0])
         return worst
 
