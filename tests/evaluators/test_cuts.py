@@ -115,6 +115,17 @@ def test_every_piece_is_found_in_a_few_steps(drawn):
     assert taken <= grid.steps
 
 
+def test_a_number_that_is_rounded_into_the_next_part_is_found():
+    """Part 3 begins just below the start of a piece; the last number before it, times `scale`, is 3 too."""
+    start = 1.9824121244677786
+    cuts = _Cuts([fmpq(0), fmpq(1, 10), rational(start)], rational(3.304020207446297), 1, DOUBLE)
+    grid = cuts.grid([0], [[(0.0,)] * len(cuts.centres)])
+    before = DOUBLE.next_to(start, 0.0)
+    assert before * grid.scale == 3.0
+    assert rational(before) * rational(grid.scale) < 3 < rational(start) * rational(grid.scale)
+    assert grid.starts[grid.first[3]] <= before
+
+
 def test_parts_are_as_fine_as_the_pieces():
     """Even pieces are found at once or in the next one; a crowd of them by finer parts."""
     even = _Cuts([fmpq(0)], fmpq(100), 8, DOUBLE)
