@@ -83,6 +83,18 @@ def test_an_output_that_grows_beyond_the_horizon_is_not_looked_at_there(real, un
 
 
 @both
+def test_of_a_single_number_at_the_end_only_that_is_looked_at(real):
+    """Its last bit is 1, so that the middle between it and the next one is rounded to the next."""
+    last = rational(real.next_to(6.0, np.inf))
+    ulp = last - 6
+    cuts = _Cuts([fmpq(0), last], last, 4, real)
+    assert cuts.middles[-1] == last + ulp
+    with ctx.workprec(300):
+        ramp = arb_poly([arb(1 + (cuts.middles[-1] - last) / ulp), arb(cuts.halves[-1] / ulp)])
+        assert abs(cuts.size(len(cuts.centres) - 1, ramp) - 1) < 1e-30
+
+
+@both
 def test_an_output_is_not_looked_at_beyond_its_next_breakpoint(real):
     """Of a piece from 0 to 1/3 the centre and both ends are: there 3 tau is 0, 1/2 and 1."""
     cuts = _Cuts([fmpq(0), fmpq(1, 3)], fmpq(1), 1, real)
@@ -113,6 +125,17 @@ def test_every_piece_is_found_in_a_few_steps(drawn):
         assert 0 <= grid.first[part] <= place
         taken = max(taken, place - grid.first[part])
     assert taken <= grid.steps
+
+
+def test_a_number_that_is_rounded_into_the_next_part_is_found():
+    """Part 3 begins just below the start of a piece; the last number before it, times `scale`, is 3 too."""
+    start = 1.9824121244677786
+    cuts = _Cuts([fmpq(0), fmpq(1, 10), rational(start)], rational(3.304020207446297), 1, DOUBLE)
+    grid = cuts.grid([0], [[(0.0,)] * len(cuts.centres)])
+    before = DOUBLE.next_to(start, 0.0)
+    assert before * grid.scale == 3.0
+    assert rational(before) * rational(grid.scale) < 3 < rational(start) * rational(grid.scale)
+    assert grid.starts[grid.first[3]] <= before
 
 
 def test_parts_are_as_fine_as_the_pieces():

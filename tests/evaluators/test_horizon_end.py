@@ -17,13 +17,14 @@ import wavesym
 from tests.support.truth import Truth
 from wavesym.emission.closed import numpy_source as closed_source
 from wavesym.emission.description import describe
+from wavesym.emission.files import files
 from wavesym.emission.pieces import numpy_source as pieces_source
 from wavesym.evaluators import choice, pieces
 from wavesym.evaluators.closed import ClosedForm, closed_form
 from wavesym.evaluators.doubles import rational
 from wavesym.evaluators.reals import DOUBLE, SINGLE
 from wavesym.evaluators.signal import horizon, signals
-from wavesym.verification.compiled import imported
+from wavesym.verification.compiled import compiled, imported
 
 BUILDING = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"}
 
@@ -86,6 +87,25 @@ def holds(scene, form) -> bool:
             if not (isinf(output.bound) or abs(truth.value(k, Fraction(tau)) - arb(value)) <= allowed):
                 return False
     return True
+
+
+def test_a_pulse_counts_from_its_arrival_not_from_the_next_number():
+    """A ramp that begins at 1000/3, up to a millionth later: a last place of tau is much of it."""
+    scene = wavesym.Scene(
+        name="ramp",
+        system=BUILDING,
+        load=[{"times": ["1000/3"], "a": [0], "b": [1]}],
+        output={"until": "333.333334", "tolerance": "1e-12", "strain": [0]},
+    )
+    made = files(scene, "all", "closed")
+    truth = Truth(scene, scene.output.until)
+    taus = np.linspace(1000 / 3 + 1e-9, 333.333334, 20).tolist()
+    with compiled(made, 1) as program:
+        found = [program(taus)[0], imported(made["ramp.py"], "made").evaluate(taus)[0]]
+    allowed = arb(imported(made["ramp.py"], "made").ERROR_BOUND) * truth.largest(0, scene.output.until)[1]
+    for values in found:
+        for tau, value in zip(taus, values.tolist(), strict=True):
+            assert abs(truth.value(0, Fraction(tau)) - arb(value)) <= allowed
 
 
 @pytest.mark.parametrize(("maker", "real", "name"), CASES, ids=lambda each: getattr(each, "name", each))
