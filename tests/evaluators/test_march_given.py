@@ -178,7 +178,6 @@ def test_a_march_that_will_be_driven_has_the_degree_for_it():
         marched(scene(collision, []), windows=3)
 
 
-@pytest.mark.xfail(reason="only what reaches the outputs by `until` is modelled, however many windows are asked for")
 def test_what_reaches_an_output_on_a_later_window_is_modelled_too():
     tower = TOWER | {"m": 5, "kappa": [1] * 6, "base": "ground"}
     short = scene(tower, [{"times": [0], "a": [1], "b": [0]}], 2, velocity=[1])
