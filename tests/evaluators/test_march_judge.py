@@ -158,6 +158,11 @@ def test_an_alarm_rings_when_what_is_missed_in_all_is_more_than_trusted():
     assert alarmed([still, watched([0.125]), watched([0.25]), watched([0.0])], 0.125) == [False, False, True, True]
     assert alarmed([still, watched([0.25, 0.25])], 0.125, leak=0.5) == [False, False]
     assert alarmed([still, watched([0.25, 0.5])], 0.125, leak=0.5) == [False, True]
+    # the largest so far, and all that was missed so far, whatever the block
+    assert alarmed([watched([0.0, 0.0, 0.0], [0.5, -2.0, 1.0]), watched([0.25])], 0.125) == [False, False]
+    assert alarmed([watched([0.0, 0.0, 0.0], [0.5, -2.0, 1.0]), watched([0.375])], 0.125) == [False, True]
+    assert alarmed([watched([0.125, 0.0], [2.0]), watched([0.0, 0.125])], 0.125) == [False, False]
+    assert alarmed([watched([0.125, 0.0625], [2.0]), watched([0.0, 0.125])], 0.125) == [False, True]
     # waves count as velocities do, their higher coefficients do not
     assert alarmed([watched([0.25], [1.0], [-2.0])], 0.125) == [False]
     assert alarmed([watched([0.25, 0.0], [1.0, 1.0], [0.0, -2.0])], 0.125) == [True]
