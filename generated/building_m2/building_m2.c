@@ -22,7 +22,7 @@ enum { GRIDS = 1, BLOCK = 32 };
 #define UNROLLED
 #endif
 
-const char *const building_m2_output_name[BUILDING_M2_OUTPUTS] = {
+const char building_m2_output_name[BUILDING_M2_OUTPUTS][17] = {
     "strain@0.5",
     "strain@1.5",
     "velocity@0.5",

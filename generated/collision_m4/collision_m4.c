@@ -22,7 +22,7 @@ enum { GRIDS = 2, BLOCK = 32 };
 #define UNROLLED
 #endif
 
-const char *const collision_m4_output_name[COLLISION_M4_OUTPUTS] = {
+const char collision_m4_output_name[COLLISION_M4_OUTPUTS][17] = {
     "strain@1-",
     "strain@2",
     "strain@3+",

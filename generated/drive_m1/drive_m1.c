@@ -22,7 +22,7 @@ enum { GRIDS = 2, BLOCK = 32 };
 #define UNROLLED
 #endif
 
-const char *const drive_m1_output_name[DRIVE_M1_OUTPUTS] = {
+const char drive_m1_output_name[DRIVE_M1_OUTPUTS][15] = {
     "strain@0",
     "strain@0.5",
     "strain@1",

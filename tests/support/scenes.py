@@ -187,19 +187,20 @@ def _numbers(values) -> str:
 
 
 def _number(value: Fraction) -> str:
-    """An integer, a ratio, or a decimal where the others would be too long."""
+    """An integer, or the shorter of a ratio and a decimal."""
     if value.denominator == 1 and abs(value) < 2**63:
         return str(value.numerator)
-    if len(ratio := str(value)) <= 60:
-        return f'"{ratio}"' if "/" in ratio else f"{_decimal(value)}"
-    return _decimal(value)
+    texts = [f'"{value}"']
+    if 10**1000 % value.denominator == 0:
+        texts.append(_decimal(value))
+    return min(texts, key=len)
 
 
 def _decimal(value: Fraction) -> str:
-    """A number of few digits times a power of ten."""
-    digits, exponent = value, 0
-    while digits.denominator > 1:
-        digits, exponent = digits * 10, exponent - 1
-    first, *others = str(abs(digits.numerator))
-    sign = "-" if value < 0 else ""
-    return f"{sign}{first}.{''.join(others).rstrip('0') or 0}e{exponent + len(others)}"
+    """The decimal of a number that has one."""
+    exponent = 0
+    while value.denominator > 1:
+        value, exponent = value * 10, exponent - 1
+    first, *others = str(abs(value.numerator))
+    digits = f"{'-' * (value < 0)}{first}.{''.join(others).rstrip('0') or 0}"
+    return f"{digits}e{exponent}" if (exponent := exponent + len(others)) else digits

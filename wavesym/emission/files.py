@@ -49,7 +49,10 @@ def files(
     """
     _refuse_unknown(language=(language, LANGUAGES), evaluator=(evaluator, EVALUATORS), precision=(precision, REALS))
     name, chosen, reason = choose(scene, evaluator, precision, windows)
-    description = describe(scene, chosen, reason, contact_ends(scene, chosen.real))
+    options = "" if evaluator == "auto" else f" --evaluator {evaluator}"
+    options += "" if precision == "double" else f" --precision {precision}"
+    options += "" if windows is None else f" --windows {windows}"
+    description = describe(scene, chosen, reason, contact_ends(scene, chosen.real), options)
     emitter = EMITTERS[name]
     made = {f"{scene.name}.json": manifest(scene, description, chosen, name)}
     if "c" in LANGUAGES[language]:

@@ -15,6 +15,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from math import inf
 
 from flint import fmpq, fmpq_poly
 
@@ -119,6 +120,7 @@ class Plan:
     outputs: tuple[Watched, ...]
     tau_max: float
     first: int  # the node at column 0
+    valid: float  # until when no node outside of the light cone can be felt
     tolerance: float  # of the scene, but no less than what rounding makes of loads that are given
     trusted: float  # what polynomials may miss in all, of the largest wave, before the programs say so
 
@@ -165,11 +167,14 @@ class Plan:
         return tuple(found)
 
 
-def plan(scene: Scene, real: Real = DOUBLE) -> Plan:
-    """The plan of a scene in `real` numbers. CostError where load times have too many different fractional parts."""
+def plan(scene: Scene, real: Real = DOUBLE, windows: int = 0) -> Plan:
+    """The plan of a scene in `real` numbers; what can matter on the first `windows` is part of it too.
+
+    CostError where load times have too many different fractional parts.
+    """
     system = chain(scene)
     tau_max = horizon(scene, real)
-    columns = light_cone(system, scene.outputs, tau_max)
+    columns = light_cone(system, scene.outputs, max(tau_max, float(windows)))
     nodes = [system.nodes[x] for x in columns]
     pieces = [piece for piece in scene.pieces if rational(piece.time) <= rational(tau_max)]
     panels = _panels(rational(piece.time) for piece in pieces)
@@ -185,6 +190,7 @@ def plan(scene: Scene, real: Real = DOUBLE) -> Plan:
         tuple(_watched(output, columns.start) for output in scene.outputs),
         tau_max,
         columns.start,
+        inf if len(columns) == system.m + 1 else max(tau_max, float(windows)),
         nearest(max(rational(scene.output.tolerance), 64 * real.roundoff)),
         # no less than what the arithmetic of so many nodes loses on all windows
         nearest(max(rational(scene.output.tolerance) / _ESTIMATED, real.roundoff * len(nodes) * (int(tau_max) + 1))),
