@@ -122,6 +122,15 @@ def test_underflow_is_what_is_counted(degree, size):
     assert max(float(count.underflow) for count in counts) <= float(lost)
 
 
+def test_of_a_ball_the_largest_number_counts():
+    """In what is cut off, in what is rounded, in what underflows, and in what is negligible."""
+    wide = arb(1, 0.5)
+    assert _cut_off([arb(1), wide], arb(2), DOUBLE)[0] >= 1.5
+    assert _cut_off([wide], arb(0), DOUBLE)[0] >= 1.5 * 2 * arb(DOUBLE.roundoff)
+    assert _underflow([wide], DOUBLE) >= (2 + 2 * 1.5) * arb(DOUBLE.smallest)
+    assert _shortened(arb_poly([arb(1), wide * 1e-70]), arb(1.2e-70)).length() == 2
+
+
 SIMPLE = wavesym.Scene(
     name="simple",
     system={"type": "drive", "m": 1, "kappa": [1], "inertia": [1, 1]},
