@@ -106,6 +106,14 @@ def test_where_none_is_allowed_the_best_is_taken(size):
     assert min(errors) <= float(error) <= 1.002 * min(errors)
 
 
+def test_what_is_cut_off_adds_up_whatever_its_signs():
+    """At t = -1 or in between; and a polynomial has one power at least."""
+    for signs in ((1, 1), (1, -1), (-1, -1)):
+        error, powers = _cut_off([arb(0), *(arb(sign) / 8 for sign in signs)], arb(1), DOUBLE)
+        assert len(powers) == 1
+        assert 0.25 <= error <= 0.26
+
+
 def test_where_balls_leave_nothing_to_allow_all_terms_are_taken():
     error, powers = _cut_off([arb(1), arb(fmpq(1, 2))], arb(-1), DOUBLE)
     assert powers == [1, 0.5]
