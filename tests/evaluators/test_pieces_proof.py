@@ -106,6 +106,14 @@ def test_where_none_is_allowed_the_best_is_taken(size):
     assert min(errors) <= float(error) <= 1.002 * min(errors)
 
 
+def test_what_is_cut_off_adds_up_whatever_its_signs():
+    """At t = -1 or in between; and a polynomial has one power at least."""
+    for signs in ((1, 1), (1, -1), (-1, -1)):
+        error, powers = _cut_off([arb(0), *(arb(sign) / 8 for sign in signs)], arb(1), DOUBLE)
+        assert len(powers) == 1
+        assert 0.25 <= error <= 0.26
+
+
 def test_where_balls_leave_nothing_to_allow_all_terms_are_taken():
     error, powers = _cut_off([arb(1), arb(fmpq(1, 2))], arb(-1), DOUBLE)
     assert powers == [1, 0.5]
@@ -120,6 +128,15 @@ def test_underflow_is_what_is_counted(degree, size):
     counts = [horner(powers, fmpq(1, 2)), *(product(powers, fmpq(1, 2), k) for k in range(1, degree + 1))]
     lost = _underflow([arb(-size)] * (degree + 1), SINGLE) / SINGLE.smallest
     assert max(float(count.underflow) for count in counts) <= float(lost)
+
+
+def test_of_a_ball_the_largest_number_counts():
+    """In what is cut off, in what is rounded, in what underflows, and in what is negligible."""
+    wide = arb(1, 0.5)
+    assert _cut_off([arb(1), wide], arb(2), DOUBLE)[0] >= 1.5
+    assert _cut_off([wide], arb(0), DOUBLE)[0] >= 1.5 * 2 * arb(DOUBLE.roundoff)
+    assert _underflow([wide], DOUBLE) >= (2 + 2 * 1.5) * arb(DOUBLE.smallest)
+    assert _shortened(arb_poly([arb(1), wide * 1e-70]), arb(1.2e-70)).length() == 2
 
 
 SIMPLE = wavesym.Scene(
