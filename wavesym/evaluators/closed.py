@@ -35,8 +35,9 @@ from wavesym.evaluators.signal import Signal
 from wavesym.scene import Scene
 
 _EXP = 20  # an exponential, in multiplications
-# all that is of second order in u, as long as no factor of u reaches 2**40
+# all that is of second order in u but for additions, as long as no factor of u reaches 1/1000
 _SECOND_ORDER = arb(fmpq(1001, 1000))
+_MOST_ADDED = arb(fmpq(1, 2))  # additions, in 1/u
 
 
 @dataclass(frozen=True)
@@ -165,7 +166,7 @@ def _pulse(time: fmpq, increment: Increment, real: Real) -> Pulse:
 
 
 def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]:
-    """Upper bounds of the absolute error on each segment; None where Horner's rule might overflow."""
+    """Upper bounds of the absolute error on each segment; None where sums might overflow, or are longer than 1/u."""
     u = arb(real.roundoff)
     # Horner's rule must stay within the exponents of the format
     largest_power = arb(real.largest) ** fmpq(7, 8)
@@ -175,6 +176,7 @@ def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]
     ends = [arrival.time for arrival in signal.arrivals[1:]] + [until]
     last = signal.arrivals[0].time
     representable = True
+    additions = 0
     errors: list[arb | None] = []
     for arrival, end in zip(signal.arrivals, ends, strict=True):
         sizes = shifted(sizes, arrival.time - last)
@@ -188,11 +190,14 @@ def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]
             representable &= bool(polynomial(farthest) < largest_power)
             underflow += arb(real.smallest) * _underflows(polynomial, farthest)
             # every family is one more addition for all that came before it
+            additions += 1
             for older, size in sizes.items():
                 weights[older] = weights[older] + size
         length = arb(end - arrival.time)
         error = sum((_largest(rate, polynomial, length) for rate, polynomial in weights.items()), arb(0))
-        errors.append((error * u * _SECOND_ORDER + underflow) if representable else None)
+        # (1 + u)**n - 1 <= n u / (1 - n u)
+        representable &= bool(additions * u < _MOST_ADDED)
+        errors.append((error * u * _SECOND_ORDER / (1 - additions * u) + underflow) if representable else None)
     return errors
 
 

@@ -135,8 +135,9 @@ def marched(scene: Scene, real: Real = DOUBLE, degree: int | None = None, window
         return _made(prepared, degree, real)[0]
     degree = _first_degree(prepared, prepared.windows, real)
     before = math.inf
+    spent = 0.0
     while True:
-        _refuse_long(prepared, degree)
+        spent = _refuse_long(prepared, degree, spent)
         made, verdict = _made(prepared, degree, real)
         # where bodies are very light, what is lost is mostly rounding that no degree mends
         settled = verdict.truncated <= verdict.rounded or _SETTLED * before < made.error_bound < math.inf
@@ -154,8 +155,9 @@ def _driven(made: MarchEvaluator, windows: int) -> MarchEvaluator:
         raise WavesymError("--windows: no load can be given here, a system with a load in the light cone expected")
     degree = max(made.degree, _first_degree(prepared, windows, real))
     before = math.inf
+    spent = 0.0
     while True:
-        _refuse_long(prepared, degree, windows, batch_size(prepared))
+        spent = _refuse_long(prepared, degree, spent, windows, batch_size(prepared))
         proved = given(prepared, degree, real, windows)
         worst = max(proved.errors)
         if proved.settled or _SETTLED * before < worst:
@@ -194,7 +196,8 @@ def _refuse_extreme(prepared: Plan, real: Real) -> None:
         raise OverflowError(f"a number of the tables is too small for {real.name} precision")
 
 
-def _refuse_long(prepared: Plan, degree: int, windows: int = 0, marches: int = 1) -> None:
+def _refuse_long(prepared: Plan, degree: int, spent: float, windows: int = 0, marches: int = 1) -> float:
+    """What trying a degree costs, with what is `spent` already; CostError where that is too much."""
     count = (windows or prepared.windows) * len(prepared.panels)
     work = count * (_OVERHEAD + marches * len(prepared.junctions) * degree)
     if degree > _HIGHEST_DEGREE:
@@ -202,18 +205,19 @@ def _refuse_long(prepared: Plan, degree: int, windows: int = 0, marches: int = 1
             f"output.until: march: bodies of rates up to {nearest(prepared.rate):g} would need polynomials of degree "
             f"{degree:.2g} to tau = {prepared.tau_max:g}, at most {_HIGHEST_DEGREE} expected"
         )
-    bounding = _BOUNDING * operator_count(prepared) * degree**3
-    if work + bounding > _MOST_WORK:
+    spent += work + _BOUNDING * operator_count(prepared) * degree**3
+    if spent > _MOST_WORK:
         raise CostError(
             f"{'--windows' if windows else 'output.until'}: march: degree {degree} to tau = "
-            f"{windows or prepared.tau_max:g} would cost {work + bounding:.0e} operations, at most {_MOST_WORK:.0e} "
-            "expected"
+            f"{windows or prepared.tau_max:g} would cost {spent:.0e} operations, at most {_MOST_WORK:.0e} expected; "
+            "a shorter horizon or fewer windows help"
         )
     if 8 * _state(prepared, degree) > _LARGEST_STATE:
         raise CostError(
             f"system.m: march: its state would have {8 * _state(prepared, degree):.0e} bytes, at most "
             f"{_LARGEST_STATE:.0e} expected"
         )
+    return spent
 
 
 def _state(prepared: Plan, degree: int) -> int:
