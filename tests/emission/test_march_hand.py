@@ -60,7 +60,18 @@ class March:
             ctypes.c_void_p,
         ]
         self.state = ctypes.create_string_buffer(library.made_size())
-        library.made_init(self.state)
+        self.start()
+
+    def start(self):
+        self._library.made_init(self.state)
+
+    @property
+    def ended(self):
+        """Whether nothing can be read any more."""
+        out = np.empty(len(self.made.plan.outputs), self._real)
+        status = self._read(self.state, self.window.value + 0.5, out.ctypes.data_as(ctypes.c_void_p))
+        assert status == int(np.isnan(out).all())
+        return status == 1
 
     @property
     def shape(self):
@@ -156,16 +167,30 @@ def test_what_overflows_is_refused_before_anything_has_moved():
     same(one, other)
 
 
-def test_a_velocity_an_integral_and_a_displacement_may_be_what_overflows():
-    """Each grows by a unit of its own a window; none is out of reach before the others by chance."""
-    for name, sources in (("ground", 1), ("drive", 3)):
-        one = march(name)
-        assert one.shape[0] == sources
-        status = [one.advance(0.3 * one.reach) for _ in range(12)]
-        assert status[0] == 0
-        assert 2 in status
-        assert status[status.index(2) :] == [2] * (12 - status.index(2))
-        assert one.window.value == status.index(2)  # it was spoilt by going on
+@pytest.mark.parametrize("name", ["ground", "drive"])
+def test_what_grows_beyond_reach_ends_the_march(name):
+    """Until it is begun anew."""
+    one, other = march(name), march(name)
+    status = [one.advance(0.3 * one.reach) for _ in range(12)]
+    spoilt = status.index(2)
+    assert status == [0] * spoilt + [2] * (12 - spoilt)
+    assert 1 < one.window.value == spoilt
+    assert one.ended
+    one.start()
+    same(one, other)
+
+
+def test_a_displacement_may_be_what_grows_beyond_reach():
+    """Turned by one load, discs drift apart from where they were at less than they may."""
+    one, pushed = march("drive"), np.array([0.2, 0, 0])[:, np.newaxis, np.newaxis]
+    status, largest = [one.advance(pushed * one.reach)], 0.0
+    while 2 not in status and len(status) < 200:
+        largest = max(largest, np.max(np.abs(one.read(0.5)[:3])))
+        status.append(one.advance(0.0))
+    assert status[-1] == 2
+    assert 5 < len(status)
+    assert largest < 0.5 * one.reach
+    assert one.ended
 
 
 def rough(one, source, panel, size, order):

@@ -6,6 +6,7 @@ from math import cos, pi, sqrt
 
 import numpy as np
 import pytest
+from flint import fmpq
 
 from tests.support.rounded import Rounded
 from tests.support.truth import Truth
@@ -80,11 +81,16 @@ def alone(prepared, run, channel, where, order, windows):
 
 
 @SCENES
-def test_what_is_proved_is_the_sum_over_all_single_loads(made_from):
-    """Each on its own window, to the last one."""
-    prepared, degree, windows, unit = plan(made_from), 9, 3, 2.0**-53
+@pytest.mark.parametrize(
+    ("degree", "real", "scale"),
+    [(9, DOUBLE, fmpq(1)), (24, DOUBLE, fmpq(1)), (24, SINGLE, fmpq(1, 2**115))],
+    ids=["truncation", "rounding", "underflow"],
+)
+def test_what_is_proved_is_the_sum_over_all_single_loads(made_from, degree, real, scale):
+    """Each on its own window, to the last one; where truncation, rounding, or underflow is most of it."""
+    prepared, windows, unit = plan(made_from), 3, float(real.roundoff)
     run = Run(prepared, degree)
-    roundings = Roundings(prepared, run, DOUBLE)
+    roundings = Roundings(prepared, run, real, scale)
     weights = [reading_weights(degree, displaced=False), reading_weights(degree, displaced=True)]
     watches = [Watch(prepared, output, degree) for output in prepared.outputs]
     energies, values, integrals = np.zeros(windows), np.zeros(3), np.zeros((windows, 3))
@@ -93,26 +99,35 @@ def test_what_is_proved_is_the_sum_over_all_single_loads(made_from):
     for channel, where, order in product(prepared.channels, places, range(5)):
         largest = 4 / pi if order else 1.0  # what a coefficient of a load up to 1 can be
         for n, block in enumerate(alone(prepared, run, channel, where, order, windows)):
+            if n < where[0]:  # nothing moves, and nothing is computed for it
+                continue
             energies[n] += largest * float(np.sum(roundings.of(block)))
             for o, watch in enumerate(watches):
                 integrals[n, o] += largest * watch.size(block, weights[1])[0]
                 if n == windows - 1:
                     values[o] += largest * watch.size(block, weights[0])[0]
-    proved = given(prepared, degree, DOUBLE, windows)
+    proved = proving._given(prepared, degree, real, windows, scale)
     assert proved.windows == windows
     smooth = tail_after(prepared, windows, [windows * jump for jump in proving._jumps(prepared)])
-    stretches = 2 * len(prepared.panels) + 2
+    stretches, lost = 2 * len(prepared.panels) + 2, 4 * (degree + 3) ** 2 * float(real.smallest / scale)
     for o, output in enumerate(prepared.outputs):
         impedance = float(prepared.junctions[output.right].right)
         if output.quantity == "displacement":
             expected = 2 * np.sum(np.cumsum(energies)) / sqrt(impedance)
-            expected += unit * (24 * stretches * np.sum(integrals[:, o]))
-            carried = 2 * unit * (np.arange(1, windows + 1) @ integrals[:, o])
+            expected += unit * (24 * stretches * np.sum(integrals[:, o])) + windows * stretches * lost
+            expected += 2 * unit * (np.arange(1, windows + 1) @ integrals[:, o])
         else:
-            expected = 2 * largest_wave(smooth, prepared, np.sum(energies) / sqrt(impedance)) + 12 * unit * values[o]
-            carried = 0.0
-        # two digits are printed
-        assert 1.01 * (expected + carried) <= proved.errors[o] <= 1.12 * (expected + carried)
+            expected = 2 * largest_wave(smooth, prepared, np.sum(energies) / sqrt(impedance))
+            expected += 12 * unit * values[o] + lost
+        assert proved.errors[o] == pytest.approx(1.01 * expected, rel=1e-9, abs=0)
+
+
+def test_what_is_proved_is_printed_rounded_up_and_grows_with_gains():
+    prepared = plan(pushed("force"))
+    (exact,) = {proving._given(prepared, 20, DOUBLE, 4, fmpq(1)).errors[0]}
+    assert exact <= given(prepared, 20, DOUBLE, 4).errors[0] <= 1.1 * exact
+    large = given(prepared.scaled(fmpq(2) ** 40), 20, DOUBLE, 4).errors[0]
+    assert exact * 2**40 <= large <= 1.1 * exact * 2**40
 
 
 @pytest.mark.parametrize("base", ["force", "ground"])

@@ -1,5 +1,7 @@
 """What is marched, by hand: the laws of nodes, their masses, panels, loads and outputs."""
 
+from math import inf
+
 import pytest
 from flint import fmpq
 
@@ -110,6 +112,24 @@ def test_outputs_have_the_waves_of_their_rod():
     cut = planned(tall, until="3/2", velocity=["41/2"])
     assert (cut.first, len(cut.junctions)) == (19, 4)
     assert cut.outputs[0] == Watched("velocity@41/2", "velocity", 1, 2, fmpq(1, 2))
+    # and what is beyond them is felt after that, or never
+    assert (cut.valid, made.valid) == (1.5, inf)
+
+
+def test_what_is_driven_longer_has_a_wider_light_cone():
+    tall = {"type": "drive", "m": 40, "kappa": [1] * 40, "inertia": [1] * 41}
+    output = {"until": "3/2", "tolerance": "1e-8", "velocity": ["41/2"]}
+    made = Scene(name="made", system=tall, load=[{"body": 1, "times": [0], "steps": [1]}], output=output)
+    for windows, nodes, valid in (
+        (0, 4, 1.5),
+        (1, 4, 1.5),
+        (5, 10, 5.0),
+        (19, 38, 19.0),
+        (20, 40, 20.0),
+        (21, 41, inf),
+    ):
+        cone = plan(made, DOUBLE, windows)
+        assert (len(cone.junctions), cone.valid) == (nodes, valid)
 
 
 def test_tolerances_are_no_less_than_what_rounding_makes():
