@@ -225,6 +225,10 @@ type = "drive"
 m = 1
 kappa = [1]
 inertia = [1, 2]
+[[load]]
+body = 1
+times = [0]
+steps = [1]
 [output]
 until = 2
 strain = [0.5]

@@ -16,16 +16,29 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from wavesym.compiler import evaluator, generate, tables
-    from wavesym.errors import SceneError
+    from wavesym.errors import CostError, SceneError, ToleranceError, WavesymError
     from wavesym.scene import Scene
 
-__all__ = ["Scene", "SceneError", "__version__", "evaluator", "generate", "tables"]
+__all__ = [
+    "CostError",
+    "Scene",
+    "SceneError",
+    "ToleranceError",
+    "WavesymError",
+    "__version__",
+    "evaluator",
+    "generate",
+    "tables",
+]
 __version__ = "0.1.0"
 
 # Loaded when first asked for, so that `import wavesym` and `wavesym --help` wait for nobody's SymPy.
 _HOMES = {
     "Scene": "wavesym.scene",
+    "CostError": "wavesym.errors",
     "SceneError": "wavesym.errors",
+    "ToleranceError": "wavesym.errors",
+    "WavesymError": "wavesym.errors",
     "evaluator": "wavesym.compiler",
     "generate": "wavesym.compiler",
     "tables": "wavesym.compiler",

@@ -17,6 +17,8 @@ What follows is one short function for each way through. The heavy libraries loa
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,8 +28,9 @@ from wavesym.coefficients.cost import refuse_costly
 from wavesym.coefficients.letters import in_rates
 from wavesym.coefficients.table import Row, Table, full_table
 from wavesym.difference import Difference
-from wavesym.emission.files import files
+from wavesym.emission.files import files, is_ours
 from wavesym.emission.tables import symbolic_lines, table_lines
+from wavesym.errors import SceneError, WavesymError
 from wavesym.evaluators.contact import contact_ends
 from wavesym.evaluators.doubles import fraction, nearest, rational
 from wavesym.evaluators.response import Response
@@ -38,17 +41,21 @@ from wavesym.scene import Scene
 from wavesym.writing import traces, write_whole
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from wavesym.mechanics.node import System
     from wavesym.verification.published.record import Claim
 
 
+_AT_ONCE = 5000  # tau of `run`
 MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
 
 
 def evaluator(scene: Scene) -> Response:
-    """The reference evaluator of a scene, right to the last bit. CostError where its tables would be absurd."""
+    """The reference evaluator of a scene, right to the last bit.
+
+    SceneError for what is no Scene; CostError, where it is called, for what would take minutes.
+    """
+    if not isinstance(scene, Scene):
+        raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
     return Response(scene)
 
 
@@ -114,13 +121,20 @@ def generate(
     evaluator: str = "auto",
     precision: str = "double",
     windows: int | None = None,
+    *,
+    force: bool = False,
 ) -> tuple[Path, ...]:
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
 
-    `windows`: a march is to be driven by hand for so many, under loads that are given while it runs.
+    `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. Files that wavesym
+    did not write are replaced only by `force`; WavesymError else, and for a language, evaluator or precision that there
+    is not.
     """
     folder = Path(directory or scene.name)
     made = {folder / name: text for name, text in files(scene, language, evaluator, precision, windows).items()}
+    for path in made:
+        if not force and path.is_file() and not is_ours(path):
+            raise WavesymError(f"{path}: not written by wavesym, and --force not given")
     write_whole(made)
     return tuple(made)
 
@@ -150,29 +164,51 @@ def check(
 
 
 def run(scene: Scene, samples: int, at: Sequence[float] | None = None) -> Iterator[str]:
-    """The outputs as CSV lines: at `at`, or at `samples` equally spaced tau from 0 to the end of the horizon.
+    """The outputs as CSV lines, as they are computed: at `at`, or at `samples` equally spaced tau of the horizon.
 
     CostError where right to the last bit would cost too much, before there is a line.
     """
     response = evaluator(scene)
-    taus = list(at) if at is not None else grid(scene, samples)
-    return _csv(("tau", *response.outputs), np.vstack([np.asarray(taus), response(taus)]).T)
+    taus = iter(at) if at is not None else grid(scene, samples)
+    blocks = iter(partial(_rows, response, taus), [])
+    return _csv(("tau", *response.outputs), next(blocks, []), blocks)  # what goes wrong does so before the header
 
 
-def _csv(names: Sequence[str], rows: NDArray[np.float64]) -> Iterator[str]:
+def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:
     yield ",".join(names) + "\n"
-    for row in rows.tolist():
-        yield ",".join(map(repr, row)) + "\n"
+    yield from first
+    for block in blocks:
+        yield from block
 
 
-def grid(scene: Scene, samples: int) -> list[float]:
+def _rows(response: Response, taus: Iterator[float]) -> list[str]:
+    """The lines of the next tau, none where there are no more."""
+    some = list(islice(taus, _AT_ONCE))
+    values = np.vstack([np.asarray(some), response(some)]).T
+    return [",".join(map(repr, row)) + "\n" for row in values.tolist()]
+
+
+def grid(scene: Scene, samples: int) -> Iterator[float]:
     """`samples` equally spaced tau, each rounded once; the last one is the end of the horizon."""
     until = rational(scene.output.until)
-    between = [nearest(until * k / (samples - 1)) for k in range(samples - 1)]
-    return [*between, horizon(scene)] if samples > 1 else [0.0]
+    yield from (nearest(until * k / (samples - 1)) for k in range(samples - 1))
+    yield horizon(scene) if samples > 1 else 0.0
 
 
-def contact_warnings(scene: Scene) -> list[str]:
+def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
+    """What a user might not expect: no load, tau out of range, contacts that open early enough to matter."""
+    last = horizon(scene)
+    outside = sum(not 0 <= tau <= last for tau in taus)
+    lines = [f"{outside} of {len(taus)} tau are not within 0 and {scene.output.until}: nan"] * bool(outside)
+    return [*no_load(scene), *lines, *_contact_warnings(scene)]
+
+
+def no_load(scene: Scene) -> list[str]:
+    """A line for a scene in which nothing happens."""
+    return [] if any(piece.weight for piece in scene.pieces) else ["no load, so that all outputs are 0"]
+
+
+def _contact_warnings(scene: Scene) -> list[str]:
     """A line for every contact that opens early enough to matter to an output."""
     return [
         f"contact at x = {end.x} opens at tau = {end.digits}: what it can reach after that is the formal continuation"

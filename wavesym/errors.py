@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import ClassVar
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """A question that ends a message, where `word` is nearly one that is known; empty where it is not."""
+    from difflib import get_close_matches  # only where something is wrong
+
+    near = get_close_matches(word, list(known), n=1)
+    return f'Did you mean "{near[0]}"?' if near else ""
 
 
 class WavesymError(ValueError):

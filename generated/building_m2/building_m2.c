@@ -22,7 +22,7 @@ enum { GRIDS = 1, BLOCK = 32 };
 #define UNROLLED
 #endif
 
-const char *const building_m2_output_name[BUILDING_M2_OUTPUTS] = {
+const char building_m2_output_name[BUILDING_M2_OUTPUTS][17] = {
     "strain@0.5",
     "strain@1.5",
     "velocity@0.5",
@@ -65,7 +65,7 @@ static const real centre[] = {
     11.950000000000003
 };
 
-/* Where to look for tau: from the piece at part (int)(tau * scale) of the grid, 3 pieces onward at most. */
+/* Where to look for tau: from the piece at part (int)(tau * scale) of the grid, 2 pieces onward at most. */
 static const int first_part[] = {
     0, 99
 };
@@ -75,10 +75,10 @@ static const real scale[] = {
 };
 
 static const int part[] = {
-    0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29,
-    30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58,
-    59, 60, 61, 62, 63, 64, 65, 66, 67, 68, 69, 70, 71, 72, 73, 74, 75, 76, 77, 78, 79, 80, 81, 82, 83, 84, 85, 86, 87,
-    88, 89, 90, 91, 92, 93, 94, 96, 96
+    0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30,
+    31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59,
+    60, 61, 62, 63, 64, 65, 66, 67, 68, 69, 70, 71, 72, 73, 74, 75, 76, 77, 78, 79, 80, 81, 82, 83, 84, 85, 86, 87, 88,
+    89, 90, 91, 92, 93, 94, 95, 96, 96
 };
 
 /* The polynomials of a grid, piece by piece, and for each piece member by member: coefficients, highest power first. */

@@ -3,7 +3,7 @@
  *   building, as far as the light cone of the outputs reaches
  *   base = force
  *   kappa_0 = 1/4, kappa_1 = 3/5, kappa_2 = 1/5
- *   unit loads: 1 a at 0, -2/3 b at 0, 3/2 a at 3, 1/3 b at 3, 1/2 a at 6, 1/3 b at 6
+ *   load 0: 1 a at 0, -2/3 b at 0, 3/2 a at 3, 1/3 b at 3, 1/2 a at 6, 1/3 b at 6
  *   until = 12, tolerance = 1e-08
  *
  * Evaluator: closed, 69 pulses, bound 9.7e-12, takes longer; pieces, degree 0..5, 27 KiB, bound 9.4e-09
@@ -28,6 +28,16 @@ extern "C" {
 
 enum { BUILDING_M2_OUTPUTS = 6 };
 
+/* The outputs by name: strains, velocities, displacements, each as listed in the scene. */
+enum {
+    BUILDING_M2_STRAIN_0_5 = 0,
+    BUILDING_M2_STRAIN_1_5 = 1,
+    BUILDING_M2_VELOCITY_0_5 = 2,
+    BUILDING_M2_VELOCITY_1_5 = 3,
+    BUILDING_M2_DISPLACEMENT_0_5 = 4,
+    BUILDING_M2_DISPLACEMENT_1_5 = 5
+};
+
 /* The last tau. */
 #define BUILDING_M2_TAU_MAX 12.0
 
@@ -36,7 +46,7 @@ enum { BUILDING_M2_OUTPUTS = 6 };
  * not under -ffast-math. */
 #define BUILDING_M2_ERROR_BOUND 9.4e-09
 
-extern const char *const building_m2_output_name[BUILDING_M2_OUTPUTS];
+extern const char building_m2_output_name[BUILDING_M2_OUTPUTS][17];
 
 /* All outputs at tau; at a jump the values to the right of it.
  * Returns 0, or 1 with out all NaN where tau is negative, beyond TAU_MAX or NaN. */

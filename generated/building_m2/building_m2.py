@@ -1,9 +1,9 @@
-"""building_m2: made by wavesym, command: wavesym generate building_m2.toml --language numpy
+"""building_m2: made by wavesym, command: wavesym generate building_m2.toml
 
     building, as far as the light cone of the outputs reaches
     base = force
     kappa_0 = 1/4, kappa_1 = 3/5, kappa_2 = 1/5
-    unit loads: 1 a at 0, -2/3 b at 0, 3/2 a at 3, 1/3 b at 3, 1/2 a at 6, 1/3 b at 6
+    load 0: 1 a at 0, -2/3 b at 0, 3/2 a at 3, 1/3 b at 3, 1/2 a at 6, 1/3 b at 6
     until = 12, tolerance = 1e-08
 
 Evaluator: closed, 69 pulses, bound 9.7e-12, takes longer; pieces, degree 0..5, 27 KiB, bound 9.4e-09
@@ -28,6 +28,13 @@ OUTPUTS = (
     "displacement@0.5",
     "displacement@1.5",
 )
+# the rows of what `evaluate` returns: strains, velocities, displacements, each as listed in the scene
+STRAIN_0_5 = 0
+STRAIN_1_5 = 1
+VELOCITY_0_5 = 2
+VELOCITY_1_5 = 3
+DISPLACEMENT_0_5 = 4
+DISPLACEMENT_1_5 = 5
 TAU_MAX = 12.0
 ERROR_BOUND = 9.4e-09
 # contacts open at these tau; what they can reach after that is the formal continuation

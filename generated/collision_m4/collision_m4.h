@@ -31,6 +31,20 @@ extern "C" {
 
 enum { COLLISION_M4_OUTPUTS = 10 };
 
+/* The outputs by name: strains, velocities, displacements, each as listed in the scene. */
+enum {
+    COLLISION_M4_STRAIN_1_MINUS = 0,
+    COLLISION_M4_STRAIN_2 = 1,
+    COLLISION_M4_STRAIN_3_PLUS = 2,
+    COLLISION_M4_DISPLACEMENT_0 = 3,
+    COLLISION_M4_DISPLACEMENT_1 = 4,
+    COLLISION_M4_DISPLACEMENT_1_5 = 5,
+    COLLISION_M4_DISPLACEMENT_2 = 6,
+    COLLISION_M4_DISPLACEMENT_2_5 = 7,
+    COLLISION_M4_DISPLACEMENT_3 = 8,
+    COLLISION_M4_DISPLACEMENT_4 = 9
+};
+
 /* The last tau. */
 #define COLLISION_M4_TAU_MAX 10.0
 
@@ -43,7 +57,7 @@ enum { COLLISION_M4_OUTPUTS = 10 };
  * computed as if they stayed closed. */
 #define COLLISION_M4_CONTACT_END_2 8.901878478505665 /* 8.9018784785056660529 */
 
-extern const char *const collision_m4_output_name[COLLISION_M4_OUTPUTS];
+extern const char collision_m4_output_name[COLLISION_M4_OUTPUTS][17];
 
 /* All outputs at tau; at a jump the values to the right of it.
  * Returns 0, or 1 with out all NaN where tau is negative, beyond TAU_MAX or NaN. */

@@ -1,4 +1,4 @@
-"""collision_m4: made by wavesym, command: wavesym generate collision_m4.toml --language numpy
+"""collision_m4: made by wavesym, command: wavesym generate collision_m4.toml
 
     collision, as far as the light cone of the outputs reaches
     kappa_1 = 1/10, kappa_3 = 1/5
@@ -35,6 +35,17 @@ OUTPUTS = (
     "displacement@3",
     "displacement@4",
 )
+# the rows of what `evaluate` returns: strains, velocities, displacements, each as listed in the scene
+STRAIN_1_MINUS = 0
+STRAIN_2 = 1
+STRAIN_3_PLUS = 2
+DISPLACEMENT_0 = 3
+DISPLACEMENT_1 = 4
+DISPLACEMENT_1_5 = 5
+DISPLACEMENT_2 = 6
+DISPLACEMENT_2_5 = 7
+DISPLACEMENT_3 = 8
+DISPLACEMENT_4 = 9
 TAU_MAX = 10.0
 ERROR_BOUND = 9.3e-11
 # contacts open at these tau; what they can reach after that is the formal continuation

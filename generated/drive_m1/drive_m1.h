@@ -3,7 +3,8 @@
  *   drive, as far as the light cone of the outputs reaches
  *   kappa_1 = 1
  *   inertia_1 = 1, inertia_2 = 2
- *   unit loads: 1 M1 at 0, 1 M2 at 0, -1 M1 at 4, -1 M2 at 4
+ *   load 0: 1 M1 at 0, -1 M1 at 4
+ *   load 1: 1 M2 at 0, -1 M2 at 4
  *   until = 10, tolerance = 1e-06
  *
  * Evaluator: closed, 50 pulses, bound 6.5e-09, takes longer; pieces, degree 0..4, 19 KiB, bound 9.2e-07
@@ -27,6 +28,15 @@ extern "C" {
 
 enum { DRIVE_M1_OUTPUTS = 5 };
 
+/* The outputs by name: strains, velocities, displacements, each as listed in the scene. */
+enum {
+    DRIVE_M1_STRAIN_0 = 0,
+    DRIVE_M1_STRAIN_0_5 = 1,
+    DRIVE_M1_STRAIN_1 = 2,
+    DRIVE_M1_DISPLACEMENT_0 = 3,
+    DRIVE_M1_DISPLACEMENT_1 = 4
+};
+
 /* The last tau. */
 #define DRIVE_M1_TAU_MAX 10.0
 
@@ -35,7 +45,7 @@ enum { DRIVE_M1_OUTPUTS = 5 };
  * not under -ffast-math. */
 #define DRIVE_M1_ERROR_BOUND 9.2e-07
 
-extern const char *const drive_m1_output_name[DRIVE_M1_OUTPUTS];
+extern const char drive_m1_output_name[DRIVE_M1_OUTPUTS][15];
 
 /* All outputs at tau; at a jump the values to the right of it.
  * Returns 0, or 1 with out all NaN where tau is negative, beyond TAU_MAX or NaN. */

@@ -1,9 +1,10 @@
-"""drive_m1: made by wavesym, command: wavesym generate drive_m1.toml --language numpy
+"""drive_m1: made by wavesym, command: wavesym generate drive_m1.toml
 
     drive, as far as the light cone of the outputs reaches
     kappa_1 = 1
     inertia_1 = 1, inertia_2 = 2
-    unit loads: 1 M1 at 0, 1 M2 at 0, -1 M1 at 4, -1 M2 at 4
+    load 0: 1 M1 at 0, -1 M1 at 4
+    load 1: 1 M2 at 0, -1 M2 at 4
     until = 10, tolerance = 1e-06
 
 Evaluator: closed, 50 pulses, bound 6.5e-09, takes longer; pieces, degree 0..4, 19 KiB, bound 9.2e-07
@@ -26,6 +27,12 @@ OUTPUTS = (
     "displacement@0",
     "displacement@1",
 )
+# the rows of what `evaluate` returns: strains, velocities, displacements, each as listed in the scene
+STRAIN_0 = 0
+STRAIN_0_5 = 1
+STRAIN_1 = 2
+DISPLACEMENT_0 = 3
+DISPLACEMENT_1 = 4
 TAU_MAX = 10.0
 ERROR_BOUND = 9.2e-07
 # contacts open at these tau; what they can reach after that is the formal continuation

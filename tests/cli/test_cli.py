@@ -38,7 +38,7 @@ class Compiler(SimpleNamespace):
     def __init__(self) -> None:
         super().__init__(asked=[], difference="", allowed=True)
 
-    def generate(self, scene: object, *options: object) -> tuple[Path, ...]:
+    def generate(self, scene: object, *options: object, force: bool = False) -> tuple[Path, ...]:
         self.asked.append(options)
         return (Path("out/mine.c"), Path("out/mine.h"))
 
@@ -46,8 +46,11 @@ class Compiler(SimpleNamespace):
         self.asked.append(options)
         return self.difference
 
-    def contact_warnings(self, scene: object) -> list[str]:
+    def warnings(self, scene: object, taus: object = ()) -> list[str]:
         return ["a contact opens"]
+
+    def no_load(self, scene: object) -> list[str]:
+        return []
 
     def run(self, scene: object, samples: int, at: list[float] | None) -> Iterator[str]:
         self.asked.append((samples, at))
@@ -180,7 +183,7 @@ def test_a_wrong_scene_is_refused_by_every_command(command: str, capsys: pytest.
 def test_generate(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["generate", "mine.toml"]) == 0
     assert main(["generate", "mine.toml", "-o", "there", "--language", "all", "--evaluator", "closed"]) == 0
-    assert compiler.asked == [(None, "c", "auto", "double"), (Path("there"), "all", "closed", "double")]
+    assert compiler.asked == [(None, "c", "auto", "double", None), (Path("there"), "all", "closed", "double", None)]
     assert capsys.readouterr().out.split() == [str(Path("out/mine.c")), str(Path("out/mine.h"))] * 2
 
 
@@ -249,7 +252,7 @@ def test_run_at_what_is_no_time(wrong: str, compiler: Compiler, capsys: pytest.C
 
 def test_where_nothing_can_be_written(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
     Path("folder").mkdir()
-    compiler.contact_warnings = lambda scene: []
+    compiler.warnings = lambda scene, taus: []
     assert refused(capsys, "run", "mine.toml", "-o", "folder") == "folder: Is a directory, a file expected"
     assert refused(capsys, "run", "mine.toml", "-o", "mine.toml/out.csv") == "mine.toml/out.csv: Not a directory"
     Path("loop").symlink_to("loop")
@@ -262,13 +265,13 @@ def test_a_full_disk(compiler: Compiler, capsys: pytest.CaptureFixture[str], mon
 
     monkeypatch.setattr(os, "fsync", full)
     Path("folder").mkdir()
-    compiler.contact_warnings = lambda scene: []
+    compiler.warnings = lambda scene, taus: []
     assert refused(capsys, "run", "mine.toml", "-o", "folder/out.csv") == "folder/out.csv: No space left on device"
 
 
 def test_errors_of_the_compiler(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
     def failing(error: Exception) -> object:
-        def generate(*_: object) -> None:
+        def generate(*_: object, force: bool) -> None:
             raise error
 
         return generate

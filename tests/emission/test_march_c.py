@@ -206,4 +206,37 @@ def test_it_is_cpp_too_and_exports_only_its_prefix(scene, tmp_path):
         f"made_{name}" for name in ("advance", "energy", "eval", "init", "output_name", "point", "read", "sample")
     }
     # tables are read-only: nothing in .data or .bss
-    assert not [name for *_, kind, name in symbols if kind in "BbDd" and name != "made_output_name"]
+    assert not [name for *_, kind, name in symbols if kind in "BbDd"]
+
+
+CONE_DRIVER = """
+#include "made.h"
+#include <stdio.h>
+
+int main(void)
+{
+    static made_state state;
+    double out[MADE_OUTPUTS];
+    int status = 0;
+    made_init(&state);
+    while ((status = made_advance(&state, NULL)) == 0 && state.window < 50) {
+    }
+    printf("%d %d %d %d\\n", status, state.window, made_read(&state, state.window + 0.0, out),
+           made_read(&state, state.window + 0.75, out));
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("m", "windows", "told"),
+    # what is whole goes on; else it ends with the horizon, 5/2, or with the windows that were asked for
+    [(2, None, "0 50 0 0"), (9, None, "2 2 0 1"), (9, 5, "2 4 0 0"), (9, 60, "0 50 0 0")],
+)
+def test_a_march_ends_where_what_is_not_modelled_would_be_felt(m, windows, told, tmp_path):
+    system = {"type": "building", "m": m, "kappa": ["1/100"] * (m + 1), "base": "ground"}
+    tall = scene(system, [{"times": [0], "a": [1], "b": [0]}], until="5/2", velocity=[1])
+    for name, text in {**sources(tall, marched(tall, windows=windows)), "driver.c": CONE_DRIVER}.items():
+        (tmp_path / name).write_text(text)
+    COMPILERS[0].run([*FLAGS, "driver.c", "made.c", "-o", "driver"], tmp_path)
+    assert subprocess.run([tmp_path / "driver"], capture_output=True, text=True, check=True).stdout.strip() == told

@@ -11,13 +11,16 @@ import json
 import re
 import subprocess
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from tests.emission.builds import scene
+from tests.support.truth import Truth
 from wavesym.emission import selftest
 from wavesym.emission.files import files
+from wavesym.scene import Scene
 from wavesym.toolchain import compiler
 from wavesym.verification.compiled import FLAGS
 
@@ -204,6 +207,37 @@ def test_the_last_printed_digits_of_a_coefficient_matter(evaluator, tmp_path):
     assert changed[:8] == first[:8]
     assert changed != first
     assert statuses(made, first, changed, tmp_path) == [0, 1]
+
+
+def watched():
+    """The building with one output, and bounds of its largest value."""
+    made = Scene(
+        name="small",
+        system={"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"},
+        load=[{"times": [0, "5/2"], "a": [1, "-1/2"], "b": ["-1/4", 0]}],
+        output={"until": UNTIL, "tolerance": "1e-9", "strain": ["1/3"]},
+    )
+    return made, Truth(made, Fraction(UNTIL)).largest(0, Fraction(UNTIL))
+
+
+@pytest.mark.parametrize("evaluator", ["closed", "pieces", "march"])
+def test_it_allows_one_bound_of_the_largest_value(evaluator):
+    """And what its reference values are rounded by."""
+    whole, (least, most) = watched()
+    made = files(whole, "c", evaluator)
+    bound = json.loads(made["small.json"])["error_bound"]
+    (allowed,) = re.findall(r"allowed\[\] = \{\s*(\S+?)\s*\}", made["small_selftest.c"])
+    assert 0.9 * float(least) <= float(allowed) / (bound + 2.0**-52) <= float(most)
+
+
+@pytest.mark.parametrize("evaluator", ["closed", "pieces"])
+def test_values_that_are_wrong_by_two_bounds_are_seen(evaluator, tmp_path):
+    """All of them, so that it is not the choice of instants that tells."""
+    whole, (_, most) = watched()
+    made = files(whole, "c", evaluator)
+    wrong = SEEN * json.loads(made["small.json"])["error_bound"] * float(most)
+    assert made["small.c"].count("return sum;") == 1
+    assert statuses(made, "return sum;", f"return sum + {wrong!r};", tmp_path) == [0, 1]
 
 
 @pytest.mark.parametrize(

@@ -251,3 +251,22 @@ def test_single_precision_has_a_bound_of_its_own():
     picked = np.isin(truth.taus, taus)
     for output, row, proved in zip(truth.outputs, values, made.outputs, strict=True):
         assert np.abs(row - output.values[picked]).max() <= proved.bound * output.scale
+
+
+@pytest.mark.parametrize("exponent", [-290, -200, 200, 280])
+def test_bounds_do_not_depend_on_the_size_of_the_loads(exponent):
+    """Energies are squares: those of tiny or huge waves are beyond the doubles that the bound is added up in."""
+
+    def marching(size):
+        scene = Scene(
+            name="scene",
+            system={"type": "drive", "m": 2, "kappa": [1, "1/2"], "inertia": [1, 2, 1]},
+            load=[{"body": 1, "times": [0], "steps": [size]}],
+            output={"until": 12, "strain": ["1/2"], "displacement": [1]},
+        )
+        return marched(scene)
+
+    ordinary, made = marching(1), marching(f"1e{exponent}")
+    for output, other in zip(made.outputs, ordinary.outputs, strict=True):
+        assert output.bound == other.bound
+        assert output.largest == pytest.approx(other.largest * 10.0**exponent, rel=1e-14)

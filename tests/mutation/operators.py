@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from hashlib import sha256
 from itertools import accumulate, pairwise
-from typing import NamedTuple
 
 OPPOSITE = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
 BOUNDARY = {ast.Lt: ("<", "<="), ast.LtE: ("<=", "<"), ast.Gt: (">", ">="), ast.GtE: (">=", ">")}
@@ -20,14 +19,16 @@ LIKE = {"max": "min", "maximum": "minimum", "upper": "lower", "ceil": "floor"}
 LIKE |= {wrong: right for right, wrong in LIKE.items()} | {"not_below": "nearest"}
 ATOMS = (ast.Name, ast.Constant, ast.Call, ast.Attribute, ast.Subscript)
 COST_LIMITS = re.compile(
-    r"_?(MOST|LARGEST|QUICK|MODERATE|FAST|HIGHEST|USUAL|SHORTE|FIRST|BLOCK|WORTH|EXP$|OVERHEAD|BOUNDING|SETTLED)"
+    r"_?(MOST|LARGEST|QUICK|MODERATE|FAST|HIGHEST|USUAL|SHORTE|FIRST|BLOCK|WORTH|EXP$|SAMPLES|OVERHEAD|BOUNDING|SETTLED)"
 )
 COSTS = {"work", "bytes", "state_bytes", "least_bytes", "stored", "operator_count", "beginning", "refuse_many"}
 COSTS |= {"_bytes", "_least", "_size", "_state", "_refuse_long", "_first_degree", "degrees"}
-TEXTS = {"summary", "shortfall"}
+TEXTS = {"summary", "shortfall", "check_points"}  # and where a self-test looks
 
-# what in a template is no code: texts, comments, errors, and the template's own language
-NO_CODE = re.compile(r'"""[\s\S]*?"""|/\*[\s\S]*?\*/|"[^"\n]*"|(#|raise|return f).*|\{%.*?%\}|\{\{.*?\}\}')
+# what in a template does not compute: texts, comments, errors, sizes of blocks, and the template's own language
+NO_CODE = re.compile(
+    r'"{3}[\s\S]*?"{3}|/\*[\s\S]*?\*/|"[^"\n]*"|(#|raise|return f|_(BLOCK|SAMPLES) =).*|\{%.*?%\}|\{\{.*?\}\}'
+)
 FUNCTION = re.compile(r"^(?:[ ]*def |[a-z].*?)(\w+)\(", re.MULTILINE)
 TEMPLATE = [
     (re.compile(r"(?<=\S )([+-])(?==? )"), lambda sign: ["-" if sign == "+" else "+"]),
@@ -38,14 +39,7 @@ TEMPLATE = [
 ]
 
 
-class Edit(NamedTuple):
-    """The text from `start` to `end` becomes `text`."""
-
-    start: int
-    end: int
-    text: str
-
-
+Edit = tuple[int, int, str]  # what is between two places of a text becomes another
 Names = tuple[str, str, str, str]
 
 
@@ -164,11 +158,11 @@ class _Python:
         return text if isinstance(node, ATOMS) else f"({text})"
 
     def _replaced(self, node: ast.AST, text: str) -> Edit:
-        return Edit(*self._span(node), text)
+        return *self._span(node), text
 
     def _between(self, left: ast.AST, right: ast.AST, sign: str, other: str) -> Edit:
         start = self._source.index(sign, self._span(left)[1], self._span(right)[0])
-        return Edit(start, start + len(sign), other)
+        return start, start + len(sign), other
 
 
 def _defined(node: ast.AST) -> list[str]:
@@ -212,4 +206,4 @@ def _in_template(source: str) -> Iterator[tuple[str, list[Edit]]]:
     for pattern, others in TEMPLATE:
         for place in pattern.finditer(code):
             function = max((each for each in functions if each[0] <= place.start()), default=(0, ""))[1]
-            yield function, [Edit(*place.span(), other) for other in others(place[1])]
+            yield function, [(*place.span(), other) for other in others(place[1])]

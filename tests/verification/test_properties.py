@@ -47,7 +47,7 @@ def windows(scene, taus=TAUS):
     """By the node law on windows, each value rounded once."""
     until = horizon(scene)
     motion = Motion(scene, rational(until))
-    return np.array([values(partial(motion.segments, place), taus, until) for place in motion.places])
+    return np.array([values(partial(motion.segments, place), taus) for place in motion.places])
 
 
 def assert_same(found, *parts):

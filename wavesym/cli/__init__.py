@@ -14,9 +14,9 @@ from io import TextIOWrapper
 import click
 
 from wavesym import __version__
-from wavesym.errors import WavesymError
+from wavesym.errors import WavesymError, did_you_mean
 
-COMMANDS = ("scenes", "derive", "tables", "generate", "run", "verify", "plot", "chart", "stability")
+COMMANDS = ("scenes", "init", "derive", "tables", "generate", "run", "verify", "plot", "chart", "stability")
 
 DONE, FAILED, WRONG_REQUEST, INTERRUPTED = 0, 1, 2, 130
 
@@ -32,6 +32,15 @@ class _Commands(click.Group):
             return None
         command: click.Command = getattr(import_module(f"wavesym.cli.{cmd_name}"), cmd_name)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            meant = did_you_mean(args[0], COMMANDS)
+            raise click.UsageError(f"{error.message} {meant}".rstrip(), ctx) from None
 
 
 @click.command(cls=_Commands, no_args_is_help=False)
@@ -53,6 +62,8 @@ def cli() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and give its exit status; what goes wrong for a user is one line on standard error."""
+    if sys.stdout is None:
+        return _refused("wavesym: standard output is closed, an open one expected", WRONG_REQUEST)
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors="surrogateescape")  # the name of a file may be no UTF-8
     try:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE
+from wavesym.cli.parameters import PATH, SCENE, refuse_scene, refuse_unwritable
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -41,6 +41,9 @@ def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
     if not find_spec("matplotlib"):
         raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context())
 
+    for path in filter(None, (out, table)):
+        refuse_scene(path)
+        refuse_unwritable(path)
     with progress(f"chart {scene.name}") as line:
         from wavesym.report.chart import draw
         from wavesym.report.measure import measure, to_csv

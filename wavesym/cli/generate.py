@@ -32,6 +32,7 @@ MOST_WINDOWS = 2**31 - 2
     metavar="N",
     help="For a march that will be driven by hand for N units of tau, under loads that come while it runs.",
 )
+@click.option("--force", is_flag=True, help="Replace files that wavesym did not write, too.")
 @click.option("--check", "only_check", is_flag=True, help="Write nothing; print a diff and exit 1 where files differ.")
 def generate(
     scene: Scene,
@@ -40,6 +41,7 @@ def generate(
     evaluator: str,
     precision: str,
     windows: int | None,
+    force: bool,
     only_check: bool,
 ) -> int:
     """Write source files that evaluate a scene; print their paths, and on standard error why this evaluator.
@@ -58,9 +60,11 @@ def generate(
             put(difference)
         return 1 if difference else 0
     with progress(f"generate {scene.name}"):
-        written = compiler.generate(*asked)
+        written = compiler.generate(*asked, force=force)
     for path in written:
         click.echo(path)
+    for line in compiler.no_load(scene):
+        click.echo(f"{scene.name}: {line}", err=True)
     for manifest in (path for path in written if path.suffix == ".json"):
         click.echo(f"{scene.name}: {json.loads(manifest.read_text(encoding='utf-8'))['reason']}", err=True)
     return 0

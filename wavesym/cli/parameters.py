@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from glob import escape, glob
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -69,6 +70,26 @@ def _blamed(file: str) -> Iterator[None]:
 def scene_argument() -> str:
     """How the scene of the present command was given."""
     return str(click.get_current_context().meta[_ARGUMENT])
+
+
+def refuse_scene(out: Path) -> None:
+    """UsageError where what is to be written would take the place of the scene that it is made from."""
+    scene = Path(scene_argument())
+    with suppress(OSError):  # a scene that is no file
+        if out.samefile(scene):
+            raise click.UsageError(f"-o: {out} is the scene itself, another file expected", click.get_current_context())
+
+
+def refuse_unwritable(out: Path, *, folder: bool = False) -> None:
+    """OSError where a file, or one in a folder, cannot be written: before the work that takes long."""
+    place = out / "_" if folder else out
+    if not folder and out.is_dir():
+        raise IsADirectoryError(21, "Is a directory, a file expected", str(out))
+    there = next(each for each in (place, *place.absolute().parents) if each.exists())
+    if there != place and not there.is_dir():
+        raise NotADirectoryError(20, "Not a directory", str(there))
+    if not os.access(there, os.W_OK):
+        raise PermissionError(13, "Permission denied", str(out))
 
 
 def each_blamed(scenes: Iterable[Scene], stack: ExitStack) -> Iterator[Scene]:

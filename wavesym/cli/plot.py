@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE
+from wavesym.cli.parameters import PATH, SCENE, refuse_scene, refuse_unwritable
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -35,11 +35,13 @@ def plot(scene: Scene | None, published: bool, out: Path) -> None:
     if not find_spec("matplotlib"):
         raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
 
+    refuse_unwritable(out, folder=published)
     if scene:
+        refuse_scene(out)
         with progress(f"plot {scene.name}"):
             from wavesym import compiler
 
-            lines = [*compiler.contact_warnings(scene), *compiler.plot(scene, out)]
+            lines = [*compiler.warnings(scene), *compiler.plot(scene, out)]
         for line in lines:
             click.echo(f"{scene.name}: {line}", err=True)
     elif published:

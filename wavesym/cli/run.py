@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, put
+from wavesym.cli.parameters import PATH, SCENE, put, refuse_scene
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -44,8 +44,10 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
     from wavesym import compiler
     from wavesym.writing import write_whole
 
+    if out is not None:
+        refuse_scene(out)
     with progress(f"run {scene.name}"):
-        warnings = compiler.contact_warnings(scene)
+        warnings = compiler.warnings(scene, taus or ())
         lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus)
         if out is not None:
             write_whole({out: lines})

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from wavesym.cli.parameters import PATH
+from wavesym.cli.parameters import PATH, refuse_unwritable
 from wavesym.cli.progress import progress
 
 
@@ -25,6 +25,7 @@ def stability(directory: Path) -> None:
     if not find_spec("matplotlib"):
         raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context())
 
+    refuse_unwritable(directory, folder=True)
     with progress("stability") as line:
         from wavesym.report.stability import atlas
 

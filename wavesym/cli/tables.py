@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, put
+from wavesym.cli.parameters import PATH, SCENE, put, refuse_scene
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -38,6 +38,8 @@ def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, out
 
     if symbolic and format == "latex":
         raise click.UsageError("--format: latex given, csv or json expected with --symbolic")
+    if out is not None:
+        refuse_scene(out)
     equations: list[str] = []
     with progress(f"tables {scene.name}"):
         if symbolic:

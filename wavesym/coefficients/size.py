@@ -95,9 +95,9 @@ def refuse_large(
     if size.work > min(most, MOST_WORK):
         digits = size.bytes / max(size.coefficients, 1) * log10(2) * 8
         raise CostError(
-            f"{asked}: the tables would hold about {size.coefficients:.1e} coefficients of {digits:.0e} digits, as much "
-            f"work as {size.work:.1e} short ones, at most {min(most, MOST_WORK):.0e} expected; fewer digits in the "
-            "scene's numbers, or equal numbers, make it less"
+            f"{asked}: the tables would hold {size.coefficients:.1e} coefficients of about {digits:.0e} digits, work "
+            f"for {size.work:.1e} short ones, at most {min(most, MOST_WORK):.0e} expected; fewer digits in the scene's "
+            "numbers, or more that are equal, help"
         )
 
 

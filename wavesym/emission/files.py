@@ -2,16 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from pathlib import Path
+
 from wavesym.emission import closed, march, pieces
 from wavesym.emission.description import describe
 from wavesym.emission.manifest import manifest
 from wavesym.emission.selftest import selftest
+from wavesym.errors import WavesymError
 from wavesym.evaluators.choice import choose
 from wavesym.evaluators.contact import contact_ends
+from wavesym.evaluators.reals import REALS
 from wavesym.scene import Scene
 
+MARKS = (b": made by wavesym", b'"generator": "wavesym"')
 LANGUAGES = {"c": ("c",), "numpy": ("numpy",), "all": ("c", "numpy")}
 EMITTERS = {"closed": closed, "pieces": pieces, "march": march}
+EVALUATORS = ("auto", *EMITTERS)
+
+
+def _refuse_unknown(**options: tuple[str, Iterable[str]]) -> None:
+    for option, (word, known) in options.items():
+        if word not in (names := tuple(known)):
+            *others, last = names
+            raise WavesymError(f"{option}: {word} given, {', '.join(others)} or {last} expected")
+
+
+def is_ours(path: Path) -> bool:
+    """Whether a file says in its first lines that wavesym wrote it."""
+    with path.open("rb") as file:
+        start = file.read(1000)
+    return any(mark in start for mark in MARKS)
 
 
 def files(
@@ -26,8 +47,12 @@ def files(
     ToleranceError where no evaluator, or not the one asked for, meets the scene's tolerance; CostError where the one
     asked for would cost too much.
     """
+    _refuse_unknown(language=(language, LANGUAGES), evaluator=(evaluator, EVALUATORS), precision=(precision, REALS))
     name, chosen, reason = choose(scene, evaluator, precision, windows)
-    description = describe(scene, chosen, reason, contact_ends(scene, chosen.real))
+    options = "" if evaluator == "auto" else f" --evaluator {evaluator}"
+    options += "" if precision == "double" else f" --precision {precision}"
+    options += "" if windows is None else f" --windows {windows}"
+    description = describe(scene, chosen, reason, contact_ends(scene, chosen.real), options)
     emitter = EMITTERS[name]
     made = {f"{scene.name}.json": manifest(scene, description, chosen, name)}
     if "c" in LANGUAGES[language]:

@@ -26,6 +26,7 @@ def manifest(scene: Scene, description: Description, evaluator: Evaluator, name:
         "schema_version": SCHEMA_VERSION,
         "generator": "wavesym",
         "name": scene.name,
+        "command": description.command,
         "system": system,
         "load": [{"source": p.source, "time": str(p.time), "weight": str(p.weight)} for p in scene.pieces],
         "until": str(scene.output.until),

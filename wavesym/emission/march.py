@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
@@ -13,7 +14,7 @@ from wavesym.emission.rendering import render
 from wavesym.evaluators.doubles import middle, rational
 from wavesym.evaluators.march.evaluator import MarchEvaluator
 from wavesym.evaluators.march.given import SMOOTH
-from wavesym.evaluators.march.plan import Stretch
+from wavesym.evaluators.march.plan import Plan, Stretch
 from wavesym.evaluators.reals import DOUBLE, Real
 
 _QUANTITIES = ("strain", "velocity", "displacement")
@@ -44,6 +45,8 @@ class March:
     points: str
     events: str
     last_window: str
+    last_tau: str
+    whole: bool
     trusted: str
     smooth: str
     reach: str
@@ -142,7 +145,9 @@ def _march(scene: Description, evaluator: MarchEvaluator, text: Callable[[float,
         source_names=", ".join(channel.name for channel in plan.channels) or "none",
         points=str(len(panels) * (degree + 1)),
         events=str(len(plan.events)),
-        last_window="INT_MAX - 1" if real is DOUBLE else str(int(1 / real.roundoff) - 1),
+        last_window=_last_window(plan, real),
+        last_tau=text(real.nearest(rational(min(plan.valid, float(real.reach)))), real),
+        whole=math.isinf(plan.valid),
         trusted=text(real.not_below(rational(plan.trusted)), real),
         smooth=text(real.not_below(rational(plan.tolerance)), real),
         reach=text(real.nearest(real.reach), real),
@@ -195,6 +200,13 @@ def _march(scene: Description, evaluator: MarchEvaluator, text: Callable[[float,
         stretch_back=lines(str(stretch.back) for stretch in flat),
         stretch_panel=lines(str(stretch.panel) for stretch in flat),
     )
+
+
+def _last_window(plan: Plan, real: Real) -> str:
+    """The last window that can be counted, in an int and in real numbers, and on which all is modelled."""
+    if math.isinf(plan.valid):
+        return "INT_MAX - 1" if real is DOUBLE else str(int(1 / real.roundoff) - 1)
+    return str(math.ceil(plan.valid) - 1 if plan.valid > plan.tau_max else int(plan.tau_max))
 
 
 def _counts_from(stretch: Stretch, real: Real) -> float:

@@ -108,7 +108,8 @@ def _first_return(strain: Signal, until: fmpq) -> arb | None:
                 return None
             if not start < 0:  # over zero by a jump, or on it
                 return arb(piece.start)
-        opening = _not_compressed(piece, calm, end - piece.start)
+        length = end - piece.start
+        opening = _not_compressed(piece, min(calm, length), length)
         if opening is None or opening.is_finite():
             return None if opening is None else arb(piece.start) + opening
     return arb.pos_inf()
@@ -177,8 +178,17 @@ class _Series:
         return _Series(total, error.upper())
 
     def at(self, u: arb) -> arb:
-        """An enclosure of the strain on an interval."""
+        """An enclosure of the strain at a point."""
         return self.polynomial(u) + arb(0, self.error)
+
+    def negative(self, low: fmpq, high: fmpq) -> bool:
+        """Whether the strain is certainly negative on an interval.
+
+        In powers of t in [-1, 1] from its middle: near a double zero the interval need be no shorter than the distance.
+        """
+        local = self.polynomial(arb_poly([arb((low + high) / 2), arb((high - low) / 2)])).coeffs()
+        upper = sum((c.max(arb(0)) if k % 2 == 0 else abs(c) for k, c in enumerate(local) if k), arb(0))
+        return bool((local[0] if local else arb(0)) + upper + self.error < 0)
 
     @property
     def vague(self) -> arb:
@@ -194,11 +204,10 @@ def _zero(series: _Series, length: fmpq) -> arb | None:
     stack = [(fmpq(0), length)]
     while stack:
         low, high = stack.pop()
-        interval = arb(low).union(arb(high))
-        if series.at(interval) < 0:
+        if series.negative(low, high):
             continue
         if high - low < _WIDTH:
-            return None if series.at(arb(low)).rad() > series.vague else interval
+            return None if series.at(arb(low)).rad() > series.vague else arb(low).union(arb(high))
         middle = (low + high) / 2
         stack += [(middle, high), (low, middle)]
     return arb.pos_inf()

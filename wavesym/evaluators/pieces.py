@@ -27,7 +27,7 @@ from flint import arb, arb_poly, ctx, fmpq
 from wavesym.errors import CostError
 from wavesym.evaluators import chebyshev
 from wavesym.evaluators.ball import Segment, precise
-from wavesym.evaluators.doubles import bound, middle, rational
+from wavesym.evaluators.doubles import bound, middle, nearest, rational
 from wavesym.evaluators.march.plan import plan
 from wavesym.evaluators.march.zero import silent
 from wavesym.evaluators.motion import Motion, is_zero
@@ -371,8 +371,9 @@ class _Cuts:
         count = pieces
         while True:  # finer until few pieces lie in a part
             scale = self._real.nearest(fmpq(count) / rational(self.starts[-1]))
-            first = [bisect_right(self.starts, float(b) / scale) - 1 for b in range(count + 2)]
-            first = [max(0, min(piece - 1 if piece else 0, pieces - 1)) for piece in first]
+            # tau * scale is rounded: a tau that is a little smaller belongs to part b too
+            edges = (float(b) / scale * (1 - 8 * nearest(self._real.roundoff)) for b in range(count + 2))
+            first = [min(bisect_right(self.starts, edge) - 1, pieces - 1) for edge in edges]
             steps = max(b - a for a, b in pairwise(first)) + 1
             if steps <= 3 or count > 4 * pieces:
                 break

@@ -4,7 +4,7 @@ from wavesym.errors import SceneError
 from wavesym.scene.loads import Acceleration, Moment, Piece, Record
 from wavesym.scene.model import Scene
 from wavesym.scene.outputs import Observable, Output
-from wavesym.scene.reading import builtin_names, read_text
+from wavesym.scene.reading import builtin_names, builtin_text, first_text, read_text
 from wavesym.scene.systems import Building, Collision, Drive
 
 __all__ = [
@@ -20,5 +20,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "builtin_names",
+    "builtin_text",
+    "first_text",
     "read_text",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from functools import cached_property
 from os import PathLike
@@ -13,6 +14,7 @@ from wavesym.errors import SceneError
 from wavesym.scene.loads import Load, Piece, loads, merged
 from wavesym.scene.names import Name
 from wavesym.scene.outputs import Observable, Output, observables
+from wavesym.scene.paths import changed
 from wavesym.scene.reading import read_toml
 from wavesym.scene.systems import Collision, System
 from wavesym.scene.table import Table, first_error, key_path
@@ -51,6 +53,16 @@ class Scene(Table):
             return cls(**fields)
         except SceneError as error:
             raise SceneError(error.what, error.path, file) from None
+
+    def with_(self, changes: Mapping[str, object]) -> Self:
+        """The same scene with other values: `scene.with_({"system.kappa[1]": "1/3", "output.until": 40})`.
+
+        Paths are those of messages, indices count from 0. Raises SceneError, as for a scene that is written so.
+        """
+        fields = self.model_dump()
+        for path, value in changes.items():
+            fields = changed(fields, path, value)
+        return type(self)(**fields)
 
     @field_validator("load", mode="wrap")
     @classmethod

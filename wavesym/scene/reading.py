@@ -9,12 +9,12 @@ from importlib.resources import files
 from os import PathLike
 from typing import Any
 
-from wavesym.errors import SceneError
+from wavesym.errors import SceneError, did_you_mean
 from wavesym.scene.table import Written
 
 LARGEST_FILE = 16 * 2**20  # bytes
 
-_BUILTIN = files("wavesym.scene") / "builtin"
+_BUILTIN, _FIRST = (files("wavesym.scene") / folder for folder in ("builtin", "first"))
 
 
 def builtin_names() -> dict[str, str]:
@@ -27,6 +27,11 @@ def _builtin(name: str) -> bytes:
     return (_BUILTIN / f"{name}.toml").read_bytes()
 
 
+def first_text(system: str) -> str:
+    """A commented scene to start from: of a "building", "drive" or "collision"."""
+    return (_FIRST / f"{system}.toml").read_bytes().decode()
+
+
 def read_toml(source: str | PathLike[str]) -> tuple[str, dict[str, Any]]:
     """The name a source goes by in messages, and the table in it.
 
@@ -35,8 +40,21 @@ def read_toml(source: str | PathLike[str]) -> tuple[str, dict[str, Any]]:
     path = os.fspath(source)
     if path in builtin_names():
         return path, _parsed(path, _builtin(path).decode())
-    file, text = read_text(path, f"a TOML file, - or a built-in scene ({', '.join(builtin_names())})")
+    try:
+        file, text = read_text(path, f"a TOML file, - or a built-in scene ({', '.join(builtin_names())})")
+    except SceneError as error:
+        meant = did_you_mean(path, builtin_names())
+        raise SceneError(f"{error.what}{meant and f'. {meant}'}", error.path, error.file) from None
     return file, _parsed(file, text)
+
+
+def builtin_text(name: str) -> str:
+    """A built-in scene as TOML. SceneError for a name that is none."""
+    if name not in builtin_names():
+        meant = did_you_mean(name, builtin_names())
+        expected = f"a built-in scene expected ({', '.join(builtin_names())})"
+        raise SceneError(f"unknown, {expected}{meant and f'. {meant}'}", file=name)
+    return _builtin(name).decode()
 
 
 def read_text(path: str | PathLike[str], expected: str) -> tuple[str, str]:
@@ -56,7 +74,7 @@ def read_text(path: str | PathLike[str], expected: str) -> tuple[str, str]:
     if len(content) > LARGEST_FILE:
         raise SceneError(f"larger than {LARGEST_FILE >> 20} MB, {expected} of at most that expected", file=file)
     try:
-        text = content.decode()
+        text = content.decode("utf-8-sig")  # with the mark that some editors put first
     except UnicodeDecodeError as error:
         raise SceneError(f"byte {error.start} is not UTF-8, {expected} expected", file=file) from None
     if not text.strip():

@@ -11,6 +11,8 @@ from numbers import Number
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
+from wavesym.errors import did_you_mean
+
 # Enough to recognise a value by, short enough for a line.
 _SHOWN = 40
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
@@ -88,7 +90,8 @@ class Table(BaseModel):
         for key in value:
             if key not in fields:
                 *others, last = fields
-                raise wrong(f"unknown key, {', '.join(others)} or {last} expected", str(key))
+                meant = did_you_mean(str(key)[:_SHOWN], fields)
+                raise wrong(f"unknown key, {', '.join(others)} or {last} expected{meant and f'. {meant}'}", str(key))
         for key, field in fields.items():
             if field.is_required() and key not in value:
                 raise wrong(f"missing, {field.description} expected", key)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import re
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -23,7 +24,7 @@ FLAGS = ("-std=c99", "-O2", *_WARNINGS)
 class Compiled:
     """The library and the self-test made from NAME.h, NAME.c and NAME_selftest.c; usable while `compiled` is open."""
 
-    def __init__(self, library: Path, selftest: Path, name: str, outputs: int) -> None:
+    def __init__(self, library: Path, selftest: Path, name: str, outputs: int, longest: int) -> None:
         loaded = ctypes.CDLL(str(library))
         doubles = ctypes.POINTER(ctypes.c_double)
         self._eval = getattr(loaded, f"{name}_eval")
@@ -32,8 +33,8 @@ class Compiled:
         self._sample.argtypes = [ctypes.c_double, ctypes.c_double, ctypes.c_size_t, doubles]
         self._selftest = selftest
         self._outputs = outputs
-        names = (ctypes.c_char_p * outputs).in_dll(loaded, f"{name}_output_name")
-        self.names = tuple(bytes(text or b"").decode() for text in names)
+        names = (ctypes.c_char * longest * outputs).in_dll(loaded, f"{name}_output_name")
+        self.names = tuple(bytes(row.value).decode() for row in names)
         """The names of the outputs, in order."""
 
     def __call__(self, taus: Sequence[float]) -> NDArray[np.float64]:
@@ -61,13 +62,15 @@ def compiled(files: Mapping[str, str], outputs: int) -> Iterator[Compiled]:
     """
     chosen = compiler()
     (name,) = (file.removesuffix(".h") for file in files if file.endswith(".h"))
+    declared = re.search(r"_output_name\[\w+\]\[(\d+)\]", files[f"{name}.h"])
+    assert declared  # by every header
     with TemporaryDirectory() as directory:
         folder = Path(directory)
         for file, text in files.items():
             (folder / file).write_text(text, encoding="utf-8")
         chosen.run([*FLAGS, "-fPIC", "-shared", f"{name}.c", "-o", "library.so", "-lm"], folder)
         chosen.run([*FLAGS, f"{name}.c", f"{name}_selftest.c", "-o", "selftest", "-lm"], folder)
-        yield Compiled(folder / "library.so", folder / "selftest", name, outputs)
+        yield Compiled(folder / "library.so", folder / "selftest", name, outputs, int(declared[1]))
 
 
 def imported(text: str, name: str) -> ModuleType:

@@ -29,22 +29,24 @@ All of it holds to first order in u, and a margin of 1 % is added for the rest.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, inf, log2, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
+from flint import fmpq
 
-from wavesym.evaluators.doubles import nearest
+from wavesym.evaluators.doubles import nearest, not_below
 from wavesym.evaluators.march.operator import Array, Operator
-from wavesym.evaluators.march.plan import Plan
+from wavesym.evaluators.march.plan import Plan, power_of_two
 from wavesym.evaluators.march.run import LEFT, RIGHT, Block, Run
 from wavesym.evaluators.march.tail import Tail, tail
 from wavesym.evaluators.march.watch import Watch
 from wavesym.evaluators.march.zero import silent
-from wavesym.evaluators.reals import Real
+from wavesym.evaluators.reals import DOUBLE, Real
 
 MARGIN = 1.01
+_ONE = fmpq(1)
 # products on the way to a coefficient of p or q that may underflow, besides those of a scan
 _SPARE = 16.0
 
@@ -82,11 +84,22 @@ class Verdict:
 def judge(plan: Plan, degree: int, real: Real) -> Verdict:
     """March once over the horizon at `degree` for a program in `real` numbers, and bound its errors.
 
-    OverflowError where waves grow beyond what programs take.
+    All is divided by the size of what moves it, so that no square of a wave underflows here. OverflowError where waves
+    grow beyond what programs take.
     """
+    powers = (power for event in plan.events for power in event.powers)
+    scale = power_of_two((*plan.rods, *(node.motion for node in plan.junctions), *powers))
+    verdict = _judge(plan.scaled(1 / scale), degree, real, scale)
+    errors, sizes = (tuple(nearest(scale) * value for value in of) for of in (verdict.errors, verdict.sizes))
+    return replace(verdict, errors=errors, sizes=sizes)
+
+
+def _judge(plan: Plan, degree: int, real: Real, scale: fmpq) -> Verdict:
+    """The same for a plan whose motions are so many times as small as those of the program."""
     run = Run(plan, degree)
-    unit, smallest = nearest(real.roundoff), nearest(real.smallest)
-    roundings = Roundings(plan, run, real)
+    unit, smallest = nearest(real.roundoff), not_below(real.smallest / scale)
+    reach = nearest(min(real.reach / scale, DOUBLE.reach))
+    roundings = Roundings(plan, run, real, scale)
     smooth = tail(plan)
     watches = [Watch(plan, output, degree) for output in plan.outputs]
     displaced = [output.quantity == "displacement" for output in plan.outputs]
@@ -104,7 +117,7 @@ def judge(plan: Plan, degree: int, real: Real) -> Verdict:
             weighted = watch.size(block, reading_weights(degree, displaced[o]))
             reading[o] = max(reading[o], float(np.max(weighted)))
             sums[o] += float(np.sum(weighted))
-        if not np.max(np.abs(block.after)) < nearest(real.reach):
+        if not np.max(np.abs(block.after)) < reach:
             raise OverflowError(f"waves beyond {nearest(real.reach):.1g}")
     errors = []
     lost_reading = 4.0 * (degree + 3) ** 2 * smallest
@@ -165,10 +178,13 @@ class Alarm:
 
 
 class Roundings:
-    """What a window adds to the error, in energy: for all nodes at once."""
+    """What a window adds to the error, in energy: for all nodes at once.
 
-    def __init__(self, plan: Plan, run: Run, real: Real) -> None:
-        self._unit, self._smallest = nearest(real.roundoff), nearest(real.smallest)
+    The program moves `scale` times as much as the plan.
+    """
+
+    def __init__(self, plan: Plan, run: Run, real: Real, scale: fmpq = _ONE) -> None:
+        self._unit, self._smallest = nearest(real.roundoff), not_below(real.smallest / scale)
         nodes = plan.junctions
         constants = {step: _constants(operator) for step, operator in run.operators.items()}
         shape = len(plan.panels), len(nodes)

@@ -129,7 +129,7 @@ def marched(scene: Scene, real: Real = DOUBLE, degree: int | None = None, window
     With `windows` the degree suffices for loads that are given while it runs for so long; WavesymError where none can
     be. OverflowError where numbers would be beyond those of the format.
     """
-    prepared = plan(scene, real)
+    prepared = plan(scene, real, windows or 0)
     _refuse_extreme(prepared, real)
     if degree is not None:
         return _made(prepared, degree, real)[0]

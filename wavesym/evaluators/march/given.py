@@ -11,16 +11,16 @@ all such polynomials side by side, and to add up what it has cost after 1, 2, ..
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi, prod, sqrt
 
 import numpy as np
-from flint import arb
+from flint import arb, fmpq
 
-from wavesym.evaluators.doubles import bound, nearest
+from wavesym.evaluators.doubles import bound, nearest, not_below
 from wavesym.evaluators.march.bound import MARGIN, Roundings, impedance_at, largest_wave, reading_weights
 from wavesym.evaluators.march.operator import Array
-from wavesym.evaluators.march.plan import Plan
+from wavesym.evaluators.march.plan import Plan, power_of_two
 from wavesym.evaluators.march.run import LEFT, RIGHT, Block, Run
 from wavesym.evaluators.march.tail import tail_after
 from wavesym.evaluators.march.watch import Watch
@@ -48,9 +48,16 @@ def batch_size(plan: Plan) -> int:
 
 def given(plan: Plan, degree: int, real: Real, windows: int) -> Given:
     """What is proved for `windows` windows at some degree."""
+    scale = power_of_two(channel.gain for channel in plan.channels)
+    made = _given(plan.scaled(1 / scale), degree, real, windows, scale)
+    return replace(made, errors=tuple(bound(arb(error) * arb(scale)) for error in made.errors))
+
+
+def _given(plan: Plan, degree: int, real: Real, windows: int, scale: fmpq) -> Given:
+    """The same for a plan whose gains are so many times as small, before errors are rounded."""
     run = Run(plan, degree)
-    roundings = Roundings(plan, run, real)
     unit = nearest(real.roundoff)
+    roundings = Roundings(plan, run, real, scale)
     watches = [Watch(plan, output, degree) for output in plan.outputs]
     displaced = [output.quantity == "displacement" for output in plan.outputs]
     # by windows: in energy, and what reading the outputs costs
@@ -64,7 +71,7 @@ def given(plan: Plan, degree: int, real: Real, windows: int) -> Given:
     smooth = tail_after(plan, windows, [windows * jump for jump in _jumps(plan)])
     # loads of all windows: what each has cost so far, added up
     costs = np.cumsum(np.cumsum(lost + inexact))
-    lost_reading = 4.0 * (degree + 3) ** 2 * nearest(real.smallest)
+    lost_reading = 4.0 * (degree + 3) ** 2 * not_below(real.smallest / scale)
     stretches = 2.0 * len(plan.panels) + 2
     errors = []
     for o, output in enumerate(plan.outputs):
@@ -76,7 +83,7 @@ def given(plan: Plan, degree: int, real: Real, windows: int) -> Given:
         else:
             error = 2 * largest_wave(smooth, plan, float(costs[-1]) / root) + 12 * unit * float(np.sum(read[o]))
             error += lost_reading
-        errors.append(bound(arb(MARGIN * error)))
+        errors.append(MARGIN * error)
     settled = float(np.sum(np.cumsum(lost))) <= float(np.sum(np.cumsum(inexact)))
     return Given(windows, tuple(errors), settled)
 

@@ -12,9 +12,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from math import inf
 
 from flint import fmpq, fmpq_poly
 
@@ -119,6 +120,7 @@ class Plan:
     outputs: tuple[Watched, ...]
     tau_max: float
     first: int  # the node at column 0
+    valid: float  # until when no node outside of the light cone can be felt
     tolerance: float  # of the scene, but no less than what rounding makes of loads that are given
     trusted: float  # what polynomials may miss in all, of the largest wave, before the programs say so
 
@@ -131,6 +133,18 @@ class Plan:
     def rate(self) -> fmpq:
         """The largest rate of a body, 0 without one."""
         return max((node.rate for node in self.junctions if node.rate is not None), default=fmpq(0))
+
+    def scaled(self, factor: fmpq) -> Plan:
+        """The same with all that moves it `factor` times as large; every motion is, then."""
+        return replace(
+            self,
+            junctions=tuple(replace(node, motion=factor * node.motion) for node in self.junctions),
+            rods=tuple(factor * velocity for velocity in self.rods),
+            events=tuple(
+                replace(event, powers=_three(factor * fmpq_poly(list(event.powers)))) for event in self.events
+            ),
+            channels=tuple(replace(channel, gain=factor * channel.gain) for channel in self.channels),
+        )
 
     def changes(self, panel: int) -> Iterator[tuple[int, int, tuple[fmpq, fmpq, fmpq]]]:
         """Window, force and powers of what is new with each event on a panel."""
@@ -153,11 +167,14 @@ class Plan:
         return tuple(found)
 
 
-def plan(scene: Scene, real: Real = DOUBLE) -> Plan:
-    """The plan of a scene in `real` numbers. CostError where load times have too many different fractional parts."""
+def plan(scene: Scene, real: Real = DOUBLE, windows: int = 0) -> Plan:
+    """The plan of a scene in `real` numbers; what can matter on the first `windows` is part of it too.
+
+    CostError where load times have too many different fractional parts.
+    """
     system = chain(scene)
     tau_max = horizon(scene, real)
-    columns = light_cone(system, scene.outputs, tau_max)
+    columns = light_cone(system, scene.outputs, max(tau_max, float(windows)))
     nodes = [system.nodes[x] for x in columns]
     pieces = [piece for piece in scene.pieces if rational(piece.time) <= rational(tau_max)]
     panels = _panels(rational(piece.time) for piece in pieces)
@@ -173,6 +190,7 @@ def plan(scene: Scene, real: Real = DOUBLE) -> Plan:
         tuple(_watched(output, columns.start) for output in scene.outputs),
         tau_max,
         columns.start,
+        inf if len(columns) == system.m + 1 else max(tau_max, float(windows)),
         nearest(max(rational(scene.output.tolerance), 64 * real.roundoff)),
         # no less than what the arithmetic of so many nodes loses on all windows
         nearest(max(rational(scene.output.tolerance) / _ESTIMATED, real.roundoff * len(nodes) * (int(tau_max) + 1))),
@@ -227,6 +245,12 @@ def _events(
             window = int(time.floor())
             events.append(Event(window, places[time - window], force, _three(total)))
     return events
+
+
+def power_of_two(numbers: Iterable[fmpq]) -> fmpq:
+    """About the largest absolute value of some numbers; 1 where all are 0."""
+    size = max(map(abs, numbers), default=fmpq(0))
+    return fmpq(2) ** (int(size.p).bit_length() - int(size.q).bit_length()) if size else fmpq(1)
 
 
 def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:

@@ -1,0 +1,179 @@
+"""What users stumbled over: each is one clear line, before anything is overwritten or worked at for long."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import wavesym
+from tests.cli.test_cli import SCENE, folder, refused
+from wavesym import compiler
+from wavesym.cli import main
+from wavesym.scene import builtin_names
+
+__all__ = ["folder"]
+
+LOAD = """[[load]]
+body = 1
+times = [0]
+steps = [1]
+"""
+LOADED = SCENE.replace("[output]", LOAD + "[output]")
+
+
+def wavesym_in_a_shell(line: str) -> subprocess.CompletedProcess[str]:
+    command = line.replace("wavesym", f"{sys.executable} -m wavesym", 1)
+    return subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("line", ["wavesym run mine.toml >&-", "wavesym --help >&-", "wavesym scenes >&-"])
+def test_a_closed_standard_output_is_one_line(line: str) -> None:
+    done = wavesym_in_a_shell(line)
+    assert done.returncode == 2
+    assert done.stderr == "wavesym: standard output is closed, an open one expected\n"
+
+
+def test_many_samples_come_while_they_are_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The reader of the first lines does not wait for the last ones."""
+    scene = wavesym.Scene.from_toml("drive_m1")
+    asked = []
+    rows = compiler._rows
+    monkeypatch.setattr(compiler, "_rows", lambda *of: asked.append(1) or rows(*of))
+    lines = compiler.run(scene, 10**7)
+    assert next(lines).startswith("tau,")
+    assert next(lines).startswith("0.0,")
+    assert asked == [1]
+    whole = list(compiler.run(scene, 2 * compiler._AT_ONCE + 3))
+    assert len(whole) == 2 * compiler._AT_ONCE + 4
+    assert whole[-1].startswith("10.0,")
+    assert list(compiler.run(scene, 101)) == list(compiler.run(scene, 101, list(compiler.grid(scene, 101))))
+
+
+def test_a_byte_order_mark_is_no_part_of_a_scene() -> None:
+    Path("marked.toml").write_text(SCENE, encoding="utf-8-sig")
+    assert wavesym.Scene.from_toml("marked.toml") == wavesym.Scene.from_toml("mine.toml")
+
+
+@pytest.mark.parametrize("command", ["run", "tables", "plot", "chart"])
+def test_a_scene_is_not_replaced_by_what_is_made_of_it(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    line = refused(capsys, command, "mine.toml", "-o", "./mine.toml")
+    assert "mine.toml is the scene itself, another file expected" in line
+    Path("linked.toml").symlink_to("mine.toml")
+    assert "linked.toml is the scene itself" in refused(capsys, command, "mine.toml", "-o", "linked.toml")
+    assert Path("mine.toml").read_text() == SCENE
+
+
+def test_files_of_others_are_replaced_by_force_only(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("there").mkdir()
+    Path("there", "mine.c").write_text("int main(void) { return 0; }\n")
+    Path("loaded.toml").write_text(LOADED)
+    line = refused(capsys, "generate", "loaded.toml", "-o", "there", "--language", "all")
+    assert line == f"loaded.toml: {Path('there/mine.c')}: not written by wavesym, and --force not given"
+    assert main(["generate", "loaded.toml", "-o", "there", "--language", "all", "--force"]) == 0
+    assert len(list(Path("there").iterdir())) == 5
+    # all of them are now its own
+    assert main(["generate", "loaded.toml", "-o", "there", "--language", "all"]) == 0
+
+
+@pytest.mark.parametrize("command", [["chart", "mine.toml", "-o"], ["stability", "-o"], ["plot", "--published", "-o"]])
+def test_what_takes_long_first_asks_where_it_may_write(
+    command: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for work in ("measure.measure", "stability.atlas", "figures.published"):
+        monkeypatch.setattr(f"wavesym.report.{work}", lambda *_: pytest.fail("worked before it asked"))
+    assert refused(capsys, *command, "mine.toml/deeper/out.svg").endswith(": Not a directory")
+
+
+def test_times_beyond_the_horizon_are_named(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("loaded.toml").write_text(LOADED)
+    Path("at.txt").write_text("1\n2.5\n-1\n")
+    assert main(["run", "loaded.toml", "--at", "at.txt"]) == 0
+    out, err = capsys.readouterr()
+    assert out.count("nan") == 2
+    assert err == "mine: 2 of 3 tau are not within 0 and 2: nan\n"
+
+
+@pytest.mark.parametrize("command", ["run", "generate", "plot"])
+def test_a_scene_without_a_load_is_told(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = [command, "mine.toml", *(["-o", "mine.svg"] if command == "plot" else [])]
+    main(arguments)
+    assert "mine: no load, so that all outputs are 0\n" in capsys.readouterr().err
+    Path("mine.toml").write_text(LOADED)
+    main(arguments)
+    assert "no load" not in capsys.readouterr().err
+
+
+def test_what_was_meant_is_asked(capsys: pytest.CaptureFixture[str]) -> None:
+    assert refused(capsys, "genrate", "mine.toml").startswith(
+        "wavesym: No such command 'genrate'. Did you mean \"generate\"?"
+    )
+    assert "Did you mean" not in refused(capsys, "zzz")
+    assert refused(capsys, "run", "building_m3").endswith('expected. Did you mean "building_m2"?')
+    Path("mine.toml").write_text(SCENE.replace("until", "untill"))
+    assert refused(capsys, "run", "mine.toml").endswith('expected. Did you mean "until"?')
+
+
+@pytest.mark.parametrize("name", builtin_names())
+def test_a_built_in_scene_is_printed(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["scenes", name]) == 0
+    Path("copy.toml").write_text(capsys.readouterr().out, encoding="utf-8")
+    assert wavesym.Scene.from_toml("copy.toml") == wavesym.Scene.from_toml(name)
+
+
+def test_a_scene_that_is_not_built_in(capsys: pytest.CaptureFixture[str]) -> None:
+    assert refused(capsys, "scenes", "drive_m2").endswith('Did you mean "drive_m1"?')
+
+
+@pytest.mark.parametrize("system", ["building", "drive", "collision"])
+def test_a_scene_to_start_from_works_and_explains_every_key(system: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", system]) == 0
+    text = capsys.readouterr().out
+    bare = [line.partition(" ")[0] for line in text.splitlines() if line and "#" not in line]
+    assert set(bare) <= {"[system]", "[output]", "velocity", "displacement"}  # as `strain`, which says where
+    Path("first.toml").write_text(text, encoding="utf-8")
+    assert wavesym.Scene.from_toml("first.toml").system.type == system
+    assert main(["generate", "first.toml", "--check"]) == 1  # all of it is missing, so all of it was made
+
+
+def test_from_python_what_is_wrong_is_told() -> None:
+    scene = wavesym.Scene.from_toml("drive_m1")
+    with pytest.raises(wavesym.WavesymError, match=r"^language: fmu given, c, numpy or all expected$"):
+        wavesym.generate(scene, language="fmu")
+    with pytest.raises(wavesym.WavesymError, match=r"^evaluator: clsed given, auto, closed, pieces or march expected$"):
+        wavesym.generate(scene, evaluator="clsed")
+    with pytest.raises(wavesym.WavesymError, match=r"^precision: half given, double or single expected$"):
+        wavesym.generate(scene, precision="half")
+    with pytest.raises(wavesym.SceneError, match="str given, a Scene expected"):
+        wavesym.evaluator("drive_m1")  # type: ignore[arg-type]
+    assert issubclass(wavesym.CostError, wavesym.WavesymError)
+    assert issubclass(wavesym.ToleranceError, wavesym.WavesymError)
+
+
+def test_a_scene_with_other_values() -> None:
+    scene = wavesym.Scene.from_toml("building_m2")
+    other = scene.with_({"system.kappa[1]": "1/3", "output.until": 40, "load[0].a[2]": 7})
+    assert [str(kappa) for kappa in other.system.kappa] == ["1/4", "1/3", "1/5"]
+    assert (other.output.until, other.load[0].a[2]) == (40, 7)
+    assert other.output.strain == scene.output.strain
+    assert scene == wavesym.Scene.from_toml("building_m2")
+
+
+@pytest.mark.parametrize(
+    ("path", "wrong"),
+    [
+        ("system.kapa[1]", 'system.kapa[1]: nothing called "kapa". Did you mean "kappa"?'),
+        ("system.kappa[9]", "system.kappa[9]: nothing at [9]"),
+        ("output.until[0]", "output.until[0]: nothing at [0]"),
+        ("system..m", 'system..m: no path, one such as "output.until" or "load[0].times[2]" expected'),
+        ("", 'scene: no path, one such as "output.until" or "load[0].times[2]" expected'),
+        ("output.untill", "output.untill: unknown key, until, tolerance, strain, velocity or displacement expected."),
+        ("system.kappa[1]", "system.kappa[1]: -1 given, a positive number expected"),
+    ],
+)
+def test_a_path_that_leads_nowhere(path: str, wrong: str) -> None:
+    with pytest.raises(wavesym.SceneError) as found:
+        wavesym.Scene.from_toml("building_m2").with_({path: -1})
+    assert wrong in str(found.value)

@@ -1,0 +1,39 @@
+"""Fields of a scene by the paths that messages name them with: `output.until`, `load[0].times[2]`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from wavesym.errors import SceneError, did_you_mean
+
+_STEP = re.compile(r"(?:^|\.)([A-Za-z_]+)|\[([0-9]{1,6})\]")
+
+
+def changed(fields: Mapping[str, Any], path: str, value: object) -> dict[str, Any]:
+    """A copy of nested tables and lists with another value at a path. SceneError where the path leads nowhere."""
+    result: dict[str, Any] = _replaced(fields, _steps(path), value, path)
+    return result
+
+
+def _steps(path: str) -> list[str | int]:
+    found = list(_STEP.finditer(path))
+    if not found or "".join(step[0] for step in found) != path:
+        raise SceneError('no path, one such as "output.until" or "load[0].times[2]" expected', path)
+    return [step[1] or int(step[2]) for step in found]
+
+
+def _replaced(inner: Any, steps: list[str | int], value: object, path: str) -> Any:
+    if not steps:
+        return value
+    step, *rest = steps
+    if isinstance(step, int):
+        if not isinstance(inner, list | tuple) or step >= len(inner):
+            raise SceneError(f"nothing at [{step}]", path)
+        return [_replaced(each, rest, value, path) if k == step else each for k, each in enumerate(inner)]
+    # what is new at the end of a path is judged with the whole scene
+    if not isinstance(inner, Mapping) or (rest and step not in inner):
+        known = inner if isinstance(inner, Mapping) else ()
+        raise SceneError(f'nothing called "{step}". {did_you_mean(step, known)}'.rstrip(), path)
+    return {**inner, step: _replaced(inner.get(step), rest, value, path)}
