@@ -15,7 +15,7 @@ from wavesym.evaluators import motion as room
 from wavesym.evaluators.ball import Balls
 from wavesym.evaluators.doubles import fraction, rational
 from wavesym.evaluators.motion import Motion, is_zero
-from wavesym.evaluators.windows import Panel, Wave, Windows
+from wavesym.evaluators.windows import Panel, Wave, Windows, damping
 from wavesym.scene import Piece
 
 DRIVE = {"type": "drive", "m": 3, "kappa": ["1/2", 2, "1/3"], "inertia": [1, 2, 3, "1/2"]}
@@ -245,6 +245,14 @@ def test_first_bits_are_those_of_what_is_felt():
     # a body moves otherwise from tau = 1 on, when what begins at the contacts has come
     assert [fraction(made(collision)._lost(x)) for x in (0, 1, 2)] == [0, 6 * 7, 0]
     assert [made(one).first_bits for one in (collision, stiff(5, 20), stiff(5, 20, times=[19]))] == [128, 256, 128]
+
+
+def test_a_body_moves_from_the_first_of_its_loads_and_is_felt_at_the_nearest_place():
+    """Loads on the discs at 1, from tau = 1 on, and at 3, at once; seen at 1/2 and 3."""
+    load = [{"body": 2, "times": [1, 2], "steps": [1, 1]}, {"body": 4, "times": [0], "steps": [1]}]
+    motion = made(drive(10, load, strain=["1/2", 3]))
+    for x, (away, begins) in enumerate([("1/2", 2), ("1/2", 1), (1, 1), (0, 0)]):
+        assert motion._lost(x) == damping(motion._chain.nodes[x]) * (10 - rational(Fraction(away)) - begins)
 
 
 def test_too_many_windows_are_refused_before_the_first(monkeypatch):
