@@ -60,6 +60,8 @@ def force(alpha, a, beta, b, load, size):
         (wave([2]), STILL, [], 1),  # the defect alone
         (wave([0, 3]), STILL, [], 1),  # with a power of the right side in it
         (STILL, STILL, [0, -5], 1),
+        (wave([1, 0, 80_000]), STILL, [], 1),  # the last power of the right side is as large as what it is to balance
+        (wave([1, 0, -160_000]), STILL, [], 1),
         (wave([2], "1e4"), STILL, [], 1),
         (wave([1], 2**13), wave([1], 2**15), [], 1),  # the three parts are of like size
         (wave([1], 2**13), wave([-3], 2**14), [0, 7], fmpq(1, 2)),
@@ -200,6 +202,29 @@ def test_waves_are_where_they_are_said_to_be(name, terms):
 
 def parts(terms):
     return [fmpq(0), fmpq(1, 3), fmpq(999, 1000)] if terms == 4 else [fmpq(0), fmpq(5, 7)]
+
+
+@pytest.mark.parametrize("velocity", [2, -2, fmpq(1, 3)])
+def test_a_body_goes_on_as_its_rods_move(velocity):
+    """Each of its rods carries half of the velocity to it; at an end there is one rod, on either side."""
+    rod, still = Rod(0, 0, velocity), fmpq(0)
+    half = room._arriving({}, 0, rod, -1)
+    for left, right, a, b in ((rod, rod, half, half), (None, rod, STILL, half), (rod, None, half, STILL)):
+        node = Node(left, right, inertia=1, alpha=2 if left else 0, beta=2 if right else 0)
+        moved = _Body(node).moved(a, b, arb_poly(), fmpq(1), 40)
+        for u in (still, fmpq(1, 2), fmpq(1)):
+            assert moved.at(u).contains(velocity)
+            assert moved.at(u).rad() < fmpq(1, 2**100)
+    assert room._arriving({}, 0, None, -1) is STILL
+    assert half.at(still).contains(fmpq(velocity) / 2)
+
+
+def test_an_error_is_kept_without_a_radius():
+    for error in (arb(1), arb(0), arb(fmpq(1, 3)), arb(2, 1)):
+        upper = room._upper(error)
+        assert upper.rad() == 0
+        assert upper >= error
+        assert upper <= error.upper()
 
 
 def test_before_the_first_window_rods_move_with_half_their_velocity():
