@@ -162,9 +162,8 @@ def test_the_tail_of_a_wave_counts_twice_over():
     assert largest_wave(Tail(5, 0.5), prepared, 0.0) == pytest.approx(0.5 + worst(5)(1.0) * 0.5 * sqrt(2))
 
 
-@pytest.mark.xfail(reason="the degree of the tail may be lower than that of the program, whose errors are of its own")
 def test_an_error_of_the_degree_of_the_program_is_covered_too():
     """Of heavy discs on a few windows the tail ends early; what rounds goes on to the last coefficient."""
     made = marched(drive(["1/1000"]))
     worst_error = worst(made.degree)(1.0) * sqrt(2)  # of energy 1 on a window
-    assert largest_wave(tail(made.plan), made.plan, 1.0) >= worst_error
+    assert largest_wave(tail(made.plan, made.degree), made.plan, 1.0) * (1 + 1e-12) >= worst_error

@@ -108,7 +108,7 @@ def test_what_is_proved_is_the_sum_over_all_single_loads(made_from, degree, real
                     values[o] += largest * watch.size(block, weights[0])[0]
     proved = proving._given(prepared, degree, real, windows, scale)
     assert proved.windows == windows
-    smooth = tail_after(prepared, windows, [windows * jump for jump in proving._jumps(prepared)])
+    smooth = tail_after(prepared, degree, windows, [windows * jump for jump in proving._jumps(prepared)])
     stretches, lost = 2 * len(prepared.panels) + 2, 4 * (degree + 3) ** 2 * float(real.smallest / scale)
     for o, output in enumerate(prepared.outputs):
         impedance = float(prepared.junctions[output.right].right)

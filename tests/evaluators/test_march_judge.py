@@ -43,7 +43,7 @@ def times(load, factor):
 def summed(prepared, degree, real):
     """The errors and sizes of a verdict, window by window."""
     run = Run(prepared, degree)
-    roundings, smooth = Roundings(prepared, run, real), tail(prepared)
+    roundings, smooth = Roundings(prepared, run, real), tail(prepared, degree)
     unit, smallest = float(real.roundoff), float(real.smallest)
     energy, energies, weighted, weighted_sums = 0.0, [], [], []
     k = np.arange(degree + 1)

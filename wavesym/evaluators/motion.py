@@ -47,7 +47,7 @@ class Motion:
         self.places = [
             Place(output, rod_of(output), rational(output.x) - (rod_of(output) - 1)) for output in scene.outputs
         ]
-        self._bits = 0
+        self._marched: dict[int, Windows] = {}
         if len(self._nodes) * until > MOST_WINDOWS:
             raise CostError(
                 f"output.until: the waves of {len(self._nodes)} nodes on {float(until):.0e} windows would be kept, "
@@ -145,15 +145,12 @@ class Motion:
 
     @property
     def _waves(self) -> Windows:
-        if self._bits < ctx.prec:  # more bits, more terms
-            self._bits = ctx.prec
-            self.__dict__.pop("_marched", None)
-        return self._marched
-
-    @cached_property
-    def _marched(self) -> Windows:
-        count = int(self.until.floor()) + 1
-        return windows(self._chain, self._nodes, self._acting, count, terms=self._bits // 4)
+        """At the working precision; what needs more bits, and so more terms, costs the others nothing."""
+        if ctx.prec not in self._marched:
+            count = int(self.until.floor()) + 1
+            made = windows(self._chain, self._nodes, self._acting, count, terms=ctx.prec // 4)
+            self._marched[ctx.prec] = made
+        return self._marched[ctx.prec]
 
 
 def is_zero(segments: Sequence[Segment]) -> bool:

@@ -17,9 +17,9 @@ not grow in E, and the error of the march is at most the sum, over windows and p
 - Underflow, which makes a product wrong by up to the smallest number instead, is run through the same recurrences.
 
 From energy to values: the true wave on a panel is a polynomial of degree K up to some tail (tail.py), K for the
-horizon; so its difference from the computed one is, and a polynomial of degree K in [-1, 1] is nowhere larger than
-(K + 1)/sqrt(2) times its L2 norm. Reading a value adds the rounding of Clenshaw's recurrence, at most
-12 u sum ((k + 1)(k + 2) + d) |c_k| with that of the local variable; and 4 (d + 3)**2 of the smallest number. A
+horizon and no lower than d; so its difference from the computed one is, and a polynomial of degree K in [-1, 1] is
+nowhere larger than (K + 1)/sqrt(2) times its L2 norm. Reading a value adds the rounding of Clenshaw's recurrence, at
+most 12 u sum ((k + 1)(k + 2) + d) |c_k| with that of the local variable; and 4 (d + 3)**2 of the smallest number. A
 displacement is an integral, so L2 will do.
 
 Errors are relative to the largest value on the horizon: of the last window only what tau_max reaches counts.
@@ -100,7 +100,7 @@ def _judge(plan: Plan, degree: int, real: Real, scale: fmpq) -> Verdict:
     unit, smallest = nearest(real.roundoff), not_below(real.smallest / scale)
     reach = nearest(min(real.reach / scale, DOUBLE.reach))
     roundings = Roundings(plan, run, real, scale)
-    smooth = tail(plan)
+    smooth = tail(plan, degree)
     watches = [Watch(plan, output, degree) for output in plan.outputs]
     displaced = [output.quantity == "displacement" for output in plan.outputs]
     truncated = rounded = summed = 0.0

@@ -68,7 +68,7 @@ def _given(plan: Plan, degree: int, real: Real, windows: int, scale: fmpq) -> Gi
         lost[n], inexact[n] = (float(weights @ part) for part in roundings.of(block))
         for o, watch in enumerate(watches):
             read[o, n] = weights @ watch.size(block, reading_weights(degree, displaced[o]))
-    smooth = tail_after(plan, windows, [windows * jump for jump in _jumps(plan)])
+    smooth = tail_after(plan, degree, windows, [windows * jump for jump in _jumps(plan)])
     # loads of all windows: what each has cost so far, added up
     costs = np.cumsum(np.cumsum(lost + inexact))
     lost_reading = 4.0 * (degree + 3) ** 2 * not_below(real.smallest / scale)

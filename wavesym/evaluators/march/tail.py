@@ -35,19 +35,19 @@ class Tail:
     size: float
 
 
-def tail(plan: Plan) -> Tail:
-    """The tail of a plan's own motion."""
-    return tail_after(plan, plan.windows, _jumps(plan))
+def tail(plan: Plan, degree: int) -> Tail:
+    """The tail of a plan's own motion, at no lower a degree than that of the computed waves."""
+    return tail_after(plan, degree, plan.windows, _jumps(plan))
 
 
-def tail_after(plan: Plan, windows: int, jumps: Sequence[float]) -> Tail:
-    """The lowest degree whose tail on the first `windows` is below 2**-80 times the jumps of loads and start.
+def tail_after(plan: Plan, degree: int, windows: int, jumps: Sequence[float]) -> Tail:
+    """The lowest degree, `degree` at least, whose tail on the first `windows` is below 2**-80 of the jumps.
 
     `jumps[k]` is the sum of those of k-th derivatives; loads have no more of them.
     """
     rate = nearest(plan.rate)
     if rate == 0 or not any(jumps):
-        return Tail(len(jumps), 0.0)  # without bodies waves are as the loads
+        return Tail(max(degree, len(jumps)), 0.0)  # without bodies waves are as the loads
     longest = max(nearest(panel.length) for panel in plan.panels)
     shortest = min(nearest(panel.length) for panel in plan.panels)
     impedance = min(nearest(z) for node in plan.junctions for z in (node.left, node.right) if z)
@@ -72,7 +72,7 @@ def tail_after(plan: Plan, windows: int, jumps: Sequence[float]) -> Tail:
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if size(middle) <= wanted else (middle, high)
-    return Tail(high, float(np.exp(min(size(high), 700.0))))
+    return Tail(max(degree, high), float(np.exp(min(size(high), 700.0))))
 
 
 def _jumps(plan: Plan) -> list[float]:
