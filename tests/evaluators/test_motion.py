@@ -64,9 +64,9 @@ def by_hand(scene, right, left, panels=1):
     motion = made(scene)
     length = fmpq(1, panels)
     parts = tuple(Panel(k * length, length) for k in range(panels))
-    motion._bits = 10**6
     motion.__dict__["_panels"] = parts
-    motion.__dict__["_marched"] = Windows(motion._chain, motion._nodes, parts, left, right)
+    waves = Windows(motion._chain, motion._nodes, parts, left, right)
+    motion._marched = dict.fromkeys((53, *(2**k for k in range(6, 14))), waves)  # at every precision
     return motion
 
 
