@@ -188,7 +188,7 @@ def test_a_displacement_may_be_what_grows_beyond_reach():
         largest = max(largest, np.max(np.abs(one.read(0.5)[:3])))
         status.append(one.advance(0.0))
     assert status[-1] == 2
-    assert 5 < len(status)
+    assert len(status) > 5
     assert largest < 0.5 * one.reach
     assert one.ended
 
