@@ -12,6 +12,8 @@ from wavesym.emission.march import numpy_source
 from wavesym.evaluators.march.bound import _constants, _norm
 from wavesym.evaluators.march.evaluator import marched
 from wavesym.evaluators.march.operator import operator
+from wavesym.evaluators.march.plan import plan
+from wavesym.evaluators.march.run import Run
 from wavesym.scene import Scene
 from wavesym.verification.compiled import imported
 
@@ -105,3 +107,45 @@ def test_an_upper_bound_of_a_norm_is_one_and_near():
         norm = np.linalg.norm(matrix, 2)
         assert norm <= _norm(matrix) * (1 + 1e-12)
         assert _norm(matrix) <= 1.01 * norm
+
+
+def own(since, start, half, powers):
+    """The series of a scene's load on a panel, as in C; `start` is what the panel begins later than that of the event."""
+    c = [Rounded.wrong(power) for power in powers]
+    half = Rounded.wrong(half)
+    middle = (Rounded(float(since)) + Rounded.wrong(start)) + half
+    square = (half * half)._scaled(0.5)
+    first = (c[0] + middle * c[1]) + (middle * middle + square) * c[2]
+    return [first, half * (c[1] + 2 * (middle * c[2])), square * c[2]]
+
+
+@pytest.mark.parametrize(
+    ("a", "b"), [([1, 0], [0, 0]), ([0, 0], [1, 0]), ([1, "-1/2"], ["1/3", 2]), (["1/1000", -1], [1, -1])]
+)
+def test_a_load_is_as_large_and_as_wrong_as_it_is_said_to_be(a, b):
+    """It is four roundings of twice its size: as large as it is, as wrong, and rounded once more when it is added."""
+    scene = Scene(
+        name="made",
+        system={"type": "building", "m": 2, "kappa": [1, 1, 1], "base": "ground"},
+        load=[{"times": ["1/3", "5/2"], "a": a, "b": b}],
+        output={"until": 7, "tolerance": "1e-2", "strain": ["1/2"]},
+    )
+    prepared = plan(scene)
+    (block,) = Run(prepared, 8).blocks()
+    cuts = [float(panel.start) for panel in prepared.panels]
+    compared = 0
+    for window, p in np.ndindex(prepared.windows, len(cuts)):
+        begun = [event for event in prepared.events if (event.window, event.panel) <= (window, p)]
+        if not begun:
+            assert block.forces[window, p, 0] == 0
+            continue
+        event, half = begun[-1], float(prepared.panels[p].length) / 2
+        series = own(window - event.window, cuts[p] - cuts[event.panel], half, list(map(float, event.powers)))
+        sizes, errors = np.array([c.value for c in series]), np.array([c.error for c in series])
+        norm, wrong = (np.sqrt(2 * c[0] ** 2 + np.sum(c[1:] ** 2)) for c in (sizes, errors))
+        force = block.forces[window, p, 0]
+        assert norm <= 2 * force
+        assert norm + wrong <= 4 * 2 * force
+        assert block.forces[window, p, 1] == 0
+        compared += norm > 0
+    assert compared > 10
