@@ -110,7 +110,7 @@ def test_an_upper_bound_of_a_norm_is_one_and_near():
 
 
 def own(since, start, half, powers):
-    """The series of a scene's load on a panel, as in C; `start` is what the panel begins later than that of the event."""
+    """A scene's load on a panel as a series, as in C; `start` is by how much the panel begins later than the event's."""
     c = [Rounded.wrong(power) for power in powers]
     half = Rounded.wrong(half)
     middle = (Rounded(float(since)) + Rounded.wrong(start)) + half
