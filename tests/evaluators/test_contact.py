@@ -129,6 +129,15 @@ def test_balls_that_tell_nothing_are_no_ends():
     assert all(seen(scene, x, tau, Fraction(14)) for x, tau in found.items())
 
 
+@pytest.mark.parametrize("until", [50, 17])
+def test_heavy_bodies_part_late(until):
+    """What is looked at first is shorter than that."""
+    scene = collision(["1/60", "1/40"], [1, 0], until)
+    assert contact._FIRST < 17
+    assert seen(scene, 2, ends(scene).get(2, math.inf), Fraction(until))
+    assert bool(ends(scene)) == (until == 50)
+
+
 def test_ends_move_in_proportion_to_what_little_ratios_differ_by():
     """Down to 1e-15, where families of rates that differ so little cancel almost all of each other."""
     (equal,) = ends(collision(["1/5", "1/5"], [1, "-1/2"], 12)).values()

@@ -124,7 +124,7 @@ def test_a_jump_to_exactly_0_opens(level):
 
 def test_a_jump_over_0_opens_and_one_below_does_not():
     down = increment(r0=["-1/3"])
-    tiny = fmpq(1, 2**300)
+    tiny = fmpq(1, 2**1500)
     for above, until in ((fmpq(1), 9), (tiny, 9), (tiny, 2)):
         assert opens(strain((0, down), (2, increment(r0=[fmpq(1, 3) + above]))), until) == 2
     assert opens(strain((0, down), (2, increment(r0=[fmpq(1, 3) - tiny]))), 9) == arb.pos_inf()

@@ -97,12 +97,12 @@ def test_strain_is_the_difference_of_the_waves_and_velocity_their_sum(output, ex
 
 
 @pytest.mark.parametrize("output", [{"strain": ["5/4"]}, {"velocity": ["5/4"]}])
-def test_both_waves_errors_are_in_the_value(output):
-    right, left = waves(3, 2, error=fmpq(1, 8)), waves(3, 5, error=fmpq(1, 16))
-    motion = by_hand(drive(2, **output), {1: right}, {2: left})
+@pytest.mark.parametrize(("one", "other"), [(fmpq(1, 8), fmpq(1, 16)), (fmpq(1, 2), fmpq(1, 2)), (fmpq(1), fmpq(0))])
+def test_both_waves_errors_are_in_the_value(output, one, other):
+    motion = by_hand(drive(2, **output), {1: waves(3, 2, error=one)}, {2: waves(3, 5, error=other)})
     (ball,) = enclosures(motion, motion.places[0], [fmpq(3, 2)])
-    assert ball.rad() >= fmpq(3, 16)
-    assert ball.rad() < fmpq(3, 16) + fmpq(1, 2**20)
+    assert ball.rad() >= one + other
+    assert ball.rad() < one + other + fmpq(1, 2**20)
 
 
 def test_errors_of_velocity_pile_up_in_displacement():

@@ -219,6 +219,15 @@ def test_a_body_goes_on_as_its_rods_move(velocity):
     assert half.at(still).contains(fmpq(velocity) / 2)
 
 
+@pytest.mark.parametrize("error", [fmpq(1), fmpq(1, 8)])
+def test_a_wave_is_anywhere_within_its_error(error):
+    value = wave([3, 2], error).at(fmpq(5))
+    assert value.contains(13 + arb(error))
+    assert value.contains(13 - arb(error))
+    assert value.rad() < error + fmpq(1, 2**20)
+    assert wave([3, 2]).at(fmpq(5)) == 13
+
+
 def test_an_error_is_kept_without_a_radius():
     for error in (arb(1), arb(0), arb(fmpq(1, 3)), arb(2, 1)):
         upper = room._upper(error)
