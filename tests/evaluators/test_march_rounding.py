@@ -110,7 +110,7 @@ def test_an_upper_bound_of_a_norm_is_one_and_near():
 
 
 def own(since, start, half, powers):
-    """The series of a scene's load on a panel, as in C; `start` is how much later it begins than that of the event."""
+    """A scene's load on a panel as a series, as in C; `start` is by how much that begins later than the event's panel."""
     c = [Rounded.wrong(power) for power in powers]
     half = Rounded.wrong(half)
     middle = (Rounded(float(since)) + Rounded.wrong(start)) + half
