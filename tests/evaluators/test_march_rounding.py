@@ -110,7 +110,7 @@ def test_an_upper_bound_of_a_norm_is_one_and_near():
 
 
 def own(since, start, half, powers):
-    """A scene's load on a panel as a series, as in C; `start` is by how much that begins later than the event's panel."""
+    """A load on a panel as a series, as in C; `start` is by how much that begins later than the panel of the event."""
     c = [Rounded.wrong(power) for power in powers]
     half = Rounded.wrong(half)
     middle = (Rounded(float(since)) + Rounded.wrong(start)) + half

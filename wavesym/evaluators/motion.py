@@ -60,8 +60,9 @@ class Motion:
 
     @cached_property
     def first_bits(self) -> int:
-        """With fewer bits nothing would be left at the end of the horizon: a power of 2, at least 128."""
-        return max(128, 1 << int(max(map(self._lost, self._nodes)) * 36 / 25).bit_length())  # not more than 1/log(2)
+        """With fewer bits nothing would be left at the end of the horizon; a power of 2, up to more than is had."""
+        lost = int(max(map(self._lost, self._nodes)) * 36 / 25)  # not more than 1/log(2)
+        return 1 << min(max(lost.bit_length(), 7), 20)
 
     def refuse_long(self, taus: int) -> None:
         """CostError where values of all outputs at so many tau would take minutes."""
