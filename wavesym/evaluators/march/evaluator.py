@@ -198,19 +198,19 @@ def _refuse_extreme(prepared: Plan, real: Real) -> None:
 
 def _refuse_long(prepared: Plan, degree: int, spent: float, windows: int = 0, marches: int = 1) -> float:
     """What trying a degree costs, with what is `spent` already; CostError where that is too much."""
-    count = (windows or prepared.windows) * len(prepared.panels)
-    work = count * (_OVERHEAD + marches * len(prepared.junctions) * degree)
+    asked, until = ("--windows", float(windows)) if windows else ("output.until", prepared.tau_max)
+    work = (windows or prepared.windows) * len(prepared.panels)
+    work *= _OVERHEAD + marches * len(prepared.junctions) * degree
     if degree > _HIGHEST_DEGREE:
         raise CostError(
-            f"output.until: march: bodies of rates up to {nearest(prepared.rate):g} would need polynomials of degree "
-            f"{degree:.2g} to tau = {prepared.tau_max:g}, at most {_HIGHEST_DEGREE} expected"
+            f"{asked}: march: bodies of rates up to {nearest(prepared.rate):g} would need polynomials of degree "
+            f"{degree:.2g} to tau = {until:g}, at most {_HIGHEST_DEGREE} expected"
         )
     spent += work + _BOUNDING * operator_count(prepared) * degree**3
     if spent > _MOST_WORK:
         raise CostError(
-            f"{'--windows' if windows else 'output.until'}: march: degree {degree} to tau = "
-            f"{windows or prepared.tau_max:g} would cost {spent:.0e} operations, at most {_MOST_WORK:.0e} expected; "
-            "a shorter horizon or fewer windows help"
+            f"{asked}: march: degree {degree} to tau = {until:g} would cost {spent:.0e} operations, at most "
+            f"{_MOST_WORK:.0e} expected; a shorter time helps"
         )
     if 8 * _state(prepared, degree) > _LARGEST_STATE:
         raise CostError(
