@@ -10,7 +10,7 @@ from tests.support.scenes import as_toml, scenes
 DRAWN = {"phases": [Phase.generate], "report_multiple_bugs": False}
 
 
-def holds(scene, precision):
+def check(scene, precision):
     missed = [str(outcome) for outcome in attack(scene, precision) if outcome.worst > 1]
     assert not missed, "\n".join([*missed, as_toml(scene)])
 
@@ -18,24 +18,24 @@ def holds(scene, precision):
 @settings(max_examples=8, **DRAWN)
 @given(scenes("double", longest=False))
 def test_doubles_hold_their_bounds(scene):
-    holds(scene, "double")
+    check(scene, "double")
 
 
 @settings(max_examples=8, **DRAWN)
 @given(scenes("single", longest=False))
 def test_floats_hold_their_bounds(scene):
-    holds(scene, "single")
+    check(scene, "single")
 
 
 @pytest.mark.slow
 @settings(max_examples=150, **DRAWN)
 @given(scenes("double"))
 def test_many_doubles_hold_their_bounds(scene):
-    holds(scene, "double")
+    check(scene, "double")
 
 
 @pytest.mark.slow
 @settings(max_examples=150, **DRAWN)
 @given(scenes("single"))
 def test_many_floats_hold_their_bounds(scene):
-    holds(scene, "single")
+    check(scene, "single")
