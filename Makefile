@@ -52,7 +52,7 @@ check-all: lint
 
 # speed, as ratios within one run, and the charts of the same scenes
 bench: install
-	$(BIN)/python -m wavesym.report.bench bench
+	$(BIN)/python -m wavesym.lab.bench bench
 	@set -e; for scene in b d c; do \
 		$(BIN)/wavesym chart bench/$$scene.toml -o bench/$$scene.svg --csv bench/$$scene.csv; \
 	done

@@ -27,8 +27,8 @@ import pytest
 import wavesym
 from tests.cli.test_cli import example
 from wavesym.cli import COMMANDS, cli, main
+from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene
-from wavesym.toolchain import compiler
 
 ROOT = Path(wavesym.__file__).parents[1]
 DOCUMENTS = ("README.md", "GUIDE.md")

@@ -12,8 +12,8 @@ import pytest
 
 from wavesym.cli import main
 from wavesym.compiler import published, tables_text
-from wavesym.emission.files import files
 from wavesym.scene import Scene
+from wavesym.targets.files import files
 
 KEPT = Path(__file__).parent.parent / "generated"
 EXAMPLES = ("building_m2", "collision_m4", "drive_m1")

@@ -48,7 +48,7 @@ def test_only_the_command_that_is_called_is_imported() -> None:
     assert commands == {"wavesym.cli.scenes"}
 
 
-@pytest.mark.parametrize("first", ["wavesym.evaluator", "__import__('wavesym.coefficients.table')", "wavesym.tables"])
+@pytest.mark.parametrize("first", ["wavesym.evaluator", "__import__('wavesym.exact.table')", "wavesym.tables"])
 def test_tables_is_the_function_whatever_was_imported_before(first: str) -> None:
     assert run_python(f"import wavesym\n{first}\nprint(callable(wavesym.tables))") == "True\n"
 

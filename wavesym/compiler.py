@@ -24,25 +24,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wavesym.coefficients.cost import refuse_costly
-from wavesym.coefficients.letters import in_rates
-from wavesym.coefficients.table import Row, Table, full_table
 from wavesym.difference import Difference
-from wavesym.emission.files import files, is_ours
-from wavesym.emission.tables import symbolic_lines, table_lines
+from wavesym.documents.tables import symbolic_lines, table_lines
 from wavesym.errors import SceneError, WavesymError
-from wavesym.evaluators.contact import contact_ends
-from wavesym.evaluators.doubles import fraction, nearest, rational
-from wavesym.evaluators.response import Response
-from wavesym.evaluators.signal import horizon
-from wavesym.mechanics.chain import chain
-from wavesym.mechanics.symbolic import generic, symbolic
+from wavesym.exact.contact import contact_ends
+from wavesym.exact.rate_letters import in_rates
+from wavesym.exact.signal import horizon
+from wavesym.exact.symbolic_cost import refuse_costly
+from wavesym.exact.table import Row, Table, full_table
+from wavesym.model.chain import chain
+from wavesym.model.symbolic import generic, symbolic
+from wavesym.numbers.doubles import fraction, nearest, rational
+from wavesym.results.response import Response
 from wavesym.scene import Scene
+from wavesym.targets.files import files, is_ours
 from wavesym.writing import traces, write_whole
 
 if TYPE_CHECKING:
-    from wavesym.mechanics.node import System
-    from wavesym.verification.published.record import Claim
+    from wavesym.model.node import System
+    from wavesym.papers.record import Claim
 
 
 _AT_ONCE = 5000  # tau of `run`
@@ -93,7 +93,7 @@ def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
 
     With m, every line is written out; a scene has its own. WavesymError for an m that the system does not have.
     """
-    from wavesym.emission.derivation import derivation, scene_derivation
+    from wavesym.documents.derivation.document import derivation, scene_derivation
 
     if isinstance(source, str):
         return derivation(source, m, format)
@@ -105,8 +105,8 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
 
     WavesymError for an m that the system does not have; CostError where the polynomials would be absurd.
     """
-    from wavesym.derivation.statement import systems
-    from wavesym.emission.walks import walk_polynomials
+    from wavesym.documents.derivation.statement import systems
+    from wavesym.documents.walks import walk_polynomials
 
     if isinstance(source, str):
         assert m is not None  # polynomials are those of one chain
@@ -253,6 +253,6 @@ def published(format: str, watch: Callable[[list[Claim[Any]]], Iterable[Claim[An
 
     `watch` goes through the claims as they are judged.
     """
-    from wavesym.verification.published.report import published as report
+    from wavesym.papers.report import published as report
 
     return report(format, watch)

@@ -19,8 +19,8 @@ from typing import NamedTuple
 import pytest
 
 from tests.cli.mutants import basic_string, mutant
+from wavesym import rendering
 from wavesym.cli import main
-from wavesym.emission import rendering
 from wavesym.errors import CostError, WavesymError
 from wavesym.scene import Scene
 
@@ -205,7 +205,7 @@ def test_the_hunt_finds_what_is_wrong(tmp_path: Path, monkeypatch: pytest.Monkey
     def broken(_: object) -> None:
         raise RecursionError
 
-    monkeypatch.setattr("wavesym.scene.model.read_toml", broken)
+    monkeypatch.setattr("wavesym.scene.scene.read_toml", broken)
     assert "RecursionError" in hunt(tmp_path, range(1), cheap)[1][0]
     if _memory():
         with pytest.raises(MemoryError), little_memory():

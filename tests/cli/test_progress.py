@@ -10,8 +10,8 @@ import time
 import pytest
 
 from wavesym.cli import main, progress
-from wavesym.verification.published import all as everything
-from wavesym.verification.published import forms
+from wavesym.papers.pielorz1979 import claims as everything
+from wavesym.papers.pielorz1979 import forms
 
 pty = pytest.importorskip("pty", reason="no terminals to open here")
 

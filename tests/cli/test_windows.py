@@ -7,7 +7,7 @@ import time
 import pytest
 
 from wavesym.cli import main
-from wavesym.evaluators.march.evaluator import marched
+from wavesym.programs.march.evaluator import marched
 from wavesym.scene import Scene
 
 SCENE = """name = "mine"

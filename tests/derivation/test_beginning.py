@@ -4,14 +4,14 @@ import pytest
 from sympy import Integer, Rational, cancel
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, balance, sides
-from wavesym.derivation.dimensions import LENGTH, SPEED, UNIT, dimensions
-from wavesym.derivation.line import exact
+from wavesym.derivation.delay_terms import exact
 from wavesym.derivation.numbers import number
 from wavesym.derivation.rods import rod_kinds
-from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.mechanics.collision import COLLISION
-from wavesym.mechanics.drive import DRIVE
-from wavesym.mechanics.node import Parameters, System
+from wavesym.documents.derivation.dimensions import LENGTH, SPEED, UNIT, dimensions
+from wavesym.model.node import Parameters, System
+from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.model.systems.collision import COLLISION
+from wavesym.model.systems.drive import DRIVE
 
 K, J, V = SYMBOLS.kappa, SYMBOLS.inertia, SYMBOLS.velocity
 SYSTEMS = [COLLISION, DRIVE, BUILDING_FORCE, BUILDING_GROUND]

@@ -4,10 +4,10 @@ import pytest
 from sympy import Integer, Rational, sympify
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, delay_equations
-from wavesym.derivation.line import Line, Operator, Source, Wave
-from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.mechanics.collision import COLLISION
-from wavesym.mechanics.drive import DRIVE
+from wavesym.derivation.delay_terms import Line, Operator, Source, Wave
+from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.model.systems.collision import COLLISION
+from wavesym.model.systems.drive import DRIVE
 
 K, J, V = SYMBOLS.kappa, SYMBOLS.inertia, SYMBOLS.velocity
 

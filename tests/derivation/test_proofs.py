@@ -6,13 +6,13 @@ import pytest
 from sympy import Integer, Symbol
 
 from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equations
-from wavesym.derivation.families import solved
-from wavesym.derivation.line import Line, Operator, Wave
-from wavesym.derivation.patterns import patterns, rates
+from wavesym.derivation.delay_terms import Line, Operator, Wave
 from wavesym.derivation.recurrence import coefficient_law, recurrence
-from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.mechanics.collision import COLLISION
-from wavesym.mechanics.drive import DRIVE
+from wavesym.documents.derivation.families import solved
+from wavesym.documents.derivation.patterns import patterns, rates
+from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.model.systems.collision import COLLISION
+from wavesym.model.systems.drive import DRIVE
 from wavesym.verification.proofs import node_law
 from wavesym.verification.theorem import residuals
 

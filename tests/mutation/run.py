@@ -29,10 +29,16 @@ from typing import NamedTuple
 from tests.mutation.operators import Mutant, Names, mutants
 
 ROOT = Path(__file__).resolve().parents[2]
-ROOMS = ("wavesym/evaluators/**/*.py", "templates/c/[!s]*.c.j2", "templates/numpy/*.py.j2")
+ROOMS = ("wavesym/programs/**/*.py", "templates/c/[!s]*.c.j2", "templates/numpy/*.py.j2")
+ROOMS += tuple(f"wavesym/exact/{name}.py" for name in ("ball", "contact", "motion", "reference", "signal", "windows"))
+ROOMS += tuple(f"wavesym/numbers/{name}.py" for name in ("chebyshev", "doubles", "reals"))
 # All of it is run for a mutant that survives: it may take a minute and a half where a tenth of 300 do.
-TESTS = ("evaluators", "emission/test_march_c.py", "emission/test_march_hand.py", "emission/test_march_short_panels.py")
-TESTS += ("emission/test_selftest.py", "verification/test_properties.py")
+TESTS = ("programs", "numbers", "verification/test_properties.py")
+TESTS += tuple(
+    f"exact/test_{name}.py" for name in ("ball", "contact", "contact_search", "motion", "reference", "signal")
+)
+TESTS += ("exact/test_windows.py",)
+TESTS += tuple(f"targets/test_{name}.py" for name in ("march_c", "march_hand", "march_short_panels", "selftest"))
 COPIED = ("wavesym", "templates", "tests", "pyproject.toml")
 PYTEST = f"""ulimit -v {4 << 20}; exec "$0" -m pytest -x -q --tb=short -p no:cacheprovider --basetemp=tmp/pytest \
 --hypothesis-profile=first_failure -o faulthandler_exit_on_timeout=true "$@" """
@@ -125,7 +131,7 @@ def related(file: str) -> list[str]:
 
 
 def _words(file: str) -> set[str]:
-    return set(re.findall(r"[a-z]+", file)) - {"py", "test", "tests", "emission"}
+    return set(re.findall(r"[a-z]+", file)) - {"py", "test", "tests", "targets"}
 
 
 def places(only: Sequence[str] = ()) -> list[list[Mutant]]:

@@ -7,7 +7,7 @@ import pytest
 from tests.mutation.operators import mutants
 from tests.mutation.run import ROOT, Project, Verdict, known, places, related, report, sample
 
-FRONT = "tests/evaluators/test_closed.py::test_a_front_between_two_doubles_counts_from_the_upper_one"
+FRONT = "tests/programs/test_closed.py::test_a_front_between_two_doubles_counts_from_the_upper_one"
 
 
 def wrongs(line, file="made.py"):
@@ -98,8 +98,8 @@ def test_a_sample_is_the_same_whatever_changes_elsewhere():
 
 
 def test_the_tests_of_a_file_come_first():
-    assert related("wavesym/evaluators/contact.py")[0] == "tests/evaluators/test_contact.py"
-    assert related("templates/c/march.c.j2")[0] == "tests/emission/test_march_c.py"
+    assert related("wavesym/exact/contact.py")[0] == "tests/exact/test_contact.py"
+    assert related("templates/c/march.c.j2")[0] == "tests/targets/test_march_c.py"
 
 
 def test_known_mutants_can_still_be_made():

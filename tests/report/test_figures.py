@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tests.report.clear import texts_keep_clear
-from wavesym.verification.published import figures as section_5
-from wavesym.verification.published.record import Record, judge
+from wavesym.papers.pielorz1979 import figures as section_5
+from wavesym.papers.record import Record, judge
 
 pytest.importorskip("matplotlib")
 

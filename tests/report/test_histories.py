@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from tests.report.clear import texts_keep_clear
-from wavesym.coefficients.increments import start
 from wavesym.compiler import evaluator
-from wavesym.evaluators.contact import contact_ends
-from wavesym.evaluators.doubles import not_below, rational
-from wavesym.evaluators.reference import Reference
+from wavesym.exact.contact import contact_ends
+from wavesym.exact.increments import start
+from wavesym.exact.reference import Reference
+from wavesym.numbers.doubles import not_below, rational
 from wavesym.report import histories as made_of
 from wavesym.report.histories import Histories, History, arrivals, histories
 from wavesym.scene import Observable, Scene

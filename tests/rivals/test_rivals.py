@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from wavesym.compiler import evaluator
-from wavesym.evaluators.reference import Reference
-from wavesym.mechanics.chain import chain
+from wavesym.exact.reference import Reference
+from wavesym.model.chain import chain
 from wavesym.rivals import characteristics, delays, differences, elements, laplace, modes, steps
-from wavesym.rivals.all import RIVALS
+from wavesym.rivals.every import RIVALS
 from wavesym.rivals.problem import problem, scene_problem
 from wavesym.scene import Piece, Scene
 

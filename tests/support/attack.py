@@ -24,11 +24,11 @@ from numpy.typing import NDArray
 
 from tests.support.scenes import as_toml, scenes
 from tests.support.truth import Truth
-from wavesym.emission.files import files
 from wavesym.errors import CostError, RangeError, ToleranceError
+from wavesym.running.compiled import FLAGS, imported
+from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene
-from wavesym.toolchain import compiler
-from wavesym.verification.compiled import FLAGS, imported
+from wavesym.targets.files import files
 
 EVALUATORS = ("closed", "pieces", "march")
 PRECISIONS = {"double": np.float64, "single": np.float32}

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from tests.evaluators.drawn import NEARLY
 from tests.support import attack
+from tests.support.drawn import NEARLY
 from tests.support.scenes import as_toml
 from wavesym.scene import Scene
 

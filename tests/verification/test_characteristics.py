@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from scipy.special import eval_laguerre
 
 from wavesym.errors import CostError
-from wavesym.mechanics.chain import Chain, chain
-from wavesym.mechanics.node import Load, Node, Parameters, Rod, System, single
+from wavesym.model.chain import Chain, chain
+from wavesym.model.node import Load, Node, Parameters, Rod, System, single
 from wavesym.scene import Observable, Piece, Scene
 from wavesym.verification import checks
 from wavesym.verification.characteristics import integrate

@@ -6,14 +6,14 @@ import pytest
 from flint import fmpq
 from jinja2 import FunctionLoader
 
-from wavesym.coefficients import table as tables
-from wavesym.coefficients.table import Function, full_table
-from wavesym.emission import rendering
-from wavesym.emission.files import files
+from wavesym import rendering
 from wavesym.errors import ToleranceError
-from wavesym.evaluators.choice import choose
-from wavesym.mechanics.chain import chain
+from wavesym.exact import table as tables
+from wavesym.exact.table import Function, full_table
+from wavesym.model.chain import chain
+from wavesym.programs.choice import choose
 from wavesym.scene import Scene
+from wavesym.targets.files import files
 from wavesym.verification import checks
 from wavesym.verification.node_law import differences
 from wavesym.verification.reference import reference

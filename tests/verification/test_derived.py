@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from wavesym.cli import main
-from wavesym.coefficients import table as tables
 from wavesym.derivation.delay import delay_equations
-from wavesym.mechanics.drive import DRIVE
+from wavesym.exact import table as tables
+from wavesym.model.systems.drive import DRIVE
 from wavesym.verification import derived as module
 from wavesym.verification.derived import derived
 

@@ -6,13 +6,13 @@ from dataclasses import replace
 import pytest
 from flint import fmpq
 
-from wavesym.coefficients import table as tables
-from wavesym.coefficients.table import Function, full_table
-from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.collision import COLLISION
-from wavesym.mechanics.drive import DRIVE
-from wavesym.mechanics.node import Parameters
+from wavesym.exact import table as tables
+from wavesym.exact.table import Function, full_table
+from wavesym.model.chain import Chain
+from wavesym.model.node import Parameters
+from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.model.systems.collision import COLLISION
+from wavesym.model.systems.drive import DRIVE
 from wavesym.verification.node_law import differences, unit_waves
 from wavesym.verification.substitution import jumps, residuals
 

@@ -9,14 +9,14 @@ from flint import fmpq
 from hypothesis import given, settings
 
 import wavesym
-from tests.evaluators.drawn import scenes
-from wavesym.emission.description import describe
-from wavesym.emission.march import numpy_source
-from wavesym.evaluators.march.evaluator import marched
-from wavesym.mechanics.chain import chain
+from tests.support.drawn import scenes
+from wavesym.model.chain import chain
+from wavesym.programs.march.evaluator import marched
+from wavesym.running.compiled import imported
 from wavesym.scene import Scene
+from wavesym.targets.description import describe
+from wavesym.targets.march import numpy_source
 from wavesym.verification import checks
-from wavesym.verification.compiled import imported
 from wavesym.verification.invariants import balances, watched, weights
 from wavesym.verification.reference import reference
 

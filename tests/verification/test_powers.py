@@ -8,17 +8,27 @@ import pytest
 from flint import fmpq, fmpz_poly, nmod_poly
 from sympy import Add, Rational, binomial
 
-from wavesym.coefficients.table import Function, Rules
-from wavesym.coefficients.walks import Unit, departures, function_walks, letters, units, walks_until
 from wavesym.derivation.delay import COUNT, INDEX
-from wavesym.derivation.powers import BODY, HIGHEST, IMAGE, INTERVAL, NODE, POWERS, SOURCE, PowerFamily, PowerRow
-from wavesym.derivation.statement import SYSTEMS
-from wavesym.mechanics.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.collision import COLLISION
-from wavesym.mechanics.drive import DRIVE
-from wavesym.mechanics.node import Parameters
-from wavesym.mechanics.symbolic import generic
+from wavesym.documents.derivation.highest_powers import (
+    BODY,
+    HIGHEST,
+    IMAGE,
+    INTERVAL,
+    NODE,
+    POWERS,
+    SOURCE,
+    PowerFamily,
+    PowerRow,
+)
+from wavesym.documents.derivation.statement import SYSTEMS
+from wavesym.exact.table import Function, Rules
+from wavesym.exact.walks import Unit, departures, function_walks, letters, units, walks_until
+from wavesym.model.chain import Chain
+from wavesym.model.node import Parameters
+from wavesym.model.symbolic import generic
+from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.model.systems.collision import COLLISION
+from wavesym.model.systems.drive import DRIVE
 from wavesym.verification.powers import steps
 
 BY_NAME = {system.name: system for systems in SYSTEMS.values() for system in systems}

@@ -13,13 +13,13 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.evaluators.drawn import loads, ratios, scenes, systems
-from wavesym.coefficients.table import full_table
-from wavesym.evaluators.ball import segments, values
-from wavesym.evaluators.doubles import rational
-from wavesym.evaluators.motion import Motion
-from wavesym.evaluators.signal import horizon, signals
-from wavesym.mechanics.chain import chain
+from tests.support.drawn import loads, ratios, scenes, systems
+from wavesym.exact.ball import segments, values
+from wavesym.exact.motion import Motion
+from wavesym.exact.signal import horizon, signals
+from wavesym.exact.table import full_table
+from wavesym.model.chain import chain
+from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene
 from wavesym.verification import checks
 from wavesym.verification.node_law import differences

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from scipy.special import eval_laguerre
 
-from tests.evaluators.drawn import scenes
-from wavesym.evaluators.reference import Reference as Exact
+from tests.support.drawn import scenes
+from wavesym.exact.reference import Reference as Exact
 from wavesym.rivals.problem import Event, Problem, Watch
 from wavesym.scene import Scene
 from wavesym.verification import checks, spacetime

@@ -45,8 +45,8 @@ def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
         refuse_scene(path)
         refuse_unwritable(path)
     with progress(f"chart {scene.name}") as line:
-        from wavesym.report.chart import draw
-        from wavesym.report.measure import measure, to_csv
+        from wavesym.lab.chart import draw
+        from wavesym.lab.measure import measure, to_csv
         from wavesym.report.saving import picture_format, save
         from wavesym.writing import write_whole
 

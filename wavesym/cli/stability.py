@@ -27,7 +27,7 @@ def stability(directory: Path) -> None:
 
     refuse_unwritable(directory, folder=True)
     with progress("stability") as line:
-        from wavesym.report.stability import atlas
+        from wavesym.lab.stability import atlas
 
         paths = atlas(directory, line.tell)
     for path in paths:

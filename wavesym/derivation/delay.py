@@ -10,8 +10,8 @@ from functools import cache
 
 from sympy import Expr, IndexedBase, Integer, Rational, Symbol
 
-from wavesym.derivation.line import Line, Operator, Wave, exact, load, wave
-from wavesym.mechanics.node import Family, Node, Parameters, Rod, System
+from wavesym.derivation.delay_terms import Line, Operator, Wave, exact, load, wave
+from wavesym.model.node import Family, Node, Parameters, Rod, System
 
 INDEX = Symbol("i", integer=True, positive=True)
 COUNT = Symbol("m", integer=True, positive=True)

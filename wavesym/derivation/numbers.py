@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from flint import fmpq, fmpq_mpoly
 from sympy import Add, Expr, Indexed, IndexedBase, Integer, Mul, Pow, Rational, Symbol
 
-from wavesym.mechanics.node import Parameters
+from wavesym.model.node import Parameters
 
 if TYPE_CHECKING:
-    from wavesym.algebra.ratio import Ratio
+    from wavesym.numbers.ratio import Ratio
 
 _FIELDS = {"kappa": "kappa", "J": "inertia", "v": "velocity"}
 

@@ -14,11 +14,11 @@ from flint import fmpq
 from sympy import Expr, Symbol, exp
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation, delay_equations
-from wavesym.derivation.line import Operator
+from wavesym.derivation.delay_terms import Operator
+from wavesym.derivation.exact_rule import Linear, LoadTerm, Rule, Term, Weights
 from wavesym.derivation.numbers import number
-from wavesym.derivation.rule import Linear, LoadTerm, Rule, Term, Weights
-from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.node import Parameters, System
+from wavesym.model.chain import Chain
+from wavesym.model.node import Parameters, System
 
 RATE = Symbol("g")
 POWER = Symbol("k", integer=True, nonnegative=True)

@@ -1,7 +1,7 @@
 """`wavesym plot --published`: Figs. 6, 7 and 8 of the paper, redrawn, with what section 5 says of them marked.
 
 A number in a panel is that of a statement, text.N in `wavesym verify --published`; it stands at the points that were
-measured for it. Below the panels is what was found. All of it comes from `verification.published.figures`.
+measured for it. Below the panels is what was found. All of it comes from `papers.pielorz1979.figures`.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from textwrap import wrap
 import numpy as np
 from matplotlib.figure import Figure
 
-from wavesym.emission.description import parameters
+from wavesym.papers.pielorz1979 import figures as section_5
+from wavesym.papers.pielorz1979.figures import Finding, Statement
+from wavesym.papers.record import Record, judge, shown
 from wavesym.report.histories import Histories, History, histories
 from wavesym.report.panels import CHARACTERS, Instant, Mark, Panel, axis_title, stacked
 from wavesym.report.saving import save
 from wavesym.scene import Observable, Scene
-from wavesym.verification.published import figures as section_5
-from wavesym.verification.published.figures import Finding, Statement
-from wavesym.verification.published.record import Record, judge, shown
+from wavesym.targets.description import parameters
 
 FIGURES: Mapping[int, tuple[str, ...]] = {
     6: ("strain", "displacement"),

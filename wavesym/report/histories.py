@@ -15,11 +15,11 @@ from math import floor, inf, nextafter
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.emission.files import files
-from wavesym.evaluators.contact import ContactEnd, contact_ends
-from wavesym.evaluators.doubles import not_below, rational
+from wavesym.exact.contact import ContactEnd, contact_ends
+from wavesym.numbers.doubles import not_below, rational
+from wavesym.running.compiled import imported
 from wavesym.scene import Observable, Scene
-from wavesym.verification.compiled import imported
+from wavesym.targets.files import files
 
 Points = NDArray[np.float64]
 

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from wavesym.rivals.native import FAST, address, library
 from wavesym.rivals.problem import Array, Evaluate, Problem, Rival
+from wavesym.running.native import FAST, address, library
 
 _SOURCE = Path(__file__).with_suffix(".c")
 _GAUSS = np.polynomial.legendre.leggauss(24)

@@ -11,9 +11,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.evaluators.doubles import fraction
-from wavesym.mechanics.chain import Chain, chain
-from wavesym.mechanics.node import Load, Rod
+from wavesym.model.chain import Chain, chain
+from wavesym.model.node import Load, Rod
+from wavesym.numbers.doubles import fraction
 from wavesym.scene import Observable, Piece, Scene
 
 Array = NDArray[np.float64]

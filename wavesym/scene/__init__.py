@@ -2,9 +2,9 @@
 
 from wavesym.errors import SceneError
 from wavesym.scene.loads import Acceleration, Moment, Piece, Record
-from wavesym.scene.model import Scene
 from wavesym.scene.outputs import Observable, Output
 from wavesym.scene.reading import builtin_names, builtin_text, first_text, read_text
+from wavesym.scene.scene import Scene
 from wavesym.scene.systems import Building, Collision, Drive
 
 __all__ = [

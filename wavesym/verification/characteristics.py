@@ -29,11 +29,11 @@ from flint import fmpq, fmpq_poly
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError
-from wavesym.evaluators.doubles import UNIT_ROUNDOFF, nearest, rational
-from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.node import Node, Quantity
+from wavesym.model.chain import Chain
+from wavesym.model.node import Node, Quantity
+from wavesym.numbers.doubles import UNIT_ROUNDOFF, nearest, rational
 from wavesym.scene import Observable, Piece
-from wavesym.verification.exact import exact, start
+from wavesym.verification.exact_chain import exact, start
 
 Array = NDArray[np.float64]
 

@@ -11,15 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wavesym.emission.description import describe
-from wavesym.emission.files import EMITTERS, files
 from wavesym.errors import ToleranceError
-from wavesym.evaluators.choice import choose
-from wavesym.evaluators.reference import Reference as Exact
-from wavesym.mechanics.chain import chain
+from wavesym.exact.reference import Reference as Exact
+from wavesym.model.chain import chain
+from wavesym.programs.choice import choose
+from wavesym.running.compiled import compiled, imported
 from wavesym.scene import Scene
+from wavesym.targets.description import describe
+from wavesym.targets.files import EMITTERS, files
 from wavesym.verification.characteristics import COARSEST, Motion, integrate
-from wavesym.verification.compiled import compiled, imported
 from wavesym.verification.invariants import Balance, Evaluate, balances, values_per_window, watched
 from wavesym.verification.reference import Reference
 from wavesym.verification.refinement import Refinement, Solutions, shown

@@ -7,24 +7,24 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from wavesym.coefficients.increments import Increment, add, trimmed
-from wavesym.coefficients.table import Function, Table, full_table
-from wavesym.coefficients.walks import Letters, departures, function_walks, letters, units, walks_until
 from wavesym.derivation.delay import delay_equations
-from wavesym.derivation.families import solved
-from wavesym.derivation.patterns import patterns, rates
-from wavesym.derivation.powers import POWERS
 from wavesym.derivation.recurrence import recurrence
-from wavesym.derivation.statement import SYSTEMS
-from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.node import System
+from wavesym.documents.derivation.families import solved
+from wavesym.documents.derivation.highest_powers import POWERS
+from wavesym.documents.derivation.patterns import patterns, rates
+from wavesym.documents.derivation.statement import SYSTEMS
+from wavesym.exact.increments import Increment, add, trimmed
+from wavesym.exact.table import Function, Table, full_table
+from wavesym.exact.walks import Letters, departures, function_walks, letters, units, walks_until
+from wavesym.model.chain import Chain
+from wavesym.model.node import System
+from wavesym.papers.truth import collision, drive, grounded_building, uneven_building
+from wavesym.verification.columns import Row, table
 from wavesym.verification.expansion import expanded
 from wavesym.verification.node_law import differences
 from wavesym.verification.powers import steps
 from wavesym.verification.proofs import node_law
-from wavesym.verification.published.truth import collision, drive, grounded_building, uneven_building
 from wavesym.verification.substitution import jumps, residuals
-from wavesym.verification.tabled import Row, table
 from wavesym.verification.theorem import residuals as left_over
 
 INTERVALS = 5

@@ -23,11 +23,11 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.evaluators.doubles import UNIT_ROUNDOFF, nearest, rational
-from wavesym.mechanics.chain import Chain, chain
-from wavesym.mechanics.node import Quantity
+from wavesym.model.chain import Chain, chain
+from wavesym.model.node import Quantity
+from wavesym.numbers.doubles import UNIT_ROUNDOFF, nearest, rational
 from wavesym.scene import Piece, Scene
-from wavesym.verification.exact import exact, start
+from wavesym.verification.exact_chain import exact, start
 
 Array = NDArray[np.float64]
 Evaluate = Callable[[Array], Array]

@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.node import Node
-from wavesym.verification.exact import exact, start
+from wavesym.model.chain import Chain
+from wavesym.model.node import Node
+from wavesym.verification.exact_chain import exact, start
 
 if TYPE_CHECKING:  # tables are what is checked, not what is used
-    from wavesym.coefficients.table import Function, Table
+    from wavesym.exact.table import Function, Table
 
 Change = dict[fmpq, fmpq_poly]
 """sum over rates g of exp(-g w) * polynomial(w); what is 0 is left out."""

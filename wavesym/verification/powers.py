@@ -1,4 +1,4 @@
-"""The highest powers of `derivation.powers`, proved as upper bounds for all i, n, m by induction over the derived laws.
+"""The powers of `documents.derivation.highest_powers`, proved as upper bounds for all i, n, m, from the derived laws.
 
 The functions of a system are found one after the other from their laws. Let a function have a family's letter T at most
 max(0, 1 + floor(budget/period)) times and be 0 unless since >= 0; that holds for it when, for each term of its law,
@@ -19,10 +19,10 @@ from itertools import product
 from sympy import Expr, Integer, Symbol, expand
 
 from wavesym.derivation.delay import COUNT, INDEX
-from wavesym.derivation.line import exact
-from wavesym.derivation.powers import BODY, INTERVAL, SOURCE, PowerFamily, PowerRow
+from wavesym.derivation.delay_terms import exact
 from wavesym.derivation.recurrence import RATE, CoefficientLaw, SymbolicTerm, recurrence
-from wavesym.mechanics.node import System
+from wavesym.documents.derivation.highest_powers import BODY, INTERVAL, SOURCE, PowerFamily, PowerRow
+from wavesym.model.node import System
 
 # numbers 0, 1, 2, ... by which i, m, l and s are written
 _PLACE, _REST, _AWAY, _FAR = (Symbol(name, integer=True, nonnegative=True) for name in "abcd")

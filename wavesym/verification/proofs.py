@@ -19,8 +19,8 @@ from typing import NamedTuple
 from sympy import Expr, Integer, Rational, Symbol, cancel, together
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation
-from wavesym.derivation.line import Line, Operator, exact
-from wavesym.mechanics.node import Family, Node, Rod, System
+from wavesym.derivation.delay_terms import Line, Operator, exact
+from wavesym.model.node import Family, Node, Rod, System
 
 S, E = Symbol("s"), Symbol("E")
 

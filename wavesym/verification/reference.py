@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.evaluators.reference import Reference as Exact
+from wavesym.exact.reference import Reference as Exact
 from wavesym.scene import Observable, Scene
 
 _SPREAD = 400

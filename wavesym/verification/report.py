@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene
-from wavesym.toolchain import compiler
 from wavesym.verification.checks import CHECKS
+from wavesym.verification.columns import Row, table
 from wavesym.verification.reference import reference
-from wavesym.verification.tabled import Row, table
 
 _LEGEND = "Errors are against ball arithmetic rounded once, relative to the output's largest value."
 

@@ -26,7 +26,7 @@ from math import ceil, lcm
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.evaluators.doubles import UNIT_ROUNDOFF
+from wavesym.numbers.doubles import UNIT_ROUNDOFF
 from wavesym.rivals.problem import Array, Problem, Watch, scene_problem
 from wavesym.scene import Scene
 

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from flint import fmpq, fmpq_poly
 from sympy import Expr
 
-from wavesym.coefficients.table import Function, Table
 from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equations
-from wavesym.derivation.line import Operator
+from wavesym.derivation.delay_terms import Operator
 from wavesym.derivation.numbers import number
-from wavesym.mechanics.chain import Chain
+from wavesym.exact.table import Function, Table
+from wavesym.model.chain import Chain
 
 Change = dict[fmpq, fmpq_poly]
 """sum over rates g of exp(-g w) * polynomial(w); what is 0 is left out."""

@@ -12,9 +12,9 @@ from functools import cache, partial
 from sympy import DiracDelta, Dummy, Expr, Function, Heaviside, Integer, Symbol, cancel, exp, together
 
 from wavesym.derivation.delay import DelayEquation
-from wavesym.derivation.families import Coefficient, Solved
-from wavesym.derivation.line import Operator
+from wavesym.derivation.delay_terms import Operator
 from wavesym.derivation.recurrence import POWER, RATE
+from wavesym.documents.derivation.families import Coefficient, Solved
 
 A, B, W = Dummy("a"), Dummy("b"), Symbol("w", positive=True)
 

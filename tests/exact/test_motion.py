@@ -1,0 +1,297 @@
+"""Outputs from waves: their signs, places and errors, by hand-made waves and against the exact solver."""
+
+from fractions import Fraction
+from itertools import pairwise
+
+import pytest
+from flint import arb, arb_poly, ctx, fmpq
+from hypothesis import given, settings
+
+import wavesym
+from tests.support.drawn import scenes
+from tests.support.truth import Truth
+from wavesym.errors import CostError
+from wavesym.exact import motion as room
+from wavesym.exact.ball import Balls
+from wavesym.exact.motion import Motion, is_zero
+from wavesym.exact.windows import Panel, Wave, Windows, damping
+from wavesym.numbers.doubles import fraction, rational
+from wavesym.scene import Piece
+
+DRIVE = {"type": "drive", "m": 3, "kappa": ["1/2", 2, "1/3"], "inertia": [1, 2, 3, "1/2"]}
+LOAD = [{"body": 2, "times": [0, "7/3"], "steps": [1, "-1/2"]}]
+
+
+def drive(until, load=LOAD, **outputs):
+    return wavesym.Scene(name="motion", system=DRIVE, load=load, output={"until": until, **outputs})
+
+
+def made(scene):
+    return Motion(scene, rational(scene.output.until))
+
+
+def enclosures(motion, place, taus):
+    balls = Balls(motion.segments(place))
+    return [balls.at(tau) for tau in taus]
+
+
+@pytest.fixture(autouse=True)
+def _precision():
+    with ctx.workprec(128):
+        yield
+
+
+@settings(max_examples=15, deadline=None)
+@given(scenes())
+def test_outputs_are_where_they_are_said_to_be(drawn):
+    """At 192 bits, with 48 terms, balls are small and yet hold what the exact solver knows, at fronts too."""
+    ctx.prec = 192
+    motion, exact = made(drawn), Truth(drawn, drawn.output.until)
+    until = drawn.output.until
+    for number, place in enumerate(motion.places):
+        fronts = exact.arrivals(number)
+        assert {rational(front) for front in fronts} <= {*motion.starts(place), rational(until)}
+        before = [front - Fraction(1, 2**40) for front in fronts if front]
+        taus = [*fronts, *before, *(until * k / 11 for k in range(12))]
+        balls = enclosures(motion, place, [rational(tau) for tau in taus])
+        for tau, ball in zip(taus, balls, strict=True):
+            assert ball.overlaps(exact.value(number, tau, 200))
+            assert ball.rad() < fmpq(1, 10**9)
+
+
+def by_hand(scene, right, left, panels=1):
+    """The motion of a scene whose waves are given: those that nodes send right, and left, `panels` in a window."""
+    motion = made(scene)
+    length = fmpq(1, panels)
+    parts = tuple(Panel(k * length, length) for k in range(panels))
+    motion.__dict__["_panels"] = parts
+    waves = Windows(motion._chain, motion._nodes, parts, left, right)
+    motion._marched = dict.fromkeys((53, *(2**k for k in range(6, 14))), waves)  # at every precision
+    return motion
+
+
+def waves(count, *powers, error=0):
+    return [Wave(arb_poly([fmpq(c) for c in powers]), arb(error))] * count
+
+
+@pytest.mark.parametrize(
+    ("output", "expected"),
+    [
+        # at 1/4 in rod 2: 3 + 5 u sent right by node 1 a quarter ago, 7 + 11 u sent left by node 2 three quarters ago
+        ({"strain": ["5/4"]}, lambda u: 7 + 11 * (u - fmpq(3, 4)) - (3 + 5 * (u - fmpq(1, 4)))),
+        ({"velocity": ["5/4"]}, lambda u: 7 + 11 * (u - fmpq(3, 4)) + (3 + 5 * (u - fmpq(1, 4)))),
+        ({"strain": ["1+"]}, lambda u: 7 + 11 * (u - 1) - (3 + 5 * u)),
+        ({"strain": ["2-"]}, lambda u: 7 + 11 * u - (3 + 5 * (u - 1))),
+    ],
+)
+def test_strain_is_the_difference_of_the_waves_and_velocity_their_sum(output, expected):
+    """One polynomial in tau for the whole of a wave: as each panel has its own start, the waves are cut to it here."""
+    sides = {}
+    for name, (start, slope) in {"right": (3, 5), "left": (7, 11)}.items():
+        sides[name] = [Wave(arb_poly([start + slope * n, slope]), arb(0)) for n in range(4)]
+    motion = by_hand(drive(3, **output), {1: sides["right"]}, {2: sides["left"]})
+    (place,) = motion.places
+    for tau in (fmpq(1), fmpq(5, 4), fmpq(3, 2), fmpq(7, 4), fmpq(2), fmpq(13, 5)):
+        (ball,) = enclosures(motion, place, [tau])
+        assert abs(ball - expected(tau)) < fmpq(1, 2**100)
+
+
+@pytest.mark.parametrize("output", [{"strain": ["5/4"]}, {"velocity": ["5/4"]}])
+@pytest.mark.parametrize(("one", "other"), [(fmpq(1, 8), fmpq(1, 16)), (fmpq(1, 2), fmpq(1, 2)), (fmpq(1), fmpq(0))])
+def test_both_waves_errors_are_in_the_value(output, one, other):
+    motion = by_hand(drive(2, **output), {1: waves(3, 2, error=one)}, {2: waves(3, 5, error=other)})
+    (ball,) = enclosures(motion, motion.places[0], [fmpq(3, 2)])
+    assert ball.rad() >= one + other
+    assert ball.rad() < one + other + fmpq(1, 2**20)
+
+
+def test_errors_of_velocity_pile_up_in_displacement():
+    """Waves that are too large, or too small, all the time: no less is told of the displacement, and little more."""
+    right, left = waves(6, 2, error=fmpq(1, 8)), waves(6, 5, error=fmpq(1, 16))
+    motion = by_hand(drive(5, displacement=["5/4"]), {1: right}, {2: left})
+    (place,) = motion.places
+    taus = [fmpq(k, 8) for k in range(2, 41)]
+    starts = motion.starts(place)
+    for tau, ball in zip(taus, enclosures(motion, place, taus), strict=True):
+        # nothing is sent before tau = 0
+        moved = 2 * (tau - fmpq(1, 4)) + 5 * max(tau - fmpq(3, 4), fmpq(0))
+        off = (tau - fmpq(1, 4)) / 8 + max(tau - fmpq(3, 4), fmpq(0)) / 16
+        assert ball.contains(arb(moved + off) - fmpq(1, 2**40))
+        assert ball.contains(arb(moved - off) + fmpq(1, 2**40))
+        # inside a segment the error is that of all of it
+        end = min((start for start in [*starts, motion.until] if start > tau), default=tau)
+        most = (end - fmpq(1, 4)) / 8 + max(end - fmpq(3, 4), fmpq(0)) / 16
+        assert ball.rad() < most + fmpq(1, 2**20)
+
+
+def test_a_displacement_begins_at_0_and_goes_on_where_it_was():
+    steady = [Wave(arb_poly([1, 2 + n]), arb(0)) for n in range(4)]
+    motion = by_hand(drive(3, displacement=["5/4"]), {1: steady}, {2: steady})
+    segments = motion.segments(motion.places[0])
+    assert Balls(segments).at(fmpq(0)) == 0
+    for one, other in pairwise(segments):
+        assert one.at(other.start - one.start).overlaps(other.at(fmpq(0)))
+        assert other.at(fmpq(0)).rad() < fmpq(1, 2**90)
+
+
+def test_places_with_sides_lie_in_the_rod_on_that_side():
+    strain = drive(2, strain=["0", "1/3", "1-", "1+", "3"], velocity=[0, 1, 3], displacement=["5/2"])
+    rods = [(place.rod, place.lag) for place in made(strain).places]
+    expected = [(1, 0), (1, "1/3"), (1, 1), (2, 0), (3, 1), (1, 0), (1, 1), (3, 1), (3, "1/2")]
+    assert rods == [(rod, rational(Fraction(lag))) for rod, lag in expected]
+
+
+def test_segments_start_where_an_output_can_bend():
+    motion = made(drive("7/2", strain=["4/3"]))
+    (place,) = motion.places  # a load at 0 and at 1/3, seen 1/3 and 2/3 later
+    assert motion.breaks(place) == {fmpq(0), fmpq(1, 3), fmpq(2, 3)}
+    assert motion.starts(place) == [fmpq(k, 3) for k in range(11)]
+    motion = made(drive(1, [{"body": 2, "times": ["1/2"], "steps": [1]}], strain=["5/4"]))
+    (place,) = motion.places
+    assert motion.starts(place) == [fmpq(0), fmpq(1, 4), fmpq(3, 4)]
+    assert motion.segments(place)[0].at(fmpq(1, 8)) == 0
+
+
+@pytest.mark.parametrize("quantity", ["strain", "velocity", "displacement"])
+def test_segments_for_some_taus_are_those_of_all(quantity):
+    motion = made(drive(6, **{quantity: ["4/3"]}))
+    (place,) = motion.places
+    every = {segment.start: segment.families for segment in motion.segments(place)}
+    taus = [fmpq(0), fmpq(1, 3), fmpq(5, 2), fmpq(29, 10), fmpq(6)]
+    some = motion.segments(place, taus)
+    assert [segment.start for segment in some] == sorted({segment.start for segment in some})
+    assert len(some) == (len(every) if quantity == "displacement" else 5)
+    for segment in some:
+        (found,), (expected,) = segment.families.values(), every[segment.start].values()
+        assert [str(c) for c in found.coeffs()] == [str(c) for c in expected.coeffs()]
+    for tau in taus:
+        assert str(Balls(some).at(tau)) == str(Balls(motion.segments(place)).at(tau))
+
+
+def test_of_what_begins_at_the_end_only_the_first_value_is_seen():
+    motion = made(drive(3, strain=["1+"]))
+    last = motion.segments(motion.places[0])[-1]
+    assert last.start == 3
+    (polynomial,) = last.families.values()
+    assert polynomial.length() == 1
+    exact = Truth(drive(3, strain=["1+"]), Fraction(3))
+    assert last.at(fmpq(0)).overlaps(exact.value(0, Fraction(3)))
+
+
+def test_loads_after_the_horizon_are_not_there():
+    late = [{"body": 2, "times": ["1/2", "29/10", "31/10"], "steps": [1, 2, 3]}]
+    motion = made(drive(3, late, strain=["1/2"]))
+    assert [panel.start for panel in motion._panels] == [fmpq(0), fmpq(1, 2), fmpq(9, 10)]
+    at_the_end = made(drive(3, [{"body": 2, "times": [3], "steps": [1]}], velocity=[1]))
+    assert at_the_end._acting == [Piece("M2", Fraction(3), Fraction(1))]
+
+
+def test_more_bits_make_smaller_balls_and_fewer_do_not_spoil_them():
+    motion = made(drive(4, strain=["1/3"]))
+    (place,) = motion.places
+    (first,) = enclosures(motion, place, [fmpq(7, 2)])
+    with ctx.workprec(256):
+        (better,) = enclosures(motion, place, [fmpq(7, 2)])
+        assert better.rad() < first.rad() * fmpq(1, 2**100)
+    (again,) = enclosures(motion, place, [fmpq(7, 2)])
+    assert again.overlaps(better)
+    assert again.rad() <= first.rad()
+
+
+def test_nothing_is_zero_but_what_has_no_terms():
+    still = made(drive(1, strain=["5/2"]))
+    assert is_zero(still.segments(still.places[0]))
+    moving = made(drive(4, strain=["5/2"]))
+    assert not is_zero(moving.segments(moving.places[0]))
+
+
+def stiff(kappa, until, **load):
+    """A shaft between two light discs, watched in the middle of it."""
+    given = {"body": 1, "times": [0], "steps": [1], **load}
+    system = {"type": "drive", "m": 1, "kappa": [kappa], "inertia": [1, 1]}
+    return wavesym.Scene(name="stiff", system=system, load=[given], output={"until": until, "velocity": ["1/2"]})
+
+
+@pytest.mark.parametrize(("kappa", "until"), [(5, 20), (20, 12)])
+def test_with_fewer_than_the_first_bits_nothing_is_left_at_the_end(kappa, until):
+    scene = stiff(kappa, until)
+    bits = made(scene).first_bits
+    assert bits == 1 << (bits.bit_length() - 1) >= 256
+    told = []
+    for precision in (bits // 2, 2 * bits):
+        with ctx.workprec(precision):
+            motion = made(scene)
+            (ball,) = enclosures(motion, motion.places[0], [motion.until])
+            told.append(float(ball.rad()) < 1)
+    assert told == [False, True]
+
+
+def test_first_bits_are_those_of_what_is_felt():
+    """The rate is 5; a disc loaded late moves for less long, and one half a rod away is felt that much later."""
+    lost = {
+        (20, 0): 5 * Fraction(39, 2),
+        (20, 15): 5 * Fraction(9, 2),
+        (20, 20): 0,
+    }
+    for (until, time), expected in lost.items():
+        motion = made(stiff(5, until, times=[time]))
+        assert fraction(motion._lost(0)) == expected
+        assert fraction(motion._lost(1)) == max(expected - 5, 0)
+    collision = wavesym.Scene(
+        name="begins",
+        system={"type": "collision", "m": 4, "kappa": [3, 3], "velocity": [1, 0]},
+        output={"until": 9, "strain": [2]},
+    )
+    # a body moves otherwise from tau = 1 on, when what begins at the contacts has come
+    assert [fraction(made(collision)._lost(x)) for x in (0, 1, 2)] == [0, 6 * 7, 0]
+    assert [made(one).first_bits for one in (collision, stiff(5, 20), stiff(5, 20, times=[19]))] == [128, 256, 128]
+
+
+def test_a_body_moves_from_the_first_of_its_loads_and_is_felt_at_the_nearest_place():
+    """Loads on the discs at 1, from tau = 1 on, and at 3, at once; seen at 1/2 and 3."""
+    load = [{"body": 2, "times": [1, 2], "steps": [1, 1]}, {"body": 4, "times": [0], "steps": [1]}]
+    motion = made(drive(10, load, strain=["1/2", 3]))
+    for x, (away, begins) in enumerate([("1/2", 2), ("1/2", 1), (1, 1), (0, 0)]):
+        assert motion._lost(x) == damping(motion._chain.nodes[x]) * (10 - rational(Fraction(away)) - begins)
+
+
+def test_too_many_windows_are_refused_before_the_first(monkeypatch):
+    def begun(*_, **__):
+        raise AssertionError("windows were begun")
+
+    monkeypatch.setattr(room, "windows", begun)
+    with pytest.raises(
+        CostError, match=r"^output.until: the waves of 4 nodes on 5e\+03 windows would be kept, at most 2"
+    ):
+        made(drive("5001", strain=["1/2"]))
+    made(drive(5000, strain=["1/2"]))
+
+
+def test_values_that_would_take_minutes_are_refused_before_the_first(monkeypatch):
+    def begun(*_, **__):
+        raise AssertionError("windows were begun")
+
+    monkeypatch.setattr(room, "windows", begun)
+    motion = made(drive(2000, strain=["1/2"]))
+    motion.refuse_long(1)
+    with pytest.raises(
+        CostError, match=r"^output: 100000 values of 1 outputs to tau = 2000 would take about \d+ s, at m"
+    ):
+        motion.refuse_long(100_000)
+
+
+@pytest.mark.parametrize("quantity", ["strain", "displacement"])
+@pytest.mark.parametrize("taus", [3, 1000])
+def test_the_seconds_told_are_those_of_segments_and_values(quantity, taus, monkeypatch):
+    """Counted apart, a second for each: of a displacement all segments are needed for any value."""
+    motion = made(drive("39/10", [{"body": 2, "times": [0, "1/2"], "steps": [1, 1]}], **{quantity: ["1/2", "3/2"]}))
+    terms = motion._waves.left[1][0].polynomial.length()
+    made_for = sum(len(motion.segments(place)) for place in motion.places)
+    expected = made_for if quantity == "displacement" else min(made_for, 2 * taus)
+    assert terms == motion.first_bits // 4 == 32
+    monkeypatch.setattr(room, "MOST_SECONDS", -1)
+    for composed, evaluated, seconds in ((1, 0, expected * terms**1.5), (0, 1, 2 * taus * terms)):
+        monkeypatch.setattr(room, "_COMPOSED", composed)
+        monkeypatch.setattr(room, "_EVALUATED", evaluated)
+        with pytest.raises(CostError, match=rf"would take about {seconds:.0f} s, at most"):
+            motion.refuse_long(taus)

@@ -1,0 +1,212 @@
+"""The chart: what is measured for it, how it is drawn, and its numbers."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import replace
+from time import sleep
+
+import numpy as np
+import pytest
+
+from wavesym.cli import main
+from wavesym.compiler import evaluator
+from wavesym.lab import subjects as listed
+from wavesym.lab.floor import floor
+from wavesym.lab.measure import Measured, Row, _Judge, measure, to_csv
+from wavesym.lab.subjects import Subject, spacing, subjects, taus
+from wavesym.lab.timing import medians
+from wavesym.rivals.every import RIVALS
+from wavesym.scene import Scene
+
+SCENE = Scene(
+    name="small",
+    system={"type": "collision", "m": 4, "kappa": ["1/10", "1/5"], "velocity": [1, "-1/2"]},
+    output={"until": 3, "strain": [2], "velocity": [1]},
+)
+
+
+def subject(wrong=lambda tau: 0.0):
+    """The reference as a subject, with an error added."""
+    response = evaluator(SCENE)
+    at = taus(3.0, 301, "double")
+
+    def values(where):
+        return response(where) + wrong(np.asarray(where))
+
+    return Subject("x", "rival", "C", "double", "", 0.1, None, 301, lambda: values(at), values)
+
+
+def test_the_reference_has_no_error():
+    assert _Judge(SCENE).errors(subject()) == (0, 0)
+
+
+def test_errors_are_told_apart_by_where_they_are():
+    judge = _Judge(SCENE)
+    near = subject(lambda tau: 1e-3 * (abs(tau - 2) <= 0.02))
+    far = subject(lambda tau: 1e-3 * (abs(tau - 1.5) < 0.02))
+    away, fronts = judge.errors(near)
+    assert (away, fronts > 1e-4) == (0, True)
+    away, fronts = judge.errors(far)
+    assert (away > 1e-4, fronts) == (True, 0)
+
+
+def test_the_value_at_a_jump_is_looked_at():
+    assert _Judge(SCENE).errors(subject(lambda tau: 1.0 * (tau == 2)))[1] > 0.1
+
+
+def test_what_is_no_number_is_infinitely_wrong():
+    wrong = subject(lambda tau: np.where(abs(tau - 1.5) < 0.02, np.nan, 0))
+    assert _Judge(SCENE).errors(wrong)[0] == np.inf
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+@pytest.mark.parametrize("until", [0.7, 10.0, 1 / 3])
+def test_samples_stay_on_the_horizon(precision, until):
+    where = taus(until, 10001, precision)
+    assert until * (1 - 1e-6) < float(where[-1]) <= until
+    assert where.dtype == (np.float32 if precision == "single" else np.float64)
+    assert spacing(until, 1, precision) > 0
+
+
+def test_our_evaluators_keep_their_bounds():
+    judge, seen = _Judge(SCENE), set()
+    for one in subjects(SCENE, 301):
+        assert max(judge.errors(one)) <= one.bound + 2.0**-53
+        seen.add(one.curve)
+    assert {("closed", "C", "double"), ("closed", "NumPy", "double")} <= seen
+
+
+def test_medians_interleave():
+    order = []
+    calls = [lambda: order.append(0), lambda: (order.append(1), sleep(0.002))]
+    fast, slow = medians(calls, rounds=3, shortest=0.0)
+    assert 0 < fast < 0.002 <= slow
+    assert order[4:] == [0, 1] * 3  # after one call to warm up, and one to see how long it takes
+
+
+def test_medians_have_no_patience_with_slow_calls():
+    count = []
+    medians([lambda: (count.append(0), sleep(0.02))], rounds=50, shortest=0.0, patience=0.05)
+    assert len(count) <= 5
+
+
+@pytest.mark.parametrize("single", [False, True])
+def test_the_floor_is_a_straight_line(single):
+    values = floor(2, 1000, single)()
+    assert values.dtype == (np.float32 if single else np.float64)
+    np.testing.assert_array_equal(values, np.tile(1 + 0.5 * np.arange(1000), (2, 1)))
+
+
+def row(name, k, kind="rival", **changes):
+    made = Row(name, kind, "C", "double", f"{k}", 2.0 * k, 1e-3 * k, 0.1**k, 0.2, None)
+    return replace(made, **changes)
+
+
+MEASURED = Measured(
+    (
+        *(row("closed", k, "wavesym", proved_bound=1e-3) for k in (1,)),
+        *(row("pieces", k, "wavesym", ns_per_value=0.3 * k, proved_bound=1e-9) for k in (4, 8, 12)),
+        *(row(f"rival {n}", k, ns_per_value=10.0 * n * k) for n in range(8) for k in (1, 3, 5) if n),
+        row("ball reference", 1, "wavesym", error_away=0.0, error_at_fronts=0.0),
+        row("hopeless", 1, error_away=np.inf, error_at_fronts=7.0),
+    ),
+    floor=0.12,
+    samples=1001,
+)
+
+
+def test_csv_holds_every_number():
+    rows = list(csv.DictReader(io.StringIO(to_csv(MEASURED))))
+    assert len(rows) == len(MEASURED.rows) + 1
+    assert (rows[0]["kind"], rows[0]["ns_per_value"]) == ("floor", "0.12")
+    assert float(rows[1]["proved_bound"]) == 1e-3
+    assert rows[-1]["error_away"] == "inf"
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory):
+    pytest.importorskip("matplotlib")
+    from wavesym.lab.chart import draw
+    from wavesym.report.saving import save
+
+    folder = tmp_path_factory.mktemp("drawn")
+    figures = [draw(SCENE, MEASURED) for _ in range(2)]
+    for k, figure in enumerate(figures):
+        save(figure, folder / f"{k}.svg")
+    return figures[0], [(folder / f"{k}.svg").read_bytes() for k in range(2)]
+
+
+def test_same_numbers_same_bytes(drawn):
+    _, (first, second) = drawn
+    assert first == second
+    assert b"<dc:date>" not in first
+
+
+def test_every_curve_is_named_once_in_each_panel(drawn):
+    figure, _ = drawn
+    names = {f"{row.name}, {row.language}" for row in MEASURED.rows} | {"floor: writing a straight line of doubles, C"}
+    for axes in figure.axes[:2]:
+        assert sorted(text.get_text() for text in axes.texts) == sorted(names)
+
+
+def test_no_label_covers_another_or_leaves_its_panel(drawn):
+    figure, _ = drawn
+    figure.canvas.draw()
+    renderer = figure.canvas.get_renderer()
+    for axes in figure.axes[:2]:
+        inside = axes.get_window_extent(renderer).padded(1)
+        boxes = [text.get_window_extent(renderer) for text in axes.texts]
+        for k, box in enumerate(boxes):
+            assert inside.x0 <= box.x0 < box.x1 <= inside.x1
+            assert inside.y0 <= box.y0 < box.y1 <= inside.y1
+            assert not any(box.overlaps(other) for other in boxes[:k])
+
+
+def test_curves_differ_without_their_colour():
+    pytest.importorskip("matplotlib")
+    from wavesym.lab.chart import _curves
+
+    looks = [(style.marker, style.dashes, style.ours) for style, _ in _curves(MEASURED.rows)]
+    assert len(set(looks)) == len(looks)
+
+
+def test_other_formats_and_what_is_none(drawn, tmp_path):
+    from wavesym.errors import SceneError
+    from wavesym.report.saving import save
+
+    save(drawn[0], tmp_path / "a" / "chart.png")
+    assert (tmp_path / "a" / "chart.png").read_bytes().startswith(b"\x89PNG")
+    with pytest.raises(SceneError, match="no picture"):
+        save(drawn[0], tmp_path / "chart.txt")
+
+
+def test_measured_through(monkeypatch):
+    """All of it, with few rivals: curves, times, errors, set-up."""
+    monkeypatch.setattr(listed, "RIVALS", [replace(rival, resolutions=rival.resolutions[:2]) for rival in RIVALS[:4]])
+    monkeypatch.setattr(listed, "TOLERANCES", listed.TOLERANCES[:1])
+    told = []
+    found = measure(SCENE, 301, told.append)
+    assert {row.name for row in found.rows} >= {"closed", "ball reference", *(rival.name for rival in RIVALS[:4])}
+    assert found.floor > 0
+    for each in found.rows:
+        assert each.ns_per_value > 0
+        assert each.setup_seconds > 0
+        assert max(each.error_away, each.error_at_fronts) < 1
+    assert told[-1] == "timing"
+
+
+def test_a_file_that_is_no_picture_is_refused_before_the_work(capsys, tmp_path):
+    pytest.importorskip("matplotlib")
+    assert main(["chart", "drive_m1", "-o", str(tmp_path / "chart.txt")]) == 2
+    assert ".svg, .png, .pdf expected" in capsys.readouterr().err
+
+
+def test_command(monkeypatch, tmp_path):
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr("wavesym.lab.measure.measure", lambda scene, samples, progress: MEASURED)
+    picture, table = tmp_path / "chart.svg", tmp_path / "chart.csv"
+    assert main(["chart", "collision_m4", "-o", str(picture), "--csv", str(table)]) == 0
+    assert picture.read_text().rstrip().endswith("</svg>")
+    assert table.read_text() == to_csv(MEASURED)

@@ -1,0 +1,149 @@
+"""The choice among evaluators: by proved bound and by work, with the reason told; on evaluators made by hand."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import pytest
+
+import wavesym
+from wavesym.errors import CostError, RangeError, ToleranceError, WavesymError
+from wavesym.numbers.reals import REALS
+from wavesym.programs import choice
+from wavesym.programs.choice import choose
+
+
+@dataclass
+class Made:
+    """As much of an evaluator as is looked at, and what it was asked."""
+
+    name: str
+    error_bound: float
+    work: float = 1.0
+    asked: list = field(default_factory=list)
+
+    def __call__(self, *asked):
+        self.asked.append(asked)
+        return self
+
+    @property
+    def summary(self):
+        return f"{self.name} is good to {self.error_bound:g}"
+
+    def shortfall(self, tolerance):
+        return f"{self.name}: {self.error_bound:g} at best"
+
+
+def costly(*_):
+    raise CostError("output.until: dear")
+
+
+def beyond(*_):
+    raise OverflowError
+
+
+@pytest.fixture
+def makers(monkeypatch):
+    def set_to(**given):
+        monkeypatch.setattr(choice, "MAKERS", {"closed": costly, "pieces": costly, "march": costly, **given})
+        return SimpleNamespace(**given)
+
+    return set_to
+
+
+def scene(tolerance="1/1024"):
+    return wavesym.Scene(
+        name="chosen",
+        system={"type": "drive", "m": 1, "kappa": [1], "inertia": [1, 1]},
+        load=[{"body": 1, "times": [0], "steps": [1]}],
+        output={"until": 3, "tolerance": tolerance, "strain": ["1/2"]},
+    )
+
+
+def test_the_one_with_less_work_is_taken(makers):
+    for closed, pieces, best in ((5, 3, "pieces"), (3, 5, "closed"), (3, 3, "closed")):
+        makers(closed=Made("closed", 1e-9, closed), pieces=Made("pieces", 1e-8, pieces))
+        chosen = choose(scene())
+        other = "closed is good to 1e-09" if best == "pieces" else "pieces is good to 1e-08"
+        mine = "pieces is good to 1e-08" if best == "pieces" else "closed is good to 1e-09"
+        assert chosen.name == best == chosen.evaluator.name
+        assert chosen.reason == f"{other}, takes longer; {mine}"
+
+
+def test_a_bound_that_is_the_tolerance_meets_it_and_one_above_does_not(makers):
+    makers(pieces=Made("pieces", 2.0**-10))
+    assert choose(scene()).name == "pieces"
+    makers(pieces=Made("pieces", 2.0**-10 + 2.0**-60))
+    with pytest.raises(
+        ToleranceError, match=r"^output.tolerance: 0.000976562 cannot be met: closed: costs too much; pie"
+    ):
+        choose(scene())
+    makers(pieces=Made("pieces", float("inf")))
+    with pytest.raises(ToleranceError, match="inf at best"):
+        choose(scene("999/1000"))
+    makers(pieces=Made("pieces", 0.99))
+    assert choose(scene("999/1000")).name == "pieces"
+    makers(pieces=Made("pieces", 0.9995))
+    with pytest.raises(ToleranceError):
+        choose(scene("999/1000"))
+
+
+def test_a_march_is_made_only_where_nothing_else_does(makers):
+    made = makers(pieces=Made("pieces", 1e-9), march=Made("march", 1e-9, 0.1))
+    assert choose(scene()).name == "pieces"
+    assert not made.march.asked
+    assert choose(scene(), "march").name == "march"
+    made = makers(pieces=Made("pieces", 1), march=Made("march", 1e-9))
+    chosen = choose(scene())
+    assert chosen.name == "march"
+    assert chosen.reason == "closed: costs too much; pieces: 1 at best; march is good to 1e-09"
+
+
+def test_only_the_one_asked_for_is_made(makers):
+    made = makers(closed=Made("closed", 1e-9), pieces=Made("pieces", 1), march=Made("march", 1e-9))
+    assert choose(scene(), "closed", "single") == ("closed", made.closed, "closed is good to 1e-09")
+    assert made.closed.asked == [(scene(), REALS["single"], True, None)]
+    assert not made.pieces.asked + made.march.asked
+    with pytest.raises(ToleranceError, match=r"cannot be met: pieces: 1 at best$"):
+        choose(scene(), "pieces")
+    choose(scene())
+    assert made.closed.asked[1:] == [(scene(), REALS["double"], False, None)]
+
+
+def test_windows_are_those_of_a_march(makers):
+    made = makers(march=Made("march", 1e-9))
+    choose(scene(), "march", windows=7)
+    assert made.march.asked == [(scene(), REALS["double"], True, 7)]
+    for name in ("auto", "pieces"):
+        with pytest.raises(WavesymError, match=f"--windows goes with --evaluator march, {name} given"):
+            choose(scene(), name, windows=7)
+
+
+def test_what_was_asked_for_says_why_it_is_refused(makers):
+    makers(closed=beyond)
+    with pytest.raises(CostError, match="dear"):
+        choose(scene(), "pieces")
+    with pytest.raises(RangeError, match=r"^output: closed needs numbers beyond the range of single precision$"):
+        choose(scene(), "closed", "single")
+    with pytest.raises(
+        ToleranceError, match=r"closed: numbers beyond the range of double precision; pieces: costs too"
+    ):
+        choose(scene())
+
+
+def test_closed_forms_are_made_of_small_tables_unless_asked_for(monkeypatch):
+    """A hundred outputs, and loads that come later, bring 2 * 100 * 301 increments."""
+    later = [{"body": 1, "times": [0, "1/2"], "steps": [1, -1]}]
+    places = [f"{k}/101" for k in range(1, 101)]
+    many = wavesym.Scene(
+        name="many",
+        system={"type": "drive", "m": 1, "kappa": [1], "inertia": [1, 1]},
+        load=later,
+        output={"until": 300, "strain": places},
+    )
+    monkeypatch.setattr(choice, "signals", lambda scene, most, real: (scene, most, real))
+    monkeypatch.setattr(choice, "closed_form", lambda signals, tau_max, real: (signals, tau_max, real))
+    double = REALS["double"]
+    with pytest.raises(CostError, match=r"^load: 6.0e\+04 increments would arrive"):
+        choice._closed(many, double, False, None)
+    assert choice._closed(many, double, True, None) == ((many, float("inf"), double), 300.0, double)
+    assert choice._closed(scene(), double, False, None) == ((scene(), 50_000, double), 3.0, double)

@@ -1,0 +1,207 @@
+"""What would take minutes is refused before it is begun, and what is quick is not refused."""
+
+import random
+from fractions import Fraction
+
+import pytest
+from flint import ctx
+
+import wavesym
+from wavesym.errors import CostError, ToleranceError
+from wavesym.exact import motion, reference
+from wavesym.exact.motion import Motion
+from wavesym.exact.reference import Reference
+from wavesym.numbers.reals import DOUBLE
+from wavesym.programs import choice, pieces
+from wavesym.programs.choice import choose
+from wavesym.targets.files import files
+
+
+class Begun(Exception):
+    pass
+
+
+def begun(*_, **__):
+    raise Begun
+
+
+def drive(kappa, inertia, until, **output):
+    return wavesym.Scene(
+        name="drive",
+        system={"type": "drive", "m": len(kappa), "kappa": kappa, "inertia": inertia},
+        load=[{"body": 1, "times": [0], "steps": [1]}],
+        output={"until": until, **(output or {"strain": ["1/2"]})},
+    )
+
+
+def record(samples, outputs, until=20):
+    drawn = random.Random(2)
+    return wavesym.Scene(
+        name="record",
+        system={"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"},
+        load=[{"spacing": "1/10", "samples": [drawn.randrange(-100, 100) for _ in range(samples)]}],
+        output={"until": until, "tolerance": "1e-8", "strain": [f"{2 * k + 1}/{outputs}" for k in range(outputs)]},
+    )
+
+
+def long_numbers(count):
+    drawn = random.Random(3)
+    return [f"{drawn.randrange(9 * 10**48, 10**49)}/{drawn.randrange(9 * 10**48, 10**49)}" for _ in range(count)]
+
+
+@pytest.fixture
+def idle(monkeypatch):
+    """Nothing that takes long may begin."""
+    monkeypatch.setattr(motion, "windows", begun)
+    monkeypatch.setattr("wavesym.exact.signal.unit_response", begun)
+
+
+def test_numbers_of_99_characters_cost_tables_and_not_windows(idle):
+    """Exact tables would have coefficients of tens of thousands of digits; in balls a number is as short as another."""
+    scene = drive(long_numbers(3), long_numbers(4), 40)
+    with pytest.raises(CostError, match=r"^output.until: the tables would hold .* fewer digits in the scene's numbers"):
+        choice.signals(scene, 50_000)
+    made = Reference(scene)
+    assert made.signals is None
+    with pytest.raises(Begun):
+        made.values([1.0] * 2000)
+    with pytest.raises(Begun):
+        choose(scene, "pieces")
+
+
+@pytest.mark.slow
+def test_numbers_of_99_characters_are_generated_and_run():
+    scene = drive(long_numbers(3), long_numbers(4), 40)
+    assert files(scene, "all")
+    assert len(Reference(scene).values([0.2 * k for k in range(201)])[0]) == 201
+
+
+@pytest.mark.parametrize(("samples", "outputs"), [(200, 100), (200, 300), (1000, 2000)])
+def test_a_long_record_is_not_for_closed_forms_nor_large_ones_for_pieces(samples, outputs, idle):
+    scene = record(samples, outputs)
+    for asked in (choice._WORTH_TRYING, 1e5):
+        with pytest.raises(CostError, match=r"^load: .* increments would arrive at the outputs, at most"):
+            choice.refuse_many(scene, asked)
+    assert Reference(scene).signals is None
+    with pytest.raises(pieces._TooLarge if outputs == 2000 else Begun):
+        choose(scene, "pieces")
+
+
+def test_a_building_watched_for_20_is_refused_nothing(idle):
+    small = wavesym.Scene(
+        name="small",
+        system={"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"},
+        load=[{"times": [0], "a": [1], "b": [0]}],
+        output={"until": 20, "strain": ["1/2", "3/2"]},
+    )
+    for name in ("closed", "pieces"):
+        with pytest.raises(Begun):
+            choose(small, name)
+    with pytest.raises(Begun):
+        Reference(small).values([1.0] * 1000)
+
+
+@pytest.mark.parametrize("until", [1000, 3000])
+def test_values_far_out_are_refused_or_known_soon(until, idle, monkeypatch):
+    """Three unequal shafts lose bits in proportion to the time: their waves would fill the memory."""
+    monkeypatch.setattr(motion, "windows", real_windows)
+    monkeypatch.setattr("wavesym.exact.windows._Body.moved", begun)
+    with pytest.raises(CostError, match=r"^output"):
+        Reference(drive([1, "1/2", "1/3"], [1, 2, 3, 4], until)).values([1.0 * k for k in range(1001)])
+
+
+real_windows = motion.windows
+
+
+def test_a_heavy_shaft_for_long_is_refused_by_all_but_the_tables(monkeypatch):
+    """Rates of 10000 until tau = 200: millions of bits for windows, and polynomials of thousands of powers to march."""
+    scene = drive([10000], [1, 1], 200)
+    monkeypatch.setattr(motion, "windows", begun)
+    for name, why in (("pieces", r"pieces would need \d+ bits"), ("march", r"polynomials of degree")):
+        with pytest.raises(CostError, match=rf"^output.until: .*{why}"):
+            choose(scene, name)
+    with pytest.raises(ToleranceError, match=r"pieces: costs too much; march: costs too much"):
+        choose(scene)
+    assert Reference(scene).signals is not None
+    three = drive([10000] * 3, [1] * 4, 200)
+    with pytest.raises(
+        CostError, match=r"^output: 11 values of 1 outputs to tau = 200 would take about \d+ s, at most"
+    ):
+        Reference(three).values([20.0 * k for k in range(11)])
+
+
+def fits(scene, tolerance="1e-8"):
+    return pieces._Fits(scene, DOUBLE, pieces.rational(Fraction(tolerance)))
+
+
+@pytest.mark.parametrize(
+    ("scene", "per_unit"),
+    [
+        (drive([1], [1, 2], 7), 1),
+        (drive([1], [1, 2], "15/2", strain=["1/3"], velocity=["1/3", "1/2"]), 2),
+        (record(13, 4, until=4), 4),
+    ],
+)
+def test_at_least_so_many_pieces_as_foretold_are_made(scene, per_unit):
+    """And no more than one unit's worth above that, and a stretch that the last number of the horizon begins."""
+    made = fits(scene)
+    whole = int(made._motion.until.floor())
+    per_window = made._least(per_unit) // whole
+    with ctx.workprec(128):
+        count = sum(len(grid.powers) * len(grid.outputs) for grid in made.fitted(per_unit).grids)
+    assert made._least(per_unit) <= count
+    assert count <= made._least(per_unit) + per_window + 2 * len(scene.outputs)
+
+
+def test_tables_beyond_the_limit_are_refused_before_a_fit(monkeypatch):
+    made = fits(drive([1], [1, 2], 7))
+    monkeypatch.setattr(pieces._Fits, "_fit", begun)
+    size = 8 * made._least(2)
+    with pytest.raises(
+        pieces._TooLarge, match=r"^output.until: pieces would take at least .* a shorter horizon, fewer"
+    ):
+        made.fitted(2, size - 1)
+    with pytest.raises(Begun):
+        made.fitted(2, size)
+
+
+def test_a_fit_stops_at_the_limit(monkeypatch):
+    """What degrees make of the tables is seen output by output."""
+    made = fits(drive([1], [1, 2], 7, strain=["1/3", "1/2"], velocity=["1/3", "1/2"]))
+    outputs = []
+    right = pieces._Fits._output
+
+    def counted(self, *given):
+        outputs.append(given)
+        return right(self, *given)
+
+    monkeypatch.setattr(pieces._Fits, "_output", counted)
+    with pytest.raises(pieces._TooLarge):
+        made.fitted(2, 8 * made._least(2))
+    assert len(outputs) == 1
+
+
+def test_one_value_that_needs_many_bits_does_not_cost_the_others(monkeypatch):
+    """A strain is exactly 0 at tau = 1, which no bits tell before it is smaller than all doubles; the next is not."""
+    monkeypatch.setattr(reference, "_MODERATE", 0)
+    load = {"times": [0], "a": [1], "b": ["-4/3"]}
+    scene = wavesym.Scene(
+        name="zero",
+        system={"type": "building", "m": 2, "kappa": [3, "3/5", "1/5"], "base": "force"},
+        load=[load],
+        output={"until": 2, "strain": ["1/4", "1/2"]},
+    )
+    lengths = {}
+    value = Motion._value
+
+    def counted(self, place, start):
+        found = value(self, place, start)
+        lengths.setdefault((place.observable.name, ctx.prec), []).append(found.polynomial.length())
+        return found
+
+    monkeypatch.setattr(Motion, "_value", counted)
+    taus = [0.1 * k for k in range(20)] + [1.0]
+    first, _ = Reference(scene).values(taus)
+    assert first[-1] == 0.0
+    assert lengths["strain@1/4", 2048]
+    assert max(lengths["strain@1/2", 128]) <= 33

@@ -1,0 +1,103 @@
+"""What is 0 throughout is found, and nothing else is: against the exact solution."""
+
+from fractions import Fraction
+
+import pytest
+
+from tests.support.truth import Truth
+from wavesym.programs.march import zero
+from wavesym.programs.march.plan import plan
+from wavesym.programs.march.zero import silent
+from wavesym.scene import Scene
+
+SHAFT = {"type": "drive", "m": 1, "kappa": ["3/7"], "inertia": [1, 1]}
+TWO = {"type": "drive", "m": 2, "kappa": ["3/7", "1/7"], "inertia": [1, 3, 1]}
+BARS = {"type": "collision", "m": 4, "kappa": ["3/7", "3/7"], "velocity": [1, -1]}
+UNEQUAL = {"type": "collision", "m": 4, "kappa": ["3/7", "2/7"], "velocity": [1, "1/2"]}
+TOWER = {"type": "building", "m": 2, "kappa": [1, "1/2", "1/3"]}
+
+
+def step(body, *times, weight=1):
+    return {"body": body, "times": times, "steps": [weight] * len(times)}
+
+
+def scene(system, load, until, **outputs):
+    return Scene(name="made", system=system, load=load, output={"until": until, "tolerance": "1e-3", **outputs})
+
+
+CASES = {
+    # a jump at the end of the horizon is seen, a motion or a turn that begins there is not
+    "disc": (SHAFT, [step(1, 0)], ["1/2", 1, "3/2"], {"velocity": [0, "1/2", 1], "strain": ["1/2"]}),
+    "late": (SHAFT, [step(1, "1/3")], ["1/3", "5/6", "4/3", "3/2"], {"velocity": ["1/2", 1], "strain": ["1/2", 0]}),
+    "pushed": (
+        TOWER | {"base": "force"},
+        [{"times": ["1/2"], "a": [1], "b": [0]}],
+        ["1/2", "3/4", 1, "3/2", "5/2", 3],
+        {"strain": [0, "1/4", "1/2", "1-", "1+"], "velocity": ["1/4", 1], "displacement": ["1/2", 1]},
+    ),
+    "ramp": (TOWER | {"base": "force"}, [{"times": [0], "a": [0], "b": [1]}], ["1/2", 1], {"strain": [0, "1/2", "1-"]}),
+    "ground": (TOWER | {"base": "ground"}, [{"times": [0], "a": [1], "b": [0]}], [1, 2], {"velocity": [0, 1, 2]}),
+    "bend": (TOWER | {"base": "ground"}, [{"times": [0], "a": [0], "b": [1]}], [1, 2], {"velocity": [0, 1, 2]}),
+    # equal moments turn both ends against each other
+    "symmetric": (TWO, [step(1, 0), step(3, 0)], [1, 3], {"velocity": [1, "1/2"], "displacement": [1], "strain": [1]}),
+    # and meet where they arrive at once, sent on different panels
+    "panels": (
+        SHAFT,
+        [step(1, 0), step(2, "1/3")],
+        ["2/3", 1, "5/4", "4/3", 2],
+        {"velocity": ["2/3"], "strain": ["2/3"]},
+    ),
+    "against": (
+        SHAFT,
+        [step(1, 0), step(2, "1/3", weight=-1)],
+        ["2/3", 1, "5/4"],
+        {"velocity": ["2/3"], "strain": ["2/3"]},
+    ),
+    "nothing": (SHAFT, [step(1, 0), step(1, 0, weight=-1)], [3], {"velocity": [0]}),
+    "short": (SHAFT, [step(1, 0), step(1, "1/2", weight=-1)], [1, "3/2"], {"velocity": [0, 1]}),
+    # a wave that has passed by is still there
+    "bars": (BARS, [], ["1/2", 1, 4], {"strain": [0, 2, "3/2", "1-"], "velocity": [2, "3/2"], "displacement": [2]}),
+    "unequal": (UNEQUAL, [], [1, 4], {"strain": [0, 4, 2, "1-"], "velocity": [0, 2], "displacement": [0, 2]}),
+    "apart": (
+        UNEQUAL | {"velocity": [0, "-1/2"]},
+        [],
+        [1, 2],
+        {"velocity": [0, 1, "3/2"], "displacement": [1], "strain": ["1-"]},
+    ),
+}
+
+
+def sided(case):
+    system, load, untils, outputs = case
+    if system["type"] == "drive" and 1 in outputs.get("strain", ()) and system["m"] > 1:
+        outputs = outputs | {"strain": ["1-"]}
+    return system, load, untils, outputs
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_what_is_zero_is_told_from_what_is_small(case):
+    system, load, untils, outputs = sided(case)
+    for until in untils:
+        made = scene(system, load, until, **outputs)
+        truth = Truth(made, Fraction(plan(made).tau_max))
+        expected = [truth.largest(o, truth.until)[1] == 0 for o in range(len(made.outputs))]
+        assert silent(plan(made)) == expected, (until, made.outputs)
+
+
+def test_some_of_it_is_zero_and_some_is_not():
+    """Of each case, so that the comparison can fail."""
+    found = {True: 0, False: 0}
+    for case in CASES.values():
+        system, load, untils, outputs = sided(case)
+        for until in untils:
+            for answer in silent(plan(scene(system, load, until, **outputs))):
+                found[answer] += 1
+    assert min(found.values()) > 20
+
+
+def test_an_instant_is_not_missed_by_the_number_that_is_drawn(monkeypatch):
+    made = scene(SHAFT, [step(1, 0), step(2, "1/3")], 2, velocity=["2/3"], strain=["2/3"])
+    answers = silent(plan(made))
+    for drawn in (3, 10**30 + 7):
+        monkeypatch.setattr(zero, "_T", drawn)
+        assert silent(plan(made)) == answers

@@ -1,0 +1,46 @@
+"""Templates are given just the keys they use, and numbers read back to the same bits."""
+
+from dataclasses import make_dataclass
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from jinja2 import UndefinedError
+
+from wavesym.rendering import render
+from wavesym.targets.literals import lines, literal
+
+
+def test_a_key_that_is_not_used_is_an_error():
+    context = make_dataclass("Context", ["scene", "idle"])
+    with pytest.raises(ValueError, match="idle"):
+        render("c/header.h.j2", context(None, None))
+
+
+def test_a_key_that_is_missing_is_an_error():
+    with pytest.raises(ValueError, match="scene"):
+        render("c/header.h.j2", make_dataclass("Context", [])())
+
+
+def test_a_field_that_is_missing_is_an_error():
+    with pytest.raises(UndefinedError):
+        render("c/header.h.j2", make_dataclass("Context", ["scene"])(object()))
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_literals_read_back(value):
+    assert float(literal(value)) == value
+    assert literal(value) == repr(value)
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), float("-inf")])
+def test_what_is_not_finite_is_no_literal(value):
+    with pytest.raises(ValueError, match="literal"):
+        literal(value)
+
+
+def test_lines_keep_every_item_and_are_never_empty():
+    items = [str(n) for n in range(1000)]
+    assert ", ".join(items).split() == " ".join(lines(items)).split()
+    assert max(map(len, lines(items))) <= 116
+    assert lines([]) == ("0",)

@@ -1,1 +1,0 @@
-"""Recurrence -> Table: the recurrences run in exact arithmetic, one unit response per source."""

@@ -1,0 +1,1 @@
+"""What was derived and computed as text, LaTeX, JSON and CSV."""

@@ -1,0 +1,41 @@
+"""A derivation as a document: text for the terminal, LaTeX, JSON for machines."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+from wavesym.documents.derivation.notation import Latex, Text
+from wavesym.documents.derivation.statement import Statement, scene_statement, statements
+from wavesym.rendering import render
+
+if TYPE_CHECKING:
+    from wavesym.model.symbolic import SymbolicChain
+
+
+@dataclass(frozen=True)
+class Document:
+    """templates/text/derivation.txt.j2 and templates/latex/derivation.tex.j2."""
+
+    systems: tuple[Statement, ...]
+
+
+def derivation(name: str, m: int | None, format: str) -> str:
+    """The derivation of a system as "text", "latex" or "json"."""
+    return _written(statements(name, m, _notation(format)), format)
+
+
+def scene_derivation(name: str, symbols: SymbolicChain, format: str) -> str:
+    """The derivation of the system of a scene, with the families of its own parameters."""
+    return _written((scene_statement(name, symbols, _notation(format)),), format)
+
+
+def _notation(format: str) -> Text:
+    return Latex() if format == "latex" else Text()
+
+
+def _written(made: tuple[Statement, ...], format: str) -> str:
+    if format == "json":
+        return json.dumps([asdict(statement) for statement in made], indent=2) + "\n"
+    return render({"latex": "latex/derivation.tex.j2", "text": "text/derivation.txt.j2"}[format], Document(made))

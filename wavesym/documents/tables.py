@@ -1,0 +1,71 @@
+"""A table as text: CSV, JSON or LaTeX, with exact values, line by line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from flint import fmpq
+
+from wavesym.exact.table import Row, Table
+from wavesym.model.symbolic import SymbolicChain
+from wavesym.numbers.factored import written
+from wavesym.numbers.ratio import Ratio
+from wavesym.rendering import render_stream
+
+
+@dataclass(frozen=True)
+class LatexTable:
+    """templates/latex/tables.tex.j2; `rows` is read once."""
+
+    name: str
+    interval: str
+    rows: Iterator[tuple[str, ...]]
+
+
+def table_lines(table: Table, name: str, format: str) -> Iterator[str]:
+    """The rows of a table as text. `format` is "csv", "json" or "latex"."""
+    return {"csv": _csv, "json": _json, "latex": _latex}[format](table, name)
+
+
+def _csv(table: Table, name: str) -> Iterator[str]:
+    yield ",".join(Row._fields) + "\n"
+    for row in table.rows():
+        yield ",".join(map(str, row)) + "\n"
+
+
+def _json(table: Table, name: str) -> Iterator[str]:
+    yield f'{{"name": {json.dumps(name)}, "interval": {table.interval}, "rows": ['
+    separator = "\n"
+    for row in table.rows():
+        yield separator + json.dumps(row._asdict() | {"rate": str(row.rate), "value": str(row.value)})
+        separator = ",\n"
+    yield "\n]}\n"
+
+
+def symbolic_lines(table: Table, symbols: SymbolicChain, name: str, format: str) -> Iterator[str]:
+    """The rows of a table of rational functions as text. `format` is "csv" or "json"."""
+    return _csv(table, name) if format == "csv" else _symbolic_json(table, symbols, name)
+
+
+def _symbolic_json(table: Table, symbols: SymbolicChain, name: str) -> Iterator[str]:
+    meaning = json.dumps({parameter: str(ratio) for parameter, ratio in symbols.meaning.items()})
+    yield f'{{"name": {json.dumps(name)}, "interval": {table.interval}, "symbols": {meaning}, "rows": ['
+    separator = "\n"
+    forms: dict[str, None] = {}
+    for row in table.rows():
+        value = row.value if isinstance(row.value, Ratio) else symbols.ring.constant(fmpq(str(row.value)))
+        told = value.factored
+        forms |= dict.fromkeys(written(form) for form, _ in told.below)
+        above, below = told.parts
+        fields = row._asdict() | {"rate": str(row.rate), "numerator": above, "denominator": below}
+        del fields["value"]
+        yield separator + json.dumps(fields)
+        separator = ",\n"
+    yield f'\n], "forms": {json.dumps(list(forms))}}}\n'
+
+
+def _latex(table: Table, name: str) -> Iterator[str]:
+    rows = (tuple(map(str, row)) for row in table.rows())
+    return render_stream("latex/tables.tex.j2", LatexTable(name.replace("_", r"\_"), str(table.interval), rows))

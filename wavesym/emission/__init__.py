@@ -1,1 +1,0 @@
-"""Evaluator -> files: dataclasses of strings for the templates, literals, rendering."""

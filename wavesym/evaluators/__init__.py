@@ -1,1 +1,0 @@
-"""Chain or Table -> Evaluator: what computes the outputs of a scene, and with which error."""

@@ -1,0 +1,146 @@
+"""The reference: exact tables evaluated in ball arithmetic with as many bits as it takes, rounded once.
+
+Between two arrivals an output is one polynomial per rate in the local variable u = tau - (last arrival); all earlier
+increments are carried along into it, so that a value costs the same after many reflections as after few.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+from flint import arb, arb_poly, ctx, fmpq
+
+from wavesym.exact.increments import Increment
+from wavesym.exact.signal import Signal
+from wavesym.numbers.doubles import midpoint, rational, rounded
+
+FIRST_BITS = 128
+_MOST_BITS = 1 << 17
+# a quarter of the smallest double
+_NEGLIGIBLE = arb(2) ** -1076
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Segment:
+    """An output between two arrivals: sum over rates of exp(-rate u) * polynomial(u), u = tau - start."""
+
+    start: fmpq
+    families: dict[fmpq, arb_poly]
+
+    def at(self, u: fmpq | arb) -> arb:
+        """The value, a ball, at a point or on an interval."""
+        local = arb(u)
+        return sum(
+            (
+                polynomial(local) * (-local * arb(rate)).exp() if rate else polynomial(local)
+                for rate, polynomial in self.families.items()
+            ),
+            arb(0),
+        )
+
+    def shifted(self, by: fmpq) -> dict[fmpq, arb_poly]:
+        """The same function in a local variable that starts `by` later."""
+        return shifted(self.families, by)
+
+
+def shifted(families: dict[fmpq, arb_poly], by: fmpq) -> dict[fmpq, arb_poly]:
+    """sum exp(-g (u + by)) P_g(u + by), as families in u. Coefficients that are not negative stay so."""
+    later = arb_poly([arb(by), 1])
+    return {rate: (-arb(rate) * arb(by)).exp() * polynomial(later) for rate, polynomial in families.items()}
+
+
+def segments(signal: Signal) -> list[Segment]:
+    """The segments of a signal, at the working precision."""
+    return list(_segments(signal))
+
+
+def _segments(signal: Signal) -> Iterator[Segment]:
+    families: dict[fmpq, arb_poly] = {}
+    last = None
+    for arrival in signal.arrivals:
+        if last is not None:
+            families = shifted(families, arrival.time - last)
+        for rate, polynomial in polynomials(arrival.increment).items():
+            families[rate] = families.get(rate, arb_poly()) + polynomial
+        last = arrival.time
+        yield Segment(last, dict(families))
+
+
+def polynomials(increment: Increment) -> dict[fmpq, arb_poly]:
+    """An increment as one polynomial in balls per rate."""
+    return {rate: arb_poly([arb(value) for value in powers]) for rate, powers in increment.items()}
+
+
+class Balls:
+    """An output in balls, at the precision at which its segments are made."""
+
+    def __init__(self, segments: Sequence[Segment]) -> None:
+        self.segments = segments
+        self.zero = all(p.length() == 0 for segment in segments for p in segment.families.values())
+        self._starts = [segment.start for segment in self.segments]
+
+    def largest(self, until: fmpq) -> arb:
+        """A lower bound of the largest absolute value up to `until`, from the ends of segments and points between."""
+        ends = [*self._starts[1:], until] if self._starts else []
+        points = [
+            segment.at((end - segment.start) * fmpq(k, 4))
+            for segment, end in zip(self.segments, ends, strict=True)
+            for k in range(5)
+        ]
+        return max((abs(value).lower() for value in points), default=arb(0))
+
+    def at(self, tau: fmpq) -> arb:
+        """The value at tau; at a jump the one to the right of it."""
+        place = bisect_right(self._starts, tau) - 1
+        return self.segments[place].at(tau - self._starts[place]) if place >= 0 else arb(0)
+
+
+def precise(attempt: Callable[[], T | None], bits: int = FIRST_BITS, most: int = _MOST_BITS) -> T:
+    """The first result of `attempt` that is not None, each time with twice the bits of working precision."""
+    while bits <= most:
+        with ctx.workprec(bits):
+            result = attempt()
+        if result is not None:
+            return result
+        bits *= 2
+    raise ArithmeticError(f"{most} bits are not enough")
+
+
+def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float], bits: int = FIRST_BITS) -> list[float]:
+    """The correctly rounded values of an output at doubles tau of its horizon; `source` gives its segments.
+
+    Where a value is so near to the middle between two doubles that a ball smaller than all of them does not tell, it is
+    rounded from the middle of the ball.
+    """
+    exact = [rational(tau) for tau in taus]
+
+    def attempt() -> list[float] | None:
+        balls = Balls(source())
+        results = []
+        for tau in exact:
+            value = balls.at(tau)
+            double = rounded(value)
+            if double is None:
+                if not value.rad() < _NEGLIGIBLE:
+                    return None
+                double = midpoint(value)
+            results.append(double + 0.0)  # no -0.0
+        return results
+
+    return precise(attempt, bits)
+
+
+def largest(source: Callable[[], Sequence[Segment]], until: float, bits: int = FIRST_BITS) -> arb:
+    """A lower bound, a ball, of an output's largest absolute value on [0, until]; 0 where it is 0 throughout."""
+
+    def attempt() -> arb | None:
+        balls = Balls(source())
+        size = balls.largest(rational(until))
+        return size if size > 0 or balls.zero else None
+
+    return precise(attempt, bits)

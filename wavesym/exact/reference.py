@@ -1,0 +1,105 @@
+"""The reference: values of a scene's outputs that are right to the last bit, whatever they cost.
+
+Two routes lead there, and both are balls: the exact tables, where they are of moderate size, and power series on
+windows, where they are not (many unequal rates, many reflections).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from functools import cached_property, partial
+
+from flint import arb, fmpq
+
+from wavesym.errors import CostError, RangeError
+from wavesym.exact.ball import FIRST_BITS, Segment, largest, segments, values
+from wavesym.exact.motion import Motion
+from wavesym.exact.signal import Signal, horizon, signals
+from wavesym.exact.windows import damping, stored
+from wavesym.model.chain import chain
+from wavesym.model.light_cone import light_cone
+from wavesym.numbers.doubles import fraction, not_below, rational
+from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.programs.closed import refuse_many
+from wavesym.scene import Scene
+
+# bytes of waves that are known in a second or two
+_QUICK = 10**8
+# coefficients of the tables from which on windows are cheaper
+_MODERATE = 50_000
+_SHORTEST = Fraction(8)
+
+
+def beginning(scene: Scene) -> Scene:
+    """The scene, or as much of its horizon as takes little time to know exactly."""
+    until = scene.output.until
+    while until > _SHORTEST and _size(scene, until) > _QUICK:
+        until = max(_SHORTEST, Fraction(3 * until // 4))
+    if until == scene.output.until:
+        return scene
+    return scene.model_copy(update={"output": scene.output.model_copy(update={"until": until})})
+
+
+def _size(scene: Scene, until: Fraction) -> int:
+    """About how many bytes the waves take until then: a window costs two bits, and e**(2 rate) where a body swings."""
+    system = chain(scene)
+    nodes = light_cone(system, scene.outputs, until)
+    bodies = [node for x in nodes if (node := system.nodes[x]).inertia]
+    rates = [damping(node) for node in bodies]
+    bits = 128 + int(3 * until * (1 + fraction(max(rates, default=fmpq(0)))))
+    panels = len({piece.time % 1 for piece in scene.pieces if piece.time <= until} | {Fraction(0)})
+    return stored(2 * len(nodes) * (int(until) + 1) * panels, bits // 4, bits)
+
+
+class Reference:
+    """The outputs of a scene on its horizon in `real` numbers, in balls. CostError where that would cost too much."""
+
+    def __init__(self, scene: Scene, real: Real = DOUBLE) -> None:
+        self.scene = scene
+        self.real = real
+        self.tau_max = horizon(scene, real)
+
+    @cached_property
+    def signals(self) -> tuple[Signal, ...] | None:
+        """The outputs as exact sums of arrivals; None where their tables would be large."""
+        try:
+            refuse_many(self.scene, _MODERATE)
+            return signals(self.scene, _MODERATE, self.real)
+        except CostError:
+            return None
+
+    @cached_property
+    def _motion(self) -> Motion:
+        return Motion(self.scene, rational(self.tau_max))
+
+    def _sources(self, taus: Sequence[float] | None = None) -> list[Callable[[], Sequence[Segment]]]:
+        """The outputs, or as much of them as values at `taus` need."""
+        if self.signals is not None:
+            return [partial(segments, signal) for signal in self.signals]
+        exact = None if taus is None else [rational(tau) for tau in taus]
+        return [partial(self._motion.segments, place, exact) for place in self._motion.places]
+
+    @property
+    def _first_bits(self) -> int:
+        return FIRST_BITS if self.signals is not None else self._motion.first_bits
+
+    def values(self, taus: Sequence[float]) -> list[list[float]]:
+        """Each output at doubles 0 <= tau <= tau_max, correctly rounded. RangeError where one is beyond all doubles."""
+        if self.signals is None:
+            self._motion.refuse_long(len(taus))
+        try:
+            return [values(source, taus, self._first_bits) for source in self._sources(taus)]
+        except RangeError:
+            raise
+        except ArithmeticError as error:
+            raise CostError(f"output.until: right to the last bit would take minutes, as {error}") from None
+
+    def largest(self) -> list[arb]:
+        """A lower bound of the largest absolute value of each output; 0 where it is 0 throughout."""
+        return [largest(source, self.tau_max, self._first_bits) for source in self._sources()]
+
+    def breakpoints(self) -> list[float]:
+        """All tau at which an output may jump or bend, as doubles at or just above."""
+        starts = {segment.start for source in self._sources() for segment in source()}
+        return sorted(not_below(start) for start in starts)

@@ -1,0 +1,138 @@
+"""How large an exact table will be, told before it is made: its coefficients, and the memory that their digits take.
+
+A wave that reaches a rod 2 e later than the shortest way from its load has been to and fro between neighbours e times.
+By then it can have met a body e + 1 times, so that an increment has as many powers at that body's rate, and in all
+about (e + 1) * (bodies met), unless rates are equal. Every difference of two rates was divided by as often as there are
+powers, so the digits of a coefficient are in proportion to their number.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from math import inf, log10
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from flint import fmpq
+
+from wavesym.errors import CostError
+from wavesym.model.chain import Chain
+from wavesym.model.node import Quantity
+
+LARGEST = 400_000_000  # bytes; made and written in half a minute
+MOST_WORK = 1e6  # half a minute
+_ENTRY = 80  # bytes of an increment, if it is empty too
+_COEFFICIENT = 120  # bytes of one without digits
+_DIGITS, _LONG = 4000, 1.6  # from so many bits on coefficients take longer, and by which power
+
+K = TypeVar("K", bound=tuple[str, int])
+
+
+class Size(NamedTuple):
+    """About how many coefficients a table has that are not 0, how many bytes it takes, and how much work it is.
+
+    Work is counted in coefficients of few digits; one of b bits takes as long as 1 + (b / 4000)**1.6 of them.
+    """
+
+    coefficients: float
+    bytes: float
+    work: float
+
+
+def table_size(chain: Chain, interval: int, wanted: Mapping[K, int], sources: Iterable[str]) -> Size:
+    """The size of the unit responses of `sources` in the first `wanted[function, rod]` intervals, `interval` long.
+
+    What they rest on is included. No coefficients are counted where the increments alone are beyond `LARGEST`.
+    """
+    latest = _latest(chain, interval, wanted)
+    rods = np.array(sorted(latest))
+    starts = np.array([_first(chain, rod) for rod in rods.tolist()])
+    last = np.array([latest[rod] for rod in rods.tolist()])
+    places = _places(chain, set(sources))
+    increments = 2 * len(places) * float(np.sum((last - starts) // interval + 1))
+    if _ENTRY * increments > LARGEST:
+        return Size(0, _ENTRY * increments, 0)
+    rates = {(node.damping + (node.alpha + node.beta) / 2) / node.inertia for node in chain.nodes if node.inertia}
+    bodies = sum(bool(node.inertia) for node in chain.nodes)
+    dense = bodies / len(chain.nodes)
+    height = sum(map(_bits, rates)) / max(len(rates), 1)
+    coefficients = bits = work = 0.0
+    for nodes in places.values():
+        # how far it is from the load to the nearer end of each rod
+        near = np.array(nodes)
+        right = np.searchsorted(near, rods)
+        far = np.minimum(
+            np.where(right < len(near), near[np.minimum(right, len(near) - 1)] - rods, inf),
+            np.where(right > 0, rods - 1 - near[np.maximum(right - 1, 0)], inf),
+        )
+        detours = np.maximum((last - far) // 2 + 1, 0)
+        for e in range(int(np.max(detours, initial=0))):
+            met = far[detours > e] + 1 + e
+            powers = np.minimum((e + 1) * np.minimum(bodies, met), len(rates) * dense * (met + e))
+            coefficients += 2 * float(np.sum(powers))
+            bits += 2 * float(np.sum(powers**2)) * height
+            work += 2 * float(np.sum(powers * (1 + (powers * height / _DIGITS) ** _LONG)))
+    return Size(coefficients, _ENTRY * increments + _COEFFICIENT * coefficients + bits / 8, work)
+
+
+def refuse_large(
+    chain: Chain,
+    interval: int,
+    wanted: Mapping[K, int],
+    sources: Iterable[str],
+    asked: str,
+    most: float = inf,
+) -> None:
+    """CostError, for the key or option `asked`, where a table is beyond `LARGEST` bytes, `MOST_WORK` or `most` work."""
+    size = table_size(chain, interval, wanted, sources)
+    if size.bytes > LARGEST:
+        raise CostError(
+            f"{asked}: the tables of coefficients would take about {size.bytes:.1e} bytes, "
+            f"at most {LARGEST:.0e} expected"
+        )
+    if size.work > min(most, MOST_WORK):
+        digits = size.bytes / max(size.coefficients, 1) * log10(2) * 8
+        raise CostError(
+            f"{asked}: the tables would hold {size.coefficients:.1e} coefficients of about {digits:.0e} digits, work "
+            f"for {size.work:.1e} short ones, at most {min(most, MOST_WORK):.0e} expected; fewer digits in the scene's "
+            "numbers, or more that are equal, help"
+        )
+
+
+def _latest(chain: Chain, interval: int, wanted: Mapping[K, int]) -> dict[int, int]:
+    """Until when the waves of which rods matter: one of a neighbour must have the time to come."""
+    latest: dict[int, int] = {}
+    for (function, rod), count in wanted.items():
+        if count > 0:
+            latest[rod] = max(latest.get(rod, -1), chain.leaves(function, rod, interval * (count - 1)))
+    for rods, before in ((range(1, chain.m + 1), -1), (range(chain.m, 0, -1), 1)):
+        for rod in rods:
+            reached = latest.get(rod + before, 0) - 1
+            if reached >= _first(chain, rod):
+                latest[rod] = max(latest.get(rod, -1), reached)
+    return latest
+
+
+def _first(chain: Chain, rod: int) -> int:
+    return min(chain.leaves(function, rod, 0) for function in ("f", "g"))
+
+
+def _places(chain: Chain, sources: set[str]) -> dict[str, list[int]]:
+    """The nodes at which sources act; an impact acts where velocities meet."""
+    places: dict[str, list[int]] = defaultdict(list)
+    for x, node in enumerate(chain.nodes):
+        names = [f"{load.kind}{load.number or ''}" for load in node.loads]
+        if node.left and node.right and node.left.velocity != node.right.velocity:
+            names.append("impact")
+        for name in sources.intersection(names):
+            places[name].append(x)
+    return places
+
+
+def _bits(rate: Quantity) -> int:
+    """Those of numerator and denominator; letters are counted elsewhere."""
+    if not isinstance(rate, int | Fraction | fmpq):
+        return 0
+    return int(rate.numerator).bit_length() + int(rate.denominator).bit_length()

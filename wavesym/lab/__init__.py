@@ -1,0 +1,1 @@
+"""Measured: speed against accuracy, benchmarks, and the atlas of where methods fail."""

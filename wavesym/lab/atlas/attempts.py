@@ -1,0 +1,114 @@
+"""Each evaluator tried on a scene, by the NumPy that would be generated, where it refuses too; and the truth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.errors import CostError
+from wavesym.exact.ball import largest, segments, values
+from wavesym.exact.signal import horizon, signals
+from wavesym.lab.atlas.family import Point
+from wavesym.lab.atlas.scenes import AIM, aimed
+from wavesym.numbers.doubles import rational
+from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.choice import MAKERS
+from wavesym.programs.closed import ClosedForm
+from wavesym.running.compiled import imported
+from wavesym.scene import Scene
+from wavesym.targets.description import describe
+from wavesym.targets.files import EMITTERS
+
+Array = NDArray[np.float64]
+
+EVALUATORS = ("closed", "pieces", "march")
+ROUNDED = 2.0**-53
+"""The truth is rounded once: an error may be this much larger than its bound."""
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The outputs of a scene at ascending `taus`, (outputs, n), the least their largest values are, their arrivals."""
+
+    scene: Scene
+    taus: Array
+    values: Array
+    sizes: Array
+    arrivals: Array
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """An evaluator's errors at the taus of a truth, relative to the outputs' largest values and the largest of them.
+
+    None where there are no values; `bounds` has the proved bound up to each tau.
+    """
+
+    name: str
+    taus: Array
+    errors: Array | None
+    bounds: Array
+    refused: str
+
+    def point(self, panel: str, curve: str, x: float) -> Point:
+        """The largest error as a point of a curve."""
+        error = math.nan if self.errors is None else float(np.max(self.errors))
+        return Point(panel, curve, x, error, float(self.bounds[-1]), self.refused)
+
+
+def truth(scene: Scene, per_unit: int, around: Sequence[float] = ()) -> Truth:
+    """At `per_unit` places in a unit of tau, at every arrival, and just before it or at these distances from it."""
+    until = horizon(scene)
+    merged = signals(scene)
+    arrivals = sorted({DOUBLE.not_below(arrival.time) for signal in merged for arrival in signal.arrivals})
+    taus = {float(tau) for tau in np.linspace(0.0, until, round(per_unit * until) + 1)} | set(arrivals)
+    taus |= {arrival + by for arrival in arrivals for by in around} or {math.nextafter(tau, 0.0) for tau in arrivals}
+    where = sorted(tau for tau in taus if 0.0 <= tau <= until)
+    sources = [partial(segments, signal) for signal in merged]
+    exact = [values(source, where) for source in sources]
+    sizes = [float(largest(source, until).mid()) or 1.0 for source in sources]
+    return Truth(scene, np.array(where), np.array(exact), np.array(sizes), np.array(arrivals))
+
+
+def attempts(known: Truth, names: Sequence[str] = EVALUATORS) -> Iterator[Attempt]:
+    """Each evaluator at the truth's taus."""
+    return (attempt(known, name) for name in names)
+
+
+def attempt(known: Truth, name: str) -> Attempt:
+    """One evaluator at the truth's taus."""
+    scene, taus = known.scene, known.taus
+    nothing = np.full(len(taus), math.inf)
+    try:
+        form = MAKERS[name](aimed(scene, AIM), DOUBLE, True, None)
+    except (CostError, OverflowError) as error:
+        return Attempt(name, taus, None, nothing, str(error))
+    met = form.error_bound <= scene.output.tolerance
+    refused = "" if met else form.shortfall(rational(scene.output.tolerance))
+    bounds = _reached(form, taus) if isinstance(form, ClosedForm) else np.full(len(taus), form.error_bound)
+    text = EMITTERS[name].numpy_source(describe(scene, form, "the atlas", ()), form)
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = imported(text, scene.name).evaluate(taus)
+    wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
+    errors = np.where(np.isfinite(wrong), wrong, math.inf)
+    return Attempt(name, taus, errors, bounds, refused)
+
+
+def _reached(form: ClosedForm, taus: Array) -> Array:
+    """The proved bound of the closed form up to each tau."""
+    bounds = np.zeros(len(taus))
+    for output in form.outputs:
+        starts = [pulse.start for pulse in output.pulses]
+        here = np.searchsorted(starts, taus, side="right")
+        bounds = np.maximum(bounds, np.concatenate([[0.0], output.reached])[here])
+    return bounds
+
+
+def not_tried(known: Truth, name: str, why: str) -> Attempt:
+    """An evaluator that the atlas leaves out, and why."""
+    return Attempt(name, known.taus, None, np.full(len(known.taus), math.inf), f"not tried: {why}")

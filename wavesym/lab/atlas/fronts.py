@@ -1,0 +1,72 @@
+"""What each rival does at a front, against its resolution: most converge away from fronts and never at one."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+
+from wavesym.lab.atlas.attempts import Truth, truth
+from wavesym.lab.atlas.family import Axis, Family, Point, Progress
+from wavesym.lab.atlas.scenes import made
+from wavesym.rivals.every import RIVALS
+from wavesym.rivals.peers import PEERS
+from wavesym.rivals.problem import Rival, scene_problem
+from wavesym.scene import Scene
+
+UNTIL = 10
+AT = "at fronts: within 1/50 of an arrival"
+AWAY = "away from fronts: 1/10 or more from any arrival"
+
+_SAME, _NEAR, _FAR = 1e-6, 0.0201, 0.0999
+# so near that no grid or series here resolves it, and farther
+_DISTANCES = (1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 2e-2)
+AROUND = (*_DISTANCES, *(-distance for distance in _DISTANCES))
+# a solver of order 8 takes as many more steps as its tolerance to this power
+_PER_TOLERANCE = -1 / 8
+
+
+def scene() -> Scene:
+    """A building of two storeys under a step of the base acceleration, by base force: its fronts are jumps."""
+    system = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"}
+    load = [{"times": [0], "a": [1], "b": [0]}]
+    return made(system, load, UNTIL, strain=[Fraction(1, 2), Fraction(3, 2)])
+
+
+def family(progress: Progress) -> Family:
+    """A curve for each rival, at fronts and away from them. Rivals that are other packages are left to the chart."""
+    known = truth(scene(), per_unit=40, around=AROUND)
+    points = []
+    for rival in RIVALS:
+        if rival in PEERS:
+            continue
+        for resolution in rival.resolutions:
+            progress(f"{rival.name}, {resolution:g} {rival.unit}")
+            at, away = errors(rival, resolution, known)
+            finer = refinement(rival, resolution)
+            points += [Point(AT, rival.name, finer, at), Point(AWAY, rival.name, finer, away)]
+    return Family(
+        "fronts",
+        "What rivals do at a front: four of seven never converge there, however fine they are away from it",
+        Axis("how many times finer than the coarsest grid, series or steps"),
+        "largest error / largest value",
+        tuple(sorted(points, key=lambda point: point.panel != AT)),
+        least=1e-14,
+        most=1e1,
+    )
+
+
+def errors(rival: Rival, resolution: float, known: Truth) -> tuple[float, float]:
+    """The largest error at fronts, and away from them."""
+    found = rival.prepare(scene_problem(known.scene), resolution)(known.taus)
+    wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
+    distance = np.min(np.abs(known.taus[:, np.newaxis] - known.arrivals), axis=1)
+    # at an arrival itself either side of the jump will do
+    near = (distance > _SAME) & (distance <= _NEAR)
+    return float(np.max(wrong[near])), float(np.max(wrong[distance >= _FAR]))
+
+
+def refinement(rival: Rival, resolution: float) -> float:
+    """How much finer a resolution is than the first."""
+    ratio = resolution / rival.resolutions[0]
+    return float(ratio**_PER_TOLERANCE if "tolerance" in rival.unit else ratio)

@@ -1,0 +1,111 @@
+"""The limit kappa -> 0 against the chain of masses and springs: how fast the waves die out, if they do.
+
+Seen at fixed sqrt(kappa) tau, the slow time of the springs. The march computes the waves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from wavesym.lab.atlas.family import Axis, Family, Point, Progress
+from wavesym.lab.atlas.lumped import strains
+from wavesym.lab.atlas.scenes import made
+from wavesym.programs.march.evaluator import marched
+from wavesym.rivals.problem import scene_problem
+from wavesym.running.compiled import imported
+from wavesym.scene import Scene
+from wavesym.targets.description import describe
+from wavesym.targets.march import numpy_source
+
+KAPPAS = tuple(Fraction(1, 10**k) for k in range(1, 6))
+# sqrt(kappa) tau at the end: about a period of the springs
+SLOW_TIME = 6
+# many to a unit of tau, and in step with no wave
+SAMPLES = 20_011
+
+
+class System(NamedTuple):
+    """A system whose kappas are in fixed proportion, and the rods whose strains are compared."""
+
+    name: str
+    fields: dict[str, Any]
+    proportions: tuple[Fraction, ...]
+    load: tuple[dict[str, Any], ...]
+    rods: tuple[int, ...]
+
+
+_STEP = ({"times": [0], "a": [1], "b": [0]},)
+_STOREYS = (Fraction(1), Fraction(1), Fraction(3, 2))
+SYSTEMS = (
+    System(
+        "drive",
+        {"type": "drive", "m": 2, "inertia": [1, 2, 1]},
+        (Fraction(1), Fraction(2)),
+        ({"body": 1, "times": [0], "steps": [1]},),
+        (1, 2),
+    ),
+    System(
+        "collision",
+        {"type": "collision", "m": 4, "velocity": [1, "-1/2"]},
+        (Fraction(1), Fraction(2)),
+        (),
+        (2, 3),
+    ),
+    System("building on moving ground", {"type": "building", "m": 2, "base": "ground"}, _STOREYS, _STEP, (1, 2)),
+    System("building, base force, rod 1", {"type": "building", "m": 2, "base": "force"}, _STOREYS, _STEP, (1,)),
+    System("building, base force, rod 2", {"type": "building", "m": 2, "base": "force"}, _STOREYS, _STEP, (2,)),
+)
+
+
+def family(progress: Progress, kappas: Sequence[Fraction] = KAPPAS) -> Family:
+    """A curve for each system, its order in its name."""
+    points = []
+    for system in SYSTEMS:
+        for kappa in kappas:
+            progress(f"masses and springs, {system.name}, kappa = {kappa}")
+            points.append(Point("all systems", system.name, float(kappa), difference(system, kappa)))
+    return Family(
+        "springs",
+        "Waves against a chain of masses and springs: its order in kappa depends on the load, and may be none",
+        Axis("kappa", falling=True),
+        "largest difference of strain / largest strain",
+        _labelled(points),
+        least=1e-6,
+        most=1e1,
+    )
+
+
+def difference(system: System, kappa: Fraction) -> float:
+    """Between the strains in the middle of the rods and those of springs, relative to the largest of the latter."""
+    until = math.ceil(SLOW_TIME / math.sqrt(kappa))
+    scene = _scene(system, kappa, until)
+    march = marched(scene)
+    program = imported(numpy_source(describe(scene, march, "the atlas", ()), march), scene.name)
+    taus = until / SAMPLES * np.arange(SAMPLES)
+    springs = strains(scene_problem(scene), until / SAMPLES, SAMPLES - 1)[[rod - 1 for rod in system.rods]]
+    return float(np.max(np.abs(program.evaluate(taus) - springs)) / np.max(np.abs(springs)))
+
+
+def _scene(system: System, kappa: Fraction, until: int) -> Scene:
+    fields = {**system.fields, "kappa": [part * kappa for part in system.proportions]}
+    return made(fields, system.load, until, strain=[Fraction(2 * rod - 1, 2) for rod in system.rods])
+
+
+def orders(points: Sequence[Point]) -> dict[str, float]:
+    """The slope of each curve over its last decade: the power of kappa with which the difference falls."""
+    found = {}
+    for name in dict.fromkeys(point.curve for point in points):
+        before, last = [point for point in points if point.curve == name][-2:]
+        found[name] = math.log(before.error / last.error) / math.log(before.x / last.x)
+    return found
+
+
+def _labelled(points: Sequence[Point]) -> tuple[Point, ...]:
+    slopes = orders(points)
+    return tuple(replace(point, curve=f"{point.curve}: order {slopes[point.curve]:.2f}") for point in points)

@@ -1,0 +1,147 @@
+"""Error and time of everything that a chart compares, measured in one process."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, fields
+from functools import cached_property
+from io import StringIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.exact.reference import Reference
+from wavesym.lab.floor import floor
+from wavesym.lab.subjects import Subject, opponents, reference, subjects, taus
+from wavesym.lab.timing import medians
+from wavesym.numbers.doubles import midpoint
+from wavesym.scene import Scene
+
+NEAR = 0.02
+"""How near to an arrival an error counts as one at a front (in tau)."""
+
+SAMPLES = 10001
+"""Samples an output that times are measured on."""
+
+# samples whose errors are looked at: of the uniform ones about so many, of the arrivals at most so many
+_CHECKED = 1000
+_FRONTS = 150
+_OFFSETS = (-0.015, -0.005, -0.0005, 0.0, 0.0005, 0.005, 0.015)
+# a sample that is left of a jump by less than this is there by rounding, and nobody's error
+_ROUNDED = {False: 1e-9, True: 1e-5}  # by whether it is in single precision
+
+
+@dataclass(frozen=True)
+class Row:
+    """A point of the chart. Errors are relative to each output's largest value, and of the outputs the largest."""
+
+    name: str
+    kind: str
+    language: str
+    precision: str
+    resolution: str
+    ns_per_value: float
+    setup_seconds: float
+    error_away: float
+    error_at_fronts: float
+    proved_bound: float | None
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A scene's chart in numbers: its points, and the nanoseconds that writing a double takes."""
+
+    rows: tuple[Row, ...]
+    floor: float
+    samples: int
+
+
+def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None] = lambda _: None) -> Measured:
+    """All evaluators and rivals of a scene. CompilerError where there is no C compiler."""
+    judge = _Judge(scene)
+    found: list[tuple[Subject, tuple[float, float]]] = []
+    for source in (subjects, opponents, _only(reference)):
+        for subject in source(scene, samples):
+            progress(" ".join((*subject.curve, subject.resolution)))
+            found.append((subject, judge.errors(subject)))
+    progress("timing")
+    outputs = len(scene.outputs)
+    line, *times = medians([floor(outputs, samples), *(subject.sample for subject, _ in found)])
+    rows = (
+        Row(
+            name=subject.name,
+            kind=subject.kind,
+            language=subject.language,
+            precision=subject.precision,
+            resolution=subject.resolution,
+            ns_per_value=seconds / (subject.samples * outputs) * 1e9,
+            setup_seconds=subject.setup,
+            error_away=away,
+            error_at_fronts=fronts,
+            proved_bound=subject.bound,
+        )
+        for (subject, (away, fronts)), seconds in zip(found, times, strict=True)
+    )
+    return Measured(tuple(rows), line / (samples * outputs) * 1e9, samples)
+
+
+def to_csv(measured: Measured) -> str:
+    """All numbers, with the floor as a row of its own."""
+    text = StringIO()
+    writer = csv.DictWriter(text, [field.name for field in fields(Row)], lineterminator="\n")
+    writer.writeheader()
+    line = {"name": "straight line", "kind": "floor", "language": "C", "precision": "double"}
+    writer.writerow(line | {"ns_per_value": f"{measured.floor:.3g}"})
+    for row in measured.rows:
+        writer.writerow({name: f"{v:.3g}" if isinstance(v, float) else v for name, v in asdict(row).items()})
+    return text.getvalue()
+
+
+def _only(make: Callable[[Scene, int], Subject]) -> Callable[[Scene, int], Iterator[Subject]]:
+    return lambda scene, samples: iter((make(scene, samples),))
+
+
+class _Judge:
+    """The truth at some of the uniform samples and round the arrivals, and how far subjects are from it."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.reference = Reference(scene)
+        self.until = self.reference.tau_max
+        self.arrivals = np.array(self.reference.breakpoints())
+        # an output that is 0 throughout has no relative errors
+        self.sizes = [midpoint(size) or 1.0 for size in self.reference.largest()]
+        self._known: dict[bytes, NDArray[np.float64]] = {}
+
+    def errors(self, subject: Subject) -> tuple[float, float]:
+        """The largest errors away from fronts and at them."""
+        single = subject.precision == "single"
+        every = max(1, (subject.samples - 1) // _CHECKED)
+        uniform = taus(self.until, subject.samples, subject.precision)[::every]
+        fronts = np.unique(self._fronts.astype(uniform.dtype))
+        fronts = fronts[fronts <= self.until]
+        values = np.hstack([np.asarray(subject.sample())[:, ::every], subject.at(fronts)]).astype(np.float64)
+        where = np.concatenate([uniform, fronts]).astype(np.float64)
+        relative = np.abs(values - self._truth(where)) / np.array(self.sizes)[:, np.newaxis]
+        after = where[:, np.newaxis] - self.arrivals
+        meant = ~np.any((after < 0) & (after > -_ROUNDED[single]), axis=1)
+        near = np.any(np.abs(after) <= NEAR, axis=1)
+        return _largest(relative[:, meant & ~near]), _largest(relative[:, meant & near])
+
+    @cached_property
+    def _fronts(self) -> NDArray[np.float64]:
+        """Round arrivals, and exactly at them."""
+        chosen = self.arrivals[:: max(1, -(-len(self.arrivals) // _FRONTS))]
+        places = np.unique(np.add.outer(chosen, _OFFSETS))
+        return np.asarray(places[(places >= 0) & (places <= self.until)])
+
+    def _truth(self, where: NDArray[np.float64]) -> NDArray[np.float64]:
+        key = where.tobytes()
+        if key not in self._known:
+            self._known[key] = np.array(self.reference.values(where.tolist()))
+        return self._known[key]
+
+
+def _largest(errors: NDArray[np.float64]) -> float:
+    """The largest error; infinite where a value is no number."""
+    return float(np.max(np.where(np.isfinite(errors), errors, np.inf), initial=0.0))

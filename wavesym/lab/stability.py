@@ -1,0 +1,42 @@
+"""`wavesym stability`: the atlas of where methods fail, as a picture and a table for each family of curves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+
+from wavesym.lab.atlas import endurance, extremes, fronts, gaps, limits, reflections
+from wavesym.lab.atlas.drawing import draw
+from wavesym.lab.atlas.family import Family, Progress, to_csv
+from wavesym.report.saving import save
+from wavesym.writing import write_whole
+
+FAMILIES: Mapping[str, Callable[[Progress], Family]] = {
+    "reflections": reflections.family,
+    "gaps": gaps.family,
+    "kappa": extremes.family,
+    "springs": limits.family,
+    "fronts": fronts.family,
+    "march": endurance.family,
+}
+"""By name, the one that takes longest last."""
+
+
+def atlas(directory: Path, progress: Progress = lambda _: None) -> list[Path]:
+    """Run and draw families of curves into `directory`, NAME.svg and NAME.csv each; the paths written.
+
+    CompilerError where there is no C compiler, OSError.
+    """
+    written = []
+    for number, (name, make) in enumerate(FAMILIES.items(), 1):
+        family = make(partial(_told, progress, number))
+        picture, table = directory / f"{name}.svg", directory / f"{name}.csv"
+        write_whole({table: to_csv(family)})
+        save(draw(family), picture)
+        written += [picture, table]
+    return written
+
+
+def _told(progress: Progress, number: int, step: str) -> None:
+    progress(f"{step}, family {number} of {len(FAMILIES)}")

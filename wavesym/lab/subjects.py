@@ -1,0 +1,194 @@
+"""What a chart compares: every evaluator of wavesym that a scene has, the ball reference, and the rivals."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.errors import WavesymError
+from wavesym.numbers.reals import REALS
+from wavesym.programs.choice import MAKERS
+from wavesym.results.response import Response
+from wavesym.rivals.every import RIVALS
+from wavesym.rivals.problem import Problem, Rival, scene_problem
+from wavesym.running.compiled import imported
+from wavesym.running.native import address, library
+from wavesym.scene import Scene
+from wavesym.targets.files import files
+
+Values = NDArray[Any]
+
+TOLERANCES = tuple(Fraction(1, 10**digits) for digits in (4, 6, 8, 10, 12, 14))
+
+# a value of the reference takes as long as thousands of others
+_BALL_SAMPLES = 21
+# finer than a resolution that takes so long no rival goes (seconds)
+_PATIENCE = 1.5
+
+
+@dataclass(frozen=True)
+class Subject:
+    """Something that computes the outputs of a scene.
+
+    `sample` makes `samples` values an output, at tau_k = k * (until / (samples - 1)), each operation rounded to the
+    subject's precision; `at` makes them at any ascending tau. Both give (outputs, n). `setup` is what a new parameter
+    set costs, in seconds; `bound` the proved error relative to an output's largest value, if any.
+    """
+
+    name: str
+    kind: str
+    language: str
+    precision: str
+    resolution: str
+    setup: float
+    bound: float | None
+    samples: int
+    sample: Callable[[], Values]
+    at: Callable[[Values], Values]
+
+    @property
+    def curve(self) -> tuple[str, str, str]:
+        """What the points of one curve have in common."""
+        return self.name, self.language, self.precision
+
+
+def taus(until: float, samples: int, precision: str) -> Values:
+    """k * dtau for k = 0 ... samples - 1, rounded as generated code rounds it."""
+    counted: Values = np.arange(samples).astype(np.float32 if precision == "single" else np.float64)
+    return np.asarray(counted * counted.dtype.type(spacing(until, samples, precision)))
+
+
+def spacing(until: float, samples: int, precision: str) -> float:
+    """The distance of samples, the largest with which none is beyond the horizon."""
+    number = np.float32 if precision == "single" else np.float64
+    apart = number(until / max(samples - 1, 1))
+    while float(number(samples - 1) * apart) > until:
+        apart = np.nextafter(apart, number(0))
+    return float(apart)
+
+
+def subjects(scene: Scene, samples: int) -> Iterator[Subject]:
+    """All evaluators that the scene has, at each tolerance in each precision; the cheaper first."""
+    for evaluator in MAKERS:
+        for precision in REALS:
+            seen: set[str] = set()
+            for tolerance in TOLERANCES:
+                start = perf_counter()
+                made = _made(scene, evaluator, precision, tolerance)
+                if made is None or made[f"{scene.name}.c"] in seen:  # refused, or the same as for a larger tolerance
+                    continue
+                seen.add(made[f"{scene.name}.c"])
+                seconds = perf_counter() - start
+                bound = float(json.loads(made[f"{scene.name}.json"])["error_bound"])
+                for language, load in (("C", _c), ("NumPy", _numpy)):
+                    start = perf_counter()
+                    sample, at = load(scene, made, samples, precision)
+                    yield Subject(
+                        name=evaluator,
+                        kind="wavesym",
+                        language=language,
+                        precision=precision,
+                        resolution=f"tolerance {float(tolerance):.0e}",
+                        setup=seconds + perf_counter() - start,
+                        bound=bound,
+                        samples=samples,
+                        sample=sample,
+                        at=at,
+                    )
+
+
+def reference(scene: Scene, samples: int) -> Subject:
+    """The exact tables in ball arithmetic, each value rounded once."""
+    start = perf_counter()
+    response = Response(scene)
+    response(0.0)  # derives its tables
+    setup = perf_counter() - start
+    few = min(samples, _BALL_SAMPLES)
+    sample = partial(response, taus(response.tau_max, few, "double"))
+    bound = response.error_bound
+    return Subject("ball reference", "wavesym", "Python", "exact", "", setup, bound, few, sample, response)
+
+
+def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
+    """The rivals, each from coarse to fine."""
+    stated = scene_problem(scene)
+    at = taus(stated.until, samples, "double")
+    for rival in RIVALS:
+        for resolution in rival.resolutions:
+            subject = opponent(rival, resolution, stated, at)
+            start = perf_counter()
+            subject.sample()
+            seconds = perf_counter() - start
+            yield subject
+            if seconds > _PATIENCE:
+                break
+
+
+def opponent(rival: Rival, resolution: float, stated: Problem, at: Values) -> Subject:
+    """A rival at one resolution. The C that any parameter set can use is compiled before the clock starts."""
+    rival.prepare(stated, rival.resolutions[0])
+    start = perf_counter()
+    evaluate = rival.prepare(stated, resolution)
+    setup = perf_counter() - start
+    return Subject(
+        name=rival.name,
+        kind="rival",
+        language=rival.language,
+        precision="double",
+        resolution=f"{resolution:g} {rival.unit}",
+        setup=setup,
+        bound=None,
+        samples=len(at),
+        sample=partial(evaluate, at),
+        at=evaluate,
+    )
+
+
+def _made(scene: Scene, evaluator: str, precision: str, tolerance: Fraction) -> dict[str, str] | None:
+    """The files of an evaluator, None where it cannot meet the tolerance or would cost too much."""
+    output = scene.output.model_copy(update={"tolerance": tolerance})
+    try:
+        return files(scene.model_copy(update={"output": output}), "all", evaluator, precision)
+    except WavesymError:
+        return None
+
+
+Loaded = tuple[Callable[[], Values], Callable[[Values], Values]]
+
+
+def _c(scene: Scene, made: dict[str, str], samples: int, precision: str) -> Loaded:
+    name, outputs = scene.name, len(scene.outputs)
+    number, dtype = (ctypes.c_float, np.float32) if precision == "single" else (ctypes.c_double, np.float64)
+    compiled = library(made[f"{name}.c"], header=(f"{name}.h", made[f"{name}.h"]))
+    call, evaluate = getattr(compiled, f"{name}_sample"), getattr(compiled, f"{name}_eval")
+    call.argtypes = [number, number, ctypes.c_size_t, ctypes.c_void_p]
+    evaluate.argtypes = [number, ctypes.c_void_p]
+    apart = spacing(float(scene.output.until), samples, precision)
+    out = np.empty((outputs, samples), dtype=dtype)
+    where = address(out)
+
+    def sample() -> Values:
+        call(0.0, apart, samples, where)
+        return out
+
+    def at(instants: Values) -> Values:
+        columns = np.empty((len(instants), outputs), dtype=dtype)
+        for tau, column in zip(instants.tolist(), columns, strict=True):
+            evaluate(tau, address(column))
+        return np.asarray(columns.T)
+
+    return sample, at
+
+
+def _numpy(scene: Scene, made: dict[str, str], samples: int, precision: str) -> Loaded:
+    evaluate = imported(made[f"{scene.name}.py"], scene.name).evaluate
+    return partial(evaluate, taus(float(scene.output.until), samples, precision)), evaluate

@@ -1,0 +1,137 @@
+"""A chain with symbols for its numbers: the rules run over it as over numbers, and the table holds rational functions.
+
+The symbols are kappa_i, r_i = J_i/J_(i+1) and u_i = v_(i-1) - v_(i+1), the jump of velocity at the contact x = i.
+What is equal in a scene is one symbol, named after the first; shafts between equal discs have r = 1, bodies that move
+together u = 0. Rates that meet in a scene, as 2 kappa_1 = kappa_m, meet in its symbols: coefficients have poles there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+from flint import fmpq, fmpq_mpoly
+
+from wavesym.errors import SceneError
+from wavesym.model.chain import Chain
+from wavesym.model.node import Parameters, Quantity, System
+from wavesym.numbers.factored import written
+from wavesym.numbers.ratio import Ratio, Ring
+
+
+@dataclass(frozen=True)
+class SymbolicChain:
+    """`chain` has symbols for numbers; `meaning` has what every parameter is in them, `values` what they are."""
+
+    chain: Chain
+    ring: Ring
+    meaning: Mapping[str, Ratio]
+    values: Mapping[str, fmpq]
+
+
+def symbolic(chain: Chain) -> SymbolicChain:
+    """The chain of a scene with its pattern of equal parameters and rates. SceneError where symbols cannot have it."""
+    given = _named(chain.parameters)
+    values: dict[str, fmpq] = {}
+    same: dict[str, str] = {}
+    for name, value in given.items():
+        first = (other for other in values if other[0] == name[0] and values[other] == value)
+        if value != _TRIVIAL.get(name[0]):
+            same[name] = next(first, name)
+            values.setdefault(same[name], value)
+    ring = Ring(tuple(values))
+    symbols = ring.symbols()
+    free = {name: symbols[same[name]] if name in same else ring.constant(_TRIVIAL[name[0]]) for name in given}
+    images = _images(ring, replace(chain, parameters=parameters(chain.parameters, free)), values)
+    meaning = {name: ratio.composed(images) for name, ratio in free.items()}
+    return SymbolicChain(replace(chain, parameters=parameters(chain.parameters, meaning)), ring, meaning, values)
+
+
+def generic(system: System, m: int) -> SymbolicChain:
+    """The chain of m rods whose parameters are all different, and no rates meet."""
+    # any numbers will do that are different; primes, of which no two sums below are equal
+    if system.step == 2:
+        bodies = range(1, m, 2)
+        return symbolic(Chain(system, m, Parameters(_numbers(bodies), velocity={i: fmpq(-(2**i)) for i in bodies})))
+    if system.name == "drive":
+        inertia = {1: fmpq(1)}
+        for i in range(1, m + 1):
+            inertia[i + 1] = inertia[i] / (i + 1)
+        return symbolic(Chain(system, m, Parameters(_numbers(range(1, m + 1)), inertia=inertia)))
+    return symbolic(Chain(system, m, Parameters(_numbers(range(m + 1)))))
+
+
+def _numbers(indices: range) -> dict[int, fmpq]:
+    return {i: fmpq(1000 ** (i + 1) + i) for i in indices}
+
+
+_TRIVIAL = {"r": fmpq(1), "u": fmpq(0)}
+
+
+def _named(p: Parameters) -> dict[str, fmpq]:
+    """The independent parameters of a system by the names of their symbols."""
+    named = {f"kappa_{i}": value for i, value in p.kappa.items()}
+    if p.inertia:
+        named |= {f"r_{i}": p.inertia[i] / p.inertia[i + 1] for i in sorted(p.inertia)[:-1]}
+    if p.velocity:
+        named |= {f"u_{i + 1}": p.velocity[i] - p.velocity[i + 2] for i in sorted(p.velocity)[:-1]}
+    return named
+
+
+def parameters(p: Parameters, named: Mapping[str, Quantity]) -> Parameters:
+    """The parameters of (2.1)-(2.5) from the independent ones: the last disc has inertia 1, the last body rests."""
+    inertia, velocity = None, None
+    if p.inertia:
+        *others, last = sorted(p.inertia)
+        inertia = {last: fmpq(1)}
+        for i in reversed(others):
+            inertia[i] = named[f"r_{i}"] * inertia[i + 1]
+    if p.velocity:
+        *others, last = sorted(p.velocity)
+        velocity = {last: fmpq(0)}
+        for i in reversed(others):
+            velocity[i] = named[f"u_{i + 1}"] + velocity[i + 2]
+    return Parameters({i: named[f"kappa_{i}"] for i in p.kappa}, inertia, velocity)
+
+
+def rates(chain: Chain) -> dict[int, Ratio]:
+    """The rates of the bodies by their places, those that depend on a symbol."""
+    halves = {x: (node.alpha + node.beta) / 2 for x, node in enumerate(chain.nodes) if node.inertia}
+    return {x: rate for x, rate in halves.items() if isinstance(rate, Ratio)}
+
+
+def _images(ring: Ring, chain: Chain, values: Mapping[str, fmpq]) -> list[Ratio]:
+    """What the symbols become where rates are equal in numbers but not in symbols: one symbol less for each.
+
+    SceneError where no symbol can be told by the others.
+    """
+    images = list(ring.symbols().values())
+    for (x, one), (y, other) in combinations(rates(chain).items(), 2):
+        difference = one.composed(images) - other.composed(images)
+        if difference == 0 or difference.at(values) != 0:
+            continue
+        _, factors = difference.numerator.factor()
+        relation = next(factor for factor, _ in factors if Ratio(ring, factor).at(values) == 0)
+        place = _place(ring, relation, values)
+        if place is None:
+            raise SceneError(
+                f"the rates of the bodies at x = {x} and {y} meet where {written(relation)} = 0, which no symbol can "
+                "be told from by the others; there is no symbolic table for that",
+                "system",
+            )
+        told = list(ring.symbols().values())
+        told[place] = told[place] - Ratio(ring, relation) / Ratio(ring, relation.derivative(place))
+        images = [image.composed(told) for image in images]
+    return images
+
+
+def _place(ring: Ring, relation: fmpq_mpoly, values: Mapping[str, fmpq]) -> int | None:
+    """The symbol that follows from the others where `relation` is 0: the last one that is a polynomial in them.
+
+    Where there is none it is a kappa rather than a ratio of inertia: rates are linear in kappa, and stay so.
+    """
+    slopes = [(place, relation.derivative(place)) for place, power in enumerate(relation.degrees()) if power == 1]
+    constant = [place for place, slope in slopes if slope.is_constant()]
+    others = [place for place, slope in slopes if Ratio(ring, slope).at(values) != 0]
+    return constant[-1] if constant else next(iter(others), None)

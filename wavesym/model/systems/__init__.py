@@ -1,0 +1,1 @@
+"""The systems of the paper, each in a file."""

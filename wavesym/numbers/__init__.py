@@ -1,0 +1,1 @@
+"""Exact rationals, rational functions, doubles and floats and their neighbours, Chebyshev polynomials."""

@@ -1,0 +1,62 @@
+"""The two kinds of floating-point numbers that programs are generated in. Every value is kept as a Python float."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from flint import fmpq
+
+from wavesym.numbers.doubles import nearest, rational
+
+
+@dataclass(frozen=True)
+class Real:
+    """An IEEE format: unit roundoff, smallest positive number, and the number next to another, up or down.
+
+    `largest` is the largest power of 2.
+    """
+
+    name: str
+    bytes: int
+    roundoff: fmpq
+    smallest: fmpq
+    largest: fmpq
+    next_to: Callable[[float, float], float]
+
+    @property
+    def least(self) -> fmpq:
+        """From here on a number, and its rounding error too, is rounded as the unit roundoff says."""
+        return self.smallest / self.roundoff**2
+
+    @property
+    def reach(self) -> fmpq:
+        """Up to here a thousand products and their sums stay below the largest number."""
+        return self.largest / 2**40
+
+    def nearest(self, value: fmpq) -> float:
+        """The number nearest to an exact one, ties to even. OverflowError beyond the largest."""
+        double = nearest(value)
+        if self.name == "double":
+            return double
+        if abs(value) > self.largest:
+            raise OverflowError(f"{double} in single precision")
+        guess = float(np.float32(double))  # rounded twice: a neighbour may be nearer
+        near = [guess, self.next_to(guess, -math.inf), self.next_to(guess, math.inf)]
+        return min(near, key=lambda each: (abs(rational(each) - value), np.float32(each).view(np.uint32) & 1))
+
+    def not_below(self, value: fmpq) -> float:
+        """The smallest number that is not below an exact one."""
+        number = self.nearest(value)
+        return number if rational(number) >= value else self.next_to(number, math.inf)
+
+
+def _next_single(value: float, towards: float) -> float:
+    return float(np.nextafter(np.float32(value), np.float32(towards)))
+
+
+DOUBLE = Real("double", 8, fmpq(1, 2**53), fmpq(1, 2**1074), fmpq(2) ** 1023, math.nextafter)
+SINGLE = Real("single", 4, fmpq(1, 2**24), fmpq(1, 2**149), fmpq(2) ** 127, _next_single)
+REALS = {real.name: real for real in (DOUBLE, SINGLE)}

@@ -1,0 +1,131 @@
+"""The choice: the cheapest evaluator whose proved bound meets the scene's tolerance, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+from typing import NamedTuple, Protocol
+
+from flint import fmpq
+
+from wavesym.errors import CostError, RangeError, WavesymError
+from wavesym.exact.signal import horizon, signals
+from wavesym.numbers.doubles import rational
+from wavesym.numbers.reals import REALS, Real
+from wavesym.programs.closed import ClosedForm, closed_form, refuse_many
+from wavesym.programs.march.evaluator import MarchEvaluator, marched, unmet
+from wavesym.programs.pieces import Pieces, pieces
+from wavesym.scene import Scene
+
+Made = ClosedForm | Pieces | MarchEvaluator
+
+# Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
+_WORTH_TRYING = 50_000
+
+
+class Output(Protocol):
+    """An output of an evaluator: its name, its proved largest error relative to its largest value, and that value."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def bound(self) -> float: ...
+
+    @property
+    def largest(self) -> float: ...
+
+
+class Evaluator(Protocol):
+    """What computes the outputs of a scene on [0, tau_max]."""
+
+    @property
+    def real(self) -> Real: ...
+
+    @property
+    def tau_max(self) -> float: ...
+
+    @property
+    def outputs(self) -> tuple[Output, ...]: ...
+
+    @property
+    def error_bound(self) -> float: ...
+
+    @property
+    def work(self) -> float: ...
+
+    @property
+    def bytes(self) -> int: ...
+
+    @property
+    def summary(self) -> str: ...
+
+    @property
+    def check_points(self) -> list[float]: ...
+
+    def shortfall(self, tolerance: fmpq) -> str: ...
+
+
+class Choice(NamedTuple):
+    """The name of the evaluator chosen, itself, and the reason in one line."""
+
+    name: str
+    evaluator: Made
+    reason: str
+
+
+def choose(scene: Scene, name: str = "auto", precision: str = "double", windows: int | None = None) -> Choice:
+    """The evaluator `name` of a scene, or with "auto" the cheapest that meets its tolerance.
+
+    `windows`: for how many of them a march is driven by hand; WavesymError for another evaluator.
+    ToleranceError where none does: it says what can be had. CostError, RangeError where one is asked for that would
+    cost too much or need numbers beyond those of its format.
+    """
+    if windows is not None and name != "march":
+        raise WavesymError(f"--windows goes with --evaluator march, {name} given")
+    real = REALS[precision]
+    tolerance = rational(scene.output.tolerance)
+    found: list[tuple[str, Made]] = []
+    refused: list[str] = []
+    for each in MAKERS if name == "auto" else (name,):
+        if each == "march" and found and name == "auto":
+            break  # it takes as long for a value as for all windows before it
+        try:
+            evaluator = MAKERS[each](scene, real, name != "auto", windows)
+        except CostError:
+            if name != "auto":
+                raise
+            refused.append(f"{each}: costs too much")
+            continue
+        except OverflowError:
+            if name != "auto":
+                raise RangeError(f"output: {each} needs numbers beyond the range of {precision} precision") from None
+            refused.append(f"{each}: numbers beyond the range of {precision} precision")
+            continue
+        if rational(min(evaluator.error_bound, 2.0)) <= tolerance:
+            found.append((each, evaluator))
+        else:
+            refused.append(evaluator.shortfall(tolerance))
+    if not found:
+        raise unmet(tolerance, "; ".join(refused))
+    name, best = min(found, key=lambda one: one[1].work)
+    dearer = [f"{evaluator.summary}, takes longer" for _, evaluator in found if evaluator is not best]
+    return Choice(name, best, "; ".join([*refused, *dearer, best.summary]))
+
+
+def _closed(scene: Scene, real: Real, asked: bool, _: int | None) -> ClosedForm:
+    refuse_many(scene, 1e5 if asked else _WORTH_TRYING)
+    merged = signals(scene, inf if asked else _WORTH_TRYING, real)
+    return closed_form(merged, horizon(scene, real), real)
+
+
+def _pieces(scene: Scene, real: Real, asked: bool, _: int | None) -> Pieces:
+    return pieces(scene, real, rational(scene.output.tolerance))
+
+
+def _march(scene: Scene, real: Real, asked: bool, windows: int | None) -> MarchEvaluator:
+    return marched(scene, real, windows=windows)
+
+
+Maker = Callable[[Scene, Real, bool, int | None], Made]
+MAKERS: dict[str, Maker] = {"closed": _closed, "pieces": _pieces, "march": _march}

@@ -1,0 +1,222 @@
+"""The closed form: the paper's sums of increments in double arithmetic, with a proof of how far it can be trusted.
+
+For tau between two arrivals an output is the sum, over all arrivals so far, of sum_g exp(-g w) sum_k c_k w**k. That is
+what the generated program adds up, oldest first: w as the sum of two doubles, the powers by Horner's rule. With u the
+unit roundoff 2**-53, a term c_k w**k exp(-g w) is wrong by at most (to first order, times its absolute value)
+
+    c_k rounded                     1 u         w, twice rounded       2 k u + 2 g w u
+    Horner's rule                   (2 k + 1) u   g rounded, g w rounded   2 g w u
+    exp, within two ulp             4 u         times the polynomial   1 u      and 1 u for every later addition.
+
+What underflows is wrong by at most the smallest number of the format instead, before powers of w multiply it: once for
+each c_k and each step of Horner's rule, and for g, g w and exp on top of the whole polynomial.
+
+The weighted absolute values are themselves exponential polynomials without negative coefficients, so that they merge
+from segment to segment as the output does, and their largest value on a segment is known term by term. Where terms
+cancel (many reflections, nearly equal rates) this bound grows without the output growing: there the form ends.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from itertools import pairwise
+
+from flint import arb, arb_poly, fmpq
+
+from wavesym.errors import CostError
+from wavesym.exact.ball import largest, polynomials, segments, shifted
+from wavesym.exact.increments import Increment
+from wavesym.exact.signal import Signal
+from wavesym.numbers.doubles import bound, rational
+from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.scene import Scene
+
+_EXP = 20  # an exponential, in multiplications
+# all that is of second order in u but for additions, as long as no factor of u reaches 1/1000
+_SECOND_ORDER = arb(fmpq(1001, 1000))
+_MOST_ADDED = arb(fmpq(1, 2))  # additions, in 1/u
+
+
+@dataclass(frozen=True)
+class Family:
+    """exp(-rate w) * (powers[0] + powers[1] w + ...)."""
+
+    rate: float
+    powers: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """What is added from tau = `start` on, in w = (tau - start) + excess: the arrival was `excess` before `start`."""
+
+    start: float
+    excess: float
+    families: tuple[Family, ...]
+
+
+@dataclass(frozen=True)
+class ClosedOutput:
+    """One output as a sum of pulses.
+
+    `bound` is the proved largest error relative to the largest value, `reached[n]` the same up to the end of pulse n,
+    `largest` a lower bound of the largest value.
+    """
+
+    name: str
+    pulses: tuple[Pulse, ...]
+    bound: float
+    largest: float
+    reached: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """The closed form of a scene's outputs on [0, tau_max]."""
+
+    outputs: tuple[ClosedOutput, ...]
+    tau_max: float
+    real: Real
+
+    @cached_property
+    def error_bound(self) -> float:
+        """The largest error of any output relative to its largest value; proved."""
+        return max(output.bound for output in self.outputs)
+
+    @cached_property
+    def work(self) -> float:
+        """About how many operations a value takes, at the end of the horizon and for the mean output."""
+        families = [family for output in self.outputs for pulse in output.pulses for family in pulse.families]
+        return sum(_EXP + len(family.powers) for family in families) / len(self.outputs)
+
+    @property
+    def bytes(self) -> int:
+        """The size of the tables, with indices of 4 bytes."""
+        pulses = [pulse for output in self.outputs for pulse in output.pulses]
+        families = [family for pulse in pulses for family in pulse.families]
+        numbers = 2 * len(pulses) + sum(1 + len(family.powers) for family in families)
+        return numbers * self.real.bytes + 4 * (len(self.outputs) + len(pulses) + len(families) + 3)
+
+    @property
+    def summary(self) -> str:
+        """What it is, in a few words."""
+        return f"closed, {sum(len(output.pulses) for output in self.outputs)} pulses, bound {self.error_bound:g}"
+
+    def shortfall(self, tolerance: fmpq) -> str:
+        """Why it does not meet a tolerance: how many digits are lost, from which tau on."""
+        worst = max(self.outputs, key=lambda output: output.bound)
+        since = min(
+            pulse.start
+            for output in self.outputs
+            for pulse, reached in zip(output.pulses, output.reached, strict=True)
+            if not (math.isfinite(reached) and rational(reached) <= tolerance)
+        )
+        lost = math.log10(worst.bound / float(self.real.roundoff))
+        digits = "all" if worst.bound >= 1 else str(math.ceil(lost))
+        return f"closed: loses {digits} digits after tau = {since:g} (bound {worst.bound:g} for {worst.name})"
+
+    @cached_property
+    def check_points(self) -> list[float]:
+        """0, every start of a pulse, the last double before it, the middle between two of them, and tau_max."""
+        starts = sorted({0.0, self.tau_max} | {pulse.start for output in self.outputs for pulse in output.pulses})
+        points = set(starts)
+        for start, end in pairwise(starts):
+            middle = self.real.nearest(rational(start) / 2 + rational(end) / 2)
+            points |= {middle, self.real.next_to(end, start)}
+        return sorted(points)
+
+
+def refuse_many(scene: Scene, most: float) -> None:
+    """CostError where loads would bring increments to the outputs more than about `most` times.
+
+    The first load of each source is not counted: what that costs is known from its table.
+    """
+    until = scene.output.until
+    first = {piece.source: piece.time for piece in reversed(scene.pieces)}
+    later = [piece.time for piece in scene.pieces if first[piece.source] < piece.time <= until]
+    windows = sum(float(until - time) + 1 for time in later)
+    if (arrivals := 2 * len(scene.outputs) * windows) > most:
+        raise CostError(f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected")
+
+
+def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) -> ClosedForm:
+    """The closed form of signals, with its bounds, whatever they are."""
+    return ClosedForm(tuple(_closed_output(signal, tau_max, real) for signal in signals), tau_max, real)
+
+
+def _closed_output(signal: Signal, tau_max: float, real: Real) -> ClosedOutput:
+    pulses = tuple(_pulse(arrival.time, arrival.increment, real) for arrival in signal.arrivals)
+    if not pulses:
+        return ClosedOutput(signal.name, pulses, 0.0, 0.0, ())
+    size = largest(partial(segments, signal), tau_max)
+    errors = [
+        bound(error / size) if error is not None else math.inf
+        for error in _segment_errors(signal, rational(tau_max), real)
+    ]
+    reached = tuple(max(errors[: n + 1]) for n in range(len(errors)))
+    return ClosedOutput(signal.name, pulses, reached[-1], float(size), reached)
+
+
+def _pulse(time: fmpq, increment: Increment, real: Real) -> Pulse:
+    start = real.not_below(time)
+    families = (Family(real.nearest(g), tuple(real.nearest(c) for c in increment[g])) for g in sorted(increment))
+    return Pulse(start, real.nearest(rational(start) - time), tuple(families))
+
+
+def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]:
+    """Upper bounds of the absolute error on each segment; None where sums might overflow, or are longer than 1/u."""
+    u = arb(real.roundoff)
+    # Horner's rule must stay within the exponents of the format
+    largest_power = arb(real.largest) ** fmpq(7, 8)
+    underflow = arb(0)  # the errors of all numbers so far that may be below the normal ones
+    sizes: dict[fmpq, arb_poly] = {}  # the absolute values of all terms so far
+    weights: dict[fmpq, arb_poly] = {}  # the same, each times its factor of u
+    ends = [arrival.time for arrival in signal.arrivals[1:]] + [until]
+    last = signal.arrivals[0].time
+    representable = True
+    additions = 0
+    errors: list[arb | None] = []
+    for arrival, end in zip(signal.arrivals, ends, strict=True):
+        sizes = shifted(sizes, arrival.time - last)
+        weights = shifted(weights, arrival.time - last)
+        last = arrival.time
+        new = {rate: arb_poly([abs(c) for c in p.coeffs()]) for rate, p in polynomials(arrival.increment).items()}
+        for rate, polynomial in new.items():
+            sizes[rate] = sizes.get(rate, arb_poly()) + polynomial
+            weights[rate] = weights.get(rate, arb_poly()) + _weighted(rate, polynomial)
+            farthest = arb(until - last).max(arb(1))
+            representable &= bool(polynomial(farthest) < largest_power)
+            underflow += arb(real.smallest) * _underflows(polynomial, farthest)
+            # every family is one more addition for all that came before it
+            additions += 1
+            for older, size in sizes.items():
+                weights[older] = weights[older] + size
+        length = arb(end - arrival.time)
+        error = sum((_largest(rate, polynomial, length) for rate, polynomial in weights.items()), arb(0))
+        # (1 + u)**n - 1 <= n u / (1 - n u)
+        representable &= bool(additions * u < _MOST_ADDED)
+        errors.append((error * u * _SECOND_ORDER / (1 - additions * u) + underflow) if representable else None)
+    return errors
+
+
+def _underflows(polynomial: arb_poly, farthest: arb) -> arb:
+    """What a family can lose by underflow for w <= `farthest` (at least 1), in smallest numbers."""
+    terms = arb_poly([4 * c + 2 for c in polynomial.coeffs()])
+    return (farthest * terms(farthest)).upper()
+
+
+def _weighted(rate: fmpq, polynomial: arb_poly) -> arb_poly:
+    """Every term times its factor of u in the module's table: 7 + 4 k + 4 g w."""
+    powers = [(7 + 4 * k) * c for k, c in enumerate(polynomial.coeffs())]
+    return arb_poly(powers) + arb_poly([arb(0), 4 * arb(rate)]) * polynomial
+
+
+def _largest(rate: fmpq, polynomial: arb_poly, length: arb) -> arb:
+    """An upper bound of exp(-rate w) polynomial(w), coefficients >= 0, on [0, length]: each term's largest, summed."""
+    total = arb(0)
+    for k, c in enumerate(polynomial.coeffs()):
+        peak = length if rate == 0 else length.min(arb(fmpq(k) / rate))
+        total += c * peak**k * (-arb(rate) * peak).exp()
+    return total.upper()

@@ -1,0 +1,283 @@
+"""What is marched: the nodes in the light cone, the panels of a window, the loads and what is read; all exact.
+
+The law of a node, inertia q' + g q = alpha a + beta b + load with g = damping + (alpha + beta)/2, is divided by g:
+
+    q'/rate + q = p    (a body, rate = g/inertia),        q = p    (no inertia),        p = alpha a + beta b + load.
+
+Every window [n, n + 1) is cut into the same panels, at the fractional parts of the load times, so that on a panel every
+wave is smooth. A wave that is sent on a panel arrives on the same panel of the next window.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from math import inf
+
+from flint import fmpq, fmpq_poly
+
+from wavesym.errors import CostError
+from wavesym.exact.signal import horizon
+from wavesym.model.chain import Chain, chain
+from wavesym.model.light_cone import light_cone, rod_of
+from wavesym.model.node import Node, Quantity, Rod
+from wavesym.numbers.doubles import nearest, rational
+from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.scene import Observable, Piece, Scene
+
+MOST_PANELS = 16
+# of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
+_ESTIMATED = 100
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Part of every window: from `start` on, `length` long."""
+
+    start: fmpq
+    length: fmpq
+
+
+@dataclass(frozen=True)
+class Junction:
+    """A node, its law divided by g. `rate` is None where it has no inertia.
+
+    `left` and `right` are the impedances of its rods (0 where there is none), `mass` its inertia, all on one scale:
+    mass * rate = (left + right) where nothing is damped. `motion` is the velocity of a body at tau = 0.
+    """
+
+    alpha: fmpq
+    beta: fmpq
+    rate: fmpq | None
+    left: fmpq
+    right: fmpq
+    mass: fmpq
+    motion: fmpq
+
+
+@dataclass(frozen=True)
+class Event:
+    """From panel `panel` of window `window` on, load `force` is a polynomial in the time since then (divided by g)."""
+
+    window: int
+    panel: int
+    force: int
+    powers: tuple[fmpq, fmpq, fmpq]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A load that can be given while it runs: `gain` times it (`order` 0) or its integral from 0 on (1) is the force.
+
+    `name` is M1, M2 ... (a moment) or a (the base acceleration).
+    """
+
+    name: str
+    force: int
+    gain: fmpq
+    order: int
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Where in a window what arrives is smooth: from t = `start` (it may be < 0) on, t the time since the window began.
+
+    It was sent on `panel`, `back` windows ago (0 or 1), as that panel's polynomial in t - start.
+    """
+
+    start: fmpq
+    back: int
+    panel: int
+
+
+@dataclass(frozen=True)
+class Watched:
+    """An output: the right-going wave of the node at column `right` and the left-going wave of that at `left`.
+
+    The right-going one was sent `delay` earlier, the other 1 - delay.
+    """
+
+    name: str
+    quantity: str
+    right: int
+    left: int
+    delay: fmpq
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A scene made ready to march; columns number the nodes of the light cone from 0."""
+
+    panels: tuple[Panel, ...]
+    junctions: tuple[Junction, ...]
+    rods: tuple[fmpq, ...]  # half the initial velocity of the rods left of each column, and of that right of the last
+    loaded: tuple[int, ...]  # the column of each force
+    events: tuple[Event, ...]
+    channels: tuple[Channel, ...]
+    outputs: tuple[Watched, ...]
+    tau_max: float
+    first: int  # the node at column 0
+    valid: float  # until when no node outside of the light cone can be felt
+    tolerance: float  # of the scene, but no less than what rounding makes of loads that are given
+    trusted: float  # what polynomials may miss in all, of the largest wave, before the programs say so
+
+    @property
+    def windows(self) -> int:
+        """How many windows reach tau_max, the one that starts at an integer tau_max included."""
+        return int(self.tau_max) + 1
+
+    @cached_property
+    def rate(self) -> fmpq:
+        """The largest rate of a body, 0 without one."""
+        return max((node.rate for node in self.junctions if node.rate is not None), default=fmpq(0))
+
+    def scaled(self, factor: fmpq) -> Plan:
+        """The same with all that moves it `factor` times as large; every motion is, then."""
+        return replace(
+            self,
+            junctions=tuple(replace(node, motion=factor * node.motion) for node in self.junctions),
+            rods=tuple(factor * velocity for velocity in self.rods),
+            events=tuple(
+                replace(event, powers=_three(factor * fmpq_poly(list(event.powers)))) for event in self.events
+            ),
+            channels=tuple(replace(channel, gain=factor * channel.gain) for channel in self.channels),
+        )
+
+    def changes(self, panel: int) -> Iterator[tuple[int, int, tuple[fmpq, fmpq, fmpq]]]:
+        """Window, force and powers of what is new with each event on a panel."""
+        now: dict[int, tuple[fmpq, fmpq_poly]] = {}
+        for event in self.events:
+            time, load = event.window + self.panels[event.panel].start, fmpq_poly(list(event.powers))
+            since, before = now.get(event.force, (time, fmpq_poly()))
+            now[event.force] = time, load
+            if event.panel == panel:
+                yield event.window, event.force, _three(load - before(fmpq_poly([time - since, 1])))
+
+    def stretches(self, delay: fmpq) -> tuple[Stretch, ...]:
+        """Those of a wave that arrives `delay` after it was sent, 0 <= delay <= 1, in order; they cover the window."""
+        found = []
+        for back in (1, 0):
+            for number, panel in enumerate(self.panels):
+                start = delay + panel.start - back
+                if start < 1 and start + panel.length > 0:
+                    found.append(Stretch(start, back, number))
+        return tuple(found)
+
+
+def plan(scene: Scene, real: Real = DOUBLE, windows: int = 0) -> Plan:
+    """The plan of a scene in `real` numbers; what can matter on the first `windows` is part of it too.
+
+    CostError where load times have too many different fractional parts.
+    """
+    system = chain(scene)
+    tau_max = horizon(scene, real)
+    columns = light_cone(system, scene.outputs, max(tau_max, float(windows)))
+    nodes = [system.nodes[x] for x in columns]
+    pieces = [piece for piece in scene.pieces if rational(piece.time) <= rational(tau_max)]
+    panels = _panels(rational(piece.time) for piece in pieces)
+    loaded = tuple(column for column, node in enumerate(nodes) if node.loads)
+    starts = [_start(node.left) / 2 for node in nodes] + [_start(nodes[-1].right) / 2]
+    return Plan(
+        panels,
+        tuple(_junctions(system, columns)),
+        tuple(starts),
+        loaded,
+        tuple(_events(nodes, loaded, pieces, panels)),
+        tuple(_channels(nodes, loaded)),
+        tuple(_watched(output, columns.start) for output in scene.outputs),
+        tau_max,
+        columns.start,
+        inf if len(columns) == system.m + 1 else max(tau_max, float(windows)),
+        nearest(max(rational(scene.output.tolerance), 64 * real.roundoff)),
+        # no less than what the arithmetic of so many nodes loses on all windows
+        nearest(max(rational(scene.output.tolerance) / _ESTIMATED, real.roundoff * len(nodes) * (int(tau_max) + 1))),
+    )
+
+
+def _panels(times: Iterable[fmpq]) -> tuple[Panel, ...]:
+    cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
+    if len(cuts) - 1 > MOST_PANELS:
+        raise CostError(
+            f"load: march: the times have {len(cuts) - 1} different fractional parts, at most {MOST_PANELS} expected"
+        )
+    return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
+
+
+def _junctions(system: Chain, columns: range) -> Iterator[Junction]:
+    """The impedances follow from rod to rod: at a node they are as alpha to beta."""
+    impedance = fmpq(1)
+    for x in columns:
+        node = system.nodes[x]
+        alpha, beta = _exact(node.alpha), _exact(node.beta)
+        g = _g(node)
+        left = impedance if node.left else fmpq(0)
+        if node.left and node.right:
+            impedance *= beta / alpha
+        right = impedance if node.right else fmpq(0)
+        # alpha = 2 left / M, and inertia counts in units of M
+        mass = node.inertia * (2 * right / beta if node.right else 2 * left / alpha) if node.inertia else fmpq(0)
+        rate = g / node.inertia if node.inertia else None
+        yield Junction(alpha / g, beta / g, rate, left, right, mass, _start(node.left or node.right))
+
+
+def _events(
+    nodes: Sequence[Node], loaded: Sequence[int], pieces: Sequence[Piece], panels: Sequence[Panel]
+) -> list[Event]:
+    gains: dict[fmpq, dict[int, fmpq_poly]] = defaultdict(dict)
+    for piece in pieces:
+        for force, column in enumerate(loaded):
+            for load in nodes[column].loads:
+                if f"{load.kind}{load.number or ''}" == piece.source:
+                    new = rational(piece.weight) / _g(nodes[column]) * fmpq_poly([_exact(c) for c in load.coefficients])
+                    at = gains[rational(piece.time)]
+                    at[force] = at.get(force, fmpq_poly()) + new
+    places = {panel.start: number for number, panel in enumerate(panels)}
+    now: dict[int, tuple[fmpq, fmpq_poly]] = {}
+    events = []
+    for time, changes in sorted(gains.items()):
+        for force, change in sorted(changes.items()):
+            since, before = now.get(force, (time, fmpq_poly()))
+            total = before(fmpq_poly([time - since, 1])) + change
+            now[force] = time, total
+            window = int(time.floor())
+            events.append(Event(window, places[time - window], force, _three(total)))
+    return events
+
+
+def power_of_two(numbers: Iterable[fmpq]) -> fmpq:
+    """About the largest absolute value of some numbers; 1 where all are 0."""
+    size = max(map(abs, numbers), default=fmpq(0))
+    return fmpq(2) ** (int(size.p).bit_length() - int(size.q).bit_length()) if size else fmpq(1)
+
+
+def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:
+    return load[0], load[1], load[2]
+
+
+def _channels(nodes: Sequence[Node], loaded: Sequence[int]) -> Iterator[Channel]:
+    for force, column in enumerate(loaded):
+        for load in nodes[column].loads:
+            if load.kind != "b":  # a ramp of the acceleration is an acceleration
+                order = len(load.coefficients) - 1
+                gain = _exact(load.coefficients[order]) / _g(nodes[column])
+                yield Channel(f"{load.kind}{load.number or ''}", force, gain, order)
+
+
+def _watched(output: Observable, first: int) -> Watched:
+    rod = rod_of(output)
+    return Watched(output.name, output.quantity, rod - 1 - first, rod - first, rational(output.x) - (rod - 1))
+
+
+def _g(node: Node) -> fmpq:
+    return _exact(node.damping) + (_exact(node.alpha) + _exact(node.beta)) / 2
+
+
+def _start(rod: Rod | None) -> fmpq:
+    return _exact(rod.velocity) if rod else fmpq(0)
+
+
+def _exact(value: Quantity) -> fmpq:
+    return value if isinstance(value, fmpq) else rational(value)

@@ -1,0 +1,422 @@
+"""Pieces: on each stretch between breakpoints an output is one polynomial, of just the degree that the tolerance needs.
+
+The waves come from `windows`, in balls. On a piece, with t = (tau - centre) / half in [-1, 1], an output is turned into
+a Chebyshev series and cut off where the rest is small enough; what stays is rounded, as powers of w = tau - centre.
+
+The proved error of a piece of degree d with powers c_k (of t) is the sum of
+- the Chebyshev terms cut off, and the balls that the waves are known in;
+- rounding, with unit roundoff u and to first order: each c_k once, w once (k u), and Horner's rule (2 k + 1) u make
+  (3 k + 2) u |c_k|; contraction of a*b + c only makes less of it. NumPy sums products of powers of w with the c_k in
+  any order, c_0 last: (2 k + d + 1) u |c_k|, for c_0 2 u |c_0|. The bound takes the larger of the two;
+- underflow, which in each coefficient (of w), product and power of w is at most half the smallest number. As
+  |w| <= 1/2, Horner's rule makes no more than 2 of these halves for each coefficient; NumPy's powers of w are wrong
+  by at most 2, times their coefficients.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+from flint import arb, arb_poly, ctx, fmpq
+
+from wavesym.errors import CostError
+from wavesym.exact.ball import Segment, precise
+from wavesym.exact.motion import Motion, is_zero
+from wavesym.exact.signal import horizon
+from wavesym.numbers import chebyshev
+from wavesym.numbers.doubles import bound, middle, nearest, rational
+from wavesym.numbers.reals import SINGLE, Real
+from wavesym.programs.march.plan import plan
+from wavesym.programs.march.zero import silent
+from wavesym.scene import Scene
+
+# A table larger than this is for the march.
+MOST_BYTES = 4 << 20
+# C evaluates so many samples at once: their sums and offsets fill the vector registers of common machines.
+BLOCK = 32
+# Pieces in a unit of tau: shorter ones have lower degrees, which is faster and rounds less, in larger tables.
+_USUAL = (8, 4, 2, 1)
+_SHORTER = (2, 4, 8, 16, 32)
+# A fit at so many bits takes seconds, at twice as many the better part of a minute (the terms double with the bits).
+_MOST_BITS = 1024
+# Pieces times bits: half a minute.
+_MOST_WORK = 15_000_000
+# In double precision the fastest are taken whose tables are no larger than this; single is for small machines.
+_FAST_BYTES = 128 << 10
+_SECOND_ORDER = arb(fmpq(1001, 1000))
+# of the largest value; far below what any tolerance asks for
+_NEGLIGIBLE = arb(2) ** -200
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Pieces that some outputs share: piece p is for starts[p] <= tau < starts[p + 1].
+
+    `powers[p][j]` are the coefficients of output `outputs[j]` in w = tau - centres[p], lowest first. `first[b]` is the
+    piece at tau = b / scale; from there at most `steps` more are to be tried.
+    """
+
+    outputs: tuple[int, ...]
+    starts: tuple[float, ...]
+    centres: tuple[float, ...]
+    powers: tuple[tuple[tuple[float, ...], ...], ...]
+    scale: float
+    first: tuple[int, ...]
+    steps: int
+
+
+@dataclass(frozen=True)
+class PiecesOutput:
+    """An output's name, its proved largest error relative to its largest value, and a lower bound of that value."""
+
+    name: str
+    bound: float
+    largest: float
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Polynomial pieces for the outputs of a scene on [0, tau_max]."""
+
+    outputs: tuple[PiecesOutput, ...]
+    tau_max: float
+    real: Real
+    grids: tuple[Grid, ...]
+    per_unit: int
+
+    @property
+    def error_bound(self) -> float:
+        """The largest error of any output relative to its largest value; proved."""
+        return max(output.bound for output in self.outputs)
+
+    @cached_property
+    def degrees(self) -> tuple[int, int]:
+        """The lowest and the highest degree of a piece."""
+        degrees = [len(powers) - 1 for grid in self.grids for piece in grid.powers for powers in piece]
+        return min(degrees), max(degrees)
+
+    @cached_property
+    def bytes(self) -> int:
+        """The size of the tables in C."""
+        return BLOCK * self.real.bytes + sum(_bytes(grid, self.real) for grid in self.grids)
+
+    @cached_property
+    def work(self) -> float:
+        """About how many operations a value takes: the mean degree, and finding the place."""
+        degrees = [len(powers) - 1 for grid in self.grids for piece in grid.powers for powers in piece]
+        return 4 + sum(degrees) / len(degrees)
+
+    @property
+    def summary(self) -> str:
+        """What it is, in a few words."""
+        low, high = self.degrees
+        return f"pieces, degree {low}..{high}, {-(-self.bytes // 1024)} KiB, bound {self.error_bound:g}"
+
+    def shortfall(self, tolerance: fmpq) -> str:
+        """Why it does not meet a tolerance."""
+        worst = max(self.outputs, key=lambda output: output.bound)
+        return f"pieces: rounding allows {worst.bound:g} at best for {worst.name}"
+
+    @cached_property
+    def check_points(self) -> list[float]:
+        """For the self-test: the start of every piece, the last number before it, and one in the middle."""
+        points = {0.0, self.tau_max}
+        for grid in self.grids:
+            for start, end, centre in zip(grid.starts, grid.starts[1:], grid.centres, strict=False):
+                points |= {start, centre, self.real.next_to(end, 0.0)}
+        return sorted(points)
+
+
+def pieces(scene: Scene, real: Real, tolerance: fmpq) -> Pieces:
+    """The pieces of a scene in `real` numbers, with degrees for `tolerance`, met or not: see `error_bound`.
+
+    CostError where the tables would be larger than `MOST_BYTES`, or take long to fit.
+    """
+    # no finer than rounding: what is asked for beyond that is not had by more bits or more pieces
+    fits = _Fits(scene, real, max(tolerance, real.roundoff / 8))
+    found = _smallest(fits, tolerance) if real is SINGLE else _fastest(fits)
+    for shorter in _SHORTER:
+        if shorter > found.per_unit and rational(found.error_bound) > tolerance > real.roundoff / 8:
+            found = fits.fitted(shorter)
+    if found.bytes > MOST_BYTES:
+        raise _too_large(found.bytes, MOST_BYTES)
+    return found
+
+
+class _TooLarge(CostError):
+    """Tables larger than they may be."""
+
+
+def _too_large(size: int, most: int) -> _TooLarge:
+    return _TooLarge(
+        f"output.until: pieces would take at least {size / 2**20:.2g} MiB, at most {most / 2**20:.2g} expected; a "
+        "shorter horizon, fewer outputs or load times help"
+    )
+
+
+def _fastest(fits: _Fits) -> Pieces:
+    *shorter, longest = _USUAL
+    for per_unit in shorter:
+        with suppress(_TooLarge):
+            found = fits.fitted(per_unit, _FAST_BYTES)
+            if found.bytes <= _FAST_BYTES:
+                return found
+    return fits.fitted(longest)
+
+
+def _smallest(fits: _Fits, tolerance: fmpq) -> Pieces:
+    tried = []
+    for per_unit in _USUAL:
+        with suppress(_TooLarge):
+            tried.append(fits.fitted(per_unit))
+    good = [found for found in tried if rational(found.error_bound) <= tolerance]
+    if good:
+        return min(good, key=lambda found: found.bytes)
+    return tried[0] if tried else fits.fitted(_USUAL[-1])
+
+
+class _Fits:
+    """The outputs of a scene at the precision that its tolerance needs, and fits to them."""
+
+    def __init__(self, scene: Scene, real: Real, tolerance: fmpq) -> None:
+        self._scene = scene
+        self._real = real
+        # a little of it is left for printing the bound in two digits, rounded up
+        self._tolerance = arb(tolerance) * arb(fmpq(9, 10))
+        self._tau_max = horizon(scene, real)
+        self._motion = Motion(scene, rational(self._tau_max))
+        self._bits = self._motion.first_bits
+        if self._bits > _MOST_BITS:
+            raise CostError(
+                f"output.until: pieces would need {self._bits} bits to be known to tau = {self._tau_max:g}, at most "
+                f"{_MOST_BITS} expected"
+            )
+
+    @cached_property
+    def _silent(self) -> set[int]:
+        """The outputs that are 0 throughout though waves arrive, which no number of bits tells; as far as is known."""
+        try:
+            return {k for k, nothing in enumerate(silent(plan(self._scene, self._real))) if nothing}
+        except CostError:
+            return set()
+
+    def fitted(self, per_unit: int, most: int = MOST_BYTES) -> Pieces:
+        """Pieces, about `per_unit` of them in a unit of tau. CostError where they would take more than `most` bytes."""
+        if self._least(per_unit) * self._real.bytes > most:
+            raise _too_large(self._least(per_unit) * self._real.bytes, most)
+
+        def attempt() -> Pieces | None:
+            self._bits = ctx.prec  # what did for one number of pieces is where the next one starts
+            if self._least(per_unit) * self._bits > _MOST_WORK:
+                raise CostError(
+                    f"output.until: {self._least(per_unit):.0e} pieces would be fitted with {self._bits} bits, "
+                    f"at most {_MOST_WORK // self._bits:.0e} expected"
+                )
+            return self._fit(per_unit, most)
+
+        try:
+            return precise(attempt, self._bits, _MOST_BITS)
+        except ArithmeticError as error:
+            raise CostError(f"output.until: pieces would take minutes to fit, as {error}") from None
+
+    def _least(self, per_unit: int) -> int:
+        """How many pieces there are at least, of all outputs."""
+        in_a_unit = 0
+        for breaks, places in self._shared.items():
+            cuts = sorted(breaks)
+            parts = (((high - low) * per_unit).ceil() for low, high in pairwise([*cuts, cuts[0] + 1]))
+            in_a_unit += len(places) * int(sum(parts))
+        return in_a_unit * int(self._motion.until.floor())
+
+    @cached_property
+    def _shared(self) -> dict[frozenset[fmpq], list[int]]:
+        """The outputs, by where in a unit of tau they may jump or bend."""
+        shared: dict[frozenset[fmpq], list[int]] = {}
+        for k, place in enumerate(self._motion.places):
+            shared.setdefault(self._motion.breaks(place), []).append(k)
+        return shared
+
+    def _fit(self, per_unit: int, most: int) -> Pieces | None:
+        places = self._motion.places
+        grids: list[Grid] = []
+        bounds: dict[int, tuple[float, float]] = {}
+        size = 0
+        for members in self._shared.values():
+            columns = []
+            for k in members:
+                segments = self._motion.segments(places[k])
+                cuts = _Cuts([segment.start for segment in segments], self._motion.until, per_unit, self._real)
+                fit = self._output(segments, cuts)
+                if fit is None and k in self._silent:
+                    fit = _nothing(cuts)
+                if fit is None:
+                    return None
+                bounds[k], powers = fit
+                columns.append(powers)
+                size += self._real.bytes * sum(map(len, powers))
+                if size > most:
+                    raise _too_large(size, most)
+            grids.append(cuts.grid(members, columns))
+        outputs = tuple(PiecesOutput(place.observable.name, *bounds[k]) for k, place in enumerate(places))
+        return Pieces(outputs, self._tau_max, self._real, tuple(grids), per_unit)
+
+    def _output(
+        self, segments: Sequence[Segment], cuts: _Cuts
+    ) -> tuple[tuple[float, float], list[tuple[float, ...]]] | None:
+        """Bound and largest value of an output, and its powers on every piece; None where the precision does not do."""
+        if is_zero(segments):
+            return _nothing(cuts)
+        if self._too_blurred(segments, cuts):
+            return None
+        local = list(_on_pieces(segments, cuts))
+        scale = max(map(cuts.size, range(len(local)), local))
+        if not scale > 0:
+            return None
+        allowed, enough = self._allowed(scale)
+        worst = arb(0)
+        powers = []
+        for coefficients, half in zip(chebyshev.coefficients(local), cuts.halves, strict=True):
+            blurred = sum((c.rad() for c in coefficients), arb(0))
+            if not blurred < enough:
+                return None
+            error, kept = _cut_off([c.mid() for c in coefficients], allowed - blurred, self._real)
+            local_powers = [c / arb(half) ** k for k, c in enumerate(kept)]
+            worst = worst.max((error + blurred + _underflow(local_powers, self._real)).upper())
+            powers.append(tuple(self._real.nearest(middle(c)) for c in local_powers))
+        return (bound(worst / scale), float(scale)), powers
+
+    def _allowed(self, scale: arb) -> tuple[arb, arb]:
+        """The error that is allowed where the largest value is `scale`, and what of it balls may take."""
+        allowed = self._tolerance * scale
+        return allowed, allowed.max(arb(self._real.roundoff) * scale) / 1000
+
+    def _too_blurred(self, segments: Sequence[Segment], cuts: _Cuts) -> bool:
+        """Whether balls, which grow with time, hide the last piece, however large the largest value is."""
+        largest = arb(0)
+        for segment, end in zip(segments, [*(s.start for s in segments[1:]), self._motion.until], strict=True):
+            (polynomial,) = segment.families.values()
+            largest = largest.max(abs(polynomial(arb(0).union(arb(end - segment.start)))).upper())
+        (last,) = chebyshev.coefficients(list(_on_pieces(segments, cuts, len(cuts.middles) - 1)))
+        return not sum((c.rad() for c in last), arb(0)) < self._allowed(largest)[1]
+
+
+def _nothing(cuts: _Cuts) -> tuple[tuple[float, float], list[tuple[float, ...]]]:
+    """What fits an output that is 0 throughout."""
+    return (0.0, 0.0), [(0.0,)] * len(cuts.centres)
+
+
+def _on_pieces(segments: Sequence[Segment], cuts: _Cuts, first: int = 0) -> Iterator[arb_poly]:
+    """The output on every piece from the `first` on, in t; what is negligible is in the balls."""
+    starts = [segment.start for segment in segments]
+    negligible = max(abs(p[0]).lower() for segment in segments for p in segment.families.values()) * _NEGLIGIBLE
+    for start, centre, half in list(zip(cuts.exact, cuts.middles, cuts.halves, strict=False))[first:]:
+        segment = segments[bisect_right(starts, start) - 1]
+        (polynomial,) = segment.families.values()
+        yield _shortened(polynomial(arb_poly([arb(centre - segment.start), arb(half)])), negligible)
+
+
+def _shortened(polynomial: arb_poly, negligible: arb) -> arb_poly:
+    """A polynomial on [-1, 1] without its highest powers, as far as they are negligible in all."""
+    powers = polynomial.coeffs()
+    rest = arb(0)
+    while powers and (more := rest + abs(powers[-1]).upper()) < negligible:
+        rest = more
+        powers.pop()
+    return arb_poly([powers[0] + arb(0, rest.upper()), *powers[1:]]) if powers else arb_poly()
+
+
+class _Cuts:
+    """The pieces between breakpoints: their exact ends, and how these look in real numbers."""
+
+    def __init__(self, breaks: Sequence[fmpq], until: fmpq, per_unit: int, real: Real) -> None:
+        self._real = real
+        last = rational(real.next_to(real.nearest(until), float("inf")))
+        exact = []
+        for low, high in pairwise([*breaks, last]):
+            parts = max(1, int(((high - low) * per_unit).ceil()))
+            inner = (rational(real.nearest(low + (high - low) * j / parts)) for j in range(1, parts))
+            exact += [low, *inner]
+        exact.append(last)
+        # where two of them are the same real number, no tau is between them
+        seen = [real.not_below(cut) for cut in exact]
+        kept = [k for k in range(len(exact) - 1) if seen[k] < seen[k + 1]]
+        self.exact = [exact[k] for k in kept] + [last]
+        self.starts = [seen[k] for k in kept] + [seen[-1]]
+        # as far as the output goes on without a breakpoint, and is asked for
+        self.ends = [min(exact[k + 1], until) for k in kept]
+        self.centres = [real.nearest((low + high) / 2) for low, high in pairwise(self.exact)]
+        self.middles = [rational(centre) for centre in self.centres]
+        self.halves = [
+            max(high - middle, middle - low)
+            for (low, high), middle in zip(pairwise(self.exact), self.middles, strict=True)
+        ]
+
+    def size(self, piece: int, polynomial: arb_poly) -> arb:
+        """The largest of an output's values at both ends of a piece and at its centre, from its `polynomial` in t.
+
+        What lies beyond the next breakpoint or the horizon is no value of it.
+        """
+        low, middle, high = self.exact[piece], self.middles[piece], self.ends[piece]
+        places = (low, max(low, min(middle, high)), high)
+        return max(abs(polynomial(arb((tau - middle) / self.halves[piece]))).lower() for tau in places)
+
+    def grid(self, outputs: Sequence[int], columns: Sequence[Sequence[tuple[float, ...]]]) -> Grid:
+        """The pieces with their powers, output by output."""
+        pieces = len(self.centres)
+        count = pieces
+        while True:  # finer until few pieces lie in a part
+            scale = self._real.nearest(fmpq(count) / rational(self.starts[-1]))
+            # tau * scale is rounded: a tau that is a little smaller belongs to part b too
+            edges = (float(b) / scale * (1 - 8 * nearest(self._real.roundoff)) for b in range(count + 2))
+            first = [min(bisect_right(self.starts, edge) - 1, pieces - 1) for edge in edges]
+            steps = max(b - a for a, b in pairwise(first)) + 1
+            if steps <= 3 or count > 4 * pieces:
+                break
+            count *= 2
+        return Grid(
+            tuple(outputs),
+            tuple(self.starts),
+            tuple(self.centres),
+            tuple(zip(*columns, strict=True)),
+            scale,
+            tuple(first),
+            steps,
+        )
+
+
+def _cut_off(coefficients: Sequence[arb], allowed: arb, real: Real) -> tuple[arb, list[arb]]:
+    """The error and the powers of the shortest series whose error is allowed; of the best one where none is."""
+    rest = [arb(0)]
+    for c in reversed(coefficients):
+        rest.append(rest[-1] + abs(c).upper())
+    rest.reverse()  # rest[d] is what is lost by keeping d terms
+    best: tuple[arb, list[arb]] | None = None
+    for terms in range(1, len(coefficients) + 1):
+        if rest[terms] > allowed and terms < len(coefficients):
+            continue
+        powers = chebyshev.powers(coefficients[:terms])
+        weights = (max(3 * k + 2, 2 * k + terms if k else 0) for k in range(terms))
+        rounding = sum((w * abs(c) for w, c in zip(weights, powers, strict=True)), arb(0)) * arb(real.roundoff)
+        error = rest[terms] + _SECOND_ORDER * rounding.upper()
+        if best is None or error < best[0]:
+            best = error, powers
+        if error <= allowed or rest[terms] < rounding * arb(real.roundoff):
+            break
+    assert best is not None  # all terms are always tried
+    return best
+
+
+def _underflow(powers: Sequence[arb], real: Real) -> arb:
+    """What may underflow on a piece with these coefficients of w."""
+    return arb(real.smallest) * sum((2 + 2 * abs(c).upper() for c in powers), arb(0))
+
+
+def _bytes(grid: Grid, real: Real) -> int:
+    numbers = len(grid.starts) + len(grid.centres) + sum(len(p) for piece in grid.powers for p in piece)
+    indices = len(grid.first) + len(grid.powers) * len(grid.outputs) + 1
+    return numbers * real.bytes + indices * 4

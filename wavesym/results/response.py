@@ -1,0 +1,51 @@
+"""A scene's outputs as one function of tau, right to the last bit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wavesym.exact.reference import Reference
+from wavesym.exact.signal import horizon
+from wavesym.scene import Scene
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+@dataclass(frozen=True)
+class Response:
+    """A scene's outputs as one function: the exact tables in ball arithmetic, each value rounded once.
+
+    `outputs` are their names, `tau_max` the end of the horizon; `error_bound` is relative to an output's largest value.
+    """
+
+    scene: Scene
+
+    @cached_property
+    def _reference(self) -> Reference:
+        return Reference(self.scene)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return tuple(output.name for output in self.scene.outputs)
+
+    @property
+    def tau_max(self) -> float:
+        return horizon(self.scene)
+
+    @property
+    def error_bound(self) -> float:
+        return 2.0**-53
+
+    def __call__(self, tau: ArrayLike) -> NDArray[np.float64]:
+        """Values at tau (dimensionless): shape (len(outputs), *tau.shape), NaN where tau is out of [0, tau_max]."""
+        taus = np.asarray(tau, dtype=np.float64)
+        flat = taus.ravel()
+        inside = (flat >= 0.0) & (flat <= self.tau_max)
+        out = np.full((len(self.outputs), flat.size), np.nan)
+        out[:, inside] = self._reference.values(flat[inside].tolist())
+        return out.reshape(len(self.outputs), *taus.shape)

@@ -1,0 +1,1 @@
+"""Generated text made to run: a compiler found, C built and loaded."""

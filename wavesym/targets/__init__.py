@@ -1,0 +1,1 @@
+"""Program -> files: C, NumPy and the manifest."""
