@@ -12,7 +12,7 @@ import pytest
 
 from wavesym.cli import main
 from wavesym.compiler import published, tables_text
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.files import files
 
 KEPT = Path(__file__).parent.parent / "generated"
@@ -22,7 +22,7 @@ EXAMPLES = ("building_m2", "collision_m4", "drive_m1")
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_kept_files_are_what_is_generated(name):
     scene = Scene.from_toml(name)
-    made = files(scene, "all") | {"tables.csv": "".join(tables_text(scene, None, "csv"))}
+    made = files(lower(scene), "all") | {"tables.csv": "".join(tables_text(scene, None, "csv"))}
     kept = {path.name: path.read_bytes().decode() for path in (KEPT / name).iterdir()}
     assert kept.keys() == made.keys(), "make generated"
     for file, text in made.items():

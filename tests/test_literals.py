@@ -21,7 +21,7 @@ from wavesym.exact.ball import Balls, segments, values
 from wavesym.exact.motion import Motion
 from wavesym.exact.signal import signals
 from wavesym.numbers.doubles import fraction, rational
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.files import files
 
 KEPT = Path(__file__).parent.parent / "generated"
@@ -143,7 +143,7 @@ def test_polynomials_are_those_of_the_exact_tables(name: str, record_property) -
     pieces = kept(name)
     checked = 0
     with ctx.workprec(400):
-        outputs = [segments(signal) for signal in signals(pieces.scene)]
+        outputs = [segments(signal) for signal in signals(lower(pieces.scene))]
         for members, starts, centres, rows in pieces.grids():
             cuts = pieces.cuts(pieces.scene.outputs[members[0]].x)
             assert not wrong(starts, cuts)
@@ -189,7 +189,7 @@ def test_the_end_of_a_contact_is_right_in_all_its_digits() -> None:
     """The strain in the contact changes its sign between the neighbours of the last digit."""
     (digits,) = json.loads(read("collision_m4", ".json"))["contact_end"].values()
     scene = Scene.from_toml("collision_m4")
-    (strain,) = (signal for signal in signals(scene) if signal.name == "strain@2")
+    (strain,) = (signal for signal in signals(lower(scene)) if signal.name == "strain@2")
     with ctx.workprec(300):
         balls = Balls(segments(strain))
         end, last = Fraction(digits), Fraction(1, 2 * 10 ** len(digits.partition(".")[2]))
@@ -200,7 +200,7 @@ def test_the_end_of_a_contact_is_right_in_all_its_digits() -> None:
 def test_reference_values_are_those_of_the_windows(name: str, record_property) -> None:
     scene, given = Scene.from_toml(name), tables(read(name, "_selftest.c"))
     taus, expected = [float(text) for text in given["taus"]], given["expected"]
-    motion = Motion(scene, rational(scene.output.until))
+    motion = Motion(lower(scene), rational(scene.output.until))
     rows = [values(partial(motion.segments, place), taus, float(scene.output.until)) for place in motion.places]
     record_property("values", len(expected))
     assert [float(text).hex() for text in expected] == [value.hex() for row in rows for value in row]
@@ -209,8 +209,8 @@ def test_reference_values_are_those_of_the_windows(name: str, record_property) -
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_closed_form_has_the_exact_table_rounded_once(name: str) -> None:
     scene = Scene.from_toml(name)
-    given = tables(files(scene, "c", "closed")[f"{name}.c"])
-    arrivals = [arrival for signal in signals(scene) for arrival in signal.arrivals]
+    given = tables(files(lower(scene), "c", "closed")[f"{name}.c"])
+    arrivals = [arrival for signal in signals(lower(scene)) for arrival in signal.arrivals]
     families = [(rate, arrival.increment[rate]) for arrival in arrivals for rate in sorted(arrival.increment)]
     times = [fraction(arrival.time) for arrival in arrivals]
     assert not wrong(given["start"], times)  # all of them are doubles here
@@ -223,7 +223,7 @@ def test_the_closed_form_has_the_exact_table_rounded_once(name: str) -> None:
 def test_the_march_has_its_operators_rounded_once(name: str) -> None:
     """Their recurrences in fractions, without balls."""
     scene = Scene.from_toml(name)
-    made = files(scene, "c", "march")
+    made = files(lower(scene), "c", "march")
     given, degree = tables(made[f"{name}.c"]), int(re.search(r"_DEGREE = (\d+)", made[f"{name}.h"])[1])
     count = len(given["ratio"]) // (degree + 1)
     assert count >= 1

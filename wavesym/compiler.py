@@ -29,14 +29,12 @@ from wavesym.documents.tables import symbolic_lines, table_lines
 from wavesym.errors import SceneError, WavesymError
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.rate_letters import in_rates
-from wavesym.exact.signal import horizon
 from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
-from wavesym.model.chain import chain
 from wavesym.model.symbolic import generic, symbolic
 from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.results.response import Response
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.files import files, is_ours
 from wavesym.writing import traces, write_whole
 
@@ -56,7 +54,7 @@ def evaluator(scene: Scene) -> Response:
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
-    return Response(scene)
+    return Response(lower(scene))
 
 
 def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
@@ -67,7 +65,8 @@ def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
 
 def table(scene: Scene, intervals: int | None = None) -> Table:
     """The unit responses of all sources of the scene's system."""
-    return full_table(chain(scene), intervals, rational(horizon(scene)))
+    model = lower(scene)
+    return full_table(model.chain, intervals, rational(model.horizon()))
 
 
 def tables_text(scene: Scene, intervals: int | None, format: str) -> Iterator[str]:
@@ -80,8 +79,9 @@ def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tu
 
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """
-    symbols = in_rates(symbolic(chain(scene)))
-    until = rational(horizon(scene))
+    model = lower(scene)
+    symbols = in_rates(symbolic(model.chain))
+    until = rational(model.horizon())
     refuse_costly(symbols.chain, intervals, until)
     made = full_table(symbols.chain, intervals, until, most=MOST_FACTORED)
     merged = [f"{name} = {ratio}" for name, ratio in symbols.meaning.items() if str(ratio) != name]
@@ -97,7 +97,7 @@ def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
 
     if isinstance(source, str):
         return derivation(source, m, format)
-    return scene_derivation(source.name, symbolic(chain(source)), format)
+    return scene_derivation(source.name, symbolic(lower(source).chain), format)
 
 
 def walks(source: str | Scene, m: int | None, intervals: int, format: str = "text") -> str:
@@ -111,7 +111,7 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
     if isinstance(source, str):
         assert m is not None  # polynomials are those of one chain
         return walk_polynomials((generic(system, m) for system in systems(source, m)), intervals, format)
-    return walk_polynomials([symbolic(chain(source))], intervals, format)
+    return walk_polynomials([symbolic(lower(source).chain)], intervals, format)
 
 
 def generate(
@@ -131,7 +131,7 @@ def generate(
     is not.
     """
     folder = Path(directory or scene.name)
-    made = {folder / name: text for name, text in files(scene, language, evaluator, precision, windows).items()}
+    made = {folder / name: text for name, text in files(lower(scene), language, evaluator, precision, windows).items()}
     for path in made:
         if not force and path.is_file() and not is_ours(path):
             raise WavesymError(f"{path}: not written by wavesym, and --force not given")
@@ -154,7 +154,7 @@ def check(
     last line is the command that mends them, with the scene as it is given by `source`.
     """
     folder = Path(directory or scene.name)
-    made = {folder / name: text for name, text in files(scene, language, evaluator, precision, windows).items()}
+    made = {folder / name: text for name, text in files(lower(scene), language, evaluator, precision, windows).items()}
     found = [path for path in folder.glob(f"{scene.name}*") if path.is_file()]
     left = [path for path, place in traces(folder) if place.name.startswith(scene.name)]
     difference = Difference(made, [*found, *left])
@@ -192,12 +192,12 @@ def grid(scene: Scene, samples: int) -> Iterator[float]:
     """`samples` equally spaced tau, each rounded once; the last one is the end of the horizon."""
     until = rational(scene.output.until)
     yield from (nearest(until * k / (samples - 1)) for k in range(samples - 1))
-    yield horizon(scene) if samples > 1 else 0.0
+    yield lower(scene).horizon() if samples > 1 else 0.0
 
 
 def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
     """What a user might not expect: no load, tau out of range, contacts that open early enough to matter."""
-    last = horizon(scene)
+    last = lower(scene).horizon()
     outside = sum(not 0 <= tau <= last for tau in taus)
     lines = [f"{outside} of {len(taus)} tau are not within 0 and {scene.output.until}: nan"] * bool(outside)
     return [*no_load(scene), *lines, *_contact_warnings(scene)]
@@ -205,14 +205,14 @@ def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
 
 def no_load(scene: Scene) -> list[str]:
     """A line for a scene in which nothing happens."""
-    return [] if any(piece.weight for piece in scene.pieces) else ["no load, so that all outputs are 0"]
+    return [] if lower(scene).loads else ["no load, so that all outputs are 0"]
 
 
 def _contact_warnings(scene: Scene) -> list[str]:
     """A line for every contact that opens early enough to matter to an output."""
     return [
         f"contact at x = {end.x} opens at tau = {end.digits}: what it can reach after that is the formal continuation"
-        for end in contact_ends(scene)
+        for end in contact_ends(lower(scene))
     ]
 
 
@@ -226,7 +226,7 @@ def plot(scene: Scene, path: Path) -> list[str]:
     from wavesym.report.saving import picture_format, save
 
     picture_format(path)
-    made = histories(scene)
+    made = histories(lower(scene))
     save(draw(made), path)
     return notes(made)
 
@@ -235,7 +235,7 @@ def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
     """Evaluators against direct integration: a table of errors, and whether all of them are allowed."""
     from wavesym.verification.report import verify as report
 
-    return report(scenes)
+    return report(map(lower, scenes))
 
 
 def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:

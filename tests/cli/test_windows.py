@@ -8,7 +8,7 @@ import pytest
 
 from wavesym.cli import main
 from wavesym.programs.march.evaluator import marched
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 
 SCENE = """name = "mine"
 [system]
@@ -57,7 +57,7 @@ def asked(tmp_path, monkeypatch, capsys):
 def test_header_and_manifest_say_what_is_proved(asked, tmp_path):
     status, _, err, _ = asked(SCENE, "--evaluator", "march", "--windows", "300", "--language", "all")
     assert (status, err.count("\n")) == (0, 1)
-    proved = marched(Scene.from_toml("mine.toml"), windows=300).given
+    proved = marched(lower(Scene.from_toml("mine.toml")), windows=300).given
     header = (tmp_path / "mine/mine.h").read_text()
     assert re.findall(r"#define MINE_WINDOWS (\S+)", header) == ["300"]
     (printed,) = re.findall(r"#define MINE_GIVEN_ERROR (\S+)", header)

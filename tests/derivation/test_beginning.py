@@ -9,9 +9,9 @@ from wavesym.derivation.numbers import number
 from wavesym.derivation.rods import rod_kinds
 from wavesym.documents.derivation.dimensions import LENGTH, SPEED, UNIT, dimensions
 from wavesym.model.node import Parameters, System
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 
 K, J, V = SYMBOLS.kappa, SYMBOLS.inertia, SYMBOLS.velocity
 SYSTEMS = [COLLISION, DRIVE, BUILDING_FORCE, BUILDING_GROUND]

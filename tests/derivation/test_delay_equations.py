@@ -5,9 +5,9 @@ from sympy import Integer, Rational, sympify
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, delay_equations
 from wavesym.derivation.delay_terms import Line, Operator, Source, Wave
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 
 K, J, V = SYMBOLS.kappa, SYMBOLS.inertia, SYMBOLS.velocity
 

@@ -10,9 +10,9 @@ from wavesym.derivation.delay_terms import Line, Operator, Wave
 from wavesym.derivation.recurrence import coefficient_law, recurrence
 from wavesym.documents.derivation.families import solved
 from wavesym.documents.derivation.patterns import patterns, rates
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 from wavesym.verification.proofs import node_law
 from wavesym.verification.theorem import residuals
 

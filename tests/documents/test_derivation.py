@@ -9,7 +9,6 @@ import pytest
 
 from wavesym.documents.derivation.document import derivation, scene_derivation
 from wavesym.errors import WavesymError
-from wavesym.model.chain import chain
 from wavesym.model.symbolic import symbolic
 from wavesym.scene import Scene, builtin_names
 
@@ -19,7 +18,7 @@ PARTS = ("legend", "conditions", "rods", "nodes", "equations", "recurrences", "d
 
 def of_scene(name, format):
     scene = Scene.from_toml(name)
-    return scene_derivation(scene.name, symbolic(chain(scene)), format)
+    return scene_derivation(scene.name, symbolic(scene.system.chain), format)
 
 
 def formulas(statement):
@@ -135,7 +134,7 @@ def test_many_rates_of_a_scene_are_told_by_one_law():
         load=[{"times": [0], "a": [1], "b": [0]}],
         output={"until": 4, "strain": ["1/2"]},
     )
-    (statement,) = json.loads(scene_derivation(scene.name, symbolic(chain(scene)), "json"))
+    (statement,) = json.loads(scene_derivation(scene.name, symbolic(scene.system.chain), "json"))
     (own,) = statement["families"]
     assert len(own["rates"]) == 9
     assert "q = 2 kappa_7" in next(entry["formulas"] for entry in own["laws"] if entry["of"] == "f_8")

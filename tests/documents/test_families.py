@@ -19,9 +19,9 @@ from wavesym.exact.table import full_table
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
 from wavesym.model.symbolic import symbolic
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 
 INTERVALS = 4
 NOWHERE = fmpq(0)

@@ -12,8 +12,8 @@ from wavesym.errors import CostError
 from wavesym.exact.table import Function
 from wavesym.exact.walks import departures, function_walks, letters, units, walks_until
 from wavesym.model.symbolic import generic
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.drive import DRIVE
 
 
 def test_what_is_written_reads_back():

@@ -13,6 +13,7 @@ from wavesym.errors import CostError, RangeError
 from wavesym.exact import ball, motion, reference
 from wavesym.exact.reference import Reference, beginning
 from wavesym.numbers.reals import DOUBLE, SINGLE
+from wavesym.scene import lower
 
 BUILDING = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"}
 
@@ -38,9 +39,10 @@ def truth(made, tau_max):
 
 @pytest.mark.parametrize("real", [DOUBLE, SINGLE])
 def test_both_routes_are_right_to_the_last_bit(route, real):
-    made = Reference(scene(), real)
+    watched = scene()
+    made = Reference(lower(watched), real)
     assert (made.signals is None) == (route == "windows")
-    exact = truth(made.scene, made.tau_max)
+    exact = truth(watched, made.tau_max)
     third = math.nextafter(1 / 7 + 1 / 2, 1)
     taus = [0.0, 0.1, third, math.nextafter(third, 0), 2.5, 3.0, 4.9, made.tau_max, 2.5]
     for number, row in enumerate(made.values(taus)):
@@ -51,18 +53,20 @@ def test_both_routes_are_right_to_the_last_bit(route, real):
 
 
 def test_largest_values_are_lower_bounds(route):
-    made = Reference(scene())
-    exact = truth(made.scene, made.tau_max)
+    watched = scene()
+    made = Reference(lower(watched))
+    exact = truth(watched, made.tau_max)
     for number, size in enumerate(made.largest()):
-        lower, upper = exact.largest(number, Fraction(made.tau_max))
-        assert size <= upper
-        assert size > lower / 2
-    assert Reference(scene(until="1/8")).largest() == [arb(0)] * 4  # before the first load
+        low, high = exact.largest(number, Fraction(made.tau_max))
+        assert size <= high
+        assert size > low / 2
+    assert Reference(lower(scene(until="1/8"))).largest() == [arb(0)] * 4  # before the first load
 
 
 def test_breakpoints_are_the_first_doubles_that_feel_them(route):
-    made = Reference(scene())
-    exact = truth(made.scene, made.tau_max)
+    watched = scene()
+    made = Reference(lower(watched))
+    exact = truth(watched, made.tau_max)
     found = made.breakpoints()
     assert found == sorted(set(found))
     fronts = {tau for number in range(4) for tau in exact.arrivals(number) if tau < made.tau_max}
@@ -80,7 +84,7 @@ def test_windows_are_asked_only_for_the_segments_that_are_needed(monkeypatch):
         return value(self, place, start)
 
     monkeypatch.setattr(motion.Motion, "_value", counted)
-    Reference(scene(strain=["1/2"])).values([1.0, 1.001, 3.9])
+    Reference(lower(scene(strain=["1/2"]))).values([1.0, 1.001, 3.9])
     assert len(composed) == 2
 
 
@@ -92,14 +96,14 @@ def test_values_that_would_take_long_are_refused_before_work(monkeypatch):
     monkeypatch.setattr(reference, "_MODERATE", 0)
     monkeypatch.setattr(motion, "windows", refused)
     with pytest.raises(CostError, match=r"^output: 10000000 values of 4 outputs to tau = .* fewer outputs, samples"):
-        Reference(scene()).values([1.0] * 10**7)
+        Reference(lower(scene())).values([1.0] * 10**7)
 
 
 def test_more_bits_than_can_be_had_are_a_cost(monkeypatch):
     monkeypatch.setattr(ball, "_MOST_BITS", 64)
     monkeypatch.setattr(ball.precise, "__defaults__", (128, 64))
     with pytest.raises(CostError, match=r"^output.until: right to the last bit would take minutes, as 64 bits are not"):
-        Reference(scene()).values([1.0])
+        Reference(lower(scene())).values([1.0])
 
 
 def test_values_beyond_all_doubles_are_said_to_be(route):
@@ -107,19 +111,19 @@ def test_values_beyond_all_doubles_are_said_to_be(route):
     output = {"until": 1, "strain": ["1/2"]}
     system = {**BUILDING, "kappa": ["1e-9", 1, 1]}
     with pytest.raises(RangeError, match="largest double"):
-        Reference(wavesym.Scene(name="huge", system=system, load=[huge], output=output)).values([0.75])
+        Reference(lower(wavesym.Scene(name="huge", system=system, load=[huge], output=output))).values([0.75])
 
 
 def test_a_beginning_is_as_much_of_the_horizon_as_is_known_soon(monkeypatch):
-    short, long = scene(until=20), scene(until=5000)
-    assert beginning(short) is short
+    short, long = lower(scene(until=20)), lower(scene(until=5000))
+    assert beginning(short) == short
     begun = beginning(long)
-    assert 8 <= begun.output.until < 5000
-    assert reference._size(long, begun.output.until) <= reference._QUICK < reference._size(long, 2 * begun.output.until)
-    assert begun.system is long.system
+    assert 8 <= begun.until < 5000
+    assert reference._size(long, begun.until) <= reference._QUICK < reference._size(long, 2 * begun.until)
+    assert begun.chain is long.chain
     monkeypatch.setattr(reference, "_QUICK", 0)
-    assert beginning(long).output.until == 8
-    assert beginning(scene(until=7)).output.until == 7
+    assert beginning(long).until == 8
+    assert beginning(lower(scene(until=7))).until == 7
 
 
 def test_a_response_is_defined_on_its_horizon_only():

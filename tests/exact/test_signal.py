@@ -13,9 +13,10 @@ from tests.support.drawn import scenes
 from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact.ball import Balls, segments
-from wavesym.exact.signal import horizon, signals
+from wavesym.exact.signal import signals
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
+from wavesym.scene import lower
 
 DRIVE = {"type": "drive", "m": 2, "kappa": ["1/2", "1/3"], "inertia": [1, 2, 3]}
 COLLISION = {"type": "collision", "m": 6, "kappa": ["1/10", 2, "1/5"], "velocity": [1, "1/3", "-1/2"]}
@@ -30,10 +31,10 @@ def scene(until, system=DRIVE, load=({"body": 1, "times": [0, "1/3"], "steps": [
 @given(scenes())
 def test_signals_are_the_exact_solution(drawn):
     """The same instants, and at each of them, and between, the same value to 50 digits."""
-    end = Fraction(horizon(drawn))
+    end = Fraction(lower(drawn).horizon())
     exact = Truth(drawn, end)
     with ctx.workprec(512):
-        for number, signal in enumerate(signals(drawn)):
+        for number, signal in enumerate(signals(lower(drawn))):
             assert signal.name == drawn.outputs[number].name
             instants = exact.arrivals(number)
             seen = [arrival.time for arrival in signal.arrivals]
@@ -49,15 +50,15 @@ def test_signals_are_the_exact_solution(drawn):
 @pytest.mark.parametrize("until", [2, "7/3", "1/3"])
 def test_a_jump_at_the_end_of_the_horizon_is_seen(until):
     made = scene(until, COLLISION, strain=["1/3", 2, "5+"], velocity=["1/3", 3, 5], displacement=[1])
-    tau = Fraction(horizon(made))  # a double at 1/3 or just above
+    tau = Fraction(lower(made).horizon())  # a double at 1/3 or just above
     exact = Truth(made, tau)
     with ctx.workprec(300):
-        for number, signal in enumerate(signals(made)):
+        for number, signal in enumerate(signals(lower(made))):
             assert Balls(segments(signal)).at(rational(tau)).overlaps(exact.value(number, tau, 200))
 
 
 def arrivals(made, real=DOUBLE):
-    return [[arrival.time for arrival in signal.arrivals] for signal in signals(made, real=real)]
+    return [[arrival.time for arrival in signal.arrivals] for signal in signals(lower(made), real=real)]
 
 
 def test_what_only_begins_at_the_end_is_left_out():
@@ -74,7 +75,7 @@ def test_what_only_begins_at_the_end_is_left_out():
 
 def test_a_horizon_is_the_first_number_that_is_not_below_it():
     for until in (Fraction(1, 3), Fraction(2), Fraction(89, 10), Fraction(1) + Fraction(1, 2**30), Fraction(10**9)):
-        double, single = (horizon(scene(until, strain=["1/2"]), real) for real in (DOUBLE, SINGLE))
+        double, single = (lower(scene(until, strain=["1/2"])).horizon(real) for real in (DOUBLE, SINGLE))
         assert Fraction(math.nextafter(double, 0)) < until <= Fraction(double)
         below = np.nextafter(np.float32(single), np.float32(0))
         assert float(np.float32(single)) == single
@@ -90,7 +91,7 @@ def test_in_single_precision_the_horizon_reaches_further():
 
 def test_a_body_that_moves_at_first_counts_from_the_start():
     made = scene(3, COLLISION, strain=["1/2"], velocity=["1/2", "5/2"], displacement=["5/2"])
-    strain, velocity, other, displacement = signals(made)
+    strain, velocity, other, displacement = signals(lower(made))
     assert strain.arrivals[0].time > 0
     assert velocity.arrivals[0].increment == {fmpq(0): [fmpq(1)]}
     assert other.arrivals[0].increment == {fmpq(0): [fmpq(1, 3)]}
@@ -103,4 +104,4 @@ def test_tables_that_would_be_large_are_refused_before_they_are_made(monkeypatch
 
     monkeypatch.setattr("wavesym.exact.signal.unit_response", made)
     with pytest.raises(CostError, match=r"^output.until: the tables would hold .* at most 1e\+01 expected"):
-        signals(scene(40, strain=["1/2"]), most=10)
+        signals(lower(scene(40, strain=["1/2"])), most=10)

@@ -15,11 +15,11 @@ from wavesym.model import symbolic as symbolic_module
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
 from wavesym.model.symbolic import generic, symbolic
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
 from wavesym.numbers.forms import Forms
 from wavesym.numbers.ratio import Ratio, Ring
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 
 NOWHERE = fmpq(0)
 # few values, so that equal parameters and meeting rates (2 kappa_1 = kappa_m) are always among them

@@ -8,10 +8,10 @@ from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import LARGEST_SYMBOLIC, refuse_costly, symbolic_terms
 from wavesym.exact.table import full_table
 from wavesym.model.symbolic import generic
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
 from wavesym.numbers.ratio import Ratio
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 
 
 def counted(chain, intervals):

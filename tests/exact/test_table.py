@@ -10,7 +10,7 @@ from wavesym.documents.derivation.document import derivation as written
 from wavesym.exact.table import Function, Rules, full_table, needed, unit_response
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.drive import DRIVE
 
 
 def drive(kappa, inertia):

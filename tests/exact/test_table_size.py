@@ -7,7 +7,6 @@ import wavesym
 from wavesym.errors import CostError
 from wavesym.exact.table import full_table
 from wavesym.exact.table_size import LARGEST, table_size
-from wavesym.model.chain import chain
 
 EQUAL, UNEQUAL = lambda i: "1", lambda i: f"{(37 * i) % 101 + 1}/{i % 7 + 3}"
 LOADS = {"drive": [{"body": 1, "times": [0], "steps": [1]}], "building": [{"times": [0], "a": [1], "b": [0]}]}
@@ -26,7 +25,7 @@ def system(kind, m, kappa):
         load=LOADS.get(kind, []),
         output={"until": 1, "tolerance": "1e-6", "strain": ["1/2"]},
     )
-    return chain(scene)
+    return scene.system.chain
 
 
 def told(made, interval, intervals):

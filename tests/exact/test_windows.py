@@ -10,12 +10,11 @@ import wavesym
 from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import windows as room
-from wavesym.exact.windows import STILL, Panel, Wave, Windows, _Body, damping, panels_of, windows
-from wavesym.model.chain import chain
-from wavesym.model.light_cone import light_cone
+from wavesym.exact.windows import STILL, Panel, Wave, Windows, _Body, panels_of, windows
+from wavesym.model.loads import Applied
 from wavesym.model.node import Node, Rod
 from wavesym.numbers.doubles import rational
-from wavesym.scene import Piece
+from wavesym.scene import lower
 
 REST = Rod(0, 0)
 
@@ -125,7 +124,7 @@ def test_errors_pass_through_nodes_as_waves_do(monkeypatch):
         output={"until": 1, "strain": ["1/2"]},
     )
     told = {("right", 0): fmpq(1, 8), ("left", 2): fmpq(1, 2)}
-    made = chain(scene)
+    made = scene.system.chain
     right = room._arriving
 
     def arriving(sent, x, rod, step):
@@ -176,9 +175,9 @@ def test_waves_are_where_they_are_said_to_be(name, terms):
     """In a rod the velocity is p + r and the strain r - p: half their difference goes right, half their sum left."""
     scene = watched(name)
     until = rational(scene.output.until)
-    made = chain(scene)
-    nodes = light_cone(made, scene.outputs, scene.output.until)
-    result = windows(made, nodes, scene.pieces, int(until), terms)
+    made = scene.system.chain
+    nodes = lower(scene).light_cone(lower(scene).until)
+    result = windows(made, nodes, lower(scene).loads, int(until), terms)
     exact = Truth(scene, scene.output.until)
     number = {(o.quantity, o.x, o.side): k for k, o in enumerate(scene.outputs)}
     m = scene.system.m
@@ -237,7 +236,7 @@ def test_an_error_is_kept_without_a_radius():
 
 
 def test_before_the_first_window_rods_move_with_half_their_velocity():
-    made = chain(watched("collision"))
+    made = watched("collision").system.chain
     result = Windows(made, range(7), (Panel(fmpq(0), fmpq(1)),), {}, {})
     for direction, x, rod in (("right", 1, 2), ("right", 2, 3), ("left", 3, 3), ("left", 2, 2)):
         sent, offset = result.sent(direction, x, fmpq(-1, 1000))
@@ -247,7 +246,7 @@ def test_before_the_first_window_rods_move_with_half_their_velocity():
 
 
 def test_the_wave_at_a_panels_start_is_the_one_that_begins_there():
-    made = chain(watched("drive"))
+    made = watched("drive").system.chain
     panels = (Panel(fmpq(0), fmpq(1, 3)), Panel(fmpq(1, 3), fmpq(2, 3)))
     waves = [wave([k]) for k in range(6)]
     result = Windows(made, range(1), panels, {0: waves}, {0: [wave([10 + k]) for k in range(6)]})
@@ -258,9 +257,9 @@ def test_the_wave_at_a_panels_start_is_the_one_that_begins_there():
 
 
 def test_panels_lie_between_the_instants_of_loads_that_act():
-    made = chain(watched("drive"))
+    made = watched("drive").system.chain
     times = [("M1", "7/3"), ("M1", "1/2"), ("M4", "6")]
-    pieces = [Piece(source, Fraction(time), Fraction(1)) for source, time in times]
+    pieces = [Applied(source, rational(Fraction(time)), fmpq(1)) for source, time in times]
     for nodes, starts in ((range(4), ["0", "1/3", "1/2"]), (range(1, 4), ["0"])):
         panels = panels_of(made, nodes, pieces)
         assert [panel.start for panel in panels] == [rational(Fraction(start)) for start in starts]
@@ -269,7 +268,7 @@ def test_panels_lie_between_the_instants_of_loads_that_act():
 
 
 def test_a_node_radiates_into_both_its_rods():
-    assert damping(body(fmpq(1, 3), 5, extra=7)) == 7 + fmpq(8, 3)
+    assert body(fmpq(1, 3), 5, extra=7).radiation == 7 + fmpq(8, 3)
 
 
 def test_waves_that_would_fill_the_memory_are_refused_before_the_first(monkeypatch):
@@ -277,6 +276,6 @@ def test_waves_that_would_fill_the_memory_are_refused_before_the_first(monkeypat
         raise AssertionError("a wave was computed")
 
     monkeypatch.setattr(_Body, "moved", begun)
-    made = chain(watched("drive"))
+    made = watched("drive").system.chain
     with pytest.raises(CostError, match=r"^output.until: the waves of 4 nodes on 30000 windows with 256 bits would"):
         windows(made, range(4), (), 30_000, 64)

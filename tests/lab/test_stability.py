@@ -28,7 +28,8 @@ from wavesym.programs import pieces
 from wavesym.programs.choice import choose
 from wavesym.report.saving import save
 from wavesym.rivals import characteristics, differences, elements, laplace, modes, steps
-from wavesym.rivals.problem import scene_problem
+from wavesym.rivals.problem import stated
+from wavesym.scene import lower
 
 
 def quietly(_):
@@ -98,8 +99,8 @@ def test_gaps_as_drawn():
 def test_tables_are_exact_whatever_the_gap(gap):
     """Against power series, which know no rates, to 30 digits: far more than 1e-16 or its powers leave of doubles."""
     scene = drive([Fraction(1), Fraction(1, 2) + gap], [1, 2, 1], 6)
-    (signal,) = signals(scene)
-    motion = Motion(scene, fmpq(6))
+    (signal,) = signals(lower(scene))
+    motion = Motion(lower(scene), fmpq(6))
     with ctx.workprec(1200):  # the tables have powers of 1e16
         tables, series = Balls(segments(signal)), Balls(motion.segments(motion.places[0]))
         for k in range(1, 48):
@@ -159,12 +160,12 @@ def check_orders(family):
 def test_masses_and_springs_swing_as_they_should():
     """Two equal discs: s'' = -2 kappa s - kappa; a foundation that is pushed strains rod 1 by a/kappa_0 at once."""
     step, count = 0.1, 400
-    two = strains(scene_problem(drive([Fraction(1, 50)], [1, 1], 40)), step, count)
+    two = strains(stated(lower(drive([Fraction(1, 50)], [1, 1], 40))), step, count)
     t = step * np.arange(count + 1)
     np.testing.assert_allclose(two[0], (np.cos(np.sqrt(2 / 50) * t) - 1) / 2, atol=1e-12)
     system = {"type": "building", "m": 2, "kappa": ["1/4", "1/5", "1/5"], "base": "force"}
     pushed = made(system, [{"times": [0], "a": [1], "b": [0]}], 4, strain=["1/2"])
-    np.testing.assert_allclose(np.abs(strains(scene_problem(pushed), step, 9)[0]), 4, rtol=1e-12)
+    np.testing.assert_allclose(np.abs(strains(stated(lower(pushed)), step, 9)[0]), 4, rtol=1e-12)
 
 
 # the march on long horizons
@@ -173,7 +174,7 @@ def test_masses_and_springs_swing_as_they_should():
 @pytest.mark.parametrize("kappa", [Fraction(1, 100), Fraction(3, 5), Fraction(5)])
 def test_the_sum_of_modes_is_the_motion(kappa):
     taus = twist.calm([1, 2, 30])
-    exact = np.array(Reference(twist.scene(kappa, 32)).values(taus.tolist()))
+    exact = np.array(Reference(lower(twist.scene(kappa, 32))).values(taus.tolist()))
     np.testing.assert_allclose(twist.truth(kappa, taus), exact, rtol=0, atol=2e-13 * np.abs(exact).max())
 
 
@@ -247,7 +248,7 @@ def guarded(until, kappa="1/2", tolerance="1e-10"):
 )
 def test_guards_that_know_their_bound(name, scene, why):
     with pytest.raises(ToleranceError, match=why):
-        choose(scene, name)
+        choose(lower(scene), name)
 
 
 @pytest.mark.parametrize(
@@ -261,14 +262,14 @@ def test_guards_that_know_their_bound(name, scene, why):
 )
 def test_guards_that_count_the_cost_first(name, scene, why):
     with pytest.raises(CostError, match=why):
-        choose(scene, name)
+        choose(lower(scene), name)
 
 
 def test_pieces_refuse_tables_that_are_too_large(monkeypatch):
-    choose(guarded(6), "pieces")
+    choose(lower(guarded(6)), "pieces")
     monkeypatch.setattr(pieces, "MOST_BYTES", 2000)
     with pytest.raises(CostError, match="pieces would take"):
-        choose(guarded(6), "pieces")
+        choose(lower(guarded(6)), "pieces")
 
 
 # pictures, tables and the command

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.table import full_table
 from wavesym.model.symbolic import generic
-from wavesym.model.systems.building import BUILDING_FORCE
-from wavesym.model.systems.drive import DRIVE
 from wavesym.numbers import factored as module
 from wavesym.numbers.factored import irreducible
+from wavesym.systems.building import BUILDING_FORCE
+from wavesym.systems.drive import DRIVE
 
 CONTEXT = fmpq_mpoly_ctx.get(["x", "y", "z"], Ordering.lex)
 X, Y, Z = CONTEXT.gens()

@@ -10,6 +10,7 @@ from wavesym.errors import CostError, RangeError, ToleranceError, WavesymError
 from wavesym.numbers.reals import REALS
 from wavesym.programs import choice
 from wavesym.programs.choice import choose
+from wavesym.scene import lower
 
 
 @dataclass
@@ -62,7 +63,7 @@ def scene(tolerance="1/1024"):
 def test_the_one_with_less_work_is_taken(makers):
     for closed, pieces, best in ((5, 3, "pieces"), (3, 5, "closed"), (3, 3, "closed")):
         makers(closed=Made("closed", 1e-9, closed), pieces=Made("pieces", 1e-8, pieces))
-        chosen = choose(scene())
+        chosen = choose(lower(scene()))
         other = "closed is good to 1e-09" if best == "pieces" else "pieces is good to 1e-08"
         mine = "pieces is good to 1e-08" if best == "pieces" else "closed is good to 1e-09"
         assert chosen.name == best == chosen.evaluator.name
@@ -71,63 +72,63 @@ def test_the_one_with_less_work_is_taken(makers):
 
 def test_a_bound_that_is_the_tolerance_meets_it_and_one_above_does_not(makers):
     makers(pieces=Made("pieces", 2.0**-10))
-    assert choose(scene()).name == "pieces"
+    assert choose(lower(scene())).name == "pieces"
     makers(pieces=Made("pieces", 2.0**-10 + 2.0**-60))
     with pytest.raises(
         ToleranceError, match=r"^output.tolerance: 0.000976562 cannot be met: closed: costs too much; pie"
     ):
-        choose(scene())
+        choose(lower(scene()))
     makers(pieces=Made("pieces", float("inf")))
     with pytest.raises(ToleranceError, match="inf at best"):
-        choose(scene("999/1000"))
+        choose(lower(scene("999/1000")))
     makers(pieces=Made("pieces", 0.99))
-    assert choose(scene("999/1000")).name == "pieces"
+    assert choose(lower(scene("999/1000"))).name == "pieces"
     makers(pieces=Made("pieces", 0.9995))
     with pytest.raises(ToleranceError):
-        choose(scene("999/1000"))
+        choose(lower(scene("999/1000")))
 
 
 def test_a_march_is_made_only_where_nothing_else_does(makers):
     made = makers(pieces=Made("pieces", 1e-9), march=Made("march", 1e-9, 0.1))
-    assert choose(scene()).name == "pieces"
+    assert choose(lower(scene())).name == "pieces"
     assert not made.march.asked
-    assert choose(scene(), "march").name == "march"
+    assert choose(lower(scene()), "march").name == "march"
     made = makers(pieces=Made("pieces", 1), march=Made("march", 1e-9))
-    chosen = choose(scene())
+    chosen = choose(lower(scene()))
     assert chosen.name == "march"
     assert chosen.reason == "closed: costs too much; pieces: 1 at best; march is good to 1e-09"
 
 
 def test_only_the_one_asked_for_is_made(makers):
     made = makers(closed=Made("closed", 1e-9), pieces=Made("pieces", 1), march=Made("march", 1e-9))
-    assert choose(scene(), "closed", "single") == ("closed", made.closed, "closed is good to 1e-09")
+    assert choose(lower(scene()), "closed", "single") == ("closed", made.closed, "closed is good to 1e-09")
     assert made.closed.asked == [(scene(), REALS["single"], True, None)]
     assert not made.pieces.asked + made.march.asked
     with pytest.raises(ToleranceError, match=r"cannot be met: pieces: 1 at best$"):
-        choose(scene(), "pieces")
-    choose(scene())
+        choose(lower(scene()), "pieces")
+    choose(lower(scene()))
     assert made.closed.asked[1:] == [(scene(), REALS["double"], False, None)]
 
 
 def test_windows_are_those_of_a_march(makers):
     made = makers(march=Made("march", 1e-9))
-    choose(scene(), "march", windows=7)
+    choose(lower(scene()), "march", windows=7)
     assert made.march.asked == [(scene(), REALS["double"], True, 7)]
     for name in ("auto", "pieces"):
         with pytest.raises(WavesymError, match=f"--windows goes with --evaluator march, {name} given"):
-            choose(scene(), name, windows=7)
+            choose(lower(scene()), name, windows=7)
 
 
 def test_what_was_asked_for_says_why_it_is_refused(makers):
     makers(closed=beyond)
     with pytest.raises(CostError, match="dear"):
-        choose(scene(), "pieces")
+        choose(lower(scene()), "pieces")
     with pytest.raises(RangeError, match=r"^output: closed needs numbers beyond the range of single precision$"):
-        choose(scene(), "closed", "single")
+        choose(lower(scene()), "closed", "single")
     with pytest.raises(
         ToleranceError, match=r"closed: numbers beyond the range of double precision; pieces: costs too"
     ):
-        choose(scene())
+        choose(lower(scene()))
 
 
 def test_closed_forms_are_made_of_small_tables_unless_asked_for(monkeypatch):

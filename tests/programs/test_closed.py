@@ -12,9 +12,10 @@ import wavesym
 from tests.support.drawn import scenes
 from wavesym.errors import ToleranceError
 from wavesym.exact.ball import segments, values
-from wavesym.exact.signal import horizon, signals
+from wavesym.exact.signal import signals
 from wavesym.programs.closed import closed_form
 from wavesym.running.compiled import imported
+from wavesym.scene import lower
 from wavesym.targets.closed import numpy_source
 from wavesym.targets.description import describe
 from wavesym.targets.files import files
@@ -23,10 +24,10 @@ from wavesym.targets.files import files
 @settings(max_examples=40, deadline=None)
 @given(scenes(), st.randoms(use_true_random=False))
 def test_no_error_is_above_the_bound(scene, random):
-    merged = signals(scene)
-    form = closed_form(merged, horizon(scene))
+    merged = signals(lower(scene))
+    form = closed_form(merged, lower(scene).horizon())
     taus = form.check_points + [random.uniform(0, form.tau_max) for _ in range(50)]
-    module = imported(numpy_source(describe(scene, form, "test", ()), form), "made")
+    module = imported(numpy_source(describe(lower(scene), form, "test", ()), form), "made")
     found = module.evaluate(np.array(taus))
     for signal, output, row in zip(merged, form.outputs, found, strict=True):
         expected = np.array(values(partial(segments, signal), taus))
@@ -45,17 +46,17 @@ def drive_m1(until, tolerance="1e-6"):
 
 def test_where_it_loses_its_digits_it_refuses_and_says_from_when_on():
     """The paper's Fig. 7 data: numerics section 3 measured an error of 5e-3 at z = 20."""
-    files(drive_m1(8), evaluator="closed")
+    files(lower(drive_m1(8)), evaluator="closed")
     with pytest.raises(ToleranceError, match=r"closed: loses \d+ digits after tau = 1\d"):
-        files(drive_m1(20), evaluator="closed")
+        files(lower(drive_m1(20)), evaluator="closed")
 
 
 def test_the_bound_is_not_idle():
     """It is within a factor of 1000 of the largest error seen where digits are lost."""
     scene = drive_m1(16)
-    merged = signals(scene)
-    form = closed_form(merged, horizon(scene))
-    module = imported(numpy_source(describe(scene, form, "test", ()), form), "made")
+    merged = signals(lower(scene))
+    form = closed_form(merged, lower(scene).horizon())
+    module = imported(numpy_source(describe(lower(scene), form, "test", ()), form), "made")
     taus = np.linspace(8, 16, 2001)
     expected = np.array(values(partial(segments, merged[0]), taus.tolist()))
     error = np.abs(module.evaluate(taus)[0] - expected).max() / np.abs(expected).max()
@@ -73,7 +74,7 @@ def test_a_front_between_two_doubles_counts_from_the_upper_one():
     assert Fraction(below) < Fraction(1, 3)
     assert response(below)[0] == 0.0
     assert response(np.nextafter(below, 1))[0] == 1.0  # strain a / kappa_0
-    module = imported(files(scene, "numpy")["front.py"], "made")
+    module = imported(files(lower(scene), "numpy")["front.py"], "made")
     assert module.evaluate(below)[0] == 0.0
     assert module.evaluate(np.nextafter(below, 1))[0] == 1.0
 
@@ -82,7 +83,7 @@ def test_an_output_that_is_zero_throughout_is_exactly_zero():
     system = {"type": "building", "m": 4, "kappa": [1] * 5, "base": "force"}
     load = [{"times": [0], "a": [1], "b": [0]}]
     scene = wavesym.Scene(name="calm", system=system, load=load, output={"until": 2, "strain": [0.5, 3.5]})
-    made = files(scene, "all")
+    made = files(lower(scene), "all")
     module = imported(made["calm.py"], "made")
     assert (module.evaluate(np.linspace(0, 2, 9))[1] == 0.0).all()
     assert (wavesym.evaluator(scene)(np.linspace(0, 2, 9))[1] == 0.0).all()

@@ -14,6 +14,7 @@ from wavesym.exact.reference import Reference
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs import choice, pieces
 from wavesym.programs.choice import choose
+from wavesym.scene import lower
 from wavesym.targets.files import files
 
 
@@ -61,19 +62,19 @@ def test_numbers_of_99_characters_cost_tables_and_not_windows(idle):
     scene = drive(long_numbers(3), long_numbers(4), 40)
     with pytest.raises(CostError, match=r"^output.until: the tables would hold .* fewer digits in the scene's numbers"):
         choice.signals(scene, 50_000)
-    made = Reference(scene)
+    made = Reference(lower(scene))
     assert made.signals is None
     with pytest.raises(Begun):
         made.values([1.0] * 2000)
     with pytest.raises(Begun):
-        choose(scene, "pieces")
+        choose(lower(scene), "pieces")
 
 
 @pytest.mark.slow
 def test_numbers_of_99_characters_are_generated_and_run():
     scene = drive(long_numbers(3), long_numbers(4), 40)
-    assert files(scene, "all")
-    assert len(Reference(scene).values([0.2 * k for k in range(201)])[0]) == 201
+    assert files(lower(scene), "all")
+    assert len(Reference(lower(scene)).values([0.2 * k for k in range(201)])[0]) == 201
 
 
 @pytest.mark.parametrize(("samples", "outputs"), [(200, 100), (200, 300), (1000, 2000)])
@@ -82,9 +83,9 @@ def test_a_long_record_is_not_for_closed_forms_nor_large_ones_for_pieces(samples
     for asked in (choice._WORTH_TRYING, 1e5):
         with pytest.raises(CostError, match=r"^load: .* increments would arrive at the outputs, at most"):
             choice.refuse_many(scene, asked)
-    assert Reference(scene).signals is None
+    assert Reference(lower(scene)).signals is None
     with pytest.raises(pieces._TooLarge if outputs == 2000 else Begun):
-        choose(scene, "pieces")
+        choose(lower(scene), "pieces")
 
 
 def test_a_building_watched_for_20_is_refused_nothing(idle):
@@ -96,9 +97,9 @@ def test_a_building_watched_for_20_is_refused_nothing(idle):
     )
     for name in ("closed", "pieces"):
         with pytest.raises(Begun):
-            choose(small, name)
+            choose(lower(small), name)
     with pytest.raises(Begun):
-        Reference(small).values([1.0] * 1000)
+        Reference(lower(small)).values([1.0] * 1000)
 
 
 @pytest.mark.parametrize("until", [1000, 3000])
@@ -107,7 +108,7 @@ def test_values_far_out_are_refused_or_known_soon(until, idle, monkeypatch):
     monkeypatch.setattr(motion, "windows", real_windows)
     monkeypatch.setattr("wavesym.exact.windows._Body.moved", begun)
     with pytest.raises(CostError, match=r"^output"):
-        Reference(drive([1, "1/2", "1/3"], [1, 2, 3, 4], until)).values([1.0 * k for k in range(1001)])
+        Reference(lower(drive([1, "1/2", "1/3"], [1, 2, 3, 4], until))).values([1.0 * k for k in range(1001)])
 
 
 real_windows = motion.windows
@@ -119,15 +120,15 @@ def test_a_heavy_shaft_for_long_is_refused_by_all_but_the_tables(monkeypatch):
     monkeypatch.setattr(motion, "windows", begun)
     for name, why in (("pieces", r"pieces would need \d+ bits"), ("march", r"polynomials of degree")):
         with pytest.raises(CostError, match=rf"^output.until: .*{why}"):
-            choose(scene, name)
+            choose(lower(scene), name)
     with pytest.raises(ToleranceError, match=r"pieces: costs too much; march: costs too much"):
-        choose(scene)
-    assert Reference(scene).signals is not None
+        choose(lower(scene))
+    assert Reference(lower(scene)).signals is not None
     three = drive([10000] * 3, [1] * 4, 200)
     with pytest.raises(
         CostError, match=r"^output: 11 values of 1 outputs to tau = 200 would take about \d+ s, at most"
     ):
-        Reference(three).values([20.0 * k for k in range(11)])
+        Reference(lower(three)).values([20.0 * k for k in range(11)])
 
 
 def fits(scene, tolerance="1e-8"):
@@ -201,7 +202,7 @@ def test_one_value_that_needs_many_bits_does_not_cost_the_others(monkeypatch):
 
     monkeypatch.setattr(Motion, "_value", counted)
     taus = [0.1 * k for k in range(20)] + [1.0]
-    first, _ = Reference(scene).values(taus)
+    first, _ = Reference(lower(scene)).values(taus)
     assert first[-1] == 0.0
     assert lengths["strain@1/4", 2048]
     assert max(lengths["strain@1/2", 128]) <= 33

@@ -15,12 +15,13 @@ from flint import arb
 
 import wavesym
 from tests.support.truth import Truth
-from wavesym.exact.signal import horizon, signals
+from wavesym.exact.signal import signals
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs import choice, pieces
 from wavesym.programs.closed import ClosedForm, closed_form
 from wavesym.running.compiled import compiled, imported
+from wavesym.scene import lower
 from wavesym.targets.closed import numpy_source as closed_source
 from wavesym.targets.description import describe
 from wavesym.targets.files import files
@@ -54,7 +55,7 @@ SCENES = {
 
 
 def closed(scene, real):
-    return closed_form(signals(scene, real=real), horizon(scene, real), real)
+    return closed_form(signals(lower(scene), real=real), lower(scene).horizon(real), real)
 
 
 def fitted(scene, real):
@@ -77,7 +78,7 @@ CASES = [
 def holds(scene, form) -> bool:
     """Whether its program's errors are all within the bound, at check points and between."""
     source = closed_source if isinstance(form, ClosedForm) else pieces_source
-    module = imported(source(describe(scene, form, "test", ()), form), "made")
+    module = imported(source(describe(lower(scene), form, "test", ()), form), "made")
     truth = Truth(scene, Fraction(form.tau_max))
     taus = [form.real.nearest(rational(form.tau_max * k / 40)) for k in range(41)]
     taus = sorted({*form.check_points, *taus})
@@ -97,7 +98,7 @@ def test_a_pulse_counts_from_its_arrival_not_from_the_next_number():
         load=[{"times": ["1000/3"], "a": [0], "b": [1]}],
         output={"until": "333.333334", "tolerance": "1e-12", "strain": [0]},
     )
-    made = files(scene, "all", "closed")
+    made = files(lower(scene), "all", "closed")
     truth = Truth(scene, scene.output.until)
     taus = np.linspace(1000 / 3 + 1e-9, 333.333334, 20).tolist()
     with compiled(made, 1) as program:
@@ -118,7 +119,7 @@ def test_a_jump_at_the_last_single_is_not_left_out(monkeypatch):
     scene = SCENES["10/3"]
     form = closed(scene, SINGLE)
     assert Truth(scene, Fraction(form.tau_max)).value(0, Fraction(form.tau_max)) == 0
-    left_out = closed_form(signals(scene), form.tau_max, SINGLE)
+    left_out = closed_form(signals(lower(scene)), form.tau_max, SINGLE)
     assert not holds(scene, left_out)
     # and so it is in what a user asks for
     assert choice.choose(scene, "closed", "single").evaluator == form

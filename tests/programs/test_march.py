@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wavesym.errors import CostError, ToleranceError
-from wavesym.model.chain import chain
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march.bound import judge
 from wavesym.programs.march.evaluator import march, marched
@@ -19,7 +18,7 @@ from wavesym.programs.march.plan import plan
 from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.programs.march.zero import silent
 from wavesym.running.compiled import imported
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.description import describe
 from wavesym.targets.march import numpy_source
 from wavesym.verification.characteristics import integrate
@@ -27,7 +26,7 @@ from wavesym.verification.reference import reference
 
 
 def program(scene, made):
-    return imported(numpy_source(describe(scene, made, "test", ()), made), "made").evaluate
+    return imported(numpy_source(describe(lower(scene), made, "test", ()), made), "made").evaluate
 
 
 def building(until, load, m=2, base="force", kappa="3/5", tolerance="1e-6", **outputs):
@@ -42,8 +41,8 @@ KINKS = {"times": [0, "1/3", "5/2", "37/10"], "a": [1, 0, -1, 0], "b": [0, "1/2"
 
 def check(scene):
     """Values at every arrival and its neighbours, and between."""
-    truth = reference(scene)
-    made = marched(scene)
+    truth = reference(lower(scene))
+    made = marched(lower(scene))
     values = program(scene, made)(np.array(truth.taus))
     for output, row, proved in zip(truth.outputs, values, made.outputs, strict=True):
         # the reference is rounded too
@@ -100,9 +99,9 @@ def test_random_scenes_are_within_the_bound(scene):
 
 def test_long_horizons_agree_with_direct_integration():
     scene = building(60, KINKS, m=3)
-    made = march(scene)
+    made = march(lower(scene))
     taus = np.random.default_rng(1).uniform(0, 60, 200)
-    coarse, fine = (integrate(chain(scene), scene.pieces, made.tau_max, steps) for steps in (64, 128))
+    coarse, fine = (integrate(scene.system.chain, lower(scene).loads, made.tau_max, steps) for steps in (64, 128))
     for observable, row in zip(scene.outputs, program(scene, made)(taus), strict=True):
         expected = fine.at(observable, taus.tolist())
         error = np.abs(expected - coarse.at(observable, taus.tolist())).max() / 4  # of fourth order
@@ -142,7 +141,7 @@ def energy(prepared, degree, waves, ends):
     ids=["building", "drive", "collision"],
 )
 def test_free_systems_keep_their_energy(scene):
-    prepared, degree = plan(scene), marched(scene).degree
+    prepared, degree = plan(lower(scene)), marched(lower(scene)).degree
     blocks = list(Run(prepared, degree).blocks())
     found = [energy(prepared, degree, block.after[-1], block.ends[-1]) for block in blocks]
     assert found[0] > 0
@@ -150,21 +149,21 @@ def test_free_systems_keep_their_energy(scene):
 
 
 def test_the_degree_grows_with_the_horizon_and_suffices():
-    degrees = [marched(building(until, SHORT_PULSE, m=2)).degree for until in (20, 200, 2000)]
+    degrees = [marched(lower(building(until, SHORT_PULSE, m=2))).degree for until in (20, 200, 2000)]
     assert degrees == sorted(degrees)
     assert degrees[-1] < 3 * math.sqrt(1.2 * 2000)
 
 
 def test_a_degree_that_is_too_low_is_never_silent():
     scene = building(300, SHORT_PULSE)
-    low = marched(scene, degree=16)
+    low = marched(lower(scene), degree=16)
     assert low.error_bound > 1e-3  # what is lost is in the bound
     with pytest.raises(ArithmeticError, match="degree 16 is too low"):
         program(scene, low)(300.0)
-    truth = program(scene, march(scene))(np.linspace(290, 300, 101))
+    truth = program(scene, march(lower(scene)))(np.linspace(290, 300, 101))
     coarse = np.abs(truth).max()
     # and it was lost indeed: without the alarm the values are wrong
-    text = numpy_source(describe(scene, low, "test", ()), low).replace("if leak >", "if 0 * leak >")
+    text = numpy_source(describe(lower(scene), low, "test", ()), low).replace("if leak >", "if 0 * leak >")
     error = np.abs(imported(text, "made").evaluate(np.linspace(290, 300, 101)) - truth).max() / coarse
     assert 1e-9 < error < low.error_bound
 
@@ -172,13 +171,13 @@ def test_a_degree_that_is_too_low_is_never_silent():
 def test_truncation_is_bounded_by_what_is_missed():
     """At a degree where truncation is most of the error, the bound still holds."""
     scene = building(12, KINKS, kappa=4)
-    truth = reference(scene)
+    truth = reference(lower(scene))
     exact = np.array([output.values for output in truth.outputs])
     for degree in (10, 14):
-        verdict = judge(plan(scene), degree, DOUBLE)
+        verdict = judge(plan(lower(scene)), degree, DOUBLE)
         assert verdict.truncated > verdict.rounded
-        made = marched(scene, degree=degree)
-        text = numpy_source(describe(scene, made, "test", ()), made).replace("if leak >", "if 0 * leak >")
+        made = marched(lower(scene), degree=degree)
+        text = numpy_source(describe(lower(scene), made, "test", ()), made).replace("if leak >", "if 0 * leak >")
         errors = np.abs(imported(text, "made").evaluate(np.array(truth.taus)) - exact).max(axis=1)
         assert (errors <= verdict.errors).all()
         assert (errors > 1e-15).all()
@@ -208,8 +207,8 @@ def test_the_operator_solves_the_equation():
 
 def test_only_the_light_cone_is_marched():
     load = {"times": [0], "a": [1], "b": [0]}
-    wide = marched(building(6, load, m=40, strain=["21/2"]))
-    tight = marched(building(6, load, m=20, strain=["21/2"]))
+    wide = marched(lower(building(6, load, m=40, strain=["21/2"])))
+    tight = marched(lower(building(6, load, m=20, strain=["21/2"])))
     assert wide == tight
     assert len(wide.plan.junctions) == 12
     assert wide.outputs[0].bound == 0.0  # the base is out of reach
@@ -223,7 +222,7 @@ def test_what_is_zero_by_symmetry_is_exactly_zero():
         system={"type": "collision", "m": 4, "kappa": ["3/7", "3/7"], "velocity": [1, -1]},
         output={"until": 12, "strain": [0, 2], "velocity": [2, "199/100"], "displacement": [2]},
     )
-    made = marched(scene)
+    made = marched(lower(scene))
     assert [output.bound == 0 for output in made.outputs] == [True, False, True, False, True]
     values = program(scene, made)(np.linspace(0, 12, 1001))
     assert np.any(values != 0, axis=1).tolist() == [False, True, False, True, False]
@@ -232,19 +231,19 @@ def test_what_is_zero_by_symmetry_is_exactly_zero():
 
 def test_what_cannot_be_had_is_refused():
     with pytest.raises(ToleranceError, match=r"march: rounding allows \S+ to tau = 50 for"):
-        march(building(50, SHORT_PULSE, tolerance="1e-14"))
+        march(lower(building(50, SHORT_PULSE, tolerance="1e-14")))
     many = [Fraction(k, 17) for k in range(17)]
     with pytest.raises(CostError, match="17 different fractional parts, at most 16 expected"):
-        march(building(2, {"times": many, "a": [1] * 17, "b": [0] * 17}))
+        march(lower(building(2, {"times": many, "a": [1] * 17, "b": [0] * 17})))
     with pytest.raises(CostError, match="polynomials of degree"):
-        march(building(10**8, SHORT_PULSE))
+        march(lower(building(10**8, SHORT_PULSE)))
 
 
 def test_single_precision_has_a_bound_of_its_own():
     scene = building(5, KINKS, tolerance="1e-2")
-    made = march(scene, SINGLE)
+    made = march(lower(scene), SINGLE)
     assert 1e-6 < made.error_bound < 1e-2
-    truth = reference(scene)
+    truth = reference(lower(scene))
     taus = [tau for tau in truth.taus if float(np.float32(tau)) == tau]
     values = program(scene, made)(np.array(taus, np.float32))
     assert values.dtype == np.float32
@@ -264,7 +263,7 @@ def test_bounds_do_not_depend_on_the_size_of_the_loads(exponent):
             load=[{"body": 1, "times": [0], "steps": [size]}],
             output={"until": 12, "strain": ["1/2"], "displacement": [1]},
         )
-        return marched(scene)
+        return marched(lower(scene))
 
     ordinary, made = marching(1), marching(f"1e{exponent}")
     for output, other in zip(made.outputs, ordinary.outputs, strict=True):

@@ -14,7 +14,7 @@ from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.plan import Panel, plan
 from wavesym.programs.march.run import LEFT, RIGHT, Block, Run
 from wavesym.programs.march.tail import Tail, tail
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 
 LOAD = {"body": 1, "times": [0], "steps": [1]}
 
@@ -58,7 +58,7 @@ def exact(step, p, u):
 @pytest.mark.parametrize("step", ["1/1000", "1", "4", "30"])
 def test_truncation_is_no_less_than_what_a_step_loses(step, degree):
     """A disc, on which T_d arrives."""
-    prepared = plan(drive([step]))
+    prepared = plan(lower(drive([step])))
     run, node = Run(prepared, degree), prepared.junctions[0]
     step = fmpq(*Fraction(step).as_integer_ratio())
     assert node.rate == step
@@ -86,7 +86,7 @@ def test_what_a_window_loses_is_added_up_by_nodes_and_panels(real):
         system={"type": "collision", "m": 4, "kappa": ["1/10", 3], "velocity": [1, 0]},
         output={"until": 6, "strain": [2]},
     )
-    prepared, degree = plan(scene), 9
+    prepared, degree = plan(lower(scene)), 9
     third = fmpq(1, 3)
     prepared = replace(prepared, panels=(Panel(fmpq(0), third), Panel(third, 2 * third)))
     run = Run(prepared, degree)
@@ -146,7 +146,7 @@ def worst(degree):
 
 @pytest.mark.parametrize("degree", [0, 1, 7, 40])
 def test_no_wave_is_larger_than_its_energy_allows_and_one_is_as_large(degree):
-    prepared = plan(drive([1], LOAD | {"times": [0, "1/7"], "steps": [1, 1]}))
+    prepared = plan(lower(drive([1], LOAD | {"times": [0, "1/7"], "steps": [1, 1]})))
     shortest = 1 / 7
     points, gauss = np.polynomial.legendre.leggauss(degree + 1)
     found = 3.0 * worst(degree)
@@ -156,7 +156,7 @@ def test_no_wave_is_larger_than_its_energy_allows_and_one_is_as_large(degree):
 
 def test_the_tail_of_a_wave_counts_twice_over():
     """A constant and a tail that takes it away but at one point, where it doubles it: no energy, and twice the tail."""
-    prepared = plan(drive([1]))
+    prepared = plan(lower(drive([1])))
     assert largest_wave(Tail(0, 0.5), prepared, 0.0) == pytest.approx(2 * 0.5)
     # a polynomial of degree K all of whose L2 norm the tail takes away
     assert largest_wave(Tail(5, 0.5), prepared, 0.0) == pytest.approx(0.5 + worst(5)(1.0) * 0.5 * sqrt(2))
@@ -164,6 +164,6 @@ def test_the_tail_of_a_wave_counts_twice_over():
 
 def test_an_error_of_the_degree_of_the_program_is_covered_too():
     """Of heavy discs on a few windows the tail ends early; what rounds goes on to the last coefficient."""
-    made = marched(drive(["1/1000"]))
+    made = marched(lower(drive(["1/1000"])))
     worst_error = worst(made.degree)(1.0) * sqrt(2)  # of energy 1 on a window
     assert largest_wave(tail(made.plan, made.degree), made.plan, 1.0) * (1 + 1e-12) >= worst_error

@@ -21,7 +21,7 @@ from wavesym.programs.march.run import LEFT, RIGHT, Block, Run
 from wavesym.programs.march.tail import tail_after
 from wavesym.programs.march.watch import Watch
 from wavesym.running.compiled import imported
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.description import describe
 from wavesym.targets.march import numpy_source
 
@@ -88,7 +88,7 @@ def alone(prepared, run, channel, where, order, windows):
 )
 def test_what_is_proved_is_the_sum_over_all_single_loads(made_from, degree, real, scale):
     """Each on its own window, to the last one; where truncation, rounding, or underflow is most of it."""
-    prepared, windows, unit = plan(made_from), 3, float(real.roundoff)
+    prepared, windows, unit = plan(lower(made_from)), 3, float(real.roundoff)
     run = Run(prepared, degree)
     roundings = Roundings(prepared, run, real, scale)
     weights = [reading_weights(degree, displaced=False), reading_weights(degree, displaced=True)]
@@ -123,7 +123,7 @@ def test_what_is_proved_is_the_sum_over_all_single_loads(made_from, degree, real
 
 
 def test_what_is_proved_is_printed_rounded_up_and_grows_with_gains():
-    prepared = plan(pushed("force"))
+    prepared = plan(lower(pushed("force")))
     (exact,) = {proving._given(prepared, 20, DOUBLE, 4, fmpq(1)).errors[0]}
     assert exact <= given(prepared, 20, DOUBLE, 4).errors[0] <= 1.1 * exact
     large = given(prepared.scaled(fmpq(2) ** 40), 20, DOUBLE, 4).errors[0]
@@ -132,7 +132,7 @@ def test_what_is_proved_is_printed_rounded_up_and_grows_with_gains():
 
 @pytest.mark.parametrize("base", ["force", "ground"])
 def test_jumps_are_those_of_polynomials_at_both_ends_of_their_panels(base):
-    prepared = plan(pushed(base))
+    prepared = plan(lower(pushed(base)))
     found = proving._jumps(prepared)
     (channel,) = prepared.channels
     expected = np.zeros(SMOOTH + 3)
@@ -164,9 +164,9 @@ def test_no_march_is_wrong_by_more_than_proved(system):
     degree, windows = 8, 5
     for seed in range(3):
         made_from = steps(system, windows, [Fraction(0), Fraction(1, 2)], np.random.default_rng(seed))
-        made = marched(made_from, degree=degree)
+        made = marched(lower(made_from), degree=degree)
         proved = given(made.plan, degree, DOUBLE, windows)
-        text = numpy_source(describe(made_from, made, "test", ()), made).replace("if leak >", "if 0 * leak >")
+        text = numpy_source(describe(lower(made_from), made, "test", ()), made).replace("if leak >", "if 0 * leak >")
         taus = np.linspace(0, windows, 41)[:-1] + 1 / 64
         truth = Truth(made_from, Fraction(windows))
         for o, row in enumerate(imported(text, "made").evaluate(taus)):
@@ -175,29 +175,29 @@ def test_no_march_is_wrong_by_more_than_proved(system):
 
 
 def test_what_is_proved_is_settled_where_rounding_is_most_of_it():
-    prepared = plan(pushed("force"))
+    prepared = plan(lower(pushed("force")))
     assert not given(prepared, 9, DOUBLE, 20).settled
     assert given(prepared, 30, DOUBLE, 20).settled
     assert given(prepared, 20, SINGLE, 20).settled
 
 
 def test_a_march_that_will_be_driven_has_the_degree_for_it():
-    made = marched(pushed("force"), windows=200)
+    made = marched(lower(pushed("force")), windows=200)
     assert made.given.windows == 200
     assert made.given.settled
-    assert made.degree > marched(pushed("force")).degree
+    assert made.degree > marched(lower(pushed("force"))).degree
     assert made.given == given(made.plan, made.degree, DOUBLE, 200)
-    assert marched(pushed("force"), windows=1).degree >= marched(pushed("force")).degree
+    assert marched(lower(pushed("force")), windows=1).degree >= marched(lower(pushed("force"))).degree
     collision = {"type": "collision", "m": 4, "kappa": [1, 2], "velocity": [1, 0]}
     with pytest.raises(WavesymError, match="--windows: no load can be given here"):
-        marched(scene(collision, []), windows=3)
+        marched(lower(scene(collision, [])), windows=3)
 
 
 def test_what_reaches_an_output_on_a_later_window_is_modelled_too():
     tower = TOWER | {"m": 5, "kappa": [1] * 6, "base": "ground"}
     short = scene(tower, [{"times": [0], "a": [1], "b": [0]}], 2, velocity=[1])
-    assert len(marched(short).plan.junctions) == 4
-    assert len(marched(short, windows=20).plan.junctions) == 6
+    assert len(marched(lower(short)).plan.junctions) == 4
+    assert len(marched(lower(short), windows=20).plan.junctions) == 6
 
 
 def series(values, cosines):
@@ -216,7 +216,7 @@ def series(values, cosines):
 @pytest.mark.parametrize("degree", [8, 20, 41])
 def test_a_load_is_rounded_no_more_than_counted(degree):
     """Of a load up to 1, in the norm that counts c_0 twice: 4 times twice its force, as on a node without mass."""
-    prepared = plan(pushed("force", 0))
+    prepared = plan(lower(pushed("force", 0)))
     run = Run(prepared, degree)
     block = next(proving._windows(prepared, run, 1))
     cosines = Rounded.table([cos(pi * j / degree) for j in range(degree + 1)])

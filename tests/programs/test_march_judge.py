@@ -16,7 +16,7 @@ from wavesym.programs.march.plan import plan
 from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.programs.march.tail import tail
 from wavesym.running.compiled import imported
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.description import describe
 from wavesym.targets.march import numpy_source
 
@@ -90,7 +90,7 @@ def summed(prepared, degree, real):
 )
 def test_a_verdict_adds_up_all_windows(scene, real, size, monkeypatch):
     monkeypatch.setattr(running, "_BLOCK", size)
-    prepared = plan(scene, real)
+    prepared = plan(lower(scene), real)
     verdict = judge(prepared, 12, real)
     largest = sizes(scene, prepared)
     np.testing.assert_allclose(verdict.sizes, largest, rtol=1e-9)
@@ -108,8 +108,8 @@ def test_a_verdict_adds_up_all_windows(scene, real, size, monkeypatch):
 
 def sizes(scene, prepared):
     """The largest values that the program gives at 17 points of each window, none of them beyond the horizon."""
-    made = marched(scene, degree=12)
-    text = numpy_source(describe(scene, made, "test", ()), made).replace("if leak >", "if 0 * leak >")
+    made = marched(lower(scene), degree=12)
+    text = numpy_source(describe(lower(scene), made, "test", ()), made).replace("if leak >", "if 0 * leak >")
     taus = [window + np.linspace(0, min(1, prepared.tau_max - window), 17) for window in range(prepared.windows)]
     return np.max(np.abs(imported(text, "made").evaluate(np.minimum(taus, prepared.tau_max))), axis=(1, 2))
 
@@ -125,10 +125,10 @@ def test_waves_beyond_the_reach_of_a_format_are_refused():
     for base, fine in (("force", False), ("ground", True)):  # of 3e26 and of 2e26/2 at most
         scene = building(until="3/4", load=load, base=base)
         if fine:
-            assert judge(plan(scene, SINGLE), 12, SINGLE).sizes
+            assert judge(plan(lower(scene), SINGLE), 12, SINGLE).sizes
         else:
             with pytest.raises(OverflowError, match=r"waves beyond 2e\+26"):
-                judge(plan(scene, SINGLE), 12, SINGLE)
+                judge(plan(lower(scene), SINGLE), 12, SINGLE)
 
 
 def alarmed(blocks, trusted, leak=1.0):
@@ -141,7 +141,7 @@ def alarmed(blocks, trusted, leak=1.0):
 
 def watched(missed, ends=(), means=()):
     """A block of as many windows as there are sums missed; velocities and means of waves one each."""
-    block = blank(plan(building()), 8, windows=len(missed))
+    block = blank(plan(lower(building())), 8, windows=len(missed))
     for n, part in enumerate(missed):
         block.excess[n, 0, 0], block.excess[n, 1, 2] = part / 4, -3 * part / 4
     for n, end in enumerate(ends):
@@ -173,11 +173,11 @@ def test_an_alarm_rings_when_what_is_missed_in_all_is_more_than_trusted():
 
 def test_a_verdict_is_quiet_where_its_alarm_is():
     scene = building(until=40)
-    trusted = [judge(replace(plan(scene), trusted=part), 12, DOUBLE).quiet for part in (1e-12, 1.0)]
+    trusted = [judge(replace(plan(lower(scene)), trusted=part), 12, DOUBLE).quiet for part in (1e-12, 1.0)]
     assert trusted == [False, True]
-    assert plan(scene).trusted == 1e-3 / 100
+    assert plan(lower(scene)).trusted == 1e-3 / 100
     # but what so many nodes round on so many windows is always allowed
-    assert plan(building(until=999), SINGLE).trusted == pytest.approx(3 * 1000 * 2.0**-24)
+    assert plan(lower(building(until=999)), SINGLE).trusted == pytest.approx(3 * 1000 * 2.0**-24)
 
 
 @pytest.mark.parametrize(
@@ -192,10 +192,10 @@ def test_a_verdict_is_quiet_where_its_alarm_is():
 )
 def test_numbers_too_small_for_their_rounding_are_refused(extreme):
     if "base" in extreme:  # kappa_0 acts nowhere
-        assert marched(building(**extreme), degree=9)
+        assert marched(lower(building(**extreme)), degree=9)
     else:
         with pytest.raises(OverflowError, match="too small for double precision"):
-            marched(building(**extreme), degree=9)
+            marched(lower(building(**extreme)), degree=9)
 
 
 def test_from_the_least_number_on_a_product_is_rounded_as_the_unit_roundoff_says():

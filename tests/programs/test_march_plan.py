@@ -8,7 +8,7 @@ from flint import fmpq
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march.plan import Channel, Event, Panel, Watched, plan
 from wavesym.programs.march.run import Run, operator_count
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 
 DRIVE = {"type": "drive", "m": 2, "kappa": ["1/2", "1/3"], "inertia": [1, 2, 3]}
 TOWER = {"type": "building", "m": 3, "kappa": ["1/4", "1/2", "1/3", 2]}
@@ -17,7 +17,7 @@ RAMPS = {"times": ["1/3", "5/2"], "a": [1, 2], "b": [3, "-1/2"]}
 
 def planned(system, load=(), until="7/2", real=DOUBLE, **outputs):
     output = {"until": until, "tolerance": "1e-8", **(outputs or {"displacement": ["5/4"]})}
-    return plan(Scene(name="made", system=system, load=list(load), output=output), real)
+    return plan(lower(Scene(name="made", system=system, load=list(load), output=output)), real)
 
 
 def numbers(*values):
@@ -128,7 +128,7 @@ def test_what_is_driven_longer_has_a_wider_light_cone():
         (20, 40, 20.0),
         (21, 41, inf),
     ):
-        cone = plan(made, DOUBLE, windows)
+        cone = plan(lower(made), DOUBLE, windows)
         assert (len(cone.junctions), cone.valid) == (nodes, valid)
 
 

@@ -13,7 +13,7 @@ from wavesym.programs.march.operator import operator
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.run import Run
 from wavesym.running.compiled import imported
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.description import describe
 from wavesym.targets.march import numpy_source
 
@@ -63,8 +63,8 @@ def module(step, degree):
         load=[{"body": 1, "times": [0], "steps": [1]}],
         output={"until": "1/2", "tolerance": "1e-2", "strain": ["1/2"]},
     )
-    made = marched(scene, degree=degree)
-    return imported(numpy_source(describe(scene, made, "test", ()), made), "made")
+    made = marched(lower(scene), degree=degree)
+    return imported(numpy_source(describe(lower(scene), made, "test", ()), made), "made")
 
 
 def in_numpy(step, degree, monkeypatch):
@@ -130,7 +130,7 @@ def test_a_load_is_as_large_and_as_wrong_as_it_is_said_to_be(a, b):
         load=[{"times": ["1/3", "5/2"], "a": a, "b": b}],
         output={"until": 7, "tolerance": "1e-2", "strain": ["1/2"]},
     )
-    prepared = plan(scene)
+    prepared = plan(lower(scene))
     (block,) = Run(prepared, 8).blocks()
     cuts = [float(panel.start) for panel in prepared.panels]
     compared = 0

@@ -11,7 +11,7 @@ from tests.support.truth import Truth
 from wavesym.programs.march import tail as tails
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.tail import Tail, tail, tail_after
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 
 ALL = {"times": [0, "1/3"], "a": [1, "-1/2"], "b": ["3/2", 1]}
 
@@ -26,12 +26,12 @@ def building(until=3, load=ALL, base="ground", kappa=(1, "1/2", 3), **outputs):
 
 
 def test_jumps_are_those_of_loads_and_start():
-    assert tails._jumps(plan(building())) == [0, 1 + 1 / 2, (3 / 2 + 1) / 2 * 2]
+    assert tails._jumps(plan(lower(building()))) == [0, 1 + 1 / 2, (3 / 2 + 1) / 2 * 2]
     # a second load of an opposite kind changes what is new, not what was there
-    assert tails._jumps(plan(building(base="force"))) == [1.5, 2.5, 0]
+    assert tails._jumps(plan(lower(building(base="force")))) == [1.5, 2.5, 0]
     bars = {"type": "collision", "m": 4, "kappa": [1, 2], "velocity": [1, "-1/2"]}
     scene = Scene(name="made", system=bars, output={"until": 1, "strain": [2]})
-    assert tails._jumps(plan(scene)) == [2 * (1 / 2 + 1 / 2 + 1 / 4 + 1 / 4), 0, 0]
+    assert tails._jumps(plan(lower(scene))) == [2 * (1 / 2 + 1 / 2 + 1 / 4 + 1 / 4), 0, 0]
 
 
 def grown(rate, windows, jumps, order):
@@ -61,7 +61,7 @@ SHAFTS = Scene(
 )
 def test_the_tail_is_that_of_its_derivatives_and_the_degree_the_least(scene):
     """Once more by power series, exact; the tail that is claimed is above it, as it takes any r for the best one."""
-    prepared = plan(scene)
+    prepared = plan(lower(scene))
     smooth = tail(prepared, 0)
     jumps, rate = tails._jumps(prepared), prepared.rate
     assert smooth.size <= 2.0**-80 * sum(jumps)
@@ -102,7 +102,7 @@ def test_true_waves_are_polynomials_up_to_their_tail(load, wanted, monkeypatch):
     monkeypatch.setattr(tails, "_SMALL", log(wanted))
     places = ["1/7", "8/7"]
     scene = building(4, load, kappa=(1, "1/2", "3/2"), strain=places, velocity=places)
-    prepared = plan(scene)
+    prepared = plan(lower(scene))
     smooth = tail(prepared, 0)
     assert 0 < smooth.size <= wanted * sum(tails._jumps(prepared))
     cosines = np.cos(np.pi * (np.arange(smooth.degree + 1) + 0.5) / (smooth.degree + 1))
@@ -131,7 +131,7 @@ def test_interpolation_misses_what_it_is_said_to():
 
 
 def test_without_bodies_waves_are_as_the_loads():
-    prepared = plan(building("1/2", strain=[0]))
+    prepared = plan(lower(building("1/2", strain=[0])))
     alone = type(prepared)(**{**vars(prepared), "junctions": prepared.junctions[:1]})
     assert alone.rate == 0
     assert tail(alone, 0) == Tail(3, 0.0)
@@ -140,7 +140,7 @@ def test_without_bodies_waves_are_as_the_loads():
 
 def test_a_longer_march_has_a_longer_tail():
     """Laguerre functions: what has met n bodies has a degree of about sqrt(n), and never less than the loads."""
-    found = [tail_after(plan(building()), 0, n, [0.0, 1.0, 1.0]).degree for n in (1, 10, 100, 1000)]
+    found = [tail_after(plan(lower(building())), 0, n, [0.0, 1.0, 1.0]).degree for n in (1, 10, 100, 1000)]
     assert found == sorted(found)
     assert found[-1] < 600
-    assert tail_after(plan(building(kappa=(1, "1e-30", "1e-30"))), 0, 1, [1.0] * 5).degree >= 5
+    assert tail_after(plan(lower(building(kappa=(1, "1e-30", "1e-30")))), 0, 1, [1.0] * 5).degree >= 5

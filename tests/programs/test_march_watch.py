@@ -20,7 +20,7 @@ from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.programs.march.watch import Watch
 from wavesym.programs.pieces import Pieces
 from wavesym.running.compiled import compiled, imported
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets import closed, march, pieces
 from wavesym.targets.description import describe
 from wavesym.targets.march import numpy_source
@@ -42,13 +42,13 @@ def building(until, load=LOAD, **outputs):
 
 
 def program(scene, made):
-    return imported(numpy_source(describe(scene, made, "test", ()), made), "made").evaluate
+    return imported(numpy_source(describe(lower(scene), made, "test", ()), made), "made").evaluate
 
 
 @pytest.mark.parametrize("until", [3, "29/8"])
 def test_the_generator_sees_what_the_program_gives(until):
     scene = building(until)
-    made = marched(scene)
+    made = marched(lower(scene))
     (block,) = Run(made.plan, made.degree).blocks()
     values = [Watch(made.plan, output, made.degree).values(block) for output in made.plan.outputs]
     windows = np.arange(made.plan.windows)[:, np.newaxis]
@@ -64,7 +64,7 @@ def test_a_front_counts_from_its_own_instant_on():
     """At every sixteenth of a window one front or none: before it all is still."""
     for start in (Fraction(1, 16), Fraction(5, 16), Fraction(15, 16)):
         scene = building(3, {"times": [start], "a": [1], "b": [0]}, strain=[0, "1/2"], velocity=["1/4"])
-        made = marched(scene)
+        made = marched(lower(scene))
         (block,) = Run(made.plan, made.degree).blocks()
         for output, x in zip(made.plan.outputs, (0, 0.5, 0.25), strict=True):
             seen = Watch(made.plan, output, made.degree).values(block).ravel()
@@ -76,7 +76,7 @@ def test_a_front_counts_from_its_own_instant_on():
 
 
 def test_a_displacement_is_summed_up_from_block_to_block(monkeypatch):
-    made = marched(building("29/8"))
+    made = marched(lower(building("29/8")))
     outputs = made.plan.outputs
     (whole,) = Run(made.plan, made.degree).blocks()
     monkeypatch.setattr(running, "_BLOCK", 1)
@@ -87,7 +87,7 @@ def test_a_displacement_is_summed_up_from_block_to_block(monkeypatch):
 
 
 def test_sizes_are_those_of_both_waves_on_the_larger_panel():
-    made = marched(building("29/8"))
+    made = marched(lower(building("29/8")))
     (block,) = Run(made.plan, made.degree).blocks()
     weights = np.arange(1.0, made.degree + 2)
     assert len(made.plan.panels) == 3
@@ -131,7 +131,7 @@ def test_what_has_just_arrived_after_a_long_time_is_too(start):
 
 def check_arrived(scene, evaluator, language):
     """The error is no more than the bound of the largest true value."""
-    made = marched(scene) if evaluator == "march" else choose(scene).evaluator
+    made = marched(lower(scene)) if evaluator == "march" else choose(lower(scene)).evaluator
     until = Fraction(made.tau_max)
     truth = Truth(scene, until)
     largest, above = truth.largest(0, until)
@@ -149,7 +149,7 @@ def check_arrived(scene, evaluator, language):
 
 def values_of(scene, made, taus, language):
     emitter = {MarchEvaluator: march, Pieces: pieces, ClosedForm: closed}[type(made)]
-    description = describe(scene, made, "test", ())
+    description = describe(lower(scene), made, "test", ())
     if language == "numpy":
         return imported(emitter.numpy_source(description, made), "made").evaluate(np.array(taus))
     sources = {"made.h": emitter.c_header(description, made), "made.c": emitter.c_source(description, made)}
@@ -175,7 +175,7 @@ def values_of(scene, made, taus, language):
 def test_stretches_cover_the_window_once(delay, panels, expected):
     cuts = [*map(exact, panels), fmpq(1)]
     made = replace(
-        marched(building(1)).plan,
+        marched(lower(building(1))).plan,
         panels=tuple(Panel(low, high - low) for low, high in pairwise(cuts)),
     )
     assert made.stretches(exact(delay)) == tuple(Stretch(exact(start), back, p) for start, back, p in expected)

@@ -8,7 +8,7 @@ from tests.support.truth import Truth
 from wavesym.programs.march import zero
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.zero import silent
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 
 SHAFT = {"type": "drive", "m": 1, "kappa": ["3/7"], "inertia": [1, 1]}
 TWO = {"type": "drive", "m": 2, "kappa": ["3/7", "1/7"], "inertia": [1, 3, 1]}
@@ -79,9 +79,9 @@ def test_what_is_zero_is_told_from_what_is_small(case):
     system, load, untils, outputs = sided(case)
     for until in untils:
         made = scene(system, load, until, **outputs)
-        truth = Truth(made, Fraction(plan(made).tau_max))
+        truth = Truth(made, Fraction(plan(lower(made)).tau_max))
         expected = [truth.largest(o, truth.until)[1] == 0 for o in range(len(made.outputs))]
-        assert silent(plan(made)) == expected, (until, made.outputs)
+        assert silent(plan(lower(made))) == expected, (until, made.outputs)
 
 
 def test_some_of_it_is_zero_and_some_is_not():
@@ -90,14 +90,14 @@ def test_some_of_it_is_zero_and_some_is_not():
     for case in CASES.values():
         system, load, untils, outputs = sided(case)
         for until in untils:
-            for answer in silent(plan(scene(system, load, until, **outputs))):
+            for answer in silent(plan(lower(scene(system, load, until, **outputs)))):
                 found[answer] += 1
     assert min(found.values()) > 20
 
 
 def test_an_instant_is_not_missed_by_the_number_that_is_drawn(monkeypatch):
     made = scene(SHAFT, [step(1, 0), step(2, "1/3")], 2, velocity=["2/3"], strain=["2/3"])
-    answers = silent(plan(made))
+    answers = silent(plan(lower(made)))
     for drawn in (3, 10**30 + 7):
         monkeypatch.setattr(zero, "_T", drawn)
-        assert silent(plan(made)) == answers
+        assert silent(plan(lower(made))) == answers

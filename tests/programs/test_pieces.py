@@ -15,11 +15,12 @@ from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.ball import Balls, segments
 from wavesym.exact.motion import Motion
 from wavesym.exact.reference import Reference
-from wavesym.exact.signal import horizon, signals
+from wavesym.exact.signal import signals
 from wavesym.numbers.doubles import rational
 from wavesym.programs import pieces
 from wavesym.programs.choice import choose
 from wavesym.running.compiled import compiled, imported
+from wavesym.scene import lower
 from wavesym.targets.files import files
 
 SCENES = {
@@ -48,10 +49,10 @@ def scene(name, tolerance="1e-14"):
 @settings(max_examples=25, deadline=None)
 @given(scenes(), st.randoms(use_true_random=False))
 def test_waves_on_windows_and_exact_tables_agree_to_30_digits(drawn, random):
-    until = rational(horizon(drawn))
-    motion = Motion(drawn, until)
+    until = rational(lower(drawn).horizon())
+    motion = Motion(lower(drawn), until)
     with ctx.workprec(512):
-        for signal, place in zip(signals(drawn), motion.places, strict=True):
+        for signal, place in zip(signals(lower(drawn)), motion.places, strict=True):
             tables, windows = Balls(segments(signal)), Balls(motion.segments(place))
             size = tables.largest(until)
             for _ in range(10):
@@ -66,12 +67,12 @@ def test_waves_on_windows_and_exact_tables_agree_to_30_digits(drawn, random):
 def test_no_error_is_above_the_bound(drawn, precision, random):
     if precision == "single":
         drawn = drawn.model_copy(update={"output": drawn.output.model_copy(update={"tolerance": Fraction(1, 10**5)})})
-    _, form, _ = choose(drawn, "pieces", precision)
-    made = files(drawn, "all", "pieces", precision)
+    _, form, _ = choose(lower(drawn), "pieces", precision)
+    made = files(lower(drawn), "all", "pieces", precision)
     taus = sorted(
         {form.real.nearest(rational(random.uniform(0, form.tau_max))) for _ in range(60)} | set(form.check_points)
     )
-    reference = Reference(drawn)
+    reference = Reference(lower(drawn))
     expected = np.array(reference.values(taus))
     found = imported(made["drawn.py"], "drawn").evaluate(np.array(taus))
     for output, size, row, true in zip(form.outputs, reference.largest(), found, expected, strict=True):
@@ -86,12 +87,12 @@ def test_no_error_is_above_the_bound(drawn, precision, random):
 def test_the_bound_is_met_and_is_near_the_error(name, count):
     """Three scenes at 1e-14: the proved bound holds at random tau and all edges, and is at most 50 times the error."""
     chosen = scene(name)
-    made = files(chosen, "all", "pieces")
+    made = files(lower(chosen), "all", "pieces")
     module = imported(made[f"{name}.py"], name)
     assert module.ERROR_BOUND <= 1e-14
-    _, form, _ = choose(chosen, "pieces")
+    _, form, _ = choose(lower(chosen), "pieces")
     taus = np.sort(np.concatenate([np.random.default_rng(7).uniform(0, form.tau_max, count), form.check_points]))
-    expected = np.array(Reference(chosen).values(taus.tolist()))
+    expected = np.array(Reference(lower(chosen)).values(taus.tolist()))
     with compiled(made, len(form.outputs)) as program:
         values = program(taus.tolist())
         assert program.selftest() == 0
@@ -107,7 +108,7 @@ def test_the_bound_is_met_and_is_near_the_error(name, count):
 
 
 def test_a_changed_coefficient_fails_the_self_test():
-    made = files(scene("C"), "c", "pieces")
+    made = files(lower(scene("C")), "c", "pieces")
     table = re.search(r"coefficient\[\] = \{(.*?)\};", made["C.c"], re.DOTALL)
     numbers = [n for n in re.findall(r"-?\d\.\d+(?:e-?\d+)?", table[1]) if abs(float(n)) > 0.5]
     for number in numbers[:: len(numbers) // 5]:
@@ -117,7 +118,7 @@ def test_a_changed_coefficient_fails_the_self_test():
 
 
 def test_sample_keeps_to_the_rules_out_of_range():
-    made = files(scene("B", "1e-8"), "c", "pieces")
+    made = files(lower(scene("B", "1e-8")), "c", "pieces")
     with compiled(made, 4) as program:
         assert program.sample(0.0, 1.0, 0)[0] == 0
         for tau0, step, count in (
@@ -148,27 +149,28 @@ def chain_of(m):
 
 def test_what_is_outside_the_light_cone_is_not_modelled():
     """1000 rods, watched near one end until tau = 10, make the same files as 16."""
-    assert files(chain_of(1000), "all") == files(chain_of(16), "all")
-    assert files(chain_of(1000), "all", "closed") == files(chain_of(16), "all", "closed")
-    assert files(chain_of(1000), "all") != files(chain_of(12), "all")
+    assert files(lower(chain_of(1000)), "all") == files(lower(chain_of(16)), "all")
+    assert files(lower(chain_of(1000)), "all", "closed") == files(lower(chain_of(16)), "all", "closed")
+    assert files(lower(chain_of(1000)), "all") != files(lower(chain_of(12)), "all")
 
 
 def test_auto_takes_what_meets_the_tolerance_and_says_why():
-    name, _, reason = choose(scene("D"))
+    name, _, reason = choose(lower(scene("D")))
     assert name == "pieces"
     assert re.fullmatch(
         r"closed: loses (all|\d+) digits after tau = .*; pieces, degree \d+\.\.\d+, \d+ KiB, bound .*", reason
     )
     with pytest.raises(ToleranceError, match="cannot be met"):
-        choose(scene("D", "1e-17"))
+        choose(lower(scene("D", "1e-17")))
 
 
 def test_tables_scale_with_the_tolerance():
     sizes = [
-        choose(scene("B", tolerance), "pieces", "single").evaluator.bytes for tolerance in ("1e-2", "1e-4", "1e-6")
+        choose(lower(scene("B", tolerance)), "pieces", "single").evaluator.bytes
+        for tolerance in ("1e-2", "1e-4", "1e-6")
     ]
     assert sizes == sorted(sizes)
-    assert sizes[-1] < choose(scene("B"), "pieces").evaluator.bytes / 4
+    assert sizes[-1] < choose(lower(scene("B")), "pieces").evaluator.bytes / 4
 
 
 @pytest.mark.slow
@@ -179,8 +181,8 @@ def test_pieces_that_would_take_minutes_are_refused():
     output = {"until": 200, "tolerance": "1e-6", "strain": ["1/2"]}
     heavy = wavesym.Scene(name="heavy", system=system, load=load, output=output)
     with pytest.raises(CostError, match="1024 bits"):
-        choose(heavy, "pieces")
-    assert choose(heavy).name == "march"
+        choose(lower(heavy), "pieces")
+    assert choose(lower(heavy)).name == "march"
 
 
 def test_an_output_that_cancels_throughout_is_nothing():
@@ -190,16 +192,16 @@ def test_an_output_that_cancels_throughout_is_nothing():
         system={"type": "collision", "m": 6, "kappa": ["1/2", "1/2", "1/2"], "velocity": [1, 0, -1]},
         output={"until": 3, "tolerance": "1e-10", "strain": ["3-"], "velocity": ["3-"]},
     )
-    _, form, _ = choose(symmetric, "pieces")
+    _, form, _ = choose(lower(symmetric), "pieces")
     assert [output.largest > 0 for output in form.outputs] == [True, False]
     assert [powers for grid in form.grids for piece in grid.powers for powers in piece if powers == (0.0,)]
 
 
 def test_more_pieces_than_can_be_fitted_soon_are_refused(monkeypatch):
     monkeypatch.setattr(pieces, "_MOST_WORK", 128 * 100)
-    choose(short(places=1), "pieces")
+    choose(lower(short(places=1)), "pieces")
     with pytest.raises(CostError, match="pieces would be fitted"):
-        choose(short(places=10), "pieces")
+        choose(lower(short(places=10)), "pieces")
 
 
 def short(places):

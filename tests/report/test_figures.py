@@ -11,6 +11,7 @@ import pytest
 from tests.report.clear import texts_keep_clear
 from wavesym.papers.pielorz1979 import figures as section_5
 from wavesym.papers.record import Record, judge
+from wavesym.scene import lower
 
 pytest.importorskip("matplotlib")
 
@@ -123,7 +124,7 @@ def test_the_loads_drawn_bear_most_out() -> None:
 def test_marks_lie_on_the_curves_as_drawn(number: int) -> None:
     """The curves come from generated code, the marks from the exact motion: both sides of a jump are on the curve."""
     load = figures.drawn(number)
-    made = histories(section_5.scene(number, load))
+    made = histories(lower(section_5.scene(number, load)))
     curves = {history.name: history for history in made.outputs}
     count = 0
     for statement in section_5.STATEMENTS:

@@ -9,16 +9,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flint import fmpq
 
 from tests.report.clear import texts_keep_clear
 from wavesym.compiler import evaluator
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.increments import start
 from wavesym.exact.reference import Reference
-from wavesym.numbers.doubles import not_below, rational
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.report import histories as made_of
 from wavesym.report.histories import Histories, History, arrivals, histories
-from wavesym.scene import Observable, Scene
+from wavesym.scene import Scene, lower
 
 pytest.importorskip("matplotlib")
 
@@ -43,7 +46,7 @@ def scene(name: str) -> Scene:
     return THIRDS if name == "thirds" else Scene.from_toml(name)
 
 
-def exact_jumps(of: Scene) -> list[dict[float, float]]:
+def exact_jumps(of: Model) -> list[dict[float, float]]:
     """When each output jumps and by how much: the arrivals whose increment does not start at 0."""
     found = Reference(of).signals
     assert found is not None
@@ -61,7 +64,7 @@ def slopes(made: Histories) -> list[tuple[str, float]]:
     """Where a line would be drawn across a jump."""
     return [
         (history.name, tau)
-        for history, sizes in zip(made.outputs, exact_jumps(made.scene), strict=True)
+        for history, sizes in zip(made.outputs, exact_jumps(made.model), strict=True)
         for tau in sizes
         for stretch in history.stretches
         if stretch[0, 0] < tau <= stretch[-1, 0]
@@ -70,9 +73,9 @@ def slopes(made: Histories) -> list[tuple[str, float]]:
 
 @pytest.mark.parametrize("name", SCENES)
 def test_histories_jump_where_waves_do_and_nowhere_else(name: str) -> None:
-    made = histories(scene(name))
+    made = histories(lower(scene(name)))
     assert slopes(made) == []
-    for history, sizes in zip(made.outputs, exact_jumps(made.scene), strict=True):
+    for history, sizes in zip(made.outputs, exact_jumps(made.model), strict=True):
         size = np.max(np.abs(history.points[:, 1]))
         found = {after[0]: after[1] - before[1] for before, after in jumps(history)}
         assert sorted(found) == sorted(sizes)
@@ -80,13 +83,13 @@ def test_histories_jump_where_waves_do_and_nowhere_else(name: str) -> None:
 
 
 def test_some_of_these_scenes_jump() -> None:
-    assert sum(len(sizes) for name in SCENES for sizes in exact_jumps(scene(name))) > 40
+    assert sum(len(sizes) for name in SCENES for sizes in exact_jumps(lower(scene(name)))) > 40
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_both_sides_of_a_jump_are_those_of_the_reference(name: str) -> None:
-    made = histories(scene(name))
-    response = evaluator(made.scene)
+    made = histories(lower(scene(name)))
+    response = evaluator(scene(name))
     for k, history in enumerate(made.outputs):
         size = np.max(np.abs(history.points[:, 1]))
         for before, after in jumps(history):
@@ -96,7 +99,7 @@ def test_both_sides_of_a_jump_are_those_of_the_reference(name: str) -> None:
 
 
 def test_values_between_are_right_to_what_a_picture_shows() -> None:
-    made = histories(THIRDS)
+    made = histories(lower(THIRDS))
     taus = made.outputs[0].points[::97, 0]
     exact = evaluator(THIRDS)(taus)
     for history, values in zip(made.outputs, exact, strict=True):
@@ -105,16 +108,16 @@ def test_values_between_are_right_to_what_a_picture_shows() -> None:
 
 def test_without_fronts_the_check_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(made_of, "arrivals", lambda scene, output: [])
-    assert len(slopes(histories(THIRDS))) > 5
+    assert len(slopes(histories(lower(THIRDS)))) > 5
 
 
 def test_a_front_left_out_makes_the_check_fail(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(made_of, "arrivals", lambda scene, output: arrivals(scene, output)[:2])
-    assert slopes(histories(THIRDS))
+    assert slopes(histories(lower(THIRDS)))
 
 
 def test_fronts_are_known_from_loads_and_places() -> None:
-    at = arrivals(THIRDS, THIRDS.outputs[0])  # loads change at parts 0 and 1/3 of a unit, x = 1/7
+    at = arrivals(lower(THIRDS), lower(THIRDS).probes[0])  # loads change at parts 0 and 1/3 of a unit, x = 1/7
     parts = {Fraction(1, 7), Fraction(6, 7), Fraction(1, 3) + Fraction(1, 7), Fraction(1, 3) - Fraction(1, 7)}
     assert at == sorted(not_below(rational(part + n)) for part in parts for n in range(7))
 
@@ -122,10 +125,10 @@ def test_fronts_are_known_from_loads_and_places() -> None:
 def test_what_comes_after_an_opening_is_formal(monkeypatch: pytest.MonkeyPatch) -> None:
     named: list[str] = []
     monkeypatch.setattr(panels, "label", lambda axes, curves, size: named.extend(curve.text for curve in curves))
-    made = histories(Scene.from_toml("collision_m4"))
-    (end,) = contact_ends(made.scene)
+    made = histories(lower(Scene.from_toml("collision_m4")))
+    (end,) = contact_ends(made.model)
     for history in made.outputs:
-        assert history.formal == end.double + abs(float(history.output.x) - 2)
+        assert history.formal == end.double + abs(nearest(history.output.x) - 2)
     figure = draw(made)
     lit = [line for line in figure.axes[0].lines if line.get_alpha() == panels._ALPHA[True]]
     assert any(len(line.get_xdata()) > 10 for line in lit)
@@ -140,12 +143,12 @@ def test_loose_tolerances_stay_and_tight_ones_do_not_hinder() -> None:
     impossible = THIRDS.model_copy(
         update={"output": THIRDS.output.model_copy(update={"tolerance": Fraction(1, 10**30)})}
     )
-    assert len(histories(impossible).outputs) == len(THIRDS.outputs)
+    assert len(histories(lower(impossible)).outputs) == len(THIRDS.outputs)
 
 
 def test_fronts_too_dense_to_be_seen_are_not_drawn_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(made_of, "MOST_FRONTS", 3)
-    made = histories(THIRDS)
+    made = histories(lower(THIRDS))
     assert all(len(history.stretches) == 1 for history in made.outputs)
     assert [line for line in notes(made) if "fronts lie closer" in line]
 
@@ -156,8 +159,7 @@ RAMP = np.array([(0.0, 0.0), (1.0, 1.0)])
 def fabricated(count: int, still: int = 0) -> Histories:
     """Straight lines, and some that stay 0."""
     outputs = [
-        History(Observable("strain", Fraction(k), 0, f"strain@{k}"), (RAMP * (1, (k + 1) * (k >= still)),))
-        for k in range(count)
+        History(Probe(f"strain@{k}", "strain", 1, fmpq(k)), (RAMP * (1, (k + 1) * (k >= still)),)) for k in range(count)
     ]
     return Histories(THIRDS, tuple(outputs), (), dense=False)
 
@@ -179,7 +181,7 @@ def test_what_stays_zero_is_said_and_not_drawn() -> None:
 
 @pytest.fixture(scope="module")
 def building() -> Histories:
-    return histories(Scene.from_toml("building_m2"))
+    return histories(lower(Scene.from_toml("building_m2")))
 
 
 @pytest.fixture(scope="module")
@@ -200,7 +202,7 @@ def test_no_name_covers_another_or_leaves_its_panel(figure: Figure) -> None:
 
 def test_drawn_lines_do_not_slope_across_a_front(building: Histories, figure: Figure) -> None:
     """What reaches matplotlib: within a jump only upright lines."""
-    (axes, *_), sizes = figure.axes, exact_jumps(building.scene)[0]
+    (axes, *_), sizes = figure.axes, exact_jumps(building.model)[0]
     assert sizes
     for line in axes.lines:
         tau = np.asarray(line.get_xdata(), dtype=float)
@@ -252,9 +254,9 @@ def test_names_hang_where_a_curve_is_alone() -> None:
 
 
 def test_history_of_a_load_needs_no_scene() -> None:
-    figure = stacked([Panel("load", (History(Observable("load", Fraction(0), 0, "a"), (RAMP,)),))], 1.0, ["title"])
+    figure = stacked([Panel("load", (History(Probe("a", "load", 1, fmpq(0)), (RAMP,)),))], 1.0, ["title"])
     assert [text.get_text() for text in figure.axes[0].texts] == ["a"]
-    assert History(Observable("load", Fraction(0), 0, "a"), (RAMP,)).formal == inf
+    assert History(Probe("a", "load", 1, fmpq(0)), (RAMP,)).formal == inf
 
 
 def test_a_name_over_another_is_seen(figure: Figure) -> None:

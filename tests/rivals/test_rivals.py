@@ -2,19 +2,19 @@
 
 import math
 from dataclasses import replace
-from fractions import Fraction
 from functools import cache
 
 import numpy as np
 import pytest
+from flint import fmpq
 
 from wavesym.compiler import evaluator
 from wavesym.exact.reference import Reference
-from wavesym.model.chain import chain
+from wavesym.model.loads import Applied
 from wavesym.rivals import characteristics, delays, differences, elements, laplace, modes, steps
 from wavesym.rivals.every import RIVALS
-from wavesym.rivals.problem import problem, scene_problem
-from wavesym.scene import Piece, Scene
+from wavesym.rivals.problem import problem, stated
+from wavesym.scene import Scene, lower
 
 
 def scene(system, load=(), **outputs):
@@ -55,7 +55,7 @@ SCENES = {
 @cache
 def truth(name):
     """Samples away from fronts, and the outputs there as parts of their largest value."""
-    arrivals = np.array(Reference(SCENES[name]).breakpoints())
+    arrivals = np.array(Reference(lower(SCENES[name])).breakpoints())
     taus = np.linspace(0, 5.9, 591)  # at 6 a wave may arrive
     taus = taus[np.min(np.abs(taus[:, np.newaxis] - arrivals), axis=1) > 0.08]
     values = evaluator(SCENES[name])(taus)
@@ -65,7 +65,7 @@ def truth(name):
 def errors(rival, name, resolution, broken=lambda problem: problem):
     """The largest error of each output."""
     taus, values, sizes = truth(name)
-    found = rival.prepare(broken(scene_problem(SCENES[name])), resolution)(taus)
+    found = rival.prepare(broken(stated(lower(SCENES[name]))), resolution)(taus)
     return np.max(np.abs(found - values) / sizes, axis=1)
 
 
@@ -120,7 +120,7 @@ def test_characteristics_cut_the_grid_where_a_load_jumps():
 @pytest.mark.parametrize("count", [601, 1201, 1801, 457], ids=["on the grid", "half steps", "thirds", "neither"])
 def test_characteristics_read_off_the_same_from_any_samples(rival, count):
     """Even samples take short cuts; uneven ones, the same and one more, do not."""
-    evaluate = rival.prepare(scene_problem(SCENES["building"]), 100)
+    evaluate = rival.prepare(stated(lower(SCENES["building"])), 100)
     taus = np.linspace(0, 6, count)
     np.testing.assert_allclose(evaluate(taus), evaluate(np.append(taus, 6.0))[:, :-1], rtol=0, atol=1e-11)
 
@@ -148,8 +148,8 @@ def test_jitcdde_follows_its_tolerance_where_nothing_jumps():
 
 def test_exact_modes():
     """Of a free bar k pi; with equal discs at its ends, whose middle rests or stretches nothing, two equations."""
-    stated = replace(scene_problem(SCENES["drive"]), alpha=np.array([0.0, 6.0]), beta=np.array([6.0, 0.0]))
-    w = modes.modes(stated, 7).w
+    bar = replace(stated(lower(SCENES["drive"])), alpha=np.array([0.0, 6.0]), beta=np.array([6.0, 0.0]))
+    w = modes.modes(bar, 7).w
     assert w[0] == 0
     np.testing.assert_allclose(w[1::2] * np.tan(w[1::2] / 2), 3, rtol=1e-9)
     np.testing.assert_allclose(w[2::2] / np.tan(w[2::2] / 2), -3, rtol=1e-9)
@@ -159,4 +159,4 @@ def test_exact_modes():
 
 def test_a_source_that_the_chain_does_not_have():
     with pytest.raises(ValueError, match="M9"):
-        problem(chain(SCENES["drive"]), [Piece("M9", Fraction(0), Fraction(1))], [], 6.0)
+        problem(SCENES["drive"].system.chain, [Applied("M9", fmpq(0), fmpq(1))], [], 6.0)

@@ -7,7 +7,7 @@ import pytest
 
 from wavesym.running.compiled import compiled, imported
 from wavesym.running.toolchain import CompilerError
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.files import files
 
 OUTPUTS = ("strain@0", "strain@1/3", "displacement@1")
@@ -21,7 +21,7 @@ def made():
         load=[{"body": 1, "times": [0, "1/2"], "steps": [1, -1]}],
         output={"until": 4, "strain": [0, "1/3"], "displacement": [1]},
     )
-    return files(scene, language="all")
+    return files(lower(scene), language="all")
 
 
 def test_c_and_numpy_give_the_same(made):

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic_core import PydanticCustomError
 
-from wavesym.scene.numbers import exact
-from wavesym.scene.table import Written, shown
+from wavesym.fields.numbers import exact
+from wavesym.fields.table import Written, shown
 
 
 def from_toml(text: str) -> object:

@@ -27,7 +27,7 @@ from tests.support.truth import Truth
 from wavesym.errors import CostError, RangeError, ToleranceError
 from wavesym.running.compiled import FLAGS, imported
 from wavesym.running.toolchain import compiler
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.files import files
 
 EVALUATORS = ("closed", "pieces", "march")
@@ -131,7 +131,7 @@ def attack(
         began = perf_counter()
         kind = {"evaluator": evaluator, "precision": precision}
         try:
-            made = files(scene, "all", evaluator, precision)
+            made = files(lower(scene), "all", evaluator, precision)
         except (ToleranceError, CostError, RangeError) as refusal:
             yield Outcome(**kind, language="all", refusal=_said(refusal), seconds=perf_counter() - began)
             continue

@@ -16,7 +16,7 @@ from wavesym.exact.reference import Reference
 from wavesym.numbers.doubles import midpoint
 from wavesym.programs.choice import choose
 from wavesym.running.toolchain import Compiler
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.files import files
 
 needs_binutils = pytest.mark.skipif(not shutil.which("nm") or not shutil.which("size"), reason="no nm, no size here")
@@ -78,8 +78,8 @@ def source(evaluator: str, precision: str) -> Source:
     """What is generated for an evaluator in a precision."""
     name = f"{evaluator}_{precision}"
     made_from = scene(name, "1e-9" if precision == "double" else "1e-2")
-    chosen = choose(made_from, evaluator, precision).evaluator
-    reference = Reference(made_from)
+    chosen = choose(lower(made_from), evaluator, precision).evaluator
+    reference = Reference(lower(made_from))
     dtype = np.float64 if precision == "double" else np.float32
     places = [*np.random.default_rng(1).uniform(0, 6, 200), *range(7), *reference.breakpoints()]
     taus = np.unique(np.array(places, dtype=dtype))
@@ -87,7 +87,7 @@ def source(evaluator: str, precision: str) -> Source:
     largest = np.array([midpoint(size) for size in reference.largest()])
     return Source(
         name,
-        files(made_from, "c", evaluator, precision),
+        files(lower(made_from), "c", evaluator, precision),
         ctypes.c_double if precision == "double" else ctypes.c_float,
         taus,
         np.array(reference.values(taus.tolist())),

@@ -11,7 +11,11 @@ from fractions import Fraction
 import numpy as np
 from hypothesis import strategies as st
 
-from wavesym.scene import Acceleration, Building, Collision, Moment, Record, Scene
+from wavesym.fields.loads import SampledLoad
+from wavesym.scene import Scene
+from wavesym.systems.building import Acceleration, Building
+from wavesym.systems.collision import Collision
+from wavesym.systems.drive import Moment
 
 BESIDE = [Fraction(1, 10**6), Fraction(1, 10**9), Fraction(1, 10**12)]
 """What separates the nearly equal."""
@@ -172,7 +176,7 @@ def as_toml(scene: Scene) -> str:
                 lines += [f"body = {load.body}", f"times = {_numbers(load.times)}", f"steps = {_numbers(load.steps)}"]
             case Acceleration():
                 lines += [f"{key} = {_numbers(getattr(load, key))}" for key in ("times", "a", "b")]
-            case Record():
+            case SampledLoad():
                 lines += [f"spacing = {_number(load.spacing)}", f"samples = {_numbers(load.samples)}"]
     output = scene.output
     lines += ["", "[output]", f"until = {_number(output.until)}", f"tolerance = {_number(output.tolerance)}"]

@@ -15,7 +15,9 @@ from flint import arb, fmpq
 
 from tests.support.decays import Decays
 from tests.support.history import History
-from wavesym.scene import Building, Collision, Drive, Observable, Scene
+from wavesym.numbers.doubles import fraction
+from wavesym.scene import Observable, Scene, lower
+from wavesym.systems import Building, Collision, Drive
 
 _ZERO = fmpq(0)
 _NOTHING = Decays()
@@ -98,9 +100,10 @@ class Truth:
         # a rod that moves does so by two waves, each of half its velocity; beyond the ends there is none
         self._begun = [Decays.power(0, velocity / 2) for velocity in (_ZERO, *_rods(scene.system), _ZERO)]
         gains: list[dict[Fraction, Decays]] = [{} for _ in scene.outputs]
-        pieces = [piece for piece in scene.pieces if piece.time <= until]
-        for source in {piece.source: None for piece in pieces}:
-            times = {piece.time: _q(piece.weight) for piece in pieces if piece.source == source}
+        acting = [(load.source, fraction(load.time), load.weight) for load in lower(scene).loads]
+        acting = [load for load in acting if load[1] <= until]
+        for source in {source: None for source, *_ in acting}:
+            times = {time: weight for which, time, weight in acting if which == source}
             left, right = self._sent(source, until - min(times))
             for output, gained in zip(scene.outputs, gains, strict=True):
                 for start, gain in self._felt(output, left, right):

@@ -10,7 +10,7 @@ import pytest
 from wavesym.cli import main
 from wavesym.running.compiled import FLAGS, imported
 from wavesym.running.toolchain import compiler
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.description import constants
 from wavesym.targets.files import files
 
@@ -34,7 +34,7 @@ def test_constants_are_identifiers_and_differ():
 def test_a_row_is_that_of_its_name_in_c_and_in_numpy(tmp_path):
     """The scene lists them in another order than they come in."""
     scene = building(PUSH, displacement=[2], strain=["1+", "0.5"], velocity=[1])
-    made = files(scene, "all")
+    made = files(lower(scene), "all")
     rows = {"DISPLACEMENT_2": "displacement@2", "STRAIN_1_PLUS": "strain@1+", "STRAIN_0_5": "strain@0.5"}
     module = imported(made["made.py"], "made")
     program = "".join(f"    puts(made_output_name[MADE_{row}]);\n" for row in rows)
@@ -83,9 +83,9 @@ strain = [0.5]
 
 def test_long_loads_take_a_line():
     record = [{"spacing": "1/100", "samples": [0, *(k % 7 - 3 for k in range(250))]}]
-    header = files(building(record, strain=["0.5"]), evaluator="pieces")["made.h"]
+    header = files(lower(building(record, strain=["0.5"])), evaluator="pieces")["made.h"]
     assert "load 0: 251 samples at 1/100, to tau = 5/2" in header
     assert len(header.splitlines()) < 70
-    assert "load 0: 1 a at 0\n" in files(building(PUSH, strain=["0.5"]))["made.h"]
+    assert "load 0: 1 a at 0\n" in files(lower(building(PUSH, strain=["0.5"])))["made.h"]
     many = [{"times": [f"{k}/100" for k in range(1, 200)], "a": [1] * 199, "b": [0] * 199}]
-    assert "load 0: 199 changes from tau = 1/100 to 199/100" in files(building(many, strain=["0.5"]))["made.h"]
+    assert "load 0: 199 changes from tau = 1/100 to 199/100" in files(lower(building(many, strain=["0.5"])))["made.h"]

@@ -13,7 +13,7 @@ from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march.evaluator import marched
 from wavesym.running.compiled import FLAGS, compiled, imported
 from wavesym.running.toolchain import at_hand
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.description import describe
 from wavesym.targets.march import c_header, c_source, numpy_source
 from wavesym.targets.selftest import selftest
@@ -51,14 +51,14 @@ SCENES = pytest.mark.parametrize(
 
 
 def sources(scene, made):
-    description = describe(scene, made, "test", ())
+    description = describe(lower(scene), made, "test", ())
     return {"made.h": c_header(description, made), "made.c": c_source(description, made)}
 
 
 def with_selftest(scene, made):
     """With the self-test."""
-    description = describe(scene, made, "test", ())
-    return sources(scene, made) | {"made_selftest.c": selftest(scene, description, made)}
+    description = describe(lower(scene), made, "test", ())
+    return sources(scene, made) | {"made_selftest.c": selftest(lower(scene), description, made)}
 
 
 @pytest.mark.parametrize("compiler", COMPILERS, ids=lambda each: each.name)
@@ -66,14 +66,14 @@ def with_selftest(scene, made):
 @SCENES
 def test_c_passes_its_self_test(scene, real, compiler, monkeypatch):
     monkeypatch.setenv("CC", shlex.join(compiler.command))
-    with compiled(with_selftest(scene, marched(scene, real)), len(scene.outputs)) as program:
+    with compiled(with_selftest(scene, marched(lower(scene), real)), len(scene.outputs)) as program:
         assert program.selftest() == 0
 
 
 @SCENES
 def test_c_is_numpy_and_sample_is_eval(scene):
-    made = marched(scene)
-    module = imported(numpy_source(describe(scene, made, "test", ()), made), "made")
+    made = marched(lower(scene))
+    module = imported(numpy_source(describe(lower(scene), made, "test", ()), made), "made")
     taus = [0.0, 1 / 3, 0.9999, 1.0, 2.5, 2.4999999999999996, 5.7, 8.999999, 9.0, -1.0, 9.1, float("nan")]
     with compiled(with_selftest(scene, made), len(scene.outputs)) as program:
         assert program.names == module.OUTPUTS
@@ -158,7 +158,7 @@ def given(scene, made):
             for low, high in pairwise(cuts):
                 x = float(low) + float(high - low) * (1 - np.cos(np.pi * np.arange(made.degree + 1) / made.degree)) / 2
                 values = np.zeros_like(x)
-                for piece in scene.pieces:
+                for piece in lower(scene).loads:
                     if piece.time <= window + low and piece.source in (name, "b" if name == "a" else ""):
                         since = window + x - float(piece.time)
                         values += float(piece.weight) * (since if piece.source == "b" else 1)
@@ -168,7 +168,7 @@ def given(scene, made):
 
 @pytest.mark.parametrize("scene", [building("force"), building("ground"), DRIVE], ids=["force", "ground", "drive"])
 def test_loads_given_while_it_runs_do_what_the_scene_does(scene, tmp_path):
-    made = marched(scene)
+    made = marched(lower(scene))
     status, energy, own = driven(tmp_path, scene, made)
     assert status == 0
     assert energy > 0
@@ -182,10 +182,10 @@ def test_loads_given_while_it_runs_do_what_the_scene_does(scene, tmp_path):
 
 def test_a_degree_that_is_too_low_is_reported(tmp_path):
     long = building("force", until=400)
-    status, _, values = driven(tmp_path, long, marched(long, degree=9))
+    status, _, values = driven(tmp_path, long, marched(lower(long), degree=9))
     assert status == 1
     assert np.isfinite(values).all()
-    fine = marched(long)
+    fine = marched(lower(long))
     status, _, _ = driven(tmp_path, long, fine)
     assert status == 0
     # loads that come too fast for the degree are reported as well
@@ -197,7 +197,7 @@ def test_a_degree_that_is_too_low_is_reported(tmp_path):
 @needs_binutils
 @SCENES
 def test_it_is_cpp_too_and_exports_only_its_prefix(scene, tmp_path):
-    for name, text in sources(scene, marched(scene)).items():
+    for name, text in sources(scene, marched(lower(scene))).items():
         (tmp_path / name).write_text(text)
     COMPILERS[0].run(["-x", "c++", "-std=c++11", *STRICT, "-c", "made.c", "-o", "made.o"], tmp_path)
     listed = subprocess.run(["nm", "-g", "made.o"], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
@@ -236,7 +236,7 @@ int main(void)
 def test_a_march_ends_where_what_is_not_modelled_would_be_felt(m, windows, told, tmp_path):
     system = {"type": "building", "m": m, "kappa": ["1/100"] * (m + 1), "base": "ground"}
     tall = scene(system, [{"times": [0], "a": [1], "b": [0]}], until="5/2", velocity=[1])
-    for name, text in {**sources(tall, marched(tall, windows=windows)), "driver.c": CONE_DRIVER}.items():
+    for name, text in {**sources(tall, marched(lower(tall), windows=windows)), "driver.c": CONE_DRIVER}.items():
         (tmp_path / name).write_text(text)
     COMPILERS[0].run([*FLAGS, "driver.c", "made.c", "-o", "driver"], tmp_path)
     assert subprocess.run([tmp_path / "driver"], capture_output=True, text=True, check=True).stdout.strip() == told

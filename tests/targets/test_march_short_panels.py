@@ -12,7 +12,7 @@ from wavesym.programs.march.bound import reading_weights
 from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.run import LEFT, RIGHT
 from wavesym.running.compiled import imported
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.description import describe
 from wavesym.targets.march import numpy_source
 
@@ -37,7 +37,7 @@ CUTS = [Fraction(0), FIRST, FIRST + SHORT, Fraction(1)]
 
 @cache
 def made():
-    return marched(SCENE, degree=DEGREE)
+    return marched(lower(SCENE), degree=DEGREE)
 
 
 def waves():
@@ -150,7 +150,7 @@ def in_c(change):
 
 
 def numpy_text():
-    return numpy_source(describe(SCENE, made(), "test", ()), made())
+    return numpy_source(describe(lower(SCENE), made(), "test", ()), made())
 
 
 def test_waves_are_read_from_exact_instants_in_numpy():

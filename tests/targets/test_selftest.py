@@ -20,7 +20,7 @@ from tests.support.builds import scene
 from tests.support.truth import Truth
 from wavesym.running.compiled import FLAGS
 from wavesym.running.toolchain import compiler
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets import selftest
 from wavesym.targets.files import files
 
@@ -74,7 +74,7 @@ class Mutable:
 
 
 def mutable(evaluator, precision, tolerance, folder):
-    made = files(scene("small", tolerance, UNTIL), "c", evaluator, precision)
+    made = files(lower(scene("small", tolerance, UNTIL)), "c", evaluator, precision)
     lengths = tables(made["small.c"])
     opened = re.sub(r"static const (real|double|float) (\w+)\[\]", r"\1 \2[]", made["small.c"])
     (folder / "small.h").write_text(made["small.h"])
@@ -199,7 +199,7 @@ def test_a_self_test_of_few_points_would_miss_some(monkeypatch, tmp_path):
 @pytest.mark.parametrize("evaluator", ["closed", "pieces"])
 def test_the_last_printed_digits_of_a_coefficient_matter(evaluator, tmp_path):
     """In the text itself, as an editor would change it."""
-    made = files(scene("small", "1e-12", UNTIL), "c", evaluator)
+    made = files(lower(scene("small", "1e-12", UNTIL)), "c", evaluator)
     bound = json.loads(made["small.json"])["error_bound"]
     _, numbers = next(found for found in re.findall(NUMBERS, made["small.c"], re.DOTALL) if found[0] == "coefficient")
     first = next(number.strip() for number in numbers.split(",") if len(number.strip()) > 16)
@@ -224,7 +224,7 @@ def watched():
 def test_it_allows_one_bound_of_the_largest_value(evaluator):
     """And what its reference values are rounded by."""
     whole, (least, most) = watched()
-    made = files(whole, "c", evaluator)
+    made = files(lower(whole), "c", evaluator)
     bound = json.loads(made["small.json"])["error_bound"]
     (allowed,) = re.findall(r"allowed\[\] = \{\s*(\S+?)\s*\}", made["small_selftest.c"])
     assert 0.9 * float(least) <= float(allowed) / (bound + 2.0**-52) <= float(most)
@@ -234,7 +234,7 @@ def test_it_allows_one_bound_of_the_largest_value(evaluator):
 def test_values_that_are_wrong_by_two_bounds_are_seen(evaluator, tmp_path):
     """All of them, so that it is not the choice of instants that tells."""
     whole, (_, most) = watched()
-    made = files(whole, "c", evaluator)
+    made = files(lower(whole), "c", evaluator)
     wrong = SEEN * json.loads(made["small.json"])["error_bound"] * float(most)
     assert made["small.c"].count("return sum;") == 1
     assert statuses(made, "return sum;", f"return sum + {wrong!r};", tmp_path) == [0, 1]
@@ -255,5 +255,5 @@ def test_values_that_are_wrong_by_two_bounds_are_seen(evaluator, tmp_path):
     ],
 )
 def test_sample_is_tested_too(evaluator, right, wrong, tmp_path):
-    made = files(scene("small", "1e-9", UNTIL), "c", evaluator)
+    made = files(lower(scene("small", "1e-9", UNTIL)), "c", evaluator)
     assert statuses(made, right, wrong, tmp_path) == [0, 1]

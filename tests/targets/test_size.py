@@ -7,6 +7,7 @@ import pytest
 import wavesym
 from tests.support.builds import needs_binutils, sections
 from wavesym.running.toolchain import at_hand
+from wavesym.scene import lower
 from wavesym.targets.files import files
 
 TARGETS = {
@@ -28,7 +29,7 @@ SCENE = wavesym.Scene(
 @pytest.mark.parametrize("evaluator", ["closed", "pieces"])
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_code_and_data_are_no_larger_than_stated(evaluator, precision, compiler, tmp_path):
-    made = files(SCENE, "c", evaluator, precision)
+    made = files(lower(SCENE), "c", evaluator, precision)
     for name, text in made.items():
         (tmp_path / name).write_text(text)
     # no C library for the target is needed to count bytes

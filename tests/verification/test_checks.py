@@ -10,9 +10,8 @@ from wavesym import rendering
 from wavesym.errors import ToleranceError
 from wavesym.exact import table as tables
 from wavesym.exact.table import Function, full_table
-from wavesym.model.chain import chain
 from wavesym.programs.choice import choose
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.files import files
 from wavesym.verification import checks
 from wavesym.verification.node_law import differences
@@ -44,15 +43,15 @@ def verdicts(check, truth):
 
 @pytest.mark.parametrize("scene", [DRIVE, BUILDING, COLLISION], ids=["drive", "building", "collision"])
 def test_all_is_well(scene):
-    truth = reference(scene)
+    truth = reference(lower(scene))
     for check in checks.CHECKS:
         assert all(verdicts(check.run, truth)), check.title
 
 
 def made_with(monkeypatch, evaluator, change=lambda made: made):
     """Let the checks see code of one evaluator, its files changed."""
-    monkeypatch.setattr(checks, "files", lambda scene, language: change(files(scene, language, evaluator)))
-    monkeypatch.setattr(checks, "choose", lambda scene: choose(scene, evaluator))
+    monkeypatch.setattr(checks, "files", lambda scene, language: change(files(lower(scene), language, evaluator)))
+    monkeypatch.setattr(checks, "choose", lambda scene: choose(lower(scene), evaluator))
 
 
 @pytest.mark.parametrize(
@@ -74,7 +73,7 @@ def made_with(monkeypatch, evaluator, change=lambda made: made):
     ],
 )
 def test_a_sign_in_a_template_is_seen(template, right, wrong, monkeypatch):
-    truth = reference(DRIVE)
+    truth = reference(lower(DRIVE))
     language, evaluator = re.split(r"[/.]", template)[:2]
     made_with(monkeypatch, evaluator)
     assert all(verdicts(checks.generated, truth) + verdicts(checks.invariants, truth))
@@ -102,13 +101,13 @@ def a_digit_changed(text, file):
 @pytest.mark.parametrize("file", ["small.c", "small.py"])
 @pytest.mark.parametrize("evaluator", ["closed", "pieces", pytest.param("march", marks=pytest.mark.slow)])
 def test_a_digit_in_a_generated_table_is_seen(evaluator, file, monkeypatch):
-    truth = reference(BUILDING)
+    truth = reference(lower(BUILDING))
     made_with(monkeypatch, evaluator, lambda made: {**made, file: a_digit_changed(made[file], file)})
     assert not all(verdicts(checks.generated, truth))
 
 
 def test_a_digit_in_the_generated_numpy_breaks_the_balances(monkeypatch):
-    truth = reference(DRIVE)
+    truth = reference(lower(DRIVE))
     right = checks.imported
     monkeypatch.setattr(checks, "imported", lambda text, name: right(a_digit_changed(text, name), name))
     assert not all(verdicts(checks.invariants, truth))
@@ -123,11 +122,11 @@ def test_a_wrong_rule_is_seen_by_all_that_is_not_derived(scene, monkeypatch):
         return right(own, right_side, jump + fmpq(1, 100000))
 
     monkeypatch.setattr(tables, "solve", wrong)
-    system = chain(scene)
+    system = scene.system.chain
     table = full_table(system, 4, fmpq(0))
     assert list(differences(system, table))
     assert list(jumps(system, table))
-    truth = reference(scene)
+    truth = reference(lower(scene))
     assert not all(verdicts(checks.integration, truth))
     assert not all(verdicts(checks.spacetime, truth))
     assert not all(verdicts(checks.invariants, truth))
@@ -135,7 +134,7 @@ def test_a_wrong_rule_is_seen_by_all_that_is_not_derived(scene, monkeypatch):
 
 @pytest.mark.parametrize("power", [0, 1])
 def test_a_coefficient_of_a_table_is_seen(power):
-    system = chain(BUILDING)
+    system = BUILDING.system.chain
     table = full_table(system, 6, fmpq(0))
     assert not [*differences(system, table), *residuals(system, table), *jumps(system, table)]
     row = [row for row in table.rows() if row.power == power][-1]
@@ -145,7 +144,7 @@ def test_a_coefficient_of_a_table_is_seen(power):
 
 
 def test_a_refusal_is_no_failure(monkeypatch):
-    truth = reference(DRIVE)
+    truth = reference(lower(DRIVE))
 
     def refuse(scene, *_, **__):
         raise ToleranceError("small: cannot be met")

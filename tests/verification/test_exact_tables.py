@@ -10,9 +10,9 @@ from wavesym.exact import table as tables
 from wavesym.exact.table import Function, full_table
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 from wavesym.verification.node_law import differences, unit_waves
 from wavesym.verification.substitution import jumps, residuals
 

@@ -13,7 +13,7 @@ from tests.support.drawn import scenes
 from wavesym.model.chain import chain
 from wavesym.programs.march.evaluator import marched
 from wavesym.running.compiled import imported
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.description import describe
 from wavesym.targets.march import numpy_source
 from wavesym.verification import checks
@@ -58,24 +58,24 @@ FOUR = pytest.mark.parametrize("scene", [COLLISION, DRIVE, FORCE, GROUND], ids=[
 
 def exactly(scene, windows):
     """A scene as it is watched, its values in balls, rounded once, and what that costs."""
-    seen = watched(scene, windows)
+    seen = watched(lower(scene), windows)
     response = wavesym.evaluator(seen)
     return seen, response, [2.0**-53 * np.abs(row).max() for row in response(np.linspace(0, windows, 401))]
 
 
 def test_weights_are_masses():
     """kappa is a rod's mass in terms of a body's; in units of the mass of a rod, bodies weigh 1/kappa."""
-    bodies, rods = weights(chain(COLLISION))
+    bodies, rods = weights(COLLISION.system.chain)
     assert rods == (1,) * 6
     assert [bodies[x] for x in (1, 3, 5)] == [10, fmpq(1, 2), fmpq(7, 3)]
-    bodies, rods = weights(chain(FORCE))
+    bodies, rods = weights(FORCE.system.chain)
     assert rods == (1, 1)
     assert bodies[1:] == (fmpq(5, 3), 5)
 
 
 def test_weights_of_a_drive_are_moments_of_inertia():
     """In units of the first shaft's: discs as inertia, J_0i = kappa_i J_i."""
-    bodies, rods = weights(chain(DRIVE))
+    bodies, rods = weights(DRIVE.system.chain)
     assert bodies == (1, 2, 3)
     assert rods == (1, 1)
     bodies, rods = weights(chain(again(DRIVE, {"kappa": [2, 3]})))
@@ -98,10 +98,10 @@ def test_balances_hold_in_any_system(scene):
 
 def in_rods(scene, tau):
     """Momentum and energy at tau, not inside a load's window, by Gauss's rule along the rods."""
-    system, m = chain(scene), scene.system.m
+    system, m = scene.system.chain, scene.system.m
     nodes, rule = np.polynomial.legendre.leggauss(24)
     # fronts are where a load's time says, seen from either end
-    parts = {Fraction(tau) - piece.time for piece in scene.pieces}
+    parts = {Fraction(tau) - piece.time for piece in lower(scene).loads}
     cuts = sorted({Fraction(0), Fraction(1)} | {part % 1 for part in parts} | {-part % 1 for part in parts})
     places, shares = [], []
     for low, high in pairwise(cuts):
@@ -148,14 +148,14 @@ def test_another_system_is_seen(scene):
     other = again(scene, {"kappa": kappa})
     seen, _, errors = exactly(scene, 6)
     assert all(balance.error <= balance.allowed for balance in balances(*exactly(other, 6)))
-    assert all(balance.error > balance.allowed for balance in balances(seen, exactly(other, 6)[1], errors))
+    assert all(balance.error > balance.allowed for balance in balances(lower(seen), exactly(other, 6)[1], errors))
 
 
 @FOUR
 def test_a_leak_is_seen(scene):
     """Everything 1e-9 too small."""
     seen, evaluate, errors = exactly(scene, 4)
-    _, energy = balances(seen, lambda taus: evaluate(taus) * (1 - 1e-9 * taus), errors)
+    _, energy = balances(lower(seen), lambda taus: evaluate(taus) * (1 - 1e-9 * taus), errors)
     assert energy.error > energy.allowed
 
 
@@ -168,14 +168,14 @@ def test_one_wrong_output_is_seen():
             values[wrong] *= 1 + 1e-9
             return values
 
-        assert any(balance.error > balance.allowed for balance in balances(seen, changed, errors))
+        assert any(balance.error > balance.allowed for balance in balances(lower(seen), changed, errors))
 
 
 def test_what_is_not_looked_at_is_said(monkeypatch):
-    (outcome,) = checks.invariants(reference(again(COLLISION, until="1/2", strain=[2])))
+    (outcome,) = checks.invariants(reference(lower(again(COLLISION, until="1/2", strain=[2]))))
     assert outcome.passed
     assert "horizon is shorter than 1" in outcome.note
-    truth = reference(DRIVE)
+    truth = reference(lower(DRIVE))
     monkeypatch.setattr(checks, "_MOST_WINDOWS", 20)
     assert {outcome.cells["to"] for outcome in checks.invariants(truth)} == {"2"}
     monkeypatch.setattr(checks, "_MOST_VALUES", 20)
@@ -187,10 +187,10 @@ def test_what_is_not_looked_at_is_said(monkeypatch):
 @pytest.mark.slow
 @FOUR
 def test_the_march_keeps_them_for_long(scene):
-    seen = watched(scene, 100)
+    seen = watched(lower(scene), 100)
     seen = seen.model_copy(update={"output": seen.output.model_copy(update={"tolerance": Fraction(1, 10**4)})})
-    made = marched(seen)
-    evaluate = imported(numpy_source(describe(seen, made, "test", ()), made), "made").evaluate
-    for balance in balances(seen, evaluate, [output.bound * output.largest for output in made.outputs]):
+    made = marched(lower(seen))
+    evaluate = imported(numpy_source(describe(lower(seen), made, "test", ()), made), "made").evaluate
+    for balance in balances(lower(seen), evaluate, [output.bound * output.largest for output in made.outputs]):
         assert balance.error <= balance.allowed
         assert balance.error < 1e-9

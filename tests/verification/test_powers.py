@@ -26,9 +26,9 @@ from wavesym.exact.walks import Unit, departures, function_walks, letters, units
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
 from wavesym.model.symbolic import generic
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 from wavesym.verification.powers import steps
 
 BY_NAME = {system.name: system for systems in SYSTEMS.values() for system in systems}

@@ -16,11 +16,11 @@ from hypothesis import strategies as st
 from tests.support.drawn import loads, ratios, scenes, systems
 from wavesym.exact.ball import segments, values
 from wavesym.exact.motion import Motion
-from wavesym.exact.signal import horizon, signals
+from wavesym.exact.signal import signals
 from wavesym.exact.table import full_table
 from wavesym.model.chain import chain
 from wavesym.numbers.doubles import rational
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.verification import checks
 from wavesym.verification.node_law import differences
 from wavesym.verification.reference import reference
@@ -40,13 +40,13 @@ def made(
 
 def tables(scene, taus=TAUS):
     """By the exact tables, each value rounded once."""
-    return np.array([values(partial(segments, signal), taus) for signal in signals(scene)])
+    return np.array([values(partial(segments, signal), taus) for signal in signals(lower(scene))])
 
 
 def windows(scene, taus=TAUS):
     """By the node law on windows, each value rounded once."""
-    until = horizon(scene)
-    motion = Motion(scene, rational(until))
+    until = lower(scene).horizon()
+    motion = Motion(lower(scene), rational(until))
     return np.array([values(partial(motion.segments, place), taus) for place in motion.places])
 
 
@@ -87,7 +87,7 @@ def test_tables_and_the_node_law_have_the_same_values(scene):
 
 
 def check_generated(scene):
-    for outcome in checks.generated(reference(scene)):
+    for outcome in checks.generated(reference(lower(scene))):
         assert outcome.passed, outcome
 
 

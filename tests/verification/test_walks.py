@@ -11,9 +11,9 @@ from wavesym.exact.table import full_table
 from wavesym.exact.walks import letters, units, walks_until
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 from wavesym.verification.derived import by_walks
 
 NUMBERS = st.builds(fmpq, st.integers(1, 9), st.integers(1, 5)) | st.just(fmpq(1, 2)) | st.just(fmpq(1001, 2000))

@@ -59,8 +59,8 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
 
 def _decimals(path: Path) -> list[float]:
     """The numbers in a file, each as a double; SceneError names the first line that holds something else."""
+    from wavesym.fields.table import shown
     from wavesym.scene import SceneError, read_text
-    from wavesym.scene.table import shown
 
     file, text = read_text(path, "a file with one decimal a line")
     taus: list[float] = []

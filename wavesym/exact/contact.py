@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import partial
 from math import factorial
 
@@ -13,11 +12,11 @@ from wavesym.derivation.exact_rule import DERIVATIVE
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment, polynomials, precise, segments
 from wavesym.exact.increments import Increment, apply, start, trimmed
-from wavesym.exact.signal import Modelled, Signal, horizon, observed
-from wavesym.model.chain import chain
+from wavesym.exact.signal import RuledChain, Signal, observed
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import midpoint, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.scene import Collision, Observable, Scene
 
 # a zero is known to this width, and a strain that only touches zero counts from there
 _WIDTH = fmpq(1, 2**80)
@@ -49,25 +48,26 @@ class ContactEnd:
         return str(self.tau.str(20, radius=False))
 
 
-def contact_ends(scene: Scene, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
+def contact_ends(model: Model, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
     """The contacts whose opening can reach an output within the horizon in `real` numbers, from left to right.
 
     CostError where that takes more than some seconds to know.
     """
-    if not isinstance(scene.system, Collision):
+    until = rational(model.horizon(real))
+    contacts = [x for x in model.light_cone(until) if model.chain.nodes[x].contact]
+    if not contacts:
         return ()
-    model = Modelled(chain(scene))
-    until = rational(horizon(scene, real))
+    ruled = RuledChain(model.chain)
     ends = []
-    for x in _contacts(scene, until):
+    for x in contacts:
         # to matter, the opening must have the time to reach the nearest output
-        latest = until - min(abs(rational(output.x) - x) for output in scene.outputs)
-        place = Observable("strain", Fraction(x), 0, f"strain@{x}")
+        latest = until - min(abs(probe.x - x) for probe in model.probes)
+        place = Probe(f"strain@{x}", "strain", x, fmpq(1))
         tau, reached = arb.pos_inf(), fmpq(0)
         while not tau.is_finite() and reached < latest:
             # most open early, and tables grow like the cube of the time
             reached = min(latest, max(_FIRST, 2 * reached))
-            (strain,) = observed(model, (place,), scene.pieces, reached, _MOST_COEFFICIENTS)
+            (strain,) = observed(ruled, (place,), model.loads, reached, _MOST_COEFFICIENTS)
             try:
                 tau = precise(partial(_first_return, strain, reached), most=_MOST_BITS)
             except ArithmeticError as error:
@@ -75,16 +75,6 @@ def contact_ends(scene: Scene, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
         if tau.is_finite():
             ends.append(ContactEnd(x, tau))
     return tuple(ends)
-
-
-def _contacts(scene: Scene, until: fmpq) -> list[int]:
-    """The contacts, at even x, near enough to an output."""
-    near: set[int] = set()
-    for output in scene.outputs:
-        x = rational(output.x)
-        first, last = int((x - until).ceil()), int((x + until).floor())
-        near.update(range(max(2, first + first % 2), min(scene.system.m - 2, last) + 1, 2))
-    return sorted(near)
 
 
 def _first_return(strain: Signal, until: fmpq) -> arb | None:

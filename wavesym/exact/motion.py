@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from math import inf
 
@@ -12,11 +11,9 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
-from wavesym.exact.windows import Panel, Wave, Windows, damping, panels_of, sources, windows
-from wavesym.model.chain import chain
-from wavesym.model.light_cone import light_cone, rod_of
-from wavesym.numbers.doubles import fraction, rational
-from wavesym.scene import Observable, Scene
+from wavesym.exact.windows import Panel, Wave, Windows, panels_of, windows
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
 
 MOST_WINDOWS = 20_000
 MOST_SECONDS = 60
@@ -24,29 +21,18 @@ MOST_SECONDS = 60
 _COMPOSED, _EVALUATED = 2.5e-7, 6e-7
 
 
-@dataclass(frozen=True)
-class Place:
-    """Where an output lies: its rod, and how far the right-going wave has come from the node on its left."""
-
-    observable: Observable
-    rod: int
-    lag: fmpq
-
-
 class Motion:
-    """The outputs of a scene until tau = `until` (a number of the scene's horizon), at any precision.
+    """The outputs of a model until tau = `until` (a number of its horizon), at any precision.
 
     CostError where there would be too many windows.
     """
 
-    def __init__(self, scene: Scene, until: fmpq) -> None:
+    def __init__(self, model: Model, until: fmpq) -> None:
         self.until = until
-        self._chain = chain(scene)
-        self._nodes = light_cone(self._chain, scene.outputs, fraction(until))
-        self._acting = [piece for piece in scene.pieces if rational(piece.time) <= until]
-        self.places = [
-            Place(output, rod_of(output), rational(output.x) - (rod_of(output) - 1)) for output in scene.outputs
-        ]
+        self.probes = model.probes
+        self._chain = model.chain
+        self._nodes = model.light_cone(until)
+        self._acting = model.acting(until)
         self._marched: dict[int, Windows] = {}
         if len(self._nodes) * until > MOST_WINDOWS:
             raise CostError(
@@ -68,12 +54,12 @@ class Motion:
         """CostError where values of all outputs at so many tau would take minutes."""
         terms = self.first_bits // 4
         windows = int(self.until.floor()) + 1
-        sums = any(place.observable.quantity == "displacement" for place in self.places)
-        segments = sum(min(len(self.breaks(place)) * windows, inf if sums else taus) for place in self.places)
-        seconds = segments * terms**1.5 * _COMPOSED + taus * len(self.places) * terms * _EVALUATED
+        sums = any(probe.order < 0 for probe in self.probes)
+        segments = sum(min(len(self.breaks(probe)) * windows, inf if sums else taus) for probe in self.probes)
+        seconds = segments * terms**1.5 * _COMPOSED + taus * len(self.probes) * terms * _EVALUATED
         if seconds > MOST_SECONDS:
             raise CostError(
-                f"output: {taus} values of {len(self.places)} outputs to tau = {float(self.until):g} would take about "
+                f"output: {taus} values of {len(self.probes)} outputs to tau = {float(self.until):g} would take about "
                 f"{seconds:.0f} s, at most {MOST_SECONDS} expected; fewer outputs, samples or load times help"
             )
 
@@ -82,45 +68,46 @@ class Motion:
         node = self._chain.nodes[x]
         if not node.inertia:
             return fmpq(0)
-        felt = self.until - min(abs(rational(place.observable.x) - x) for place in self.places)
+        felt = self.until - min(abs(probe.x - x) for probe in self.probes)
         moves = min((time + abs(x - at) for at, time in self._loaded), default=fmpq(1))  # collisions begin at contacts
-        return max(damping(node) * (felt - moves), fmpq(0))
+        lost: fmpq = node.radiation * (felt - moves)
+        return max(lost, fmpq(0))
 
     @cached_property
     def _loaded(self) -> list[tuple[int, fmpq]]:
         """The nodes on which loads act, and when the first of them does."""
-        first = {piece.source: rational(piece.time) for piece in reversed(self._acting)}
-        of_nodes = ((x, source) for x in self._nodes for source in sources(self._chain.nodes[x]))
+        first = {load.source: load.time for load in reversed(self._acting)}
+        of_nodes = ((x, load.source) for x in self._nodes for load in self._chain.nodes[x].loads)
         return [(x, first[source]) for x, source in of_nodes if source in first]
 
-    def breaks(self, place: Place) -> frozenset[fmpq]:
+    def breaks(self, probe: Probe) -> frozenset[fmpq]:
         """The parts of a unit of tau at which an output may jump or bend."""
         starts = (panel.start for panel in self._panels)
-        moments = (moment for start in starts for moment in (start + place.lag, start + 1 - place.lag))
+        moments = (moment for start in starts for moment in (start + probe.place, start + 1 - probe.place))
         return frozenset(moment - moment.floor() for moment in moments)
 
-    def starts(self, place: Place) -> list[fmpq]:
+    def starts(self, probe: Probe) -> list[fmpq]:
         """Where its segments start."""
-        parts = sorted(self.breaks(place))
+        parts = sorted(self.breaks(probe))
         times = [n + part for n in range(int(self.until.floor()) + 1) for part in parts]
         return [fmpq(0)] * (parts[0] != 0) + [time for time in times if time <= self.until]
 
-    def segments(self, place: Place, taus: Sequence[fmpq] | None = None) -> list[Segment]:
+    def segments(self, probe: Probe, taus: Sequence[fmpq] | None = None) -> list[Segment]:
         """An output between its breakpoints, at the working precision, as polynomials (rate 0) in balls.
 
         Where `taus` are given, only those on which one of them lies, as far as the others are not needed.
         """
-        starts = self.starts(place)
+        starts = self.starts(probe)
         ends = [*starts[1:], self.until]
         wanted: Sequence[int] = range(len(starts))
-        if taus is not None and place.observable.quantity != "displacement":
+        if taus is not None and probe.order == 0:
             wanted = sorted({bisect_right(starts, tau) - 1 for tau in taus})
         result = []
         displacement = arb(0)
         for start, end in ((starts[k], ends[k]) for k in wanted):
-            value = self._value(place, start)
+            value = self._value(probe, start)
             polynomial = value.polynomial
-            if place.observable.quantity == "displacement":
+            if probe.order < 0:
                 polynomial = polynomial.integral() + displacement + arb(0, (value.error * arb(end - start)).upper())
                 displacement = polynomial(arb(end - start))
             elif value.error != 0:
@@ -130,13 +117,13 @@ class Motion:
             result.append(Segment(start, {fmpq(0): polynomial}))
         return result
 
-    def _value(self, place: Place, start: fmpq) -> Wave:
+    def _value(self, probe: Probe, start: fmpq) -> Wave:
         """Strain, or velocity, from tau = `start` on: the left-going wave less, or plus, the right-going one."""
         polynomial, error = arb_poly(), arb(0)
-        sign = -1 if place.observable.quantity == "strain" else 1
+        right, left = probe.weights
         for factor, wave, offset in (
-            (sign, *self._waves.sent("right", place.rod - 1, start - place.lag)),
-            (1, *self._waves.sent("left", place.rod, start - 1 + place.lag)),
+            (right, *self._waves.sent("right", probe.rod - 1, start - probe.place)),
+            (left, *self._waves.sent("left", probe.rod, start - 1 + probe.place)),
         ):
             if wave.polynomial.length():
                 later = wave.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else wave.polynomial

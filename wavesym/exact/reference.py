@@ -1,4 +1,4 @@
-"""The reference: values of a scene's outputs that are right to the last bit, whatever they cost.
+"""The reference: values of a model's outputs that are right to the last bit, whatever they cost.
 
 Two routes lead there, and both are balls: the exact tables, where they are of moderate size, and power series on
 windows, where they are not (many unequal rates, many reflections).
@@ -7,7 +7,6 @@ windows, where they are not (many unequal rates, many reflections).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from functools import cached_property, partial
 
 from flint import arb, fmpq
@@ -15,70 +14,64 @@ from flint import arb, fmpq
 from wavesym.errors import CostError, RangeError
 from wavesym.exact.ball import FIRST_BITS, Segment, largest, segments, values
 from wavesym.exact.motion import Motion
-from wavesym.exact.signal import Signal, horizon, signals
-from wavesym.exact.windows import damping, stored
-from wavesym.model.chain import chain
-from wavesym.model.light_cone import light_cone
-from wavesym.numbers.doubles import fraction, not_below, rational
+from wavesym.exact.signal import Signal, signals
+from wavesym.exact.windows import stored
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.closed import refuse_many
-from wavesym.scene import Scene
 
 # bytes of waves that are known in a second or two
 _QUICK = 10**8
 # coefficients of the tables from which on windows are cheaper
 _MODERATE = 50_000
-_SHORTEST = Fraction(8)
+_SHORTEST = fmpq(8)
 
 
-def beginning(scene: Scene) -> Scene:
-    """The scene, or as much of its horizon as takes little time to know exactly."""
-    until = scene.output.until
-    while until > _SHORTEST and _size(scene, until) > _QUICK:
-        until = max(_SHORTEST, Fraction(3 * until // 4))
-    if until == scene.output.until:
-        return scene
-    return scene.model_copy(update={"output": scene.output.model_copy(update={"until": until})})
+def beginning(model: Model) -> Model:
+    """The model, or as much of its horizon as takes little time to know exactly."""
+    until = model.until
+    while until > _SHORTEST and _size(model, until) > _QUICK:
+        until = max(_SHORTEST, fmpq((3 * until / 4).floor()))
+    return model.shortened(until)
 
 
-def _size(scene: Scene, until: Fraction) -> int:
+def _size(model: Model, until: fmpq) -> int:
     """About how many bytes the waves take until then: a window costs two bits, and e**(2 rate) where a body swings."""
-    system = chain(scene)
-    nodes = light_cone(system, scene.outputs, until)
-    bodies = [node for x in nodes if (node := system.nodes[x]).inertia]
-    rates = [damping(node) for node in bodies]
-    bits = 128 + int(3 * until * (1 + fraction(max(rates, default=fmpq(0)))))
-    panels = len({piece.time % 1 for piece in scene.pieces if piece.time <= until} | {Fraction(0)})
-    return stored(2 * len(nodes) * (int(until) + 1) * panels, bits // 4, bits)
+    nodes = model.light_cone(until)
+    rates = [node.radiation for x in nodes if (node := model.chain.nodes[x]).inertia]
+    bits = 128 + int((3 * until * (1 + max(rates, default=fmpq(0)))).floor())
+    panels = len({load.time - load.time.floor() for load in model.acting(until)} | {fmpq(0)})
+    return stored(2 * len(nodes) * (int(until.floor()) + 1) * panels, bits // 4, bits)
 
 
 class Reference:
-    """The outputs of a scene on its horizon in `real` numbers, in balls. CostError where that would cost too much."""
+    """The outputs of a model on its horizon in `real` numbers, in balls. CostError where that would cost too much."""
 
-    def __init__(self, scene: Scene, real: Real = DOUBLE) -> None:
-        self.scene = scene
+    def __init__(self, model: Model, real: Real = DOUBLE) -> None:
+        self.model = model
         self.real = real
-        self.tau_max = horizon(scene, real)
+        self.tau_max = model.horizon(real)
 
     @cached_property
     def signals(self) -> tuple[Signal, ...] | None:
         """The outputs as exact sums of arrivals; None where their tables would be large."""
         try:
-            refuse_many(self.scene, _MODERATE)
-            return signals(self.scene, _MODERATE, self.real)
+            refuse_many(self.model, _MODERATE)
+            return signals(self.model, _MODERATE, self.real)
         except CostError:
             return None
 
     @cached_property
     def _motion(self) -> Motion:
-        return Motion(self.scene, rational(self.tau_max))
+        return Motion(self.model, rational(self.tau_max))
 
     def _sources(self, taus: Sequence[float] | None = None) -> list[Callable[[], Sequence[Segment]]]:
         """The outputs, or as much of them as values at `taus` need."""
         if self.signals is not None:
             return [partial(segments, signal) for signal in self.signals]
         exact = None if taus is None else [rational(tau) for tau in taus]
-        return [partial(self._motion.segments, place, exact) for place in self._motion.places]
+        return [partial(self._motion.segments, probe, exact) for probe in self._motion.probes]
 
     @property
     def _first_bits(self) -> int:

@@ -18,11 +18,12 @@ from wavesym.exact.increments import Increment, combined, integrated
 from wavesym.exact.increments import start as start_of
 from wavesym.exact.table import Function, Rules, unit_response
 from wavesym.exact.table_size import refuse_large
-from wavesym.model.chain import Chain, chain
-from wavesym.model.light_cone import rod_of
+from wavesym.model.chain import Chain
+from wavesym.model.loads import Applied
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.scene import Observable, Piece, Scene
 
 
 @dataclass(frozen=True)
@@ -49,71 +50,63 @@ class Part(NamedTuple):
     delay: fmpq
 
 
-def horizon(scene: Scene, real: Real = DOUBLE) -> float:
-    """The last tau of a scene in `real` numbers: the smallest of them that is not below `until`."""
-    return real.not_below(rational(scene.output.until))
-
-
-def signals(scene: Scene, most: float = inf, real: Real = DOUBLE) -> tuple[Signal, ...]:
-    """The outputs of a scene on its horizon in `real` numbers, exact.
+def signals(model: Model, most: float = inf, real: Real = DOUBLE) -> tuple[Signal, ...]:
+    """The outputs of a model on its horizon in `real` numbers, exact.
 
     CostError where the tables would have more than `most` numbers.
     """
-    return observed(Modelled(chain(scene)), scene.outputs, scene.pieces, rational(horizon(scene, real)), most)
+    return observed(RuledChain(model.chain), model.probes, model.loads, rational(model.horizon(real)), most)
 
 
-class Modelled:
+class RuledChain:
     """A chain and its rules, derived as they are needed."""
 
-    def __init__(self, system: Chain) -> None:
-        self.chain = system
-        self.rules = Rules(system)
+    def __init__(self, chain: Chain) -> None:
+        self.chain = chain
+        self.rules = Rules(chain)
 
 
 def observed(
-    model: Modelled,
-    outputs: Sequence[Observable],
-    pieces: Sequence[Piece],
+    ruled: RuledChain,
+    probes: Sequence[Probe],
+    loads: Sequence[Applied],
     until: fmpq,
     most: float = inf,
 ) -> tuple[Signal, ...]:
-    """The signals at `outputs` until tau = `until` under the loads `pieces`."""
-    parts = [_parts(model.chain, output) for output in outputs]
+    """The signals at `probes` until tau = `until` under `loads`."""
+    parts = [_parts(ruled.chain, probe) for probe in probes]
     waves = [part for group in parts for part in group]
     responses = {}
-    for source in dict.fromkeys(piece.source for piece in pieces):
-        start = min(rational(piece.time) for piece in pieces if piece.source == source)
+    for source in dict.fromkeys(load.source for load in loads):
+        start = min(load.time for load in loads if load.source == source)
         wanted: dict[Function, int] = defaultdict(int)
         for part in waves:
-            reach = (until - start - part.delay) / model.rules.interval
+            reach = (until - start - part.delay) / ruled.rules.interval
             wanted[part.function] = max(wanted[part.function], int(reach.floor()) + 1)
-        refuse_large(model.chain, model.rules.interval, wanted, [source], "output.until", most)
-        responses[source] = unit_response(model.rules, source, wanted)
+        refuse_large(ruled.chain, ruled.rules.interval, wanted, [source], "output.until", most)
+        responses[source] = unit_response(ruled.rules, source, wanted)
     signals = []
-    for output, group in zip(outputs, parts, strict=True):
+    for probe, group in zip(probes, parts, strict=True):
         gains: dict[fmpq, list[tuple[fmpq, Increment]]] = defaultdict(list)
-        for piece in pieces:
+        for load in loads:
             for part in group:
-                start = rational(piece.time) + part.delay
-                increments = responses[piece.source].get(part.function, [])
-                for time, increment in _arrivals(start, model.rules.interval, increments, until):
-                    gains[time].append((part.sign * rational(piece.weight), increment))
-        signals.append(_signal(output, gains, _motion(model.chain, output), until))
+                start = load.time + part.delay
+                increments = responses[load.source].get(part.function, [])
+                for time, increment in _arrivals(start, ruled.rules.interval, increments, until):
+                    gains[time].append((part.sign * load.weight, increment))
+        signals.append(_signal(probe, gains, _motion(ruled.chain, probe), until))
     return tuple(signals)
 
 
-def _signal(
-    output: Observable, gains: dict[fmpq, list[tuple[fmpq, Increment]]], moving: Increment, until: fmpq
-) -> Signal:
-    displacement = output.quantity == "displacement"
+def _signal(probe: Probe, gains: dict[fmpq, list[tuple[fmpq, Increment]]], moving: Increment, until: fmpq) -> Signal:
     merged = {time: combined(group) for time, group in sorted(gains.items())}
-    if displacement:
+    if probe.order < 0:
         merged = {time: integrated(increment) for time, increment in merged.items()}
     if moving:
         merged[fmpq(0)] = combined([(fmpq(1), merged.get(fmpq(0), {})), (fmpq(1), moving)])
     if until in merged and start_of(merged[until]) == 0:
         del merged[until]  # of what begins at the end of the horizon only the first value is seen
-    return Signal(output.name, tuple(Arrival(time, merged[time]) for time in sorted(merged) if merged[time]))
+    return Signal(probe.name, tuple(Arrival(time, merged[time]) for time in sorted(merged) if merged[time]))
 
 
 def _arrivals(
@@ -124,20 +117,20 @@ def _arrivals(
             yield start + interval * n, increment
 
 
-def _parts(system: Chain, output: Observable) -> tuple[Part, Part]:
+def _parts(chain: Chain, probe: Probe) -> tuple[Part, Part]:
     """dU/dx = g' - f', dU/dtau = f' + g' + v, U = f + g + v tau, each on the clocks of (4.2)."""
-    number = rod_of(output)
-    rod = system.rod(number)
-    offset = rational(output.x) - rod.x0
+    rod = chain.rod(probe.rod)
+    offset = probe.x - rod.x0
+    right, left = probe.weights
     return (
-        Part(-1 if output.quantity == "strain" else 1, Function("f", number), rod.tau0 + offset),
-        Part(1, Function("g", number), rod.tau0 - offset),
+        Part(right, Function("f", probe.rod), rod.tau0 + offset),
+        Part(left, Function("g", probe.rod), rod.tau0 - offset),
     )
 
 
-def _motion(system: Chain, output: Observable) -> Increment:
+def _motion(chain: Chain, probe: Probe) -> Increment:
     """The part of an output that is not wave: v, or v tau."""
-    v = fmpq(0) + system.rod(rod_of(output)).velocity
-    if v == 0 or output.quantity == "strain":
+    v = chain.rod(probe.rod).velocity * fmpq(sum(probe.weights), 2)
+    if v == 0:
         return {}
-    return {fmpq(0): [v] if output.quantity == "velocity" else [fmpq(0), v]}
+    return {fmpq(0): [v] if probe.order == 0 else [fmpq(0), v]}

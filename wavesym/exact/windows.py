@@ -25,9 +25,8 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.errors import CostError
 from wavesym.model.chain import Chain
-from wavesym.model.node import Node, Quantity, Rod
-from wavesym.numbers.doubles import rational
-from wavesym.scene import Piece
+from wavesym.model.loads import Applied
+from wavesym.model.node import Node, Rod
 
 _LARGEST = 5 << 27  # bytes
 
@@ -76,19 +75,19 @@ class Windows:
         window = tau.floor()
         if window < 0:
             rod = self.chain.rod(x + 1 if direction == "right" else x)
-            return _constant(number(rod.velocity) / 2), fmpq(0)
+            return _constant(rod.velocity / 2), fmpq(0)
         place = bisect_right(self._starts, tau - window) - 1
         waves = self.right[x] if direction == "right" else self.left[x]
         return waves[int(window) * len(self.panels) + place], tau - window - self._starts[place]
 
 
-def windows(chain: Chain, nodes: range, pieces: Sequence[Piece], count: int, terms: int) -> Windows:
+def windows(chain: Chain, nodes: range, loads: Sequence[Applied], count: int, terms: int) -> Windows:
     """The waves of a chain on the windows [0, 1), ... [count - 1, count), in `terms` terms at the working precision.
 
     What reaches the first and last of `nodes` from outside must not matter. CostError where they would fill the memory.
     """
-    loads = _Loads(chain, nodes, pieces)
-    panels = panels_of(chain, nodes, pieces)
+    forces = _NodeLoads(chain, nodes, loads)
+    panels = panels_of(chain, nodes, loads)
     if (size := stored(2 * len(nodes) * count * len(panels), terms, ctx.prec)) > _LARGEST:
         raise CostError(
             f"output.until: the waves of {len(nodes)} nodes on {count} windows with {ctx.prec} bits would take "
@@ -103,7 +102,7 @@ def windows(chain: Chain, nodes: range, pieces: Sequence[Piece], count: int, ter
             node = chain.nodes[x]
             a = _arriving(result.right, x - 1, node.left, step - len(panels))
             b = _arriving(result.left, x + 1, node.right, step - len(panels))
-            load = loads.on(x, n + panel.start)
+            load = forces.on(x, n + panel.start)
             q = bodies[x].moved(a, b, load, panel.length, terms)
             result.left[x].append(Wave(q.polynomial - a.polynomial, q.error + a.error))
             result.right[x].append(Wave(q.polynomial - b.polynomial, q.error + b.error))
@@ -115,11 +114,6 @@ def stored(waves: int, terms: int, bits: int) -> int:
     return waves * terms * (48 + bits // 8)
 
 
-def number(value: Quantity) -> fmpq:
-    """An exact number of a chain (int, Fraction or fmpq) as an fmpq."""
-    return value if isinstance(value, fmpq) else rational(value)
-
-
 def _constant(value: fmpq) -> Wave:
     return Wave(arb_poly([arb(value)]), arb(0)) if value != 0 else STILL
 
@@ -128,37 +122,26 @@ def _arriving(sent: dict[int, list[Wave]], x: int, rod: Rod | None, step: int) -
     if rod is None:
         return STILL
     if step < 0 or x not in sent:
-        return _constant(number(rod.velocity) / 2)
+        return _constant(rod.velocity / 2)
     return sent[x][step]
 
 
-def panels_of(chain: Chain, nodes: range, pieces: Iterable[Piece]) -> tuple[Panel, ...]:
+def panels_of(chain: Chain, nodes: range, loads: Iterable[Applied]) -> tuple[Panel, ...]:
     """The parts of a window between the instants of the loads on `nodes`."""
-    acting = {source for x in nodes for source in sources(chain.nodes[x])}
-    times = (rational(piece.time) for piece in pieces if piece.source in acting)
+    acting = {load.source for x in nodes for load in chain.nodes[x].loads}
+    times = (load.time for load in loads if load.source in acting)
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
-
-
-def sources(node: Node) -> list[str]:
-    """The unit loads that act on a node, as pieces of loads name them."""
-    return [f"{load.kind}{load.number or ''}" for load in node.loads]
-
-
-def damping(node: Node) -> fmpq:
-    """The g of a node's law: what it radiates into its rods, and its own damping."""
-    return number(node.damping) + (number(node.alpha) + number(node.beta)) / 2
 
 
 class _Body:
     """A node in motion: its law, and its velocity at the end of the last panel."""
 
     def __init__(self, node: Node) -> None:
-        self._alpha, self._beta = arb(number(node.alpha)), arb(number(node.beta))
-        self._gamma = arb(damping(node))
+        self._alpha, self._beta = arb(node.alpha), arb(node.beta)
+        self._gamma = arb(node.radiation)
         self._massive = bool(node.inertia)
-        rod = node.left or node.right
-        self._q = _constant(number(rod.velocity) if rod else fmpq(0))
+        self._q = _constant(node.velocity)
         self._start = self._q.at(fmpq(0))
 
     def moved(self, a: Wave, b: Wave, load: arb_poly, length: fmpq, terms: int) -> Wave:
@@ -189,19 +172,19 @@ def _upper(value: arb) -> arb:
     return value.upper() if value != 0 else arb(0)
 
 
-class _Loads:
+class _NodeLoads:
     """The loads on the nodes, as polynomials in the time since the start of a panel; panels come in order."""
 
-    def __init__(self, chain: Chain, nodes: range, pieces: Sequence[Piece]) -> None:
+    def __init__(self, chain: Chain, nodes: range, loads: Sequence[Applied]) -> None:
         self._coming: dict[int, list[tuple[fmpq, fmpq_poly]]] = defaultdict(list)
         self._acting: dict[int, tuple[fmpq, fmpq_poly]] = {}
         units = defaultdict(list)
         for x in nodes:
-            for source, load in zip(sources(chain.nodes[x]), chain.nodes[x].loads, strict=True):
-                units[source].append((x, fmpq_poly([number(c) for c in load.coefficients])))
-        for piece in sorted(pieces, key=lambda piece: piece.time, reverse=True):
-            for x, unit in units[piece.source]:
-                self._coming[x].append((rational(piece.time), rational(piece.weight) * unit))
+            for unit in chain.nodes[x].loads:
+                units[unit.source].append((x, fmpq_poly(list(unit.coefficients))))
+        for load in sorted(loads, key=lambda load: load.time, reverse=True):
+            for x, polynomial in units[load.source]:
+                self._coming[x].append((load.time, load.weight * polynomial))
 
     def on(self, x: int, start: fmpq) -> arb_poly:
         """The load on the node at x from tau = start on."""

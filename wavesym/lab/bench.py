@@ -22,7 +22,7 @@ from wavesym.programs.pieces import Pieces
 from wavesym.running.compiled import imported
 from wavesym.running.native import FAST, address, library
 from wavesym.running.toolchain import Compiler, at_hand
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.files import files
 
 SAMPLES = 10_001
@@ -160,9 +160,9 @@ def _table(header: Sequence[str], rows: Iterator[Sequence[str]]) -> Iterator[str
 
 def _evaluating(three: dict[str, Scene]) -> Iterator[Sequence[str]]:
     for label, each in three.items():
-        made = files(each, "all", "pieces")
+        made = files(lower(each), "all", "pieces")
         module = imported(made[f"{each.name}.py"], each.name)
-        form = choose(each, "pieces").evaluator
+        form = choose(lower(each), "pieces").evaluator
         assert isinstance(form, Pieces)
         outputs = len(each.outputs)
         taus = np.linspace(0.0, form.tau_max, SAMPLES)
@@ -269,7 +269,7 @@ def _generating(three: dict[str, Scene]) -> Iterator[Sequence[str]]:
     step = {"times": [0], "a": [1], "b": [0]}
     tall = scene("tower", 20_000, tower, [step], tolerance="1e-6", strain=["1/2"], velocity=[10])
     yield _generated("building of 10 storeys to tau = 20 000", tall, "march")
-    made = files(tall, "c", "march")
+    made = files(lower(tall), "c", "march")
     (seconds,) = medians([_many("many", tall, made, FAST, calls=1)])
     yield "one run of its C, 10 001 samples", f"{seconds:.3f}", "", "march"
 
@@ -324,7 +324,7 @@ def _growth() -> Iterator[Sequence[str]]:
         times, sizes = [], []
         for each in map(make, values):
             start = perf_counter()
-            sizes.append(choose(each, "pieces").evaluator.bytes)
+            sizes.append(choose(lower(each), "pieces").evaluator.bytes)
             times.append(perf_counter() - start)
         exponents = (np.polyfit(np.log(values), np.log(costs), 1)[0] for costs in (times, sizes))
         yield name, f"{values[0]} to {values[-1]}", *(f"{exponent:.2f}" for exponent in exponents)

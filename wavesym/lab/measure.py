@@ -16,7 +16,7 @@ from wavesym.lab.floor import floor
 from wavesym.lab.subjects import Subject, opponents, reference, subjects, taus
 from wavesym.lab.timing import medians
 from wavesym.numbers.doubles import midpoint
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 
 NEAR = 0.02
 """How near to an arrival an error counts as one at a front (in tau)."""
@@ -106,7 +106,7 @@ class _Judge:
     """The truth at some of the uniform samples and round the arrivals, and how far subjects are from it."""
 
     def __init__(self, scene: Scene) -> None:
-        self.reference = Reference(scene)
+        self.reference = Reference(lower(scene))
         self.until = self.reference.tau_max
         self.arrivals = np.array(self.reference.breakpoints())
         # an output that is 0 throughout has no relative errors

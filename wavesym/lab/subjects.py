@@ -15,14 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import WavesymError
+from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import REALS
 from wavesym.programs.choice import MAKERS
 from wavesym.results.response import Response
 from wavesym.rivals.every import RIVALS
-from wavesym.rivals.problem import Problem, Rival, scene_problem
+from wavesym.rivals.problem import Problem, Rival
+from wavesym.rivals.problem import stated as stated_problem
 from wavesym.running.compiled import imported
 from wavesym.running.native import address, library
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.files import files
 
 Values = NDArray[Any]
@@ -109,7 +111,7 @@ def subjects(scene: Scene, samples: int) -> Iterator[Subject]:
 def reference(scene: Scene, samples: int) -> Subject:
     """The exact tables in ball arithmetic, each value rounded once."""
     start = perf_counter()
-    response = Response(scene)
+    response = Response(lower(scene))
     response(0.0)  # derives its tables
     setup = perf_counter() - start
     few = min(samples, _BALL_SAMPLES)
@@ -120,7 +122,7 @@ def reference(scene: Scene, samples: int) -> Subject:
 
 def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
     """The rivals, each from coarse to fine."""
-    stated = scene_problem(scene)
+    stated = stated_problem(lower(scene))
     at = taus(stated.until, samples, "double")
     for rival in RIVALS:
         for resolution in rival.resolutions:
@@ -155,9 +157,8 @@ def opponent(rival: Rival, resolution: float, stated: Problem, at: Values) -> Su
 
 def _made(scene: Scene, evaluator: str, precision: str, tolerance: Fraction) -> dict[str, str] | None:
     """The files of an evaluator, None where it cannot meet the tolerance or would cost too much."""
-    output = scene.output.model_copy(update={"tolerance": tolerance})
     try:
-        return files(scene.model_copy(update={"output": output}), "all", evaluator, precision)
+        return files(lower(scene).tolerating(rational(tolerance)), "all", evaluator, precision)
     except WavesymError:
         return None
 

@@ -1,22 +1,21 @@
-"""Scene -> Chain: the nodes of a scene, written out, every number exact."""
+"""The nodes of a system with its numbers, written out."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 
-from flint import fmpq
-
-from wavesym.model.node import Node, Parameters, Rod, System
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
-from wavesym.scene import Building, Collision, Drive, Scene
+from wavesym.model.node import Node, Parameters, Quantity, Rod, System, UnitLoad
+from wavesym.numbers.doubles import rational
 
 
 @dataclass(frozen=True)
 class Chain:
-    """m rods between m + 1 nodes; `nodes[x]` is the node at x, and rod i lies between nodes i - 1 and i."""
+    """m rods between m + 1 nodes; `nodes[x]` is the node at x, and rod i lies between nodes i - 1 and i.
+
+    Every number in it is an fmpq, or a rational function of symbols.
+    """
 
     system: System
     m: int
@@ -26,7 +25,7 @@ class Chain:
     def nodes(self) -> tuple[Node, ...]:
         """The nodes at x = 0, 1, ... m."""
         placed = {
-            x: family.at(x)
+            x: _exact_node(family.at(x))
             for family in self.system.families(self.m, self.parameters)
             for x in range(family.first, family.last + 1, family.step)
         }
@@ -44,31 +43,33 @@ class Chain:
         return int(z + clock.tau0 + (rod - 1 - clock.x0 if function == "f" else clock.x0 - rod))
 
     @cached_property
+    def loaded(self) -> dict[str, tuple[int, UnitLoad]]:
+        """The unit loads of the system by source, each with the node that it acts on."""
+        return {load.source: (x, load) for x, node in enumerate(self.nodes) for load in node.loads}
+
+    @cached_property
     def sources(self) -> tuple[str, ...]:
-        """The unit loads of the system; a collision has its impact instead."""
-        names = (f"{load.kind}{load.number or ''}" for node in self.nodes for load in node.loads)
-        return tuple(names) or ("impact",)
+        """The unit loads of the system; one without any has its impact instead."""
+        return tuple(self.loaded) or ("impact",)
 
 
-def chain(scene: Scene) -> Chain:
-    """The chain of a scene."""
-    parts = scene.system
-    m = parts.m
-    exact = [fmpq(k.numerator, k.denominator) for k in parts.kappa]
-    match parts:
-        case Collision():
-            velocity = [fmpq(v.numerator, v.denominator) for v in parts.velocity]
-            bodies = range(1, m, 2)
-            return Chain(
-                COLLISION,
-                m,
-                Parameters(
-                    kappa=dict(zip(bodies, exact, strict=True)), velocity=dict(zip(bodies, velocity, strict=True))
-                ),
-            )
-        case Drive():
-            inertia = [fmpq(j.numerator, j.denominator) for j in parts.inertia]
-            return Chain(DRIVE, m, Parameters(kappa=dict(enumerate(exact, 1)), inertia=dict(enumerate(inertia, 1))))
-        case Building():
-            system = BUILDING_FORCE if parts.base == "force" else BUILDING_GROUND
-            return Chain(system, m, Parameters(kappa=dict(enumerate(exact))))
+def _exact_node(node: Node) -> Node:
+    return replace(
+        node,
+        left=_exact_rod(node.left),
+        right=_exact_rod(node.right),
+        inertia=_exact(node.inertia),
+        alpha=_exact(node.alpha),
+        beta=_exact(node.beta),
+        damping=_exact(node.damping),
+        loads=tuple(replace(load, coefficients=tuple(map(_exact, load.coefficients))) for load in node.loads),
+    )
+
+
+def _exact_rod(rod: Rod | None) -> Rod | None:
+    return rod and Rod(_exact(rod.tau0), _exact(rod.x0), _exact(rod.velocity))
+
+
+def _exact(value: Quantity) -> Quantity:
+    """An int or a Fraction as an fmpq; what is exact or symbolic already as it is."""
+    return rational(value) if isinstance(value, int | Fraction) else value

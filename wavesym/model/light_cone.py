@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from fractions import Fraction
+from dataclasses import fields
 
 from flint import fmpq
 
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
-from wavesym.scene import Observable
+from wavesym.model.probe import Probe
 
 
-def rod_of(output: Observable) -> int:
-    """The rod in which an output lies; at a node the one on its left, where no side is asked for."""
-    after = -(-output.x.numerator // output.x.denominator)
-    return max(1, after + 1 if output.side > 0 else after)
-
-
-def light_cone(chain: Chain, outputs: Iterable[Observable], until: float | Fraction) -> range:
+def light_cone(chain: Chain, probes: Iterable[Probe], until: fmpq) -> range:
     """The numbers of the nodes that can influence an output by tau = `until`, and of all nodes between those.
 
     A wave crosses a rod in one unit of tau, so these are the nodes no more than `until` rod lengths from an output;
@@ -27,24 +21,23 @@ def light_cone(chain: Chain, outputs: Iterable[Observable], until: float | Fract
 
     Where all is at rest before a first load, the time from that load on may stand for `until`.
     """
-    reach = Fraction(until)
-    places = list(outputs)
-    first = min(min(rod_of(output) - 1, _ceiling(output.x - reach)) for output in places)
-    last = max(max(rod_of(output), _floor(output.x + reach)) for output in places)
+    places = list(probes)
+    first = min(min(probe.rod - 1, int((probe.x - until).ceil())) for probe in places)
+    last = max(max(probe.rod, int((probe.x + until).floor())) for probe in places)
     return range(max(0, first), min(chain.m, last) + 1)
 
 
-def felt(chain: Chain, outputs: Iterable[Observable], until: Fraction) -> dict[str, dict[int, fmpq]]:
+def felt(chain: Chain, probes: Iterable[Probe], until: fmpq) -> dict[str, dict[int, fmpq]]:
     """The parameters, by name and index, of the nodes whose law can matter to an output by tau = `until`.
 
     A body that is first met at `until` has not turned anything by then; a node without mass has.
     """
-    places = list(outputs)
+    places = [probe.x for probe in probes]
     taken: dict[str, dict[int, fmpq]] = {}
     recorded = _Recorded.parameters(chain.parameters, taken)
     for family in chain.system.families(chain.m, recorded):
         for x in range(family.first, family.last + 1, family.step):
-            distance = min(abs(x - place.x) for place in places)
+            distance = min(abs(x - place) for place in places)
             if distance < until or (distance == until and not chain.nodes[x].inertia):
                 family.at(x)
     return {name: dict(sorted(numbers.items())) for name, numbers in taken.items()}
@@ -65,15 +58,7 @@ class _Recorded(dict[int, fmpq]):
     @classmethod
     def parameters(cls, given: Parameters, taken: dict[str, dict[int, fmpq]]) -> Parameters:
         """The given parameters; `taken` will hold, by name, those that were asked for."""
-        lists = {name: getattr(given, name) for name in ("kappa", "inertia", "velocity")}
+        lists = {field.name: getattr(given, field.name) for field in fields(given)}
         return Parameters(
             **{name: numbers and cls(numbers, taken.setdefault(name, {})) for name, numbers in lists.items()}
         )
-
-
-def _floor(value: Fraction) -> int:
-    return value.numerator // value.denominator
-
-
-def _ceiling(value: Fraction) -> int:
-    return -_floor(-value)

@@ -14,9 +14,9 @@ _FAR = 4096  # no double has an exponent like this
 _OVERFLOW = arb(2**1024 - 2**970)  # and all beyond round to no double
 
 
-def rational(value: float | Fraction) -> fmpq:
-    """The exact value of a double or a fraction."""
-    return fmpq(*value.as_integer_ratio())
+def rational(value: float | Fraction | fmpq) -> fmpq:
+    """The exact value of an integer, a double or a fraction."""
+    return value if isinstance(value, fmpq) else fmpq(*value.as_integer_ratio())
 
 
 def fraction(value: fmpq | Fraction) -> Fraction:

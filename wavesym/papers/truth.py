@@ -11,9 +11,9 @@ from wavesym.exact.increments import Increment
 from wavesym.exact.table import Function, Rules, unit_response
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters, System
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 
 INTERVALS = {"I": 9, "II": 14, "III": 9}
 """How many intervals of every function are tabulated, per example."""

@@ -9,13 +9,13 @@ from typing import NamedTuple, Protocol
 from flint import fmpq
 
 from wavesym.errors import CostError, RangeError, WavesymError
-from wavesym.exact.signal import horizon, signals
+from wavesym.exact.signal import signals
+from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.closed import ClosedForm, closed_form, refuse_many
 from wavesym.programs.march.evaluator import MarchEvaluator, marched, unmet
 from wavesym.programs.pieces import Pieces, pieces
-from wavesym.scene import Scene
 
 Made = ClosedForm | Pieces | MarchEvaluator
 
@@ -74,8 +74,8 @@ class Choice(NamedTuple):
     reason: str
 
 
-def choose(scene: Scene, name: str = "auto", precision: str = "double", windows: int | None = None) -> Choice:
-    """The evaluator `name` of a scene, or with "auto" the cheapest that meets its tolerance.
+def choose(model: Model, name: str = "auto", precision: str = "double", windows: int | None = None) -> Choice:
+    """The evaluator `name` of a model, or with "auto" the cheapest that meets its tolerance.
 
     `windows`: for how many of them a march is driven by hand; WavesymError for another evaluator.
     ToleranceError where none does: it says what can be had. CostError, RangeError where one is asked for that would
@@ -84,14 +84,14 @@ def choose(scene: Scene, name: str = "auto", precision: str = "double", windows:
     if windows is not None and name != "march":
         raise WavesymError(f"--windows goes with --evaluator march, {name} given")
     real = REALS[precision]
-    tolerance = rational(scene.output.tolerance)
+    tolerance = model.tolerance
     found: list[tuple[str, Made]] = []
     refused: list[str] = []
     for each in MAKERS if name == "auto" else (name,):
         if each == "march" and found and name == "auto":
             break  # it takes as long for a value as for all windows before it
         try:
-            evaluator = MAKERS[each](scene, real, name != "auto", windows)
+            evaluator = MAKERS[each](model, real, name != "auto", windows)
         except CostError:
             if name != "auto":
                 raise
@@ -113,19 +113,19 @@ def choose(scene: Scene, name: str = "auto", precision: str = "double", windows:
     return Choice(name, best, "; ".join([*refused, *dearer, best.summary]))
 
 
-def _closed(scene: Scene, real: Real, asked: bool, _: int | None) -> ClosedForm:
-    refuse_many(scene, 1e5 if asked else _WORTH_TRYING)
-    merged = signals(scene, inf if asked else _WORTH_TRYING, real)
-    return closed_form(merged, horizon(scene, real), real)
+def _closed(model: Model, real: Real, asked: bool, _: int | None) -> ClosedForm:
+    refuse_many(model, 1e5 if asked else _WORTH_TRYING)
+    merged = signals(model, inf if asked else _WORTH_TRYING, real)
+    return closed_form(merged, model.horizon(real), real)
 
 
-def _pieces(scene: Scene, real: Real, asked: bool, _: int | None) -> Pieces:
-    return pieces(scene, real, rational(scene.output.tolerance))
+def _pieces(model: Model, real: Real, asked: bool, _: int | None) -> Pieces:
+    return pieces(model, real, model.tolerance)
 
 
-def _march(scene: Scene, real: Real, asked: bool, windows: int | None) -> MarchEvaluator:
-    return marched(scene, real, windows=windows)
+def _march(model: Model, real: Real, asked: bool, windows: int | None) -> MarchEvaluator:
+    return marched(model, real, windows=windows)
 
 
-Maker = Callable[[Scene, Real, bool, int | None], Made]
+Maker = Callable[[Model, Real, bool, int | None], Made]
 MAKERS: dict[str, Maker] = {"closed": _closed, "pieces": _pieces, "march": _march}

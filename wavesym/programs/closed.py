@@ -30,9 +30,9 @@ from wavesym.errors import CostError
 from wavesym.exact.ball import largest, polynomials, segments, shifted
 from wavesym.exact.increments import Increment
 from wavesym.exact.signal import Signal
-from wavesym.numbers.doubles import bound, rational
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.scene import Scene
 
 _EXP = 20  # an exponential, in multiplications
 # all that is of second order in u but for additions, as long as no factor of u reaches 1/1000
@@ -128,16 +128,15 @@ class ClosedForm:
         return sorted(points)
 
 
-def refuse_many(scene: Scene, most: float) -> None:
+def refuse_many(model: Model, most: float) -> None:
     """CostError where loads would bring increments to the outputs more than about `most` times.
 
     The first load of each source is not counted: what that costs is known from its table.
     """
-    until = scene.output.until
-    first = {piece.source: piece.time for piece in reversed(scene.pieces)}
-    later = [piece.time for piece in scene.pieces if first[piece.source] < piece.time <= until]
-    windows = sum(float(until - time) + 1 for time in later)
-    if (arrivals := 2 * len(scene.outputs) * windows) > most:
+    first = {load.source: load.time for load in reversed(model.loads)}
+    later = [load.time for load in model.acting(model.until) if first[load.source] < load.time]
+    windows = sum(nearest(model.until - time) + 1 for time in later)
+    if (arrivals := 2 * len(model.probes) * windows) > most:
         raise CostError(f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected")
 
 

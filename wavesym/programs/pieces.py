@@ -27,13 +27,12 @@ from flint import arb, arb_poly, ctx, fmpq
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment, precise
 from wavesym.exact.motion import Motion, is_zero
-from wavesym.exact.signal import horizon
+from wavesym.model.model import Model
 from wavesym.numbers import chebyshev
 from wavesym.numbers.doubles import bound, middle, nearest, rational
 from wavesym.numbers.reals import SINGLE, Real
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.zero import silent
-from wavesym.scene import Scene
 
 # A table larger than this is for the march.
 MOST_BYTES = 4 << 20
@@ -132,13 +131,13 @@ class Pieces:
         return sorted(points)
 
 
-def pieces(scene: Scene, real: Real, tolerance: fmpq) -> Pieces:
-    """The pieces of a scene in `real` numbers, with degrees for `tolerance`, met or not: see `error_bound`.
+def pieces(model: Model, real: Real, tolerance: fmpq) -> Pieces:
+    """The pieces of a model in `real` numbers, with degrees for `tolerance`, met or not: see `error_bound`.
 
     CostError where the tables would be larger than `MOST_BYTES`, or take long to fit.
     """
     # no finer than rounding: what is asked for beyond that is not had by more bits or more pieces
-    fits = _Fits(scene, real, max(tolerance, real.roundoff / 8))
+    fits = _Fits(model, real, max(tolerance, real.roundoff / 8))
     found = _smallest(fits, tolerance) if real is SINGLE else _fastest(fits)
     for shorter in _SHORTER:
         if shorter > found.per_unit and rational(found.error_bound) > tolerance > real.roundoff / 8:
@@ -181,15 +180,15 @@ def _smallest(fits: _Fits, tolerance: fmpq) -> Pieces:
 
 
 class _Fits:
-    """The outputs of a scene at the precision that its tolerance needs, and fits to them."""
+    """The outputs of a model at the precision that its tolerance needs, and fits to them."""
 
-    def __init__(self, scene: Scene, real: Real, tolerance: fmpq) -> None:
-        self._scene = scene
+    def __init__(self, model: Model, real: Real, tolerance: fmpq) -> None:
+        self._model = model
         self._real = real
         # a little of it is left for printing the bound in two digits, rounded up
         self._tolerance = arb(tolerance) * arb(fmpq(9, 10))
-        self._tau_max = horizon(scene, real)
-        self._motion = Motion(scene, rational(self._tau_max))
+        self._tau_max = model.horizon(real)
+        self._motion = Motion(model, rational(self._tau_max))
         self._bits = self._motion.first_bits
         if self._bits > _MOST_BITS:
             raise CostError(
@@ -201,7 +200,7 @@ class _Fits:
     def _silent(self) -> set[int]:
         """The outputs that are 0 throughout though waves arrive, which no number of bits tells; as far as is known."""
         try:
-            return {k for k, nothing in enumerate(silent(plan(self._scene, self._real))) if nothing}
+            return {k for k, nothing in enumerate(silent(plan(self._model, self._real))) if nothing}
         except CostError:
             return set()
 
@@ -237,19 +236,19 @@ class _Fits:
     def _shared(self) -> dict[frozenset[fmpq], list[int]]:
         """The outputs, by where in a unit of tau they may jump or bend."""
         shared: dict[frozenset[fmpq], list[int]] = {}
-        for k, place in enumerate(self._motion.places):
-            shared.setdefault(self._motion.breaks(place), []).append(k)
+        for k, probe in enumerate(self._motion.probes):
+            shared.setdefault(self._motion.breaks(probe), []).append(k)
         return shared
 
     def _fit(self, per_unit: int, most: int) -> Pieces | None:
-        places = self._motion.places
+        probes = self._motion.probes
         grids: list[Grid] = []
         bounds: dict[int, tuple[float, float]] = {}
         size = 0
         for members in self._shared.values():
             columns = []
             for k in members:
-                segments = self._motion.segments(places[k])
+                segments = self._motion.segments(probes[k])
                 cuts = _Cuts([segment.start for segment in segments], self._motion.until, per_unit, self._real)
                 fit = self._output(segments, cuts)
                 if fit is None and k in self._silent:
@@ -262,7 +261,7 @@ class _Fits:
                 if size > most:
                     raise _too_large(size, most)
             grids.append(cuts.grid(members, columns))
-        outputs = tuple(PiecesOutput(place.observable.name, *bounds[k]) for k, place in enumerate(places))
+        outputs = tuple(PiecesOutput(probe.name, *bounds[k]) for k, probe in enumerate(probes))
         return Pieces(outputs, self._tau_max, self._real, tuple(grids), per_unit)
 
     def _output(

@@ -7,22 +7,24 @@ measured for it. Below the panels is what was found. All of it comes from `paper
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 from textwrap import wrap
 
 import numpy as np
+from flint import fmpq
 from matplotlib.figure import Figure
 
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import nearest
 from wavesym.papers.pielorz1979 import figures as section_5
 from wavesym.papers.pielorz1979.figures import Finding, Statement
 from wavesym.papers.record import Record, judge, shown
 from wavesym.report.histories import Histories, History, histories
 from wavesym.report.panels import CHARACTERS, Instant, Mark, Panel, axis_title, stacked
 from wavesym.report.saving import save
-from wavesym.scene import Observable, Scene
-from wavesym.targets.description import parameters
+from wavesym.scene import lower
 
 FIGURES: Mapping[int, tuple[str, ...]] = {
     6: ("strain", "displacement"),
@@ -50,17 +52,17 @@ def published(directory: Path) -> list[Path]:
 def redrawn(number: int, records: Mapping[str, Record]) -> Figure:
     """A figure of the paper under the load of `drawn`, with the verdicts on its statements."""
     load = drawn(number)
-    made = histories(section_5.scene(number, load))
+    made = histories(lower(section_5.scene(number, load)))
     found = {id: said for id, said in section_5.numbered().items() if said.figure == number}
     panels = [_panel(made, quantity, load, found) for quantity in FIGURES[number]]
-    if made.scene.load:
-        panels.insert(0, _load(made.scene))
+    if made.model.labels.loads:
+        panels.insert(0, _load(made.model))
     return stacked(
         panels,
-        float(made.scene.output.until),
-        list(_title(number, made.scene, load)),
+        nearest(made.model.until),
+        list(_title(number, made.model, load)),
         list(_list(number, load, found, records)),
-        [] if made.scene.load else _ends(records[section_5.END]),
+        [] if made.model.labels.loads else _ends(records[section_5.END]),
     )
 
 
@@ -75,8 +77,8 @@ def drawn(number: int) -> str:
 
 def marks(finding: Finding, text: str, made: Histories, load: str) -> Iterator[Mark]:
     """The spots of a finding, each with the number of its statement."""
-    taus = section_5.instants(float(made.scene.output.until))
-    curves = section_5.curves(int(made.scene.name.removeprefix("figure_")), load)
+    taus = section_5.instants(nearest(made.model.until))
+    curves = section_5.curves(int(made.model.name.removeprefix("figure_")), load)
     for spot in finding.spots:
         yield Mark(text, np.array([(taus[point.instant], curves[point.output][point.instant]) for point in spot]))
 
@@ -89,7 +91,7 @@ def _panel(made: Histories, quantity: str, load: str, found: Mapping[str, Statem
         for mark in marks(statement.findings[load], id.removeprefix("text."), made, load)
         if statement.findings[load].spots[0][0].output.startswith(quantity)
     ]
-    return Panel(axis_title(made.scene, quantity), own, tuple(noted), height=3.6 if len(own) > 4 else 2.9)
+    return Panel(axis_title(made.model, quantity), own, tuple(noted), height=3.6 if len(own) > 4 else 2.9)
 
 
 def _ends(record: Record) -> list[Instant]:
@@ -101,31 +103,32 @@ def _ends(record: Record) -> list[Instant]:
     ]
 
 
-def _load(scene: Scene) -> Panel:
+def _load(model: Model) -> Panel:
     """The load over tau, exactly: steps and ramps, summed. The moments of Fig. 7 are equal: one stands for both."""
-    moments = sorted({piece.source for piece in scene.pieces} - {"a", "b"})
-    acting = [piece for piece in scene.pieces if piece.source not in moments[1:]]
-    times = sorted({piece.time for piece in acting} | {scene.output.until})
+    moments = sorted({load.source for load in model.loads} - {"a", "b"})
+    acting = [load for load in model.loads if load.source not in moments[1:]]
+    times = sorted({load.time for load in acting} | {model.until})
 
-    def value(tau: Fraction, since: Fraction) -> float:
+    def value(tau: fmpq, since: fmpq) -> float:
         """At tau, under what has begun by `since`."""
-        begun = (piece for piece in acting if piece.time <= since)
-        return float(sum(piece.weight * (tau - piece.time if piece.source == "b" else 1) for piece in begun))
+        begun = (load for load in acting if load.time <= since)
+        values = (load.weight * (tau - load.time if load.source == "b" else 1) for load in begun)
+        return nearest(sum(values, fmpq(0)))
 
     stretches = tuple(
-        np.array([(float(low), value(low, low)), (float(high), value(high, low))]) for low, high in pairwise(times)
+        np.array([(nearest(low), value(low, low)), (nearest(high), value(high, low))]) for low, high in pairwise(times)
     )
     name = " = ".join(moments) or "acceleration of the base"
     unit = "moment\nin G J\u2080\u2081 \u03b8\u2080 / l" if moments else "load (3.2)\n(dimensionless)"
-    return Panel(unit, (History(Observable("load", Fraction(0), 0, name), stretches),), height=1.2)
+    return Panel(unit, (History(Probe(name, "load", 1, fmpq(0)), stretches),), height=1.2)
 
 
-def _title(number: int, scene: Scene, load: str) -> Iterator[str]:
+def _title(number: int, model: Model, load: str) -> Iterator[str]:
     values = ", ".join(
-        f"{name}_{index} = {value}" for name, numbers in parameters(scene).items() for index, value in numbers.items()
+        f"{name}_{index} = {value}" for name, numbers in model.felt.items() for index, value in numbers.items()
     )
-    yield f"Fig. {number} of the paper, redrawn: {scene.system.type}, m = {scene.system.m}; {values}"
-    if scene.load:
+    yield f"Fig. {number} of the paper, redrawn: {model.labels.system['type']}, m = {model.chain.m}; {values}"
+    if model.labels.loads:
         yield (
             f"The paper's load curve is not in its text. Drawn: {load}, "
             "the first of the shapes tried under which most of the statements are true."

@@ -8,22 +8,23 @@ alone; there an output is asked for its value and for the one just before.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
-from math import floor, inf, nextafter
+from math import inf, nextafter
 
 import numpy as np
+from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.exact.contact import ContactEnd, contact_ends
-from wavesym.numbers.doubles import not_below, rational
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import nearest, not_below
 from wavesym.running.compiled import imported
-from wavesym.scene import Observable, Scene
 from wavesym.targets.files import files
 
 Points = NDArray[np.float64]
 
-_TOLERANCE = Fraction(1, 10**6)
+_TOLERANCE = fmpq(1, 10**6)
 _VISIBLE = 1e-5  # smaller jumps, relative to the largest value, are no jumps
 _LEAST, _PER_UNIT, _MOST = 1200, 32, 200_000  # instants
 MOST_FRONTS = 50_000  # more of them lie far closer than the dots of a picture
@@ -37,7 +38,7 @@ class History:
     `formal` is the formal continuation of a contact that has opened.
     """
 
-    output: Observable
+    output: Probe
     stretches: tuple[Points, ...]
     formal: float = inf
 
@@ -58,54 +59,53 @@ class History:
 
 @dataclass(frozen=True)
 class Histories:
-    """The outputs of a scene; contacts that open; whether fronts lie too close to be told apart."""
+    """The outputs of a model; contacts that open; whether fronts lie too close to be told apart."""
 
-    scene: Scene
+    model: Model
     outputs: tuple[History, ...]
     contacts: tuple[ContactEnd, ...]
     dense: bool
 
 
-def histories(scene: Scene) -> Histories:
+def histories(model: Model) -> Histories:
     """The histories of all outputs. ToleranceError, CostError where nothing can be generated either."""
-    output = scene.output.model_copy(update={"tolerance": max(scene.output.tolerance, _TOLERANCE)})
-    made = files(scene.model_copy(update={"output": output}), "numpy")
-    program = imported(made[f"{scene.name}.py"], scene.name)
-    contacts = contact_ends(scene)
-    formal = [_formal(place, contacts) for place in scene.outputs]
-    dense = sum(len(_parts(scene, place)) for place in scene.outputs) * scene.output.until > MOST_FRONTS
-    fronts = [[] if dense else arrivals(scene, place) for place in scene.outputs]
+    made = files(model.tolerating(max(model.tolerance, _TOLERANCE)), "numpy")
+    program = imported(made[f"{model.name}.py"], model.name)
+    contacts = contact_ends(model)
+    formal = [_formal(probe, contacts) for probe in model.probes]
+    dense = sum(len(_parts(model, probe)) for probe in model.probes) * model.until > MOST_FRONTS
+    fronts = [[] if dense else arrivals(model, probe) for probe in model.probes]
     taus = _instants(program.TAU_MAX, fronts, formal)
     values = program.evaluate(taus)
     return Histories(
-        scene,
+        model,
         tuple(
-            History(place, _broken(np.column_stack([taus, row]), own), late)
-            for place, row, own, late in zip(scene.outputs, values, fronts, formal, strict=True)
+            History(probe, _broken(np.column_stack([taus, row]), own), late)
+            for probe, row, own, late in zip(model.probes, values, fronts, formal, strict=True)
         ),
         contacts,
         dense,
     )
 
 
-def arrivals(scene: Scene, output: Observable) -> list[float]:
+def arrivals(model: Model, probe: Probe) -> list[float]:
     """Every tau > 0 on the horizon at which a front can arrive at an output, as doubles at or just above.
 
     A front leaves a node whole units of tau after a load has changed, and needs the distance to the output more.
     """
-    until = scene.output.until
-    times = {part + n for part in _parts(scene, output) for n in range(floor(until - part) + 1)}
-    return sorted(not_below(rational(time)) for time in times if 0 < time <= until)
+    times = {part + n for part in _parts(model, probe) for n in range(int((model.until - part).floor()) + 1)}
+    return sorted(not_below(time) for time in times if 0 < time <= model.until)
 
 
-def _parts(scene: Scene, output: Observable) -> set[Fraction]:
+def _parts(model: Model, probe: Probe) -> set[fmpq]:
     """The parts of a unit of tau at which fronts can arrive."""
-    return {(piece.time + lag) % 1 for piece in scene.pieces for lag in (output.x, -output.x)}
+    moments = (load.time + lag for load in model.loads for lag in (probe.x, -probe.x))
+    return {moment - moment.floor() for moment in moments}
 
 
-def _formal(output: Observable, contacts: tuple[ContactEnd, ...]) -> float:
+def _formal(probe: Probe, contacts: tuple[ContactEnd, ...]) -> float:
     """When what an opened contact sends can first arrive at an output."""
-    return min((end.double + abs(float(output.x) - end.x) for end in contacts), default=inf)
+    return min((end.double + abs(nearest(probe.x) - end.x) for end in contacts), default=inf)
 
 
 def _instants(until: float, fronts: list[list[float]], formal: list[float]) -> Points:

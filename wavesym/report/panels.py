@@ -17,9 +17,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import nearest
 from wavesym.report.histories import Histories, History, Points
 from wavesym.report.labels import Curve, label
-from wavesym.scene import Scene
 
 FONT = 8.5
 CHARACTERS = 180  # in a line of text across the figure
@@ -80,16 +81,16 @@ class Panel:
 
 def draw(histories: Histories) -> Figure:
     """The outputs of a scene; the same bytes from the same scene when it is written by `saving.save`."""
-    scene = histories.scene
-    parts = scene.system
-    title = [f"{scene.name}: {parts.type}, m = {parts.m}, tau to {float(scene.output.until):g}"]
+    model = histories.model
+    until = nearest(model.until)
+    title = [f"{model.name}: {model.labels.system['type']}, m = {model.chain.m}, tau to {until:g}"]
     title += [line for note in notes(histories) for line in wrap(note, CHARACTERS)]
     opened = [
         Instant(end.double, f"contact at x = {end.x} opens, tau = {end.double:.4g}") for end in histories.contacts
     ]
     if opened:
         title.append("thin and light: the formal continuation, as if the opened contact stayed closed")
-    return stacked(panels(histories), float(scene.output.until), title, instants=opened)
+    return stacked(panels(histories), until, title, instants=opened)
 
 
 def notes(histories: Histories) -> list[str]:
@@ -113,14 +114,14 @@ def panels(histories: Histories) -> list[Panel]:
     for quantity, shown in _quantities(histories).items():
         count = min(-(-len(shown) // len(_STYLES)), _MOST_PANELS)
         kept = shown[: count * len(_STYLES)]
-        title = axis_title(histories.scene, quantity)
+        title = axis_title(histories.model, quantity)
         result += [Panel(title, tuple(part)) for part in _even(kept, count)]
-    return result or [Panel(axis_title(histories.scene, histories.outputs[0].output.quantity), ())]
+    return result or [Panel(axis_title(histories.model, histories.outputs[0].output.quantity), ())]
 
 
-def axis_title(scene: Scene, quantity: str) -> str:
+def axis_title(model: Model, quantity: str) -> str:
     """A quantity as section 4 of the paper makes it dimensionless."""
-    letter = _SYMBOL[scene.system.type]
+    letter = _SYMBOL.get(model.labels.system["type"], "u")
     return f"{quantity}\n{_DEFINITION[quantity].format(letter)} (dimensionless)"
 
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wavesym.exact.reference import Reference
-from wavesym.exact.signal import horizon
-from wavesym.scene import Scene
+from wavesym.model.model import Model
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -23,19 +22,19 @@ class Response:
     `outputs` are their names, `tau_max` the end of the horizon; `error_bound` is relative to an output's largest value.
     """
 
-    scene: Scene
+    model: Model
 
     @cached_property
     def _reference(self) -> Reference:
-        return Reference(self.scene)
+        return Reference(self.model)
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        return tuple(output.name for output in self.scene.outputs)
+        return tuple(probe.name for probe in self.model.probes)
 
     @property
     def tau_max(self) -> float:
-        return horizon(self.scene)
+        return self.model.horizon()
 
     @property
     def error_bound(self) -> float:

@@ -9,12 +9,15 @@ from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
+from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.model.chain import Chain, chain
-from wavesym.model.node import Load, Rod
-from wavesym.numbers.doubles import fraction
-from wavesym.scene import Observable, Piece, Scene
+from wavesym.model.chain import Chain
+from wavesym.model.loads import Applied
+from wavesym.model.model import Model
+from wavesym.model.node import UnitLoad
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import fraction, nearest
 
 Array = NDArray[np.float64]
 Evaluate = Callable[[Array], Array]
@@ -116,47 +119,39 @@ class Rival:
     prepare: Callable[[Problem, float], Evaluate]
 
 
-def problem(system: Chain, pieces: Sequence[Piece], outputs: Sequence[Observable], until: float) -> Problem:
-    """A chain under `pieces`, watched at `outputs` for 0 <= tau <= until, all dimensionless.
+def problem(chain: Chain, loads: Sequence[Applied], probes: Sequence[Probe], until: float) -> Problem:
+    """A chain under `loads`, watched at `probes` for 0 <= tau <= until, all dimensionless.
 
-    ValueError for a piece whose source the chain does not have.
+    ValueError for a load whose source the chain does not have.
     """
-    loads = {f"{load.kind}{load.number or ''}": (x, load) for x, node in enumerate(system.nodes) for load in node.loads}
     events = []
-    for piece in pieces:
-        if piece.source == "impact":  # that is in the rods' initial velocities
+    for load in loads:
+        if load.source == "impact":  # that is in the rods' initial velocities
             continue
-        if piece.source not in loads:
-            raise ValueError(f"{piece.source}: no such load")
-        x, load = loads[piece.source]
-        events.append(Event(piece.time, x, _coefficients(load, piece.weight)))
+        if load.source not in chain.loaded:
+            raise ValueError(f"{load.source}: no such load")
+        x, unit = chain.loaded[load.source]
+        events.append(Event(fraction(load.time), x, _coefficients(unit, load.weight)))
     column = {
-        name: np.array([float(fraction(getattr(node, name))) for node in system.nodes])
+        name: np.array([nearest(getattr(node, name)) for node in chain.nodes])
         for name in ("inertia", "alpha", "beta", "damping")
     }
-    rods = np.array([_velocity(system.rod(i)) for i in range(1, system.m + 1)])
-    return Problem(**column, rods=rods, events=tuple(events), watches=tuple(_watches(system, outputs)), until=until)
+    rods = np.array([nearest(chain.rod(i).velocity) for i in range(1, chain.m + 1)])
+    return Problem(
+        **column,
+        rods=rods,
+        events=tuple(events),
+        watches=tuple(Watch(probe.quantity, probe.rod, nearest(probe.place)) for probe in probes),
+        until=until,
+    )
 
 
-def scene_problem(scene: Scene) -> Problem:
-    """The problem of a scene."""
-    return problem(chain(scene), scene.pieces, scene.outputs, float(scene.output.until))
+def stated(model: Model) -> Problem:
+    """The problem of a model."""
+    return problem(model.chain, model.loads, model.probes, nearest(model.until))
 
 
-def _coefficients(load: Load, weight: Fraction) -> tuple[float, float, float]:
-    exact = [weight * fraction(c) for c in load.coefficients]
-    a, b, c = (float(value) for value in (*exact, *[Fraction(0)] * (FORCE_TERMS - len(exact))))
+def _coefficients(unit: UnitLoad, weight: fmpq) -> tuple[float, float, float]:
+    exact = [weight * c for c in unit.coefficients]
+    a, b, c = map(nearest, (*exact, *[fmpq(0)] * (FORCE_TERMS - len(exact))))
     return a, b, c
-
-
-def _velocity(rod: Rod) -> float:
-    return float(fraction(rod.velocity))
-
-
-def _watches(system: Chain, outputs: Sequence[Observable]) -> list[Watch]:
-    watches = []
-    for output in outputs:
-        rod = output.x // 1 + 1 if output.side > 0 else -(-output.x // 1)
-        rod = min(max(1, rod), system.m)
-        watches.append(Watch(output.quantity, rod, float(output.x - (rod - 1))))
-    return watches

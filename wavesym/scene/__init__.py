@@ -1,26 +1,19 @@
-"""TOML -> Scene: what the user said, validated, every number exact."""
+"""TOML -> Scene -> Model: what the user said, validated, every number exact; then what is to be computed."""
 
 from wavesym.errors import SceneError
-from wavesym.scene.loads import Acceleration, Moment, Piece, Record
+from wavesym.scene.lowering import lower
 from wavesym.scene.outputs import Observable, Output
 from wavesym.scene.reading import builtin_names, builtin_text, first_text, read_text
 from wavesym.scene.scene import Scene
-from wavesym.scene.systems import Building, Collision, Drive
 
 __all__ = [
-    "Acceleration",
-    "Building",
-    "Collision",
-    "Drive",
-    "Moment",
     "Observable",
     "Output",
-    "Piece",
-    "Record",
     "Scene",
     "SceneError",
     "builtin_names",
     "builtin_text",
     "first_text",
+    "lower",
     "read_text",
 ]

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from pydantic import PlainValidator
 
-from wavesym.scene.table import shown, wrong
+from wavesym.fields.table import shown, wrong
 
 # C99 tells no more than 63 characters of a name apart.
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")

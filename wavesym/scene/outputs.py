@@ -9,9 +9,9 @@ from typing import Annotated, Self
 
 from pydantic import BeforeValidator, FailFast, Field, PlainSerializer, PlainValidator, field_validator, model_validator
 
-from wavesym.scene.numbers import Exact, Positive, exact, written
-from wavesym.scene.systems import Building, Collision, Drive
-from wavesym.scene.table import Table, Written, listed, shown, wrong
+from wavesym.fields.numbers import Exact, Positive, exact, written
+from wavesym.fields.table import Table, Written, listed, shown, wrong
+from wavesym.systems import Preset
 
 # Beyond it even the integer part of an argument costs a double most of its digits.
 LONGEST_HORIZON = 10**9
@@ -84,7 +84,7 @@ class Output(Table):
         return self
 
 
-def observables(output: Output, system: Collision | Drive | Building) -> Iterator[Observable]:
+def observables(output: Output, system: Preset) -> Iterator[Observable]:
     """The outputs in order, checked against the chain; raises the error of `table.wrong`."""
     seen: dict[Observable, str] = {}
     for quantity in QUANTITIES:

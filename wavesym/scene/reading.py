@@ -10,7 +10,7 @@ from os import PathLike
 from typing import Any
 
 from wavesym.errors import SceneError, did_you_mean
-from wavesym.scene.table import Written
+from wavesym.fields.table import Written
 
 LARGEST_FILE = 16 * 2**20  # bytes
 

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from fractions import Fraction
 from functools import cached_property
 from os import PathLike
 from typing import Any, Self
 
-from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
+from pydantic import Field, SerializeAsAny, ValidationError, ValidationInfo, field_validator, model_validator
 
 from wavesym.errors import SceneError
-from wavesym.scene.loads import Load, Piece, loads, merged
+from wavesym.fields.loads import Load
+from wavesym.fields.table import Table, first_error, key_path, shown, wrong
+from wavesym.scene.loads import loads
 from wavesym.scene.names import Name
 from wavesym.scene.outputs import Observable, Output, observables
 from wavesym.scene.paths import changed
 from wavesym.scene.reading import read_toml
-from wavesym.scene.systems import Collision, System
-from wavesym.scene.table import Table, first_error, key_path
+from wavesym.systems import SYSTEMS, Preset
 
 
 class Scene(Table):
@@ -29,8 +29,8 @@ class Scene(Table):
     """
 
     name: Name = Field(description="an identifier of C")
-    system: System = Field(description="a table")
-    load: tuple[Load, ...] = ()
+    system: SerializeAsAny[Preset] = Field(description="a table")
+    load: tuple[SerializeAsAny[Load], ...] = ()
     output: Output = Field(description="a table")
 
     def __init__(self, /, **fields: Any) -> None:
@@ -38,8 +38,6 @@ class Scene(Table):
             super().__init__(**fields)
         except ValidationError as error:
             what, keys = first_error(error)
-            if keys[:1] == ("system",) and keys[1:2] in (("collision",), ("drive",), ("building",)):
-                keys = (keys[0], *keys[2:])  # pydantic's own step, to the system of this type
             raise SceneError(what, key_path(keys)) from None
 
     @classmethod
@@ -64,6 +62,25 @@ class Scene(Table):
             fields = changed(fields, path, value)
         return type(self)(**fields)
 
+    @field_validator("system", mode="wrap")
+    @classmethod
+    def _known_system(cls, table: object, _: object) -> Preset:
+        if isinstance(table, Preset):
+            return table
+        *others, last = (f'"{name}"' for name in SYSTEMS)
+        expected = f"{', '.join(others)} or {last} expected"
+        if not isinstance(table, Mapping):
+            raise wrong(f"{shown(table)} given, a table expected")
+        if "type" not in table:
+            raise wrong(f"missing, {expected}", "type")
+        if not isinstance(name := table["type"], str) or name not in SYSTEMS:
+            raise wrong(f"{shown(table['type'])} given, {expected}", "type")
+        try:
+            return SYSTEMS[name].model_validate(table)
+        except ValidationError as error:
+            what, path = first_error(error)
+            raise wrong(what, *path) from None
+
     @field_validator("load", mode="wrap")
     @classmethod
     def _loads_on_the_system(cls, tables: object, _: object, info: ValidationInfo) -> tuple[Load, ...]:
@@ -79,10 +96,3 @@ class Scene(Table):
     def outputs(self) -> tuple[Observable, ...]:
         """The outputs: strains, velocities, displacements, each in the order of the scene."""
         return tuple(observables(self.output, self.system))
-
-    @cached_property
-    def pieces(self) -> tuple[Piece, ...]:
-        """The loads, summed, as weights of unit responses; sorted by time, and each source at a time once."""
-        if isinstance(self.system, Collision):
-            return merged([Piece("impact", Fraction(0), Fraction(1))])
-        return merged(piece for load in self.load for piece in load.pieces())

@@ -5,24 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from textwrap import wrap
 
 import numpy as np
-from flint import fmpq
 
 from wavesym.exact.contact import ContactEnd
-from wavesym.model.chain import chain
-from wavesym.model.light_cone import felt
+from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.choice import Evaluator
-from wavesym.scene import Building, Record, Scene
-from wavesym.scene.loads import Load
 from wavesym.targets.literals import c_literal, literal
 
 _WIDTH = 110
-_LONG = 4 * _WIDTH  # characters of a load that is written out
 
 
 @dataclass(frozen=True)
@@ -71,21 +65,21 @@ class Description:
 
 
 def describe(
-    scene: Scene, evaluator: Evaluator, reason: str, contacts: Sequence[ContactEnd], options: str = ""
+    model: Model, evaluator: Evaluator, reason: str, contacts: Sequence[ContactEnd], options: str = ""
 ) -> Description:
-    """The description of a scene and of the evaluator chosen for it; `options` are those that the files depend on."""
+    """The description of a model and of the evaluator chosen for it; `options` are those that the files depend on."""
     real = evaluator.real
     names = [output.name for output in evaluator.outputs]
     bound = _not_below(evaluator.error_bound, real)
     return Description(
-        name=scene.name,
-        prefix=scene.name.upper(),
-        command=f"wavesym generate {scene.name}.toml{options}",
-        model=tuple(line for part in _model(scene) for line in wrap(part, _WIDTH, subsequent_indent="  ")),
+        name=model.name,
+        prefix=model.name.upper(),
+        command=f"wavesym generate {model.name}.toml{options}",
+        model=tuple(line for part in _model(model) for line in wrap(part, _WIDTH, subsequent_indent="  ")),
         real="double" if real is DOUBLE else "float",
         numpy_real="float64" if real is DOUBLE else "float32",
         reason=reason,
-        tolerance=_tolerance(scene),
+        tolerance=_tolerance(model),
         outputs=tuple(
             Output(output.name, constant, literal(_not_below(output.bound, DOUBLE)))
             for output, constant in zip(evaluator.outputs, constants(names), strict=True)
@@ -124,33 +118,16 @@ def _contact(end: ContactEnd, real: Real) -> Contact:
     return Contact(str(end.x), c_literal(tau, real), literal(tau, real), end.digits)
 
 
-def parameters(scene: Scene) -> dict[str, dict[int, fmpq]]:
-    """The parameters that can matter to an output within the horizon, by name and index."""
-    return felt(chain(scene), scene.outputs, scene.output.until)
-
-
-def _model(scene: Scene) -> list[str]:
-    parts = scene.system
-    lines = [f"{parts.type}, as far as the light cone of the outputs reaches"]
-    if isinstance(parts, Building):
-        lines.append(f"base = {parts.base}")
-    for name, numbers in parameters(scene).items():
+def _model(model: Model) -> list[str]:
+    kind, *choices = model.labels.system.items()
+    lines = [f"{kind[1]}, as far as the light cone of the outputs reaches"]
+    lines += [f"{key} = {value}" for key, value in choices]
+    for name, numbers in model.felt.items():
         if numbers:
             lines.append(", ".join(f"{name}_{index} = {value}" for index, value in numbers.items()))
-    lines += [line for number, load in enumerate(scene.load) if (line := _load(load, number))]
-    return [*lines, f"until = {scene.output.until}, tolerance = {_tolerance(scene)}"]
+    lines += [f"load {number}: {line}" for number, line in enumerate(model.labels.loads) if line]
+    return [*lines, f"until = {model.until}, tolerance = {_tolerance(model)}"]
 
 
-def _load(load: Load, number: int) -> str:
-    """A load in one line, and a long one by its size."""
-    if isinstance(load, Record):
-        last = (len(load.samples) - 1) * load.spacing
-        return f"load {number}: {len(load.samples)} samples at {load.spacing}, to tau = {last}"
-    told = ", ".join(f"{piece.weight} {piece.source} at {piece.time}" for piece in load.pieces() if piece.weight)
-    if len(told) > _LONG:
-        return f"load {number}: {len(load.times)} changes from tau = {load.times[0]} to {load.times[-1]}"
-    return f"load {number}: {told}" * bool(told)
-
-
-def _tolerance(scene: Scene) -> str:
-    return literal(nearest(rational(Fraction(scene.output.tolerance))))
+def _tolerance(model: Model) -> str:
+    return literal(nearest(model.tolerance))

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from wavesym.errors import WavesymError
 from wavesym.exact.contact import contact_ends
+from wavesym.model.model import Model
 from wavesym.numbers.reals import REALS
 from wavesym.programs.choice import choose
-from wavesym.scene import Scene
 from wavesym.targets import closed, march, pieces
 from wavesym.targets.description import describe
 from wavesym.targets.manifest import manifest
@@ -36,7 +36,7 @@ def is_ours(path: Path) -> bool:
 
 
 def files(
-    scene: Scene,
+    model: Model,
     language: str = "c",
     evaluator: str = "auto",
     precision: str = "double",
@@ -44,21 +44,21 @@ def files(
 ) -> dict[str, str]:
     """What `generate` writes, by file name.
 
-    ToleranceError where no evaluator, or not the one asked for, meets the scene's tolerance; CostError where the one
+    ToleranceError where no evaluator, or not the one asked for, meets the model's tolerance; CostError where the one
     asked for would cost too much.
     """
     _refuse_unknown(language=(language, LANGUAGES), evaluator=(evaluator, EVALUATORS), precision=(precision, REALS))
-    name, chosen, reason = choose(scene, evaluator, precision, windows)
+    name, chosen, reason = choose(model, evaluator, precision, windows)
     options = "" if evaluator == "auto" else f" --evaluator {evaluator}"
     options += "" if precision == "double" else f" --precision {precision}"
     options += "" if windows is None else f" --windows {windows}"
-    description = describe(scene, chosen, reason, contact_ends(scene, chosen.real), options)
+    description = describe(model, chosen, reason, contact_ends(model, chosen.real), options)
     emitter = EMITTERS[name]
-    made = {f"{scene.name}.json": manifest(scene, description, chosen, name)}
+    made = {f"{model.name}.json": manifest(model, description, chosen, name)}
     if "c" in LANGUAGES[language]:
-        made[f"{scene.name}.h"] = emitter.c_header(description, chosen)
-        made[f"{scene.name}.c"] = emitter.c_source(description, chosen)
-        made[f"{scene.name}_selftest.c"] = selftest(scene, description, chosen)
+        made[f"{model.name}.h"] = emitter.c_header(description, chosen)
+        made[f"{model.name}.c"] = emitter.c_source(description, chosen)
+        made[f"{model.name}_selftest.c"] = selftest(model, description, chosen)
     if "numpy" in LANGUAGES[language]:
-        made[f"{scene.name}.py"] = emitter.numpy_source(description, chosen)
+        made[f"{model.name}.py"] = emitter.numpy_source(description, chosen)
     return dict(sorted(made.items()))

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 
+from wavesym.model.model import Model
 from wavesym.programs.choice import Evaluator
 from wavesym.programs.march.evaluator import MarchEvaluator
-from wavesym.scene import Building, Scene
-from wavesym.targets.description import Description, parameters
+from wavesym.targets.description import Description
 
 SCHEMA_VERSION = 1
 # What NAME.c compiles to besides its tables, with clang -Os for a Cortex-M4: no more than this; a test compiles it.
@@ -15,22 +15,20 @@ SMALL_TARGET = "Cortex-M4, -Os"
 CODE_AT_MOST = {"closed": 1024, "pieces": 4096, "march": 8192}
 
 
-def manifest(scene: Scene, description: Description, evaluator: Evaluator, name: str) -> str:
+def manifest(model: Model, description: Description, evaluator: Evaluator, name: str) -> str:
     """The manifest as JSON text. Numbers that are exact in the scene are strings, doubles are numbers."""
-    system: dict[str, object] = {"type": scene.system.type}
-    if isinstance(scene.system, Building):
-        system["base"] = scene.system.base
-    for parameter, numbers in parameters(scene).items():
+    system: dict[str, object] = dict(model.labels.system)
+    for parameter, numbers in model.felt.items():
         system[parameter] = {str(index): str(value) for index, value in numbers.items()}
     content = {
         "schema_version": SCHEMA_VERSION,
         "generator": "wavesym",
-        "name": scene.name,
+        "name": model.name,
         "command": description.command,
         "system": system,
-        "load": [{"source": p.source, "time": str(p.time), "weight": str(p.weight)} for p in scene.pieces],
-        "until": str(scene.output.until),
-        "tolerance": str(scene.output.tolerance),
+        "load": [{"source": p.source, "time": str(p.time), "weight": str(p.weight)} for p in model.loads],
+        "until": str(model.until),
+        "tolerance": str(model.tolerance),
         "evaluator": name,
         "reason": description.reason,
         "precision": evaluator.real.name,

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from wavesym.exact.reference import Reference, beginning
+from wavesym.model.model import Model
 from wavesym.programs.choice import Evaluator
 from wavesym.rendering import render
-from wavesym.scene import Scene
 from wavesym.targets.description import Description
 from wavesym.targets.literals import c_literal, lines, literal
 
@@ -27,9 +27,9 @@ class SelfTest:
     allowed: tuple[str, ...]
 
 
-def selftest(scene: Scene, description: Description, evaluator: Evaluator) -> str:
+def selftest(model: Model, description: Description, evaluator: Evaluator) -> str:
     """NAME_selftest.c. On very long horizons it covers only the beginning."""
-    reference = Reference(beginning(scene), evaluator.real)
+    reference = Reference(beginning(model), evaluator.real)
     most = max(10, min(_MOST_POINTS, _MOST_VALUES // len(evaluator.outputs)))
     taus = _thinned([tau for tau in evaluator.check_points if tau <= reference.tau_max], most)
     values = reference.values(taus)

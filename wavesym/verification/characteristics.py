@@ -30,10 +30,10 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError
 from wavesym.model.chain import Chain
-from wavesym.model.node import Node, Quantity
+from wavesym.model.loads import Applied
+from wavesym.model.node import Node
+from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, nearest, rational
-from wavesym.scene import Observable, Piece
-from wavesym.verification.exact_chain import exact, start
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ _ROUNDINGS = 8
 
 
 @dataclass(frozen=True)
-class Panel:
+class SteppedPanel:
     """Part of every window: from `start` on, `length` long, cut into `steps`.
 
     It owns its points, the ends and middles of its steps, numbered from `first`; both its ends are among them, so that
@@ -80,43 +80,43 @@ class Panel:
         return nearest(self.length / self.steps)
 
 
-def integrate(chain: Chain, pieces: Sequence[Piece], until: float, steps: int) -> Motion:
-    """The motion of a chain under `pieces` for 0 <= tau <= until, with `steps` steps (order 4) per unit of tau or more.
+def integrate(chain: Chain, loads: Sequence[Applied], until: float, steps: int) -> Integrated:
+    """The motion of a chain under `loads` for 0 <= tau <= until, with `steps` steps (order 4) per unit of tau or more.
 
-    Dimensionless. ValueError for a piece whose source the chain does not have, CostError where it would not fit into
+    Dimensionless. ValueError for a load whose source the chain does not have, CostError where it would not fit into
     memory.
     """
     windows = int(rational(until).floor()) + 1
-    panels = _panels((rational(piece.time) for piece in pieces), steps)
+    panels = _panels((load.time for load in loads), steps)
     shape = windows + 1, 2, len(chain.nodes), panels[-1].points.stop
     if prod(shape) > MOST_DOUBLES:
         raise CostError(f"the integration would hold {prod(shape):.1e} doubles, at most {MOST_DOUBLES:.0e} expected")
     waves = np.zeros(shape)
     for x, node in enumerate(chain.nodes):  # the window before tau = 0
-        waves[0, LEFT, x] = nearest(start(node.left) / 2)
-        waves[0, RIGHT, x] = nearest(start(node.right) / 2)
-    bodies = _Nodes(chain.nodes)
-    loads = _Loads(chain, pieces)
+        waves[0, LEFT, x] = nearest(node.left.velocity / 2) if node.left else 0.0
+        waves[0, RIGHT, x] = nearest(node.right.velocity / 2) if node.right else 0.0
+    bodies = _NodeSteps(chain.nodes)
+    forces = _NodeForces(chain, loads)
     arriving = np.zeros((2, *waves.shape[2:]))
     for n in range(windows):
         arriving[RIGHT, 1:] = waves[n, RIGHT, :-1]
         arriving[LEFT, :-1] = waves[n, LEFT, 1:]
         for panel in panels:
             a, b = arriving[RIGHT, :, panel.points], arriving[LEFT, :, panel.points]
-            q = bodies.moved(a, b, loads.on(n, panel), panel.step)
+            q = bodies.moved(a, b, forces.on(n, panel), panel.step)
             waves[n + 1, LEFT, :, panel.points] = q - a
             waves[n + 1, RIGHT, :, panel.points] = q - b
-    return Motion(panels, waves, until)
+    return Integrated(panels, waves, until)
 
 
 @dataclass(frozen=True)
-class Motion:
+class Integrated:
     """What an integration found: `waves[1 + n, direction, x]` is sent by the node at x, at the points of window n.
 
     Window -1 holds the waves that are in the rods at tau = 0.
     """
 
-    panels: tuple[Panel, ...]
+    panels: tuple[SteppedPanel, ...]
     waves: Array
     until: float
 
@@ -137,34 +137,30 @@ class Motion:
                 total = sums[..., -1]
         return result
 
-    def at(self, observable: Observable, taus: Sequence[float]) -> Array:
+    def at(self, probe: Probe, taus: Sequence[float]) -> Array:
         """The values of an output at doubles 0 <= tau <= until, right-hand limits where it jumps; shape (len(taus),).
 
         ValueError for a tau outside.
         """
         if not all(0 <= tau <= self.until for tau in taus):
             raise ValueError(f"tau outside [0, {self.until}]")
-        x = rational(observable.x)
-        nodes = self.waves.shape[2]
-        rod = min(max(1, int(x.floor()) + 1 if observable.side > 0 else int(x.ceil())), nodes - 1)
-        lag = x - (rod - 1)
         instants = [rational(tau) for tau in taus]
-        displacement = observable.quantity == "displacement"
+        displacement = probe.quantity == "displacement"
         field = self.integrals if displacement else self.waves
 
         def arrived(direction: int, node: int, lag: fmpq) -> Array:
             values = self._sampled(field[:, direction, node], [tau - lag for tau in instants])
             return values - self._sampled(field[:, direction, node], [-lag]) if displacement else values
 
-        right, left = arrived(RIGHT, rod - 1, lag), arrived(LEFT, rod, 1 - lag)
-        return left - right if observable.quantity == "strain" else left + right
+        right, left = arrived(RIGHT, probe.rod - 1, probe.place), arrived(LEFT, probe.rod, 1 - probe.place)
+        return left - right if probe.quantity == "strain" else left + right
 
     @property
     def size(self) -> int:
         """How many doubles the waves are."""
         return self.waves.size
 
-    def roundoff(self, observable: Observable) -> float:
+    def roundoff(self, probe: Probe) -> float:
         """What rounding may have added to an output, absolute.
 
         A step rounds a few times, each time by at most u times the largest wave. Nodes and rods do not amplify what
@@ -172,7 +168,7 @@ class Motion:
         """
         steps = (len(self.waves) - 1) * sum(panel.steps for panel in self.panels)
         largest = float(np.max(np.abs(self.waves)))
-        if observable.quantity == "displacement":
+        if probe.quantity == "displacement":
             largest = self.until * largest + float(np.max(np.abs(self.integrals)))
         return _ROUNDINGS * steps * float(UNIT_ROUNDOFF) * largest
 
@@ -196,7 +192,7 @@ class Motion:
         return np.asarray(np.sum(_lagrange(np.array(offsets)) * values, axis=1))
 
 
-class _Nodes:
+class _NodeSteps:
     """The nodes' conditions, for all of them at once."""
 
     def __init__(self, nodes: Sequence[Node]) -> None:
@@ -207,7 +203,7 @@ class _Nodes:
         self.massive = np.flatnonzero(inertia)
         self.inertia = inertia[self.massive]
         # a body moves at first with the rod that is fixed to it
-        self.q = np.array([nearest(start(nodes[x].left or nodes[x].right)) for x in self.massive.tolist()])
+        self.q = np.array([nearest(nodes[x].velocity) for x in self.massive.tolist()])
 
     def moved(self, a: Array, b: Array, loads: Array, step: float) -> Array:
         """The velocities of the nodes at the points of a panel, all of shape (nodes, points)."""
@@ -234,26 +230,22 @@ class _Nodes:
         return result
 
 
-class _Loads:
+class _NodeForces:
     """The loads at the nodes, polynomials in the time since the start of the present panel; panels come in order."""
 
-    def __init__(self, chain: Chain, pieces: Sequence[Piece]) -> None:
-        units: dict[str, list[tuple[int, fmpq_poly]]] = defaultdict(list)
-        for x, node in enumerate(chain.nodes):
-            for load in node.loads:
-                units[f"{load.kind}{load.number or ''}"].append((x, fmpq_poly([exact(c) for c in load.coefficients])))
+    def __init__(self, chain: Chain, loads: Sequence[Applied]) -> None:
         self._coming: dict[fmpq, list[tuple[int, fmpq_poly]]] = defaultdict(list)
-        for piece in pieces:
-            if piece.source == "impact":  # that is in the rods' initial velocities
+        for load in loads:
+            if load.source == "impact":  # that is in the rods' initial velocities
                 continue
-            if piece.source not in units:
-                raise ValueError(f"{piece.source}: no such load")
-            for x, unit in units[piece.source]:
-                self._coming[rational(piece.time)].append((x, rational(piece.weight) * unit))
-        self._now = {x: fmpq_poly() for loads in units.values() for x, _ in loads}
+            if load.source not in chain.loaded:
+                raise ValueError(f"{load.source}: no such load")
+            x, unit = chain.loaded[load.source]
+            self._coming[load.time].append((x, load.weight * fmpq_poly(list(unit.coefficients))))
+        self._now = {x: fmpq_poly() for x, _ in chain.loaded.values()}
         self._nodes = len(chain.nodes)
 
-    def on(self, window: int, panel: Panel) -> Array:
+    def on(self, window: int, panel: SteppedPanel) -> Array:
         """The loads at the points of the panel in a window, shape (nodes, points)."""
         for x, new in self._coming.get(window + panel.start, ()):
             self._now[x] += new
@@ -266,17 +258,17 @@ class _Loads:
         return result
 
 
-def _panels(times: Iterable[fmpq], steps: int) -> tuple[Panel, ...]:
+def _panels(times: Iterable[fmpq], steps: int) -> tuple[SteppedPanel, ...]:
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
-    panels: list[Panel] = []
+    panels: list[SteppedPanel] = []
     for low, high in pairwise(cuts):
         count = max(_FEWEST_STEPS, int(((high - low) * COARSEST).ceil())) * -(-steps // COARSEST)
-        panels.append(Panel(low, high - low, count, panels[-1].points.stop if panels else 0))
+        panels.append(SteppedPanel(low, high - low, count, panels[-1].points.stop if panels else 0))
     return tuple(panels)
 
 
-def _column(values: Iterable[Quantity]) -> Array:
-    return np.array([[nearest(exact(value))] for value in values])
+def _column(values: Iterable[fmpq]) -> Array:
+    return np.array([[nearest(value)] for value in values])
 
 
 def _stages(values: Array) -> Array:

@@ -12,16 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from wavesym.errors import ToleranceError
-from wavesym.exact.reference import Reference as Exact
-from wavesym.model.chain import chain
+from wavesym.exact.reference import Reference
+from wavesym.model.model import Model
 from wavesym.programs.choice import choose
 from wavesym.running.compiled import compiled, imported
-from wavesym.scene import Scene
 from wavesym.targets.description import describe
 from wavesym.targets.files import EMITTERS, files
-from wavesym.verification.characteristics import COARSEST, Motion, integrate
+from wavesym.verification.characteristics import COARSEST, Integrated, integrate
 from wavesym.verification.invariants import Balance, Evaluate, balances, values_per_window, watched
-from wavesym.verification.reference import Reference
+from wavesym.verification.reference import Known
 from wavesym.verification.refinement import Refinement, Solutions, shown
 from wavesym.verification.spacetime import Displaced, Instants, grid
 
@@ -62,46 +61,45 @@ class Check:
     """A check, and what stands over the table of its outcomes."""
 
     title: str
-    run: Callable[[Reference], Sequence[Outcome]]
+    run: Callable[[Known], Sequence[Outcome]]
 
 
-def generated(reference: Reference) -> list[Outcome]:
+def generated(known: Known) -> list[Outcome]:
     """The generated C, compiled and run, and the generated NumPy, against their proved bound."""
-    scene = reference.scene
+    model = known.model
     try:
-        made = files(scene, language="all")
+        made = files(model, language="all")
     except ToleranceError as error:  # an evaluator that says where it ends has not failed
         cells = {"C": "refused", "NumPy": "refused", "bound": "-"}
-        return [Outcome(output.observable.name, cells, True, str(error)) for output in reference.outputs]
-    bounds = [output["error_bound"] for output in json.loads(made[f"{scene.name}.json"])["outputs"]]
-    numpy = imported(made[f"{scene.name}.py"], scene.name).evaluate(np.array(reference.taus))
-    with compiled(made, len(reference.outputs)) as program:
-        c = program(reference.taus)
+        return [Outcome(output.probe.name, cells, True, str(error)) for output in known.outputs]
+    bounds = [output["error_bound"] for output in json.loads(made[f"{model.name}.json"])["outputs"]]
+    numpy = imported(made[f"{model.name}.py"], model.name).evaluate(np.array(known.taus))
+    with compiled(made, len(known.outputs)) as program:
+        c = program(known.taus)
         sound = program.selftest() == 0
-    note = "" if sound else f"{scene.name}: the self-test of the generated C fails"
+    note = "" if sound else f"{model.name}: the self-test of the generated C fails"
     outcomes = []
-    for output, bound, *values in zip(reference.outputs, bounds, c, numpy, strict=True):
+    for output, bound, *values in zip(known.outputs, bounds, c, numpy, strict=True):
         errors = [output.error(each) for each in values]
         allowed = 0.0 if output.zero else bound + _ROUNDED
         cells = dict(zip(("C", "NumPy", "bound"), map(shown, (*errors, bound)), strict=True))
         passed = sound and all(error <= allowed for error in errors)
-        outcomes.append(Outcome(output.observable.name, cells, passed, note))
+        outcomes.append(Outcome(output.probe.name, cells, passed, note))
     return outcomes
 
 
-def integration(reference: Reference) -> list[Outcome]:
+def integration(known: Known) -> list[Outcome]:
     """Characteristics with N, 2N and 4N steps per unit of tau; N is doubled until their own bound is little."""
-    scene = reference.scene
-    system = chain(scene)
+    model = known.model
 
-    def motion(steps: int) -> Motion:
-        return integrate(system, scene.pieces, reference.until, steps)
+    def motion(steps: int) -> Integrated:
+        return integrate(model.chain, model.loads, known.until, steps)
 
     def refined() -> list[Refinement]:
         found = []
-        for output in reference.outputs:
-            coarse, half, quarter = (each.at(output.observable, reference.taus) for each in motions)
-            rounding = motions[-1].roundoff(output.observable)
+        for output in known.outputs:
+            coarse, half, quarter = (each.at(output.probe, known.taus) for each in motions)
+            rounding = motions[-1].roundoff(output.probe)
             found.append(Solutions((coarse, half, quarter), output.values, rounding, output.scale).plain())
         return found
 
@@ -111,35 +109,35 @@ def integration(reference: Reference) -> list[Outcome]:
         steps *= 2
         motions = [*motions[1:], motion(4 * steps)]
     return [
-        Outcome(output.observable.name, each.cells(steps), each.right)
+        Outcome(output.probe.name, each.cells(steps), each.right)
         if each.between <= _FINE
-        else Outcome(output.observable.name, each.cells(steps), False, _coarse(scene, "integration"))
-        for output, each in zip(reference.outputs, refined(), strict=True)
+        else Outcome(output.probe.name, each.cells(steps), False, _coarse(model, "integration"))
+        for output, each in zip(known.outputs, refined(), strict=True)
     ]
 
 
-def spacetime(reference: Reference) -> list[Outcome]:
+def spacetime(known: Known) -> list[Outcome]:
     """Central differences with N, 2N and 4N cells a rod, at instants away from fronts.
 
     As far as they can be had; where they stay coarse that is said, but no failure: what they allow is in the table.
     """
-    scene = reference.scene
-    first = grid(scene)
-    until = min(reference.until, _LONGEST, _MOST_MOVED / first.finer(4).cost(1.0))
+    model = known.model
+    first = grid(model)
+    until = min(known.until, _LONGEST, _MOST_MOVED / first.finer(4).cost(1.0))
     while len(first.instants(until)) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= _MOST_MOVED:
         first = first.finer(2)
     instants = _some(first.instants(until))
     if not len(instants):
-        note = f"{scene.name}: to step between the fronts, central differences would take too long"
-        return [Outcome(output.observable.name, {"to": "refused"}, True, note) for output in reference.outputs]
-    truth = [np.array(values) for values in Exact(scene).values([k / first.cells for k in instants.tolist()])]
+        note = f"{model.name}: to step between the fronts, central differences would take too long"
+        return [Outcome(output.probe.name, {"to": "refused"}, True, note) for output in known.outputs]
+    truth = [np.array(values) for values in Reference(model).values([k / first.cells for k in instants.tolist()])]
 
     def motion(finer: int) -> Displaced:
         return first.finer(finer).integrate(finer * instants)
 
     def refined() -> list[Refinement]:
         found = []
-        for k, output in enumerate(reference.outputs):
+        for k, output in enumerate(known.outputs):
             coarse, half, quarter = (each.values[k] for each in motions)
             rounding = float(motions[-1].roundoff[k])
             solutions = Solutions((coarse, half, quarter), truth[k], rounding, output.scale)
@@ -153,25 +151,25 @@ def spacetime(reference: Reference) -> list[Outcome]:
         motions = [*motions[1:], motion(4 * finer)]
     return [
         Outcome(
-            output.observable.name,
+            output.probe.name,
             {"to": f"{until:.4g}", **each.cells(first.cells * finer)},
             each.right,
-            "" if each.between <= _FINE else _coarse(scene, "space-time grid"),
+            "" if each.between <= _FINE else _coarse(model, "space-time grid"),
         )
-        for output, each in zip(reference.outputs, refined(), strict=True)
+        for output, each in zip(known.outputs, refined(), strict=True)
     ]
 
 
-def invariants(reference: Reference) -> list[Outcome]:
+def invariants(known: Known) -> list[Outcome]:
     """The balances of momentum and energy, in the reference itself and in generated NumPy."""
-    scene = reference.scene
-    outputs, values = values_per_window(scene)
-    windows = min(int(reference.until), _MOST_VALUES // values, _MOST_WINDOWS // outputs)
+    model = known.model
+    outputs, values = values_per_window(model)
+    windows = min(int(known.until), _MOST_VALUES // values, _MOST_WINDOWS // outputs)
     if windows < 1:
-        why = "its horizon is shorter than 1" if reference.until < 1 else "too many rods"
-        return [Outcome("momentum, energy", {"to": "refused"}, True, f"{scene.name}: no balances, as {why}")]
-    seen = watched(scene, windows)
-    exact = Exact(seen)
+        why = "its horizon is shorter than 1" if known.until < 1 else "too many rods"
+        return [Outcome("momentum, energy", {"to": "refused"}, True, f"{model.name}: no balances, as {why}")]
+    seen = watched(model, windows)
+    exact = Reference(seen)
     truth = balances(
         seen,
         lambda taus: np.array(exact.values(taus.tolist())),
@@ -192,11 +190,11 @@ def invariants(reference: Reference) -> list[Outcome]:
     return outcomes
 
 
-def _numpy(scene: Scene) -> tuple[Evaluate, list[float]]:
-    """The generated NumPy of a scene, and the proved errors of its outputs, absolute."""
-    name, chosen, reason = choose(scene)
-    text = EMITTERS[name].numpy_source(describe(scene, chosen, reason, ()), chosen)
-    return imported(text, scene.name).evaluate, [output.bound * output.largest for output in chosen.outputs]
+def _numpy(model: Model) -> tuple[Evaluate, list[float]]:
+    """The generated NumPy of a model, and the proved errors of its outputs, absolute."""
+    name, chosen, reason = choose(model)
+    text = EMITTERS[name].numpy_source(describe(model, chosen, reason, ()), chosen)
+    return imported(text, model.name).evaluate, [output.bound * output.largest for output in chosen.outputs]
 
 
 def _some(instants: Instants) -> Instants:
@@ -205,8 +203,8 @@ def _some(instants: Instants) -> Instants:
     return np.asarray(instants[np.linspace(0, len(instants) - 1, count).round().astype(int)])
 
 
-def _coarse(scene: Scene, what: str) -> str:
-    return f"{scene.name}: the {what} is too coarse to tell errors below {_FINE:.0e}"
+def _coarse(model: Model, what: str) -> str:
+    return f"{model.name}: the {what} is too coarse to tell errors below {_FINE:.0e}"
 
 
 CHECKS = (

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
@@ -23,11 +22,12 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.model.chain import Chain, chain
+from wavesym.model.chain import Chain
+from wavesym.model.loads import Applied
+from wavesym.model.model import Model
 from wavesym.model.node import Quantity
-from wavesym.numbers.doubles import UNIT_ROUNDOFF, nearest, rational
-from wavesym.scene import Piece, Scene
-from wavesym.verification.exact_chain import exact, start
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import UNIT_ROUNDOFF, nearest
 
 Array = NDArray[np.float64]
 Evaluate = Callable[[Array], Array]
@@ -62,48 +62,37 @@ class Weights(NamedTuple):
 def weights(system: Chain) -> Weights:
     """The weights of nodes x = 0 ... m and rods i = 1 ... m; 0 for a node that no rod acts on."""
     rods = [fmpq(1)]
-    first = exact(system.nodes[0].beta)
+    first = system.nodes[0].beta
     nodes = [2 / first if first != 0 else fmpq(0)]
     for node in system.nodes[1:]:
-        nodes.append(2 * rods[-1] / exact(node.alpha))
-        rods.append(nodes[-1] * exact(node.beta) / 2)
+        nodes.append(2 * rods[-1] / node.alpha if node.alpha != 0 else fmpq(0))
+        rods.append(nodes[-1] * node.beta / 2)
     return Weights(tuple(nodes), tuple(rods[:-1]))
 
 
-def watched(scene: Scene, until: int) -> Scene:
-    """The scene as it is watched here: strains at the left ends of rods, then at their right ends, and all velocities.
+def watched(model: Model, until: int) -> Model:
+    """The model as it is watched here: strains at the left ends of rods, then at their right ends, and all velocities.
 
     A contact has one strain.
     """
-    m = scene.system.m
-    left_ends, right_ends = _ends(scene)
-    return Scene(
-        name=scene.name,
-        system=scene.system.model_dump(),
-        load=[load.model_dump() for load in scene.load],
-        output={
-            "until": until,
-            "tolerance": scene.output.tolerance,
-            "strain": list(dict.fromkeys(left_ends + right_ends)),
-            "velocity": list(range(m + 1)),
-        },
-    )
+    left_ends, right_ends = _ends(model.chain)
+    strains = {probe.name: probe for probe in left_ends + right_ends}.values()
+    return model.watching([*strains, *_velocities(model.chain)]).shortened(fmpq(until))
 
 
-def values_per_window(scene: Scene) -> tuple[int, int]:
-    """How many outputs a scene has when it is `watched`, and how many values of them a window of tau takes."""
-    left_ends, right_ends = _ends(scene)
-    outputs = len({*left_ends, *right_ends}) + scene.system.m + 1
-    panels = len(_cuts([piece.time for piece in scene.pieces])) - 1
+def values_per_window(model: Model) -> tuple[int, int]:
+    """How many outputs a model has when it is `watched`, and how many values of them a window of tau takes."""
+    outputs = len(watched(model, 1).probes)
+    panels = len(_cuts(model.loads)) - 1
     return outputs, outputs * panels * (_POINTS + _POINTS // 2)
 
 
-def balances(scene: Scene, evaluate: Evaluate, errors: Sequence[float]) -> tuple[Balance, Balance]:
-    """The balances of momentum and energy of a `watched` scene, as `evaluate` has it.
+def balances(model: Model, evaluate: Evaluate, errors: Sequence[float]) -> tuple[Balance, Balance]:
+    """The balances of momentum and energy of a `watched` model, as `evaluate` has it.
 
     `errors` are the proved errors of the outputs, absolute: what they come to is allowed, and what quadrature misses.
     """
-    fine, coarse = (_Books(scene, evaluate, np.array(errors), points) for points in (_POINTS, _POINTS // 2))
+    fine, coarse = (_Books(model, evaluate, np.array(errors), points) for points in (_POINTS, _POINTS // 2))
     largest = float(np.max(fine.energy.value)) or 1.0
     unit = _ROUNDINGS * len(fine.energy.value) * float(UNIT_ROUNDOFF)
 
@@ -127,17 +116,17 @@ class _Account(NamedTuple):
 class _Books:
     """Momentum and energy from what happens at the nodes, with so many points between two fronts."""
 
-    def __init__(self, scene: Scene, evaluate: Evaluate, errors: Array, points: int) -> None:
-        self._chain = chain(scene)
-        self._windows = int(scene.output.until)
-        self._pieces = [piece for piece in scene.pieces if piece.source != "impact"]
-        times, self._gauss = _quadrature(_cuts([piece.time for piece in scene.pieces]), self._windows, points)
+    def __init__(self, model: Model, evaluate: Evaluate, errors: Array, points: int) -> None:
+        self._chain = model.chain
+        self._windows = int(model.until.floor())
+        self._loads = [load for load in model.loads if load.source != "impact"]
+        times, self._gauss = _quadrature(_cuts(model.loads), self._windows, points)
         self._times = times
         values = evaluate(times.ravel()).reshape(-1, *times.shape)
         ends = evaluate(np.arange(1.0, self._windows + 1))
-        names = [output.name for output in scene.outputs]
-        left, right = ([names.index(f"strain@{place}") for place in places] for places in _ends(scene))
-        velocity = [names.index(f"velocity@{x}") for x in range(scene.system.m + 1)]
+        names = [probe.name for probe in model.probes]
+        left, right = ([names.index(probe.name) for probe in ends] for ends in _ends(self._chain))
+        velocity = [names.index(probe.name) for probe in _velocities(self._chain)]
         self._q, self._q_error = values[velocity], errors[velocity]
         self._strains = (values[left], errors[left]), (values[right], errors[right])
         self._reached = ends[velocity]
@@ -189,40 +178,56 @@ class _Books:
     @cached_property
     def _forces(self) -> list[tuple[int, Array, float]]:
         """Where something acts from outside, its force and the error of that."""
-        (strain, error), _ = self._strains
+        (left, left_error), (right, right_error) = self._strains
         forces = []
         for x, node in enumerate(self._chain.nodes):
-            if node.damping:  # the foundation that moves with the ground
-                forces.append((x, -self._rods[x] * strain[x], float(self._rods[x] * error[x])))
-            elif node.loads:
-                units = {f"{load.kind}{load.number or ''}": load.coefficients for load in node.loads}
-                forces.append((x, self._nodes[x] * _acting(self._pieces, units, self._times), 0.0))
+            if node.alpha == 0 and node.beta == 0:  # it moves as it is told, by the force of its rod
+                if node.right:
+                    forces.append((x, -self._rods[x] * left[x], float(self._rods[x] * left_error[x])))
+                else:
+                    forces.append((x, self._rods[x - 1] * right[x - 1], float(self._rods[x - 1] * right_error[x - 1])))
+            elif node.loads or node.damping != 0:
+                units = {load.source: load.coefficients for load in node.loads}
+                braked = nearest(node.damping)
+                force = _acting(self._loads, units, self._times) - braked * self._q[x]
+                forces.append((x, self._nodes[x] * force, float(self._nodes[x] * braked * self._q_error[x])))
         return forces
 
     def _started(self, counted: Callable[[Array], Array]) -> float:
         """What is there at tau = 0: bodies move with the rods that are fixed to them."""
         nodes, rods = self._chain.nodes, range(1, self._chain.m + 1)
-        bodies = np.array([nearest(start(node.left or node.right)) for node in nodes])
-        moving = np.array([nearest(start(self._chain.rod(i))) for i in rods])
+        bodies = np.array([nearest(node.velocity) for node in nodes])
+        moving = np.array([nearest(self._chain.rod(i).velocity) for i in rods])
         return float(self._bodies @ counted(bodies) + self._rods @ counted(moving))
 
     def _account(self, value: Array, came: Array, slack: Array, before: float) -> _Account:
         return _Account(np.append(before, value), np.append(0.0, value - before - came), np.append(0.0, slack))
 
 
-def _ends(scene: Scene) -> tuple[list[str], list[str]]:
-    """The places at the left and at the right ends of the rods, as a scene has them."""
-    m, system = scene.system.m, scene.system
+def _ends(chain: Chain) -> tuple[list[Probe], list[Probe]]:
+    """The strains at the left and at the right ends of the rods; both are one where rods only touch."""
 
-    def place(x: int, side: str) -> str:
-        return f"{x}{side}" if system.divided_at(Fraction(x)) else str(x)
+    def name(x: int, side: str) -> str:
+        divided = 0 < x < chain.m and chain.nodes[x].inertia
+        return f"strain@{x}{side}" if divided else f"strain@{x}"
 
-    return [place(x, "+") for x in range(m)], [place(x, "-") for x in range(1, m + 1)]
+    rods = range(1, chain.m + 1)
+    return (
+        [Probe(name(i - 1, "+"), "strain", i, fmpq(0)) for i in rods],
+        [Probe(name(i, "-"), "strain", i, fmpq(1)) for i in rods],
+    )
 
 
-def _cuts(times: Sequence[Fraction]) -> list[float]:
+def _velocities(chain: Chain) -> list[Probe]:
+    """The velocities of the nodes."""
+    first = Probe("velocity@0", "velocity", 1, fmpq(0))
+    return [first, *(Probe(f"velocity@{i}", "velocity", i, fmpq(1)) for i in range(1, chain.m + 1))]
+
+
+def _cuts(loads: Sequence[Applied]) -> list[float]:
     """Where in a unit of tau a front may pass a node."""
-    return [float(cut) for cut in sorted({Fraction(0), Fraction(1), *(time % 1 for time in times)})]
+    parts = {load.time - load.time.floor() for load in loads}
+    return [nearest(cut) for cut in sorted({fmpq(0), fmpq(1), *parts})]
 
 
 def _quadrature(cuts: Sequence[float], windows: int, points: int) -> tuple[Array, Array]:
@@ -233,13 +238,13 @@ def _quadrature(cuts: Sequence[float], windows: int, points: int) -> tuple[Array
     return np.add.outer(np.arange(windows), local), gauss
 
 
-def _acting(pieces: Sequence[Piece], units: Mapping[str, Sequence[Quantity]], times: Array) -> Array:
-    """The sum of the pieces' loads at a node whose unit loads are polynomials."""
+def _acting(loads: Sequence[Applied], units: Mapping[str, Sequence[Quantity]], times: Array) -> Array:
+    """The sum of the loads at a node whose unit loads are polynomials."""
     total = np.zeros_like(times)
-    for piece in pieces:
-        since = np.maximum(times - float(piece.time), 0.0)
-        for power, coefficient in enumerate(units.get(piece.source, ())):
-            total += np.where(since > 0, nearest(exact(coefficient) * rational(piece.weight)) * since**power, 0.0)
+    for load in loads:
+        since = np.maximum(times - nearest(load.time), 0.0)
+        for power, coefficient in enumerate(units.get(load.source, ())):
+            total += np.where(since > 0, nearest(coefficient * load.weight) * since**power, 0.0)
     return total
 
 

@@ -1,4 +1,4 @@
-"""What everything is compared with: the outputs of a scene in ball arithmetic, where errors are most likely."""
+"""What everything is compared with: the outputs of a model in ball arithmetic, where errors are most likely."""
 
 from __future__ import annotations
 
@@ -10,18 +10,19 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.exact.reference import Reference as Exact
-from wavesym.scene import Observable, Scene
+from wavesym.exact.reference import Reference
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
 
 _SPREAD = 400
 _GOLDEN = (math.sqrt(5) - 1) / 2
 
 
 @dataclass(frozen=True)
-class Output:
+class KnownOutput:
     """One output: its values at the reference's taus, right to the last bit, and the largest of them."""
 
-    observable: Observable
+    probe: Probe
     values: NDArray[np.float64]
 
     @cached_property
@@ -40,27 +41,26 @@ class Output:
 
 
 @dataclass(frozen=True)
-class Reference:
-    """The outputs of a scene at `taus`, doubles in [0, until]."""
+class Known:
+    """The outputs of a model at `taus`, doubles in [0, until]."""
 
-    scene: Scene
+    model: Model
     until: float
     taus: Sequence[float]
-    outputs: tuple[Output, ...]
+    outputs: tuple[KnownOutput, ...]
 
 
-def reference(scene: Scene) -> Reference:
-    """A scene's outputs at a few hundred spread taus, at every arrival, and at the doubles just before and after."""
-    exact = Exact(scene)
+def known(model: Model) -> Known:
+    """A model's outputs at a few hundred spread taus, at every arrival, and at the doubles just before and after."""
+    exact = Reference(model)
     taus = sorted(set(_taus(exact)))
     outputs = (
-        Output(observable, np.array(values))
-        for observable, values in zip(scene.outputs, exact.values(taus), strict=True)
+        KnownOutput(probe, np.array(values)) for probe, values in zip(model.probes, exact.values(taus), strict=True)
     )
-    return Reference(scene, exact.tau_max, taus, tuple(outputs))
+    return Known(model, exact.tau_max, taus, tuple(outputs))
 
 
-def _taus(exact: Exact) -> Iterator[float]:
+def _taus(exact: Reference) -> Iterator[float]:
     until = exact.tau_max
     yield from (0.0, until)
     # multiples of the golden ratio fall evenly, and on no grid of any evaluator

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from wavesym.model.model import Model
 from wavesym.running.toolchain import compiler
-from wavesym.scene import Scene
 from wavesym.verification.checks import CHECKS
 from wavesym.verification.columns import Row, table
-from wavesym.verification.reference import reference
+from wavesym.verification.reference import known
 
 _LEGEND = "Errors are against ball arithmetic rounded once, relative to the output's largest value."
 
 
-def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
-    """For each check a table of what it found in every scene, and whether all errors are within what is allowed.
+def verify(models: Iterable[Model]) -> tuple[str, bool]:
+    """For each check a table of what it found for every model, and whether all errors are within what is allowed.
 
     CompilerError where there is no C compiler, or where it does not accept the generated C.
     """
@@ -22,12 +22,12 @@ def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
     tables: list[list[Row]] = [[] for _ in CHECKS]
     notes: list[str] = []
     passed = True
-    for scene in scenes:
-        truth = reference(scene)
+    for model in models:
+        truth = known(model)
         for check, rows in zip(CHECKS, tables, strict=True):
             for outcome in check.run(truth):
                 verdict = "PASS" if outcome.passed else "FAIL"
-                rows.append({"scene": scene.name, "of": outcome.subject, **outcome.cells, "verdict": verdict})
+                rows.append({"scene": model.name, "of": outcome.subject, **outcome.cells, "verdict": verdict})
                 notes += [outcome.note] if outcome.note else []
                 passed = passed and outcome.passed
     lines = [_LEGEND, f"The C compiler is {chosen.version}.", *dict.fromkeys(notes), ""]

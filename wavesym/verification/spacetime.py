@@ -19,16 +19,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from math import ceil, lcm
 
 import numpy as np
+from flint import fmpq
 from numpy.typing import NDArray
 
+from wavesym.model.model import Model
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
-from wavesym.rivals.problem import Array, Problem, Watch, scene_problem
-from wavesym.scene import Scene
+from wavesym.rivals.problem import Array, Problem, Watch, stated
 
 Instants = NDArray[np.int_]
 
@@ -147,14 +147,14 @@ class Grid:
         return np.unique([point for terms in self._terms for _, point, _ in terms])
 
 
-def grid(scene: Scene) -> Grid:
-    """The coarsest grid for a scene: its loads and outputs are on it where their denominators are small."""
+def grid(model: Model) -> Grid:
+    """The coarsest grid for a model: its loads and outputs are on it where their denominators are small."""
     common = 1
-    for place in (*(piece.time for piece in scene.pieces), *(output.x for output in scene.outputs)):
-        if lcm(common, place.denominator) <= _FINEST_ALIGNED:
-            common = lcm(common, place.denominator)
-    fewest = max(COARSEST, ceil(COARSEST / min(Fraction(1), scene.output.until)))
-    return Grid(scene_problem(scene), common * ceil(fewest / common))
+    for place in (*(load.time for load in model.loads), *(probe.x for probe in model.probes)):
+        if lcm(common, int(place.q)) <= _FINEST_ALIGNED:
+            common = lcm(common, int(place.q))
+    fewest = max(COARSEST, int((COARSEST / min(fmpq(1), model.until)).ceil()))
+    return Grid(stated(model), common * ceil(fewest / common))
 
 
 class _Nodes:

@@ -12,9 +12,9 @@ from sympy import Expr, IndexedBase, Symbol, cancel
 
 from wavesym.derivation.delay import INDEX, SYMBOLS
 from wavesym.model.node import System
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 
 LENGTH, SPEED, UNIT = Symbol("l"), Symbol("c_f"), Symbol("U_0")
 _DENSITY, _SHEAR, _YOUNG = Symbol("rho"), Symbol("G"), Symbol("E")

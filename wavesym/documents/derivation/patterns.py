@@ -12,9 +12,9 @@ from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.recurrence import CoefficientLaw, recurrence
 from wavesym.documents.derivation.families import own_rate
 from wavesym.model.node import Parameters, System
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 
 K, J = SYMBOLS.kappa, SYMBOLS.inertia
 

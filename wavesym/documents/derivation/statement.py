@@ -21,9 +21,9 @@ from wavesym.documents.derivation.patterns import Pattern, pattern_laws, pattern
 from wavesym.documents.derivation.writer import Place, Writer
 from wavesym.errors import WavesymError
 from wavesym.model.node import Node, System
-from wavesym.model.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.model.systems.collision import COLLISION
-from wavesym.model.systems.drive import DRIVE
+from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
 
 if TYPE_CHECKING:
     from wavesym.model.symbolic import SymbolicChain

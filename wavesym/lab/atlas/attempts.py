@@ -12,15 +12,16 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError
 from wavesym.exact.ball import largest, segments, values
-from wavesym.exact.signal import horizon, signals
+from wavesym.exact.signal import signals
 from wavesym.lab.atlas.family import Point
-from wavesym.lab.atlas.scenes import AIM, aimed
+from wavesym.lab.atlas.scenes import AIM
+from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.choice import MAKERS
 from wavesym.programs.closed import ClosedForm
 from wavesym.running.compiled import imported
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.description import describe
 from wavesym.targets.files import EMITTERS
 
@@ -33,9 +34,9 @@ ROUNDED = 2.0**-53
 
 @dataclass(frozen=True)
 class Truth:
-    """The outputs of a scene at ascending `taus`, (outputs, n), the least their largest values are, their arrivals."""
+    """The outputs of a model at ascending `taus`, (outputs, n), the least their largest values are, their arrivals."""
 
-    scene: Scene
+    model: Model
     taus: Array
     values: Array
     sizes: Array
@@ -63,8 +64,9 @@ class Attempt:
 
 def truth(scene: Scene, per_unit: int, around: Sequence[float] = ()) -> Truth:
     """At `per_unit` places in a unit of tau, at every arrival, and just before it or at these distances from it."""
-    until = horizon(scene)
-    merged = signals(scene)
+    model = lower(scene)
+    until = model.horizon()
+    merged = signals(model)
     arrivals = sorted({DOUBLE.not_below(arrival.time) for signal in merged for arrival in signal.arrivals})
     taus = {float(tau) for tau in np.linspace(0.0, until, round(per_unit * until) + 1)} | set(arrivals)
     taus |= {arrival + by for arrival in arrivals for by in around} or {math.nextafter(tau, 0.0) for tau in arrivals}
@@ -72,7 +74,7 @@ def truth(scene: Scene, per_unit: int, around: Sequence[float] = ()) -> Truth:
     sources = [partial(segments, signal) for signal in merged]
     exact = [values(source, where) for source in sources]
     sizes = [float(largest(source, until).mid()) or 1.0 for source in sources]
-    return Truth(scene, np.array(where), np.array(exact), np.array(sizes), np.array(arrivals))
+    return Truth(model, np.array(where), np.array(exact), np.array(sizes), np.array(arrivals))
 
 
 def attempts(known: Truth, names: Sequence[str] = EVALUATORS) -> Iterator[Attempt]:
@@ -82,18 +84,18 @@ def attempts(known: Truth, names: Sequence[str] = EVALUATORS) -> Iterator[Attemp
 
 def attempt(known: Truth, name: str) -> Attempt:
     """One evaluator at the truth's taus."""
-    scene, taus = known.scene, known.taus
+    model, taus = known.model, known.taus
     nothing = np.full(len(taus), math.inf)
     try:
-        form = MAKERS[name](aimed(scene, AIM), DOUBLE, True, None)
+        form = MAKERS[name](model.tolerating(rational(AIM)), DOUBLE, True, None)
     except (CostError, OverflowError) as error:
         return Attempt(name, taus, None, nothing, str(error))
-    met = form.error_bound <= scene.output.tolerance
-    refused = "" if met else form.shortfall(rational(scene.output.tolerance))
+    met = rational(min(form.error_bound, 2.0)) <= model.tolerance
+    refused = "" if met else form.shortfall(model.tolerance)
     bounds = _reached(form, taus) if isinstance(form, ClosedForm) else np.full(len(taus), form.error_bound)
-    text = EMITTERS[name].numpy_source(describe(scene, form, "the atlas", ()), form)
+    text = EMITTERS[name].numpy_source(describe(model, form, "the atlas", ()), form)
     with np.errstate(over="ignore", invalid="ignore"):
-        found = imported(text, scene.name).evaluate(taus)
+        found = imported(text, model.name).evaluate(taus)
     wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
     errors = np.where(np.isfinite(wrong), wrong, math.inf)
     return Attempt(name, taus, errors, bounds, refused)

@@ -14,9 +14,10 @@ import numpy as np
 
 from wavesym.lab.atlas import twisted_shaft as twist
 from wavesym.lab.atlas.family import Axis, Family, Point, Progress
+from wavesym.model.model import Model
 from wavesym.programs.march.evaluator import MarchEvaluator, marched
 from wavesym.running.native import FAST, address, library
-from wavesym.scene import Scene
+from wavesym.scene import lower
 from wavesym.targets.description import describe
 from wavesym.targets.march import c_header, c_source
 
@@ -63,7 +64,7 @@ def family(progress: Progress, horizon: int = HORIZON, tried: Mapping[Fraction, 
     for kappa, degrees in tried.items():
         panel = f"kappa = {kappa}"
         progress(f"march to {horizon:g}, {panel}, its own degree")
-        chosen = marched(twist.scene(kappa, horizon))
+        chosen = marched(lower(twist.scene(kappa, horizon)))
         for degree in (*(degree for degree in degrees if degree < chosen.degree), chosen.degree):
             progress(f"march to {horizon:g}, {panel}, degree {degree}")
             found = follow(kappa, replace(chosen, degree=degree))
@@ -85,21 +86,21 @@ def family(progress: Progress, horizon: int = HORIZON, tried: Mapping[Fraction, 
 
 def follow(kappa: Fraction, evaluator: MarchEvaluator) -> Followed:
     """The march of the twisted drive by an evaluator for it, compared now and then on all of its horizon."""
-    scene = twist.scene(kappa, int(evaluator.tau_max))
+    model = lower(twist.scene(kappa, int(evaluator.tau_max)))
     windows = np.linspace(0, evaluator.tau_max, _WINDOWS + 1).astype(int)[1:] - 1
     taus = twist.calm([1, *windows.tolist()])  # the twist is over by then
-    values, energy, alarm = _run(scene, evaluator, taus)
+    values, energy, alarm = _run(model, evaluator, taus)
     exact = twist.truth(kappa, taus)
     sizes = np.max(np.abs(exact), axis=1, keepdims=True)
     return Followed(float(np.max(np.abs(values - exact) / sizes)), float(np.max(np.abs(energy / energy[0] - 1))), alarm)
 
 
-def _run(scene: Scene, evaluator: MarchEvaluator, taus: twist.Array) -> tuple[twist.Array, twist.Array, bool]:
+def _run(model: Model, evaluator: MarchEvaluator, taus: twist.Array) -> tuple[twist.Array, twist.Array, bool]:
     """Outputs (outputs, n), energies and the alarm."""
-    description = describe(scene, evaluator, "the atlas", ())
-    text = c_source(description, evaluator) + _FOLLOW.replace("NAME", scene.name)
-    program = library(text, FAST, (f"{scene.name}.h", c_header(description, evaluator)))
-    out, energy = np.empty((len(taus), len(scene.outputs))), np.empty(len(taus))
+    description = describe(model, evaluator, "the atlas", ())
+    text = c_source(description, evaluator) + _FOLLOW.replace("NAME", model.name)
+    program = library(text, FAST, (f"{model.name}.h", c_header(description, evaluator)))
+    out, energy = np.empty((len(taus), len(model.probes))), np.empty(len(taus))
     places = [ctypes.c_void_p(address(array)) for array in (taus, out, energy)]
     low = program.follow(places[0], ctypes.c_size_t(len(taus)), *places[1:])
     return out.T, energy, bool(low)

@@ -11,7 +11,7 @@ from wavesym.lab.atlas.family import Axis, Family, Point, Progress
 from wavesym.lab.atlas.scenes import made
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.peers import PEERS
-from wavesym.rivals.problem import Rival, scene_problem
+from wavesym.rivals.problem import Rival, stated
 from wavesym.scene import Scene
 
 UNTIL = 10
@@ -58,7 +58,7 @@ def family(progress: Progress) -> Family:
 
 def errors(rival: Rival, resolution: float, known: Truth) -> tuple[float, float]:
     """The largest error at fronts, and away from them."""
-    found = rival.prepare(scene_problem(known.scene), resolution)(known.taus)
+    found = rival.prepare(stated(known.model), resolution)(known.taus)
     wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
     distance = np.min(np.abs(known.taus[:, np.newaxis] - known.arrivals), axis=1)
     # at an arrival itself either side of the jump will do

@@ -17,9 +17,9 @@ from wavesym.lab.atlas.family import Axis, Family, Point, Progress
 from wavesym.lab.atlas.lumped import strains
 from wavesym.lab.atlas.scenes import made
 from wavesym.programs.march.evaluator import marched
-from wavesym.rivals.problem import scene_problem
+from wavesym.rivals.problem import stated
 from wavesym.running.compiled import imported
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.targets.description import describe
 from wavesym.targets.march import numpy_source
 
@@ -30,7 +30,7 @@ SLOW_TIME = 6
 SAMPLES = 20_011
 
 
-class System(NamedTuple):
+class Lumped(NamedTuple):
     """A system whose kappas are in fixed proportion, and the rods whose strains are compared."""
 
     name: str
@@ -43,23 +43,23 @@ class System(NamedTuple):
 _STEP = ({"times": [0], "a": [1], "b": [0]},)
 _STOREYS = (Fraction(1), Fraction(1), Fraction(3, 2))
 SYSTEMS = (
-    System(
+    Lumped(
         "drive",
         {"type": "drive", "m": 2, "inertia": [1, 2, 1]},
         (Fraction(1), Fraction(2)),
         ({"body": 1, "times": [0], "steps": [1]},),
         (1, 2),
     ),
-    System(
+    Lumped(
         "collision",
         {"type": "collision", "m": 4, "velocity": [1, "-1/2"]},
         (Fraction(1), Fraction(2)),
         (),
         (2, 3),
     ),
-    System("building on moving ground", {"type": "building", "m": 2, "base": "ground"}, _STOREYS, _STEP, (1, 2)),
-    System("building, base force, rod 1", {"type": "building", "m": 2, "base": "force"}, _STOREYS, _STEP, (1,)),
-    System("building, base force, rod 2", {"type": "building", "m": 2, "base": "force"}, _STOREYS, _STEP, (2,)),
+    Lumped("building on moving ground", {"type": "building", "m": 2, "base": "ground"}, _STOREYS, _STEP, (1, 2)),
+    Lumped("building, base force, rod 1", {"type": "building", "m": 2, "base": "force"}, _STOREYS, _STEP, (1,)),
+    Lumped("building, base force, rod 2", {"type": "building", "m": 2, "base": "force"}, _STOREYS, _STEP, (2,)),
 )
 
 
@@ -81,18 +81,18 @@ def family(progress: Progress, kappas: Sequence[Fraction] = KAPPAS) -> Family:
     )
 
 
-def difference(system: System, kappa: Fraction) -> float:
+def difference(system: Lumped, kappa: Fraction) -> float:
     """Between the strains in the middle of the rods and those of springs, relative to the largest of the latter."""
     until = math.ceil(SLOW_TIME / math.sqrt(kappa))
-    scene = _scene(system, kappa, until)
-    march = marched(scene)
-    program = imported(numpy_source(describe(scene, march, "the atlas", ()), march), scene.name)
+    model = lower(_scene(system, kappa, until))
+    march = marched(model)
+    program = imported(numpy_source(describe(model, march, "the atlas", ()), march), model.name)
     taus = until / SAMPLES * np.arange(SAMPLES)
-    springs = strains(scene_problem(scene), until / SAMPLES, SAMPLES - 1)[[rod - 1 for rod in system.rods]]
+    springs = strains(stated(model), until / SAMPLES, SAMPLES - 1)[[rod - 1 for rod in system.rods]]
     return float(np.max(np.abs(program.evaluate(taus) - springs)) / np.max(np.abs(springs)))
 
 
-def _scene(system: System, kappa: Fraction, until: int) -> Scene:
+def _scene(system: Lumped, kappa: Fraction, until: int) -> Scene:
     fields = {**system.fields, "kappa": [part * kappa for part in system.proportions]}
     return made(fields, system.load, until, strain=[Fraction(2 * rod - 1, 2) for rod in system.rods])
 

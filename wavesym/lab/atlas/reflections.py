@@ -10,6 +10,7 @@ import numpy as np
 from wavesym.lab.atlas.attempts import EVALUATORS, attempt, truth
 from wavesym.lab.atlas.family import Axis, Family, Point, Progress
 from wavesym.lab.atlas.scenes import LEGEND, drive
+from wavesym.numbers.doubles import nearest
 
 KAPPAS = (Fraction(1, 20), Fraction(1, 2), Fraction(5))
 COUNTS = (1, 2, 3, 5, 7, 10, 14, 20, 30, 40, 50, 70, 100, 140, 200)
@@ -44,6 +45,6 @@ def _points(kappa: Fraction, name: str, counts: Sequence[int]) -> list[Point]:
     for count in (count for count in counts if 2 * count <= until):
         last = int(np.searchsorted(known.taus, 2 * count)) - 1
         error, bound = float(np.max(one.errors[: last + 1])), float(one.bounds[last])
-        refused = one.refused if bound > known.scene.output.tolerance else ""
+        refused = one.refused if bound > nearest(known.model.tolerance) else ""
         points.append(Point(f"kappa = {kappa}", name, count, error, bound, refused))
     return points

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.reference import Reference
 from wavesym.papers.record import Case, Claim, Slip, shown
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 
 Array = NDArray[np.float64]
 Curves = Mapping[str, Array]
@@ -335,9 +335,9 @@ def loads(figure: int) -> tuple[str, ...]:
 @cache
 def curves(figure: int, load: str) -> Curves:
     """The outputs of a figure's scene, at its instants."""
-    reference = Reference(scene(figure, load))
+    reference = Reference(lower(scene(figure, load)))
     values = reference.values(instants(reference.tau_max).tolist())
-    return {output.name: np.array(row) for output, row in zip(reference.scene.outputs, values, strict=True)}
+    return {output.name: np.array(row) for output, row in zip(reference.model.probes, values, strict=True)}
 
 
 def instants(until: float) -> Array:
@@ -380,7 +380,7 @@ def _collision(until: str, output: Mapping[str, Any]) -> Scene:
 @cache
 def contact_end() -> float:
     """When the contact at x = 2 of Fig. 6 opens."""
-    (end,) = contact_ends(_collision("12", {"strain": [2]}))
+    (end,) = contact_ends(lower(_collision("12", {"strain": [2]})))
     return float(end.digits)
 
 

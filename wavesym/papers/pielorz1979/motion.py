@@ -9,7 +9,6 @@ from flint import fmpq, fmpq_poly
 from sympy import Symbol, latex
 
 from wavesym.exact.increments import start
-from wavesym.model.chain import chain
 from wavesym.numbers.doubles import rational
 from wavesym.papers.pielorz1979.conditions import DIMENSIONLESS
 from wavesym.papers.pielorz1979.delays import II, III, I
@@ -285,15 +284,13 @@ def _heaviside(t: fmpq) -> int:
 
 def _node_load(scene: Scene, t: fmpq) -> fmpq:
     """What acts on node 0 at t, in units of what a unit of the first kind gives."""
-    units = {
-        f"{u.kind}{u.number or ''}": fmpq_poly([fmpq(c) for c in u.coefficients]) for u in chain(scene).nodes[0].loads
-    }
+    units = {u.source: fmpq_poly(list(u.coefficients)) for u in scene.system.chain.nodes[0].loads}
     unit = next(iter(units.values()))(fmpq(0))
     total = fmpq(0)
     for load in scene.load:
-        for piece in load.pieces():
-            if rational(piece.time) <= t:
-                total += rational(piece.weight) * units[piece.source](t - rational(piece.time)) / unit
+        for part in load.units():
+            if part.time <= t:
+                total += part.weight * units[part.source](t - part.time) / unit
     return total
 
 

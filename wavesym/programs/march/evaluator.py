@@ -16,6 +16,7 @@ import numpy as np
 from flint import arb, fmpq
 
 from wavesym.errors import CostError, ToleranceError, WavesymError
+from wavesym.model.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.bound import Verdict, judge
@@ -23,7 +24,6 @@ from wavesym.programs.march.given import Given, batch_size, given
 from wavesym.programs.march.operator import Operator
 from wavesym.programs.march.plan import Plan, plan
 from wavesym.programs.march.run import operator_count, operators, steps
-from wavesym.scene import Scene
 
 _HIGHEST_DEGREE = 2000
 _MOST_WORK = 1e9  # nodes * coefficients * windows, half a minute or so
@@ -106,13 +106,13 @@ class MarchEvaluator:
         return sorted(set(early + late))
 
 
-def march(scene: Scene, real: Real = DOUBLE) -> MarchEvaluator:
-    """The march of a scene in `real` numbers, of the least sufficient degree.
+def march(model: Model, real: Real = DOUBLE) -> MarchEvaluator:
+    """The march of a model in `real` numbers, of the least sufficient degree.
 
-    ToleranceError where its bound is above the scene's tolerance, CostError where it would be long.
+    ToleranceError where its bound is above the model's tolerance, CostError where it would be long.
     """
-    made = marched(scene, real)
-    tolerance = rational(scene.output.tolerance)
+    made = marched(model, real)
+    tolerance = model.tolerance
     if not (math.isfinite(made.error_bound) and rational(made.error_bound) <= tolerance):
         raise unmet(tolerance, made.shortfall(tolerance))
     return made
@@ -123,13 +123,13 @@ def unmet(tolerance: fmpq, why: str) -> ToleranceError:
     return ToleranceError(f"output.tolerance: {nearest(tolerance):g} cannot be met: {why}")
 
 
-def marched(scene: Scene, real: Real = DOUBLE, degree: int | None = None, windows: int | None = None) -> MarchEvaluator:
+def marched(model: Model, real: Real = DOUBLE, degree: int | None = None, windows: int | None = None) -> MarchEvaluator:
     """The same, whatever its bound, of the least sufficient degree or of the one given (at least 8).
 
     With `windows` the degree suffices for loads that are given while it runs for so long; WavesymError where none can
     be. OverflowError where numbers would be beyond those of the format.
     """
-    prepared = plan(scene, real, windows or 0)
+    prepared = plan(model, real, windows or 0)
     _refuse_extreme(prepared, real)
     if degree is not None:
         return _made(prepared, degree, real)[0]

@@ -20,13 +20,12 @@ from math import inf
 from flint import fmpq, fmpq_poly
 
 from wavesym.errors import CostError
-from wavesym.exact.signal import horizon
-from wavesym.model.chain import Chain, chain
-from wavesym.model.light_cone import light_cone, rod_of
-from wavesym.model.node import Node, Quantity, Rod
+from wavesym.model.loads import Applied
+from wavesym.model.model import Model
+from wavesym.model.node import Node
+from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.scene import Observable, Piece, Scene
 
 MOST_PANELS = 16
 # of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
@@ -167,33 +166,32 @@ class Plan:
         return tuple(found)
 
 
-def plan(scene: Scene, real: Real = DOUBLE, windows: int = 0) -> Plan:
-    """The plan of a scene in `real` numbers; what can matter on the first `windows` is part of it too.
+def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
+    """The plan of a model in `real` numbers; what can matter on the first `windows` is part of it too.
 
     CostError where load times have too many different fractional parts.
     """
-    system = chain(scene)
-    tau_max = horizon(scene, real)
-    columns = light_cone(system, scene.outputs, max(tau_max, float(windows)))
-    nodes = [system.nodes[x] for x in columns]
-    pieces = [piece for piece in scene.pieces if rational(piece.time) <= rational(tau_max)]
-    panels = _panels(rational(piece.time) for piece in pieces)
+    tau_max = model.horizon(real)
+    columns = model.light_cone(rational(max(tau_max, float(windows))))
+    nodes = [model.chain.nodes[x] for x in columns]
+    loads = model.acting(rational(tau_max))
+    panels = _panels(load.time for load in loads)
     loaded = tuple(column for column, node in enumerate(nodes) if node.loads)
-    starts = [_start(node.left) / 2 for node in nodes] + [_start(nodes[-1].right) / 2]
+    starts = [rod.velocity / 2 if rod else fmpq(0) for rod in (*(node.left for node in nodes), nodes[-1].right)]
     return Plan(
         panels,
-        tuple(_junctions(system, columns)),
+        tuple(_junctions(nodes)),
         tuple(starts),
         loaded,
-        tuple(_events(nodes, loaded, pieces, panels)),
+        tuple(_events(nodes, loaded, loads, panels)),
         tuple(_channels(nodes, loaded)),
-        tuple(_watched(output, columns.start) for output in scene.outputs),
+        tuple(_watched(probe, columns.start) for probe in model.probes),
         tau_max,
         columns.start,
-        inf if len(columns) == system.m + 1 else max(tau_max, float(windows)),
-        nearest(max(rational(scene.output.tolerance), 64 * real.roundoff)),
+        inf if len(columns) == model.chain.m + 1 else max(tau_max, float(windows)),
+        nearest(max(model.tolerance, 64 * real.roundoff)),
         # no less than what the arithmetic of so many nodes loses on all windows
-        nearest(max(rational(scene.output.tolerance) / _ESTIMATED, real.roundoff * len(nodes) * (int(tau_max) + 1))),
+        nearest(max(model.tolerance / _ESTIMATED, real.roundoff * len(nodes) * (int(tau_max) + 1))),
     )
 
 
@@ -206,33 +204,31 @@ def _panels(times: Iterable[fmpq]) -> tuple[Panel, ...]:
     return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
 
 
-def _junctions(system: Chain, columns: range) -> Iterator[Junction]:
+def _junctions(nodes: Sequence[Node]) -> Iterator[Junction]:
     """The impedances follow from rod to rod: at a node they are as alpha to beta."""
     impedance = fmpq(1)
-    for x in columns:
-        node = system.nodes[x]
-        alpha, beta = _exact(node.alpha), _exact(node.beta)
-        g = _g(node)
+    for node in nodes:
+        alpha, beta, g = node.alpha, node.beta, node.radiation
         left = impedance if node.left else fmpq(0)
         if node.left and node.right:
             impedance *= beta / alpha
         right = impedance if node.right else fmpq(0)
         # alpha = 2 left / M, and inertia counts in units of M
         mass = node.inertia * (2 * right / beta if node.right else 2 * left / alpha) if node.inertia else fmpq(0)
-        rate = g / node.inertia if node.inertia else None
-        yield Junction(alpha / g, beta / g, rate, left, right, mass, _start(node.left or node.right))
+        rate = node.rate if node.inertia else None
+        yield Junction(alpha / g, beta / g, rate, left, right, mass, node.velocity)
 
 
 def _events(
-    nodes: Sequence[Node], loaded: Sequence[int], pieces: Sequence[Piece], panels: Sequence[Panel]
+    nodes: Sequence[Node], loaded: Sequence[int], loads: Sequence[Applied], panels: Sequence[Panel]
 ) -> list[Event]:
     gains: dict[fmpq, dict[int, fmpq_poly]] = defaultdict(dict)
-    for piece in pieces:
+    for load in loads:
         for force, column in enumerate(loaded):
-            for load in nodes[column].loads:
-                if f"{load.kind}{load.number or ''}" == piece.source:
-                    new = rational(piece.weight) / _g(nodes[column]) * fmpq_poly([_exact(c) for c in load.coefficients])
-                    at = gains[rational(piece.time)]
+            for unit in nodes[column].loads:
+                if unit.source == load.source:
+                    new = load.weight / nodes[column].radiation * fmpq_poly(list(unit.coefficients))
+                    at = gains[load.time]
                     at[force] = at.get(force, fmpq_poly()) + new
     places = {panel.start: number for number, panel in enumerate(panels)}
     now: dict[int, tuple[fmpq, fmpq_poly]] = {}
@@ -262,22 +258,9 @@ def _channels(nodes: Sequence[Node], loaded: Sequence[int]) -> Iterator[Channel]
         for load in nodes[column].loads:
             if load.kind != "b":  # a ramp of the acceleration is an acceleration
                 order = len(load.coefficients) - 1
-                gain = _exact(load.coefficients[order]) / _g(nodes[column])
-                yield Channel(f"{load.kind}{load.number or ''}", force, gain, order)
+                gain = load.coefficients[order] / nodes[column].radiation
+                yield Channel(load.source, force, gain, order)
 
 
-def _watched(output: Observable, first: int) -> Watched:
-    rod = rod_of(output)
-    return Watched(output.name, output.quantity, rod - 1 - first, rod - first, rational(output.x) - (rod - 1))
-
-
-def _g(node: Node) -> fmpq:
-    return _exact(node.damping) + (_exact(node.alpha) + _exact(node.beta)) / 2
-
-
-def _start(rod: Rod | None) -> fmpq:
-    return _exact(rod.velocity) if rod else fmpq(0)
-
-
-def _exact(value: Quantity) -> fmpq:
-    return value if isinstance(value, fmpq) else rational(value)
+def _watched(probe: Probe, first: int) -> Watched:
+    return Watched(probe.name, probe.quantity, probe.rod - 1 - first, probe.rod - first, probe.place)

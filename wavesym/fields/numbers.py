@@ -10,7 +10,7 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, FailFast, PlainSerializer, PlainValidator
 
-from wavesym.scene.table import Written, listed, shown, wrong
+from wavesym.fields.table import Written, listed, shown, wrong
 
 # Short and of moderate size, so that no scene can make a number that takes long, or that is infinite or 0 as a double.
 LONGEST = 100

@@ -1,0 +1,103 @@
+"""What loads have in common, as tables of a scene: times with a number for each, or samples at a spacing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import pairwise
+from typing import ClassVar
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from wavesym.fields.numbers import Numbers, Positive
+from wavesym.fields.table import Table, shown, wrong
+from wavesym.model.loads import Applied
+from wavesym.numbers.doubles import rational
+
+_LONG = 440  # characters of a load that is written out
+
+
+class Load(Table):
+    """A load of a scene."""
+
+    def refused(self, m: int) -> tuple[str, str] | None:
+        """What is wrong with it on a system of m elements, and under which key; None where nothing is."""
+        return None
+
+    def units(self) -> Iterator[Applied]:
+        """The load as unit responses."""
+        raise NotImplementedError
+
+    @property
+    def told(self) -> str:
+        """In a line, and a long one by its size; empty where it is nothing."""
+        raise NotImplementedError
+
+
+LoadKinds = tuple[type[Load], ...]
+
+
+class TimedLoad(Load):
+    """A load that changes at given times, with a number in each other list for each of them."""
+
+    times: Numbers = Field(description="a list of times")
+
+    @field_validator("times")
+    @classmethod
+    def _increasing(cls, times: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
+        if times and times[0] < 0:
+            raise wrong(f"{shown(times[0])} given, a time of at least 0 expected", 0)
+        for k, (before, time) in enumerate(pairwise(times), 1):
+            if time <= before:
+                raise wrong(f"{shown(time)} given, more than the {shown(before)} before it expected", k)
+        return times
+
+    @field_validator("steps", "a", "b", check_fields=False)
+    @classmethod
+    def _one_a_time(cls, numbers: tuple[Fraction, ...], info: ValidationInfo) -> tuple[Fraction, ...]:
+        times = info.data.get("times")
+        if times is not None and len(numbers) != len(times):
+            raise wrong(f"{len(numbers)} numbers given, {len(times)} expected (as many as times)")
+        return numbers
+
+    @property
+    def told(self) -> str:
+        """In a line, and a long one by its size; empty where it is nothing."""
+        line = ", ".join(f"{unit.weight} {unit.source} at {unit.time}" for unit in self.units() if unit.weight)
+        if len(line) > _LONG:
+            return f"{len(self.times)} changes from tau = {self.times[0]} to {self.times[-1]}"
+        return line
+
+
+class SampledLoad(Load):
+    """A load that is linear between its samples at tau = 0, spacing, ... and constant after the last.
+
+    `step` and `ramp` are the sources that a system has for it.
+    """
+
+    step: ClassVar[str]
+    ramp: ClassVar[str]
+
+    spacing: Positive = Field(description="the time between samples")
+    samples: Numbers = Field(description="a list of numbers")
+
+    @field_validator("samples")
+    @classmethod
+    def _some(cls, samples: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
+        if not samples:
+            raise wrong("no numbers given, at least 1 expected")
+        return samples
+
+    def units(self) -> Iterator[Applied]:
+        """The load as unit responses: the first sample, and the changes of slope."""
+        yield Applied(self.step, rational(Fraction(0)), rational(self.samples[0]))
+        slope = Fraction(0)
+        for k, (left, right) in enumerate(pairwise((*self.samples, self.samples[-1]))):
+            before, slope = slope, (right - left) / self.spacing
+            yield Applied(self.ramp, rational(k * self.spacing), rational(slope - before))
+
+    @property
+    def told(self) -> str:
+        """In a line."""
+        last = (len(self.samples) - 1) * self.spacing
+        return f"{len(self.samples)} samples at {self.spacing}, to tau = {last}"

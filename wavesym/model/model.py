@@ -1,0 +1,68 @@
+"""The intermediate form: a scene as engines take it, lowered once; every number exact, all of it frozen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from flint import fmpq
+
+from wavesym.model.chain import Chain
+from wavesym.model.light_cone import felt, light_cone
+from wavesym.model.loads import Applied
+from wavesym.model.probe import Probe
+from wavesym.numbers.reals import DOUBLE, Real
+
+
+@dataclass(frozen=True)
+class Labels:
+    """What to call a model's parts: `system` its type and what was chosen of it, `loads` a line for each load."""
+
+    system: Mapping[str, str]
+    loads: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Model:
+    """A chain, the loads on it, what is watched until tau = `until`, and the error allowed.
+
+    `tolerance` is relative to an output's largest value. Loads are sorted by time.
+    """
+
+    name: str
+    chain: Chain
+    loads: tuple[Applied, ...]
+    probes: tuple[Probe, ...]
+    until: fmpq
+    tolerance: fmpq
+    labels: Labels
+
+    def horizon(self, real: Real = DOUBLE) -> float:
+        """The last tau in `real` numbers: the smallest of them that is not below `until`."""
+        return real.not_below(self.until)
+
+    def acting(self, until: fmpq) -> tuple[Applied, ...]:
+        """The loads that begin by then."""
+        return tuple(load for load in self.loads if load.time <= until)
+
+    def light_cone(self, until: fmpq) -> range:
+        """The numbers of the nodes that can influence an output by then."""
+        return light_cone(self.chain, self.probes, until)
+
+    @cached_property
+    def felt(self) -> dict[str, dict[int, fmpq]]:
+        """The parameters that can matter to an output within the horizon, by name and index."""
+        return felt(self.chain, self.probes, self.until)
+
+    def shortened(self, until: fmpq) -> Model:
+        """The same with an earlier end."""
+        return replace(self, until=until)
+
+    def tolerating(self, tolerance: fmpq) -> Model:
+        """The same with another error allowed."""
+        return replace(self, tolerance=tolerance)
+
+    def watching(self, probes: Iterable[Probe]) -> Model:
+        """The same with other outputs."""
+        return replace(self, probes=tuple(probes))

@@ -1,1 +1,0 @@
-"""The systems of the paper, each in a file."""

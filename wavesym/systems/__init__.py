@@ -1,0 +1,13 @@
+"""The systems of the paper, each in one file: its table in a scene, its loads, and its nodes for any m."""
+
+from __future__ import annotations
+
+from wavesym.systems.building import Building
+from wavesym.systems.collision import Collision
+from wavesym.systems.drive import Drive
+from wavesym.systems.preset import Preset
+
+__all__ = ["SYSTEMS", "Building", "Collision", "Drive", "Preset"]
+
+SYSTEMS: dict[str, type[Preset]] = {"collision": Collision, "drive": Drive, "building": Building}
+"""By the `type` that a scene says; one more system is one more entry."""

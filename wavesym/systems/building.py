@@ -1,0 +1,103 @@
+"""System III: a building of m storeys under base acceleration; (4.5), and with a base that moves with the ground.
+
+The paper's base ("force") balances the foundation's inertia M_0 a against the columns. It is not a foundation that
+moves with the ground ("ground"), whose velocity is the integral of the acceleration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from fractions import Fraction
+from functools import partial
+from typing import ClassVar, Literal
+
+from pydantic import Field, field_validator
+
+from wavesym.fields.loads import LoadKinds, SampledLoad, TimedLoad
+from wavesym.fields.numbers import Numbers, Positives
+from wavesym.fields.table import shown, wrong
+from wavesym.model.loads import Applied
+from wavesym.model.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
+from wavesym.numbers.doubles import rational
+from wavesym.systems.preset import Preset
+
+
+def _force(storey: Rod, p: Parameters) -> Node:
+    loads = (UnitLoad("a", None, (-1 / p.kappa[0],)), UnitLoad("b", None, (0, -1 / p.kappa[0])))
+    return Node(None, storey, inertia=0, alpha=0, beta=2, loads=loads)
+
+
+def _ground(storey: Rod, p: Parameters) -> Node:
+    loads = (UnitLoad("a", None, (0, 1)), UnitLoad("b", None, (0, 0, Fraction(1, 2))))
+    return Node(None, storey, inertia=0, alpha=0, beta=0, damping=1, loads=loads)
+
+
+def _families(base: Callable[[Rod, Parameters], Node], m: Quantity, p: Parameters) -> tuple[Family, ...]:
+    def storey(i: Quantity) -> Rod:
+        return Rod(tau0=i - 1, x0=i - 1)
+
+    def floor(i: Quantity) -> Node:
+        return Node(storey(i), storey(i + 1), inertia=1, alpha=2 * p.kappa[i], beta=2 * p.kappa[i])
+
+    return (
+        single(0, lambda: base(storey(1), p)),
+        Family(1, m - 1, 1, floor),
+        single(m, lambda: Node(storey(m), None, inertia=1, alpha=2 * p.kappa[m], beta=0)),
+    )
+
+
+def _indices(m: int) -> Mapping[str, range]:
+    return {"kappa": range(m + 1)}
+
+
+BUILDING_FORCE = System("building-force", partial(_families, _force), _indices, smallest=2)
+BUILDING_GROUND = System("building-ground", partial(_families, _ground), _indices, smallest=2)
+
+
+class Acceleration(TimedLoad):
+    """(3.2): the base acceleration of a building, sum_k (a_k + b_k (tau - times_k)) H(tau - times_k)."""
+
+    a: Numbers = Field(description="a list with a number for each time")
+    b: Numbers = Field(description="a list with a number for each time")
+
+    def units(self) -> Iterator[Applied]:
+        """The load as unit responses."""
+        for time, a, b in zip(self.times, self.a, self.b, strict=True):
+            yield Applied("a", rational(time), rational(a))
+            yield Applied("b", rational(time), rational(b))
+
+
+class SampledAcceleration(SampledLoad):
+    """A base acceleration that is linear between its samples."""
+
+    step: ClassVar[str] = "a"
+    ramp: ClassVar[str] = "b"
+
+
+class Building(Preset):
+    """m storeys between the foundation at x = 0, floors, and the roof at x = m."""
+
+    variants: ClassVar[tuple[System, ...]] = (BUILDING_FORCE, BUILDING_GROUND)
+    counts: ClassVar[Mapping[str, str]] = {"kappa": "m + 1"}
+    load_kinds: ClassVar[LoadKinds] = (Acceleration, SampledAcceleration)
+
+    type: Literal["building"] = Field(description='"building"')
+    kappa: Positives = Field(description="a list of m + 1 positive numbers")
+    base: Literal["force", "ground"] = Field(description='"force" or "ground"')
+
+    @field_validator("base", mode="before")
+    @classmethod
+    def _known(cls, base: object) -> object:
+        if base not in ("force", "ground"):
+            raise wrong(f'{shown(base)} given, "force" or "ground" expected')
+        return base
+
+    @property
+    def system(self) -> System:
+        """The one of the two variants."""
+        return BUILDING_FORCE if self.base == "force" else BUILDING_GROUND
+
+    @property
+    def choices(self) -> Mapping[str, str]:
+        """Which base."""
+        return {"base": self.base}

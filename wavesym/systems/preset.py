@@ -1,0 +1,80 @@
+"""What the systems have in common as tables of a scene: how many elements, and lists of numbers for what is between.
+
+Nothing of size m is built before as many numbers are seen to be given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cached_property
+from typing import ClassVar
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from wavesym.fields.loads import LoadKinds
+from wavesym.fields.numbers import Integer
+from wavesym.fields.table import Table, shown, wrong
+from wavesym.model.chain import Chain
+from wavesym.model.node import Parameters, System
+from wavesym.numbers.doubles import rational
+
+
+class Preset(Table):
+    """m elastic elements of a system, with numbers for its parameters.
+
+    `variants` are what `derive` prints of it; their m and their indices say how many numbers a list has, `counts` the
+    formula as users know it. `load_kinds` are the tables that its loads may be, `no_loads` why there are none.
+    """
+
+    variants: ClassVar[tuple[System, ...]]
+    counts: ClassVar[Mapping[str, str]]
+    load_kinds: ClassVar[LoadKinds] = ()
+    no_loads: ClassVar[str] = ""
+
+    type: str
+    m: Integer = Field(description="the number of elastic elements")
+
+    @field_validator("m")
+    @classmethod
+    def _possible(cls, m: int) -> int:
+        system = cls.variants[0]
+        if m < system.smallest or m % system.step:
+            kind = "an even integer" if system.step == 2 else "an integer"
+            raise wrong(f"{shown(m)} given, {kind} of at least {system.smallest} expected")
+        return m
+
+    @field_validator("*")
+    @classmethod
+    def _counted(cls, value: object, info: ValidationInfo) -> object:
+        m = info.data.get("m")  # None where it was refused, which is then what the user reads
+        name = str(info.field_name)
+        if name in cls.counts and m is not None and isinstance(value, tuple):
+            indices = cls.variants[0].indices(m)[name]
+            count = max(0, -((indices.start - indices.stop) // indices.step))  # len() has a limit
+            if len(value) != count:
+                raise wrong(f"{len(value)} numbers given, {shown(count)} expected ({cls.counts[name]})")
+        return value
+
+    @property
+    def system(self) -> System:
+        """Which of the variants it is."""
+        return self.variants[0]
+
+    @property
+    def choices(self) -> Mapping[str, str]:
+        """What was chosen besides numbers, by key."""
+        return {}
+
+    @cached_property
+    def chain(self) -> Chain:
+        """Its nodes and rods, with these numbers."""
+        indices = self.system.indices(self.m)
+        numbers = {
+            name: dict(zip(indices[name], map(rational, getattr(self, name)), strict=True)) for name in self.counts
+        }
+        return Chain(self.system, self.m, Parameters(**numbers))
+
+    def divided_at(self, x: Fraction) -> bool:
+        """Whether a rigid body lies at x (in rod lengths), strictly inside the chain."""
+        return 0 < x < self.m and x.denominator == 1 and bool(self.chain.nodes[int(x)].inertia)
