@@ -1,6 +1,6 @@
-"""Boundary conditions -> delay equations: (4.2) put into (2.3) and (2.4) at every node, as in (4.6)-(4.8).
+"""The law of a node on the clocks of Table 1: the delay equations, as in (4.6)-(4.8).
 
-At a node two waves leave, one to each side. Continuity (2.3) gives one of them, the balance (2.4) the other.
+At a node two waves leave, one to each side. Continuity (2.3) gives one of them, the node's law the other.
 """
 
 from __future__ import annotations
@@ -11,11 +11,14 @@ from functools import cache
 from sympy import Expr, IndexedBase, Integer, Rational, Symbol
 
 from wavesym.derivation.delay_terms import Line, Operator, Wave, exact, load, wave
+from wavesym.derivation.node_law import node_law
 from wavesym.model.node import Family, Node, Parameters, Rod, System
 
 INDEX = Symbol("i", integer=True, positive=True)
 COUNT = Symbol("m", integer=True, positive=True)
-SYMBOLS = Parameters(kappa=IndexedBase("kappa"), inertia=IndexedBase("J"), velocity=IndexedBase("v"))
+SYMBOLS = Parameters(
+    kappa=IndexedBase("kappa"), inertia=IndexedBase("J"), velocity=IndexedBase("v"), dashpot=IndexedBase("b")
+)
 
 
 @dataclass(frozen=True)
@@ -36,11 +39,15 @@ class DelayEquation:
 
 @dataclass(frozen=True)
 class Side:
-    """A rod as its end at a node sees it: velocity and strain there, as lines in the clock tau."""
+    """A rod as its end at a node sees it: velocity and strain there, as lines in the clock tau.
+
+    `arriving` is the wave that comes to the node, as a velocity: of the rod's own, each wave has half.
+    """
 
     rod: Expr
     velocity: Line
     strain: Line
+    arriving: Line
     outgoing: Wave
 
 
@@ -48,8 +55,13 @@ def side(rod: Rod, number: Expr, x: Expr, outgoing: str) -> Side:
     """Rod `number` at x, by (4.2): velocity f' + g' + v and strain g' - f'."""
     lag = {"f": exact(rod.tau0 + x - rod.x0), "g": exact(rod.tau0 - x + rod.x0)}
     f, g = wave("f", number, lag["f"]), wave("g", number, lag["g"])
+    moving = load("impact", None, 0, rod.velocity)
     return Side(
-        number, f + g + load("impact", None, 0, rod.velocity), g - f, Wave(outgoing, exact(number), lag[outgoing])
+        number,
+        velocity=f + g + moving,
+        strain=g - f,
+        arriving=(f if outgoing == "g" else g) + moving.scaled(Rational(1, 2)),
+        outgoing=Wave(outgoing, exact(number), lag[outgoing]),
     )
 
 
@@ -80,25 +92,41 @@ def balance(node: Node, x: Expr) -> tuple[Line, Line]:
         force = force + right.strain.scaled(Rational(1, 2) * node.beta)
     if left:
         force = force - left.strain.scaled(Rational(1, 2) * node.alpha)
-    for unit in node.loads:
-        for power, value in enumerate(unit.coefficients):
-            force = force + load(unit.kind, unit.number, power, value)
-    return motion, force
+    return motion, force + loads(node)
+
+
+def loads(node: Node) -> Line:
+    """What acts on a node."""
+    units = ((unit, power, value) for unit in node.loads for power, value in enumerate(unit.coefficients))
+    return sum((load(unit.kind, unit.number, power, value) for unit, power, value in units), Line())
+
+
+def _lawful(node: Node, left: Side | None, right: Side | None, moving: Side) -> Line:
+    """What the node's law makes 0, with the velocity as one of its rods has it."""
+    law = node_law().at(node)
+    line = moving.velocity.scaled(law.own.b) - loads(node).scaled(law.load)
+    if law.own.a != 0:
+        line = line + moving.velocity.differentiated().scaled(law.own.a)
+    for side, factor in ((left, law.left), (right, law.right)):
+        if side:
+            line = line - side.arriving.scaled(factor)
+    return line
 
 
 def _at_node(node: Node, x: Expr) -> list[tuple[Wave, Operator, Line]]:
     """The waves that leave the node at x: each as (wave, its operator, what that equals)."""
     left, right = sides(node, x)
-    motion, force = balance(node, x)
     if left is None or right is None:
         end = left or right
         assert end is not None  # a node has a rod
-        return [(end.outgoing, *_solved(motion - force, end.outgoing))]
+        return [(end.outgoing, *_solved(_lawful(node, left, right, end), end.outgoing))]
     # Continuity must look back in time, so it gives the wave that is ahead on its clock; on a tie, the right one.
-    ahead, other = (right, left) if (right.outgoing.lag - left.outgoing.lag).is_nonpositive else (left, right)
+    later = exact(right.outgoing.lag - left.outgoing.lag)
+    if later.is_nonpositive is None:
+        raise ValueError(f"which wave is ahead at x = {x} is not decided: {later} may have either sign")
+    ahead, other = (right, left) if later.is_nonpositive else (left, right)
     _, continuous = _solved(ahead.velocity - other.velocity, ahead.outgoing)
-    balanced = (motion - force).substituted(ahead.outgoing.function, ahead.rod, continuous)
-    own, rest = _solved(balanced, other.outgoing)
+    own, rest = _solved(_lawful(node, left, right, other), other.outgoing)
     if own.a == 0:
         continuous = continuous.substituted(other.outgoing.function, other.rod, rest)
     return [(ahead.outgoing, Operator(Integer(0), Integer(1)), continuous), (other.outgoing, own, rest)]

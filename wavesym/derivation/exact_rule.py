@@ -1,4 +1,4 @@
-"""The coefficient recurrence of one wave function in exact numbers: what a table is run from. No SymPy here.
+"""The derived laws in exact numbers: what tables, pieces and marches are run from. No SymPy here.
 
 The increment that a function gains at the start of an interval is sum_g exp(-g w) sum_k F[g,k] w**k. To apply a D + b
 to it, D = d/dw, is to put, for every rate g and power k,
@@ -61,6 +61,21 @@ class Rule:
     own: Weights
     terms: tuple[Term, ...]
     loads: tuple[LoadTerm, ...]
+
+
+class NodeRule(NamedTuple):
+    """A node's law on powers of u, on a stretch without fronts: from r = `left` a + `right` b + `load` times what acts,
+
+        same q_k + raised(k) q_(k+1) = r_k,
+
+    so that powers of the velocity q go up, from its value at the start; without inertia `raised` is 0.
+    """
+
+    same: fmpq
+    raised: Linear
+    left: fmpq
+    right: fmpq
+    load: fmpq
 
 
 DERIVATIVE = Weights(Linear(fmpq(0), fmpq(-1)), Linear(fmpq(1), fmpq(1)), fmpq(1))

@@ -14,10 +14,10 @@ from wavesym.model.node import Parameters
 if TYPE_CHECKING:
     from wavesym.numbers.ratio import Ratio
 
-_FIELDS = {"kappa": "kappa", "J": "inertia", "v": "velocity"}
+_FIELDS = {"kappa": "kappa", "J": "inertia", "v": "velocity", "b": "dashpot"}
 
 
-def number(expression: Expr, places: Mapping[str, int], parameters: Parameters | None) -> fmpq:
+def number(expression: Expr, places: Mapping[str, int | fmpq], parameters: Parameters | None) -> fmpq:
     """`expression` with `places` for its symbols and `parameters` for kappa, J and v. TypeError for anything else."""
     match expression:
         case Rational():

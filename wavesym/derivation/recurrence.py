@@ -1,11 +1,15 @@
-"""Delay equations -> coefficient recurrences, with symbolic rod, interval and power, and their numbers for one chain.
+"""Laws of coefficients, with symbolic rod, interval and power, and their numbers for one chain.
+
+Two ansaetze lead to them. Exponentials times powers, put into the delay equations, give the recurrences of the paper,
+which tables run. Powers alone, put into the law of a node on a stretch without fronts, give what pieces and marches
+run: that is the first ansatz at the one rate 0.
 
 The recurrences that `derive` prints are the ones that `tables` runs: `Recurrence.rule` evaluates them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, reduce
 from math import gcd
@@ -15,10 +19,11 @@ from sympy import Expr, Symbol, exp
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation, delay_equations
 from wavesym.derivation.delay_terms import Operator
-from wavesym.derivation.exact_rule import Linear, LoadTerm, Rule, Term, Weights
+from wavesym.derivation.exact_rule import Linear, LoadTerm, NodeRule, Rule, Term, Weights
+from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, NodeLaw, node_law
 from wavesym.derivation.numbers import number
 from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters, System
+from wavesym.model.node import Node, Parameters, System
 
 RATE = Symbol("g")
 POWER = Symbol("k", integer=True, nonnegative=True)
@@ -117,6 +122,40 @@ def recurrence(system: System, parameters: Parameters = SYMBOLS) -> Recurrence:
     return Recurrence(tuple(coefficient_law(e, interval) for e in equations), interval)
 
 
+@dataclass(frozen=True)
+class StretchLaw:
+    """A node on a stretch without fronts: `own` of the velocity = left a + right b + load, power by power."""
+
+    own: SymbolicWeights
+    left: Expr
+    right: Expr
+    load: Expr
+
+
+def stretch_law(law: NodeLaw) -> StretchLaw:
+    """What a node's law makes of powers: the ansatz at rate 0."""
+    own = weights(law.own)
+    return StretchLaw(SymbolicWeights(own.same.subs(RATE, 0), own.raised, own.jump), law.left, law.right, law.load)
+
+
+def node_rule(node: Node) -> NodeRule:
+    """The law of one node on powers, in exact numbers."""
+    law = stretch_law(node_law())
+    places = {
+        INERTIA.name: node.inertia,
+        DAMPING.name: node.damping,
+        ALPHA.name: node.alpha if node.left else fmpq(0),
+        BETA.name: node.beta if node.right else fmpq(0),
+    }
+
+    def value(expression: Expr) -> fmpq:
+        return number(expression, places, None)
+
+    return NodeRule(
+        value(law.own.same), _linear(law.own.raised, POWER, value), *map(value, (law.left, law.right, law.load))
+    )
+
+
 def coefficient_law(e: DelayEquation, interval: int) -> CoefficientLaw:
     """The recurrence that a delay equation is, all of whose lags are whole intervals."""
     return CoefficientLaw(
@@ -140,16 +179,16 @@ def _place(expression: Expr, places: Mapping[str, int]) -> int:
     return int(number(expression, places, None))
 
 
+def _linear(expression: Expr, variable: Symbol, value: Callable[[Expr], fmpq]) -> Linear:
+    return Linear(value(expression.subs(variable, 0)), value(expression.expand().coeff(variable)))
+
+
 def _rule(law: CoefficientLaw, parameters: Parameters, places: Mapping[str, int]) -> Rule:
     def value(expression: Expr) -> fmpq:
         return number(expression, places, parameters)
 
-    def linear(expression: Expr, variable: Symbol) -> Linear:
-        slope = expression.expand().coeff(variable)
-        return Linear(value(expression.subs(variable, 0)), value(slope))
-
     def exact(w: SymbolicWeights) -> Weights:
-        return Weights(linear(w.same, RATE), linear(w.raised, POWER), value(w.jump))
+        return Weights(_linear(w.same, RATE, value), _linear(w.raised, POWER, value), value(w.jump))
 
     def source(kind: str, index: Expr | None) -> str:
         return kind if index is None else f"{kind}{_place(index, places)}"

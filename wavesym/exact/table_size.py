@@ -54,7 +54,7 @@ def table_size(chain: Chain, interval: int, wanted: Mapping[K, int], sources: It
     increments = 2 * len(places) * float(np.sum((last - starts) // interval + 1))
     if _ENTRY * increments > LARGEST:
         return Size(0, _ENTRY * increments, 0)
-    rates = {(node.damping + (node.alpha + node.beta) / 2) / node.inertia for node in chain.nodes if node.inertia}
+    rates = {node.rate for node in chain.nodes if node.inertia}
     bodies = sum(bool(node.inertia) for node in chain.nodes)
     dense = bodies / len(chain.nodes)
     height = sum(map(_bits, rates)) / max(len(rates), 1)
@@ -123,7 +123,7 @@ def _places(chain: Chain, sources: set[str]) -> dict[str, list[int]]:
     """The nodes at which sources act; an impact acts where velocities meet."""
     places: dict[str, list[int]] = defaultdict(list)
     for x, node in enumerate(chain.nodes):
-        names = [f"{load.kind}{load.number or ''}" for load in node.loads]
+        names = [load.source for load in node.loads]
         if node.left and node.right and node.left.velocity != node.right.velocity:
             names.append("impact")
         for name in sources.intersection(names):

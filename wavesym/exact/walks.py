@@ -15,14 +15,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from itertools import count, islice
 from math import factorial
 from typing import Any, NamedTuple
 
-from flint import Ordering, fmpq, fmpz_mpoly, fmpz_mpoly_ctx
+from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 
+from wavesym.errors import WavesymError
 from wavesym.exact.table import Function
 from wavesym.model.chain import Chain
 from wavesym.model.node import Node, Quantity
@@ -85,9 +85,11 @@ def letters(chain: Chain) -> Letters:
     share: dict[int, str | int] = {}
     for x, node in enumerate(chain.nodes):
         if node.inertia:
-            rate = _rate(node)
+            if node.damping != 0:
+                raise WavesymError(f"system: the body at x = {x} has a dashpot, which walk polynomials do not have")
+            rate = node.radiation
             visit[x] = _letter("T", rates, rate)
-            twice = _exact(node.beta) / rate
+            twice = node.beta / rate
             whole = next((number for number in range(3) if twice == number), None)
             share[x] = _letter("p", shares, twice / 2) if whole is None else whole
     return Letters(rates, shares, visit, share)
@@ -99,10 +101,10 @@ def units(chain: Chain) -> tuple[Unit, ...]:
     for x, node in enumerate(chain.nodes):
         for load in node.loads:
             ((power, value),) = ((k, c) for k, c in enumerate(load.coefficients) if c != 0)
-            factor = _exact(value) * factorial(power) / _rate(node)
-            found.append(Unit(f"{load.kind}{load.number or ''}", x, factor, power, node.left is not None, 1))
+            factor = value * factorial(power) / node.radiation
+            found.append(Unit(load.source, x, factor, power, node.left is not None, 1))
         if not node.inertia and node.left and node.right and node.left.velocity != node.right.velocity:
-            jump = (_exact(node.left.velocity) - node.right.velocity) / 2
+            jump = (node.left.velocity - node.right.velocity) / 2
             found.append(Unit(f"impact at x = {x}", x, jump, 0, -1, 1))
     return tuple(found)
 
@@ -156,12 +158,8 @@ def _scattering(
         right = (2 * values[share] if isinstance(share, str) else share) * visit
         left = 2 * visit - right
     else:
-        left, right = (_whole(_exact(pull) / _rate(node)) for pull in (node.alpha, node.beta))
+        left, right = (_whole(pull / node.radiation) for pull in (node.alpha, node.beta))
     return (left - 1, right), (left, right - 1)
-
-
-def _rate(node: Node) -> Quantity:
-    return _exact(node.damping) + (_exact(node.alpha) + node.beta) / 2
 
 
 def _whole(value: Quantity) -> int:
@@ -176,7 +174,3 @@ def _letter(kind: str, known: dict[str, Quantity], value: Quantity) -> str:
     name = f"{kind}_{len(known) + 1}"
     known[name] = value
     return name
-
-
-def _exact(value: Quantity) -> Quantity:
-    return fmpq(value.numerator, value.denominator) if isinstance(value, (int, Fraction)) else value

@@ -5,10 +5,11 @@ independent of each other (numerics, sections 1 and 4). Inside a window waves ar
 the load times; there it is cut into panels. On a panel, in u = tau - (its start), a wave is a polynomial in balls plus
 a function that is nowhere larger than `error`: with arriving waves a, b and the load's polynomial,
 
-    q' + gamma q = r,  r = alpha a + beta b + load:    q_(k+1) = (r_k - gamma q_k)/(k + 1),  q_0 continuous,
+    same q_k + raised(k) q_(k+1) = r_k,  r = left a + right b + load,  q_0 continuous,
 
-and what is cut off after N terms leaves a defect gamma q_(N-1) u**(N-1). As gamma >= 0, the error of q is at most that
-at the start, and (error of r + defect) / gamma where that is more.
+as it is derived (`derivation.recurrence`), and what is cut off after N terms leaves a defect same q_(N-1) u**(N-1). As
+same >= 0, the error of q is at most that
+at the start, and (error of r + defect) / same where that is more.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from typing import NamedTuple
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.errors import CostError
+from wavesym.exact.node_rules import node_rule
 from wavesym.model.chain import Chain
 from wavesym.model.loads import Applied
 from wavesym.model.node import Node, Rod
@@ -138,31 +140,32 @@ class _Body:
     """A node in motion: its law, and its velocity at the end of the last panel."""
 
     def __init__(self, node: Node) -> None:
-        self._alpha, self._beta = arb(node.alpha), arb(node.beta)
-        self._gamma = arb(node.radiation)
-        self._massive = bool(node.inertia)
+        rule = node_rule(node)
+        self._left, self._right, self._load = arb(rule.left), arb(rule.right), arb(rule.load)
+        self._same = arb(rule.same)
+        self._raised = rule.raised
         self._q = _constant(node.velocity)
         self._start = self._q.at(fmpq(0))
 
     def moved(self, a: Wave, b: Wave, load: arb_poly, length: fmpq, terms: int) -> Wave:
         """The velocity on the next panel."""
-        right = self._alpha * a.polynomial + self._beta * b.polynomial + load
-        error = self._alpha * a.error + self._beta * b.error
-        if not self._massive:
-            return Wave(right * (1 / self._gamma), _upper(error / self._gamma))
+        right = self._left * a.polynomial + self._right * b.polynomial + self._load * load
+        error = self._left * a.error + self._right * b.error
+        if not any(self._raised):
+            return Wave(right * (1 / self._same), _upper(error / self._same))
         if right.length() == 0 and error == 0 and self._start.is_zero():
             return STILL
         coefficients = [self._start]
         given = right.coeffs()
         given += [arb(0)] * (terms - len(given))
         last = self._start
-        gamma = self._gamma
+        same, (constant, slope) = self._same, self._raised
         for k in range(terms - 1):
-            last = (given[k] - gamma * last) / (k + 1)
+            last = (given[k] - same * last) / arb(constant + slope * k)
             coefficients.append(last)
         # what the series does not balance: the last power of gamma q, and powers of r that it does not reach
-        defect = (given[terms - 1] - gamma * last) * arb(length) ** (terms - 1)
-        wave = Wave(arb_poly(coefficients), _upper((error + abs(defect)) / gamma))
+        defect = (given[terms - 1] - same * last) * arb(length) ** (terms - 1)
+        wave = Wave(arb_poly(coefficients), _upper((error + abs(defect)) / same))
         self._start = wave.at(length)
         return wave
 

@@ -7,9 +7,10 @@ together u = 0. Rates that meet in a scene, as 2 kappa_1 = kappa_m, meet in its 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
+from math import factorial
 
 from flint import fmpq, fmpq_mpoly
 
@@ -50,23 +51,18 @@ def symbolic(chain: Chain) -> SymbolicChain:
 
 def generic(system: System, m: int) -> SymbolicChain:
     """The chain of m rods whose parameters are all different, and no rates meet."""
-    # any numbers will do that are different; primes, of which no two sums below are equal
-    if system.step == 2:
-        bodies = range(1, m, 2)
-        return symbolic(Chain(system, m, Parameters(_numbers(bodies), velocity={i: fmpq(-(2**i)) for i in bodies})))
-    if system.name == "drive":
-        inertia = {1: fmpq(1)}
-        for i in range(1, m + 1):
-            inertia[i + 1] = inertia[i] / (i + 1)
-        return symbolic(Chain(system, m, Parameters(_numbers(range(1, m + 1)), inertia=inertia)))
-    return symbolic(Chain(system, m, Parameters(_numbers(range(m + 1)))))
+    numbers = {name: {i: _DIFFERENT[name](i) for i in indices} for name, indices in system.indices(m).items()}
+    return symbolic(Chain(system, m, Parameters(**numbers)))
 
 
-def _numbers(indices: range) -> dict[int, fmpq]:
-    return {i: fmpq(1000 ** (i + 1) + i) for i in indices}
-
-
-_TRIVIAL = {"r": fmpq(1), "u": fmpq(0)}
+# any numbers will do of which no two, and no two sums below, are equal
+_DIFFERENT: Mapping[str, Callable[[int], fmpq]] = {
+    "kappa": lambda i: fmpq(1000 ** (i + 1) + i),
+    "inertia": lambda i: fmpq(1, factorial(i)),
+    "velocity": lambda i: fmpq(-(2**i)),
+    "dashpot": lambda i: fmpq(1, 1000 ** (i + 1)),
+}
+_TRIVIAL = {"r": fmpq(1), "u": fmpq(0), "b": fmpq(0)}
 
 
 def _named(p: Parameters) -> dict[str, fmpq]:
@@ -76,7 +72,7 @@ def _named(p: Parameters) -> dict[str, fmpq]:
         named |= {f"r_{i}": p.inertia[i] / p.inertia[i + 1] for i in sorted(p.inertia)[:-1]}
     if p.velocity:
         named |= {f"u_{i + 1}": p.velocity[i] - p.velocity[i + 2] for i in sorted(p.velocity)[:-1]}
-    return named
+    return named | {f"b_{i}": value for i, value in (p.dashpot or {}).items()}
 
 
 def parameters(p: Parameters, named: Mapping[str, Quantity]) -> Parameters:
@@ -92,13 +88,14 @@ def parameters(p: Parameters, named: Mapping[str, Quantity]) -> Parameters:
         velocity = {last: fmpq(0)}
         for i in reversed(others):
             velocity[i] = named[f"u_{i + 1}"] + velocity[i + 2]
-    return Parameters({i: named[f"kappa_{i}"] for i in p.kappa}, inertia, velocity)
+    dashpot = {i: named[f"b_{i}"] for i in p.dashpot} if p.dashpot else None
+    return Parameters({i: named[f"kappa_{i}"] for i in p.kappa}, inertia, velocity, dashpot)
 
 
 def rates(chain: Chain) -> dict[int, Ratio]:
     """The rates of the bodies by their places, those that depend on a symbol."""
-    halves = {x: (node.alpha + node.beta) / 2 for x, node in enumerate(chain.nodes) if node.inertia}
-    return {x: rate for x, rate in halves.items() if isinstance(rate, Ratio)}
+    found = {x: node.rate for x, node in enumerate(chain.nodes) if node.inertia}
+    return {x: rate for x, rate in found.items() if isinstance(rate, Ratio)}
 
 
 def _images(ring: Ring, chain: Chain, values: Mapping[str, fmpq]) -> list[Ratio]:

@@ -20,6 +20,7 @@ from math import inf
 from flint import fmpq, fmpq_poly
 
 from wavesym.errors import CostError
+from wavesym.exact.node_rules import node_rule
 from wavesym.model.loads import Applied
 from wavesym.model.model import Model
 from wavesym.model.node import Node
@@ -208,14 +209,16 @@ def _junctions(nodes: Sequence[Node]) -> Iterator[Junction]:
     """The impedances follow from rod to rod: at a node they are as alpha to beta."""
     impedance = fmpq(1)
     for node in nodes:
-        alpha, beta, g = node.alpha, node.beta, node.radiation
+        rule = node_rule(node)
+        alpha, beta, g = rule.left, rule.right, rule.same
+        inertia = rule.raised.constant
         left = impedance if node.left else fmpq(0)
         if node.left and node.right:
             impedance *= beta / alpha
         right = impedance if node.right else fmpq(0)
         # alpha = 2 left / M, and inertia counts in units of M
-        mass = node.inertia * (2 * right / beta if node.right else 2 * left / alpha) if node.inertia else fmpq(0)
-        rate = node.rate if node.inertia else None
+        mass = inertia * (2 * right / beta if node.right else 2 * left / alpha) if inertia else fmpq(0)
+        rate = g / inertia if inertia else None
         yield Junction(alpha / g, beta / g, rate, left, right, mass, node.velocity)
 
 
@@ -227,7 +230,7 @@ def _events(
         for force, column in enumerate(loaded):
             for unit in nodes[column].loads:
                 if unit.source == load.source:
-                    new = load.weight / nodes[column].radiation * fmpq_poly(list(unit.coefficients))
+                    new = load.weight * _share(nodes[column]) * fmpq_poly(list(unit.coefficients))
                     at = gains[load.time]
                     at[force] = at.get(force, fmpq_poly()) + new
     places = {panel.start: number for number, panel in enumerate(panels)}
@@ -241,6 +244,12 @@ def _events(
             window = int(time.floor())
             events.append(Event(window, places[time - window], force, _three(total)))
     return events
+
+
+def _share(node: Node) -> fmpq:
+    """What a load counts in a law that is divided by g."""
+    rule = node_rule(node)
+    return rule.load / rule.same
 
 
 def power_of_two(numbers: Iterable[fmpq]) -> fmpq:
@@ -258,7 +267,7 @@ def _channels(nodes: Sequence[Node], loaded: Sequence[int]) -> Iterator[Channel]
         for load in nodes[column].loads:
             if load.kind != "b":  # a ramp of the acceleration is an acceleration
                 order = len(load.coefficients) - 1
-                gain = load.coefficients[order] / nodes[column].radiation
+                gain = load.coefficients[order] * _share(nodes[column])
                 yield Channel(load.source, force, gain, order)
 
 

@@ -1,0 +1,22 @@
+"""The laws of a chain's nodes in exact numbers, each derived when it is first asked for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+from wavesym.derivation.exact_rule import NodeRule
+from wavesym.model.node import Node
+
+
+def node_rule(node: Node) -> NodeRule:
+    """The law of a node on powers of time; what acts on it is no part of that."""
+    return _derived(replace(node, loads=()))
+
+
+@cache
+def _derived(node: Node) -> NodeRule:
+    # SymPy is needed only here, where laws are made
+    from wavesym.derivation.recurrence import node_rule
+
+    return node_rule(node)
