@@ -13,7 +13,7 @@ from wavesym.model.symbolic import symbolic
 from wavesym.scene import Scene, builtin_names
 
 SYSTEMS = ("collision", "drive", "building")
-PARTS = ("legend", "conditions", "rods", "nodes", "equations", "recurrences", "displacements")
+PARTS = ("legend", "conditions", "rods", "nodes", "equations", "recurrences", "displacements", "stretches")
 
 
 def of_scene(name, format):
@@ -107,7 +107,7 @@ def test_json_keeps_the_keys_it_had():
 @pytest.mark.parametrize("system", ["collision", "drive"])
 def test_written_out_no_index_is_left(system):
     (statement,) = json.loads(derivation(system, 6, "json"))
-    for part in ("conditions", "rods", "nodes", "equations", "recurrences"):
+    for part in ("conditions", "rods", "nodes", "equations", "recurrences", "stretches"):
         for entry in statement[part]:
             for formula in entry["formulas"]:
                 assert not re.search(r"_\(?[im]\b|\b[im] [-+]", formula), formula

@@ -20,18 +20,18 @@ from wavesym.documents.derivation.highest_powers import (
     PowerFamily,
     PowerRow,
 )
-from wavesym.documents.derivation.statement import SYSTEMS
 from wavesym.exact.table import Function, Rules
 from wavesym.exact.walks import Unit, departures, function_walks, letters, units, walks_until
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
 from wavesym.model.symbolic import generic
+from wavesym.systems import SYSTEMS
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE
 from wavesym.verification.powers import steps
 
-BY_NAME = {system.name: system for systems in SYSTEMS.values() for system in systems}
+BY_NAME = {system.name: system for preset in SYSTEMS.values() for system in preset.variants}
 FAMILIES = [
     pytest.param(BY_NAME[name], family, id=f"{name}-{family.rate}")
     for name, families in POWERS.items()

@@ -15,7 +15,6 @@ from wavesym.errors import SceneError
 if TYPE_CHECKING:
     from wavesym.scene import Scene
 
-SYSTEMS = ("collision", "drive", "building")
 WALKED = 4  # intervals, unless more are asked for
 
 
@@ -25,25 +24,32 @@ class _Source(click.ParamType[Any]):
     name = "source"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str | Scene:
-        """A name among SYSTEMS, or the scene; click.BadParameter where it is neither, SceneError for a wrong scene."""
-        if value in SYSTEMS:
+        """A system's name, or the scene; click.BadParameter where it is neither, SceneError for a wrong scene."""
+        if value in system_names():
             return str(value)
         try:
             return SCENE.convert(value, param, ctx)
         except SceneError as error:
             if error.path or value == "-" or Path(value).exists():
                 raise
-            names = f"'{{{'|'.join(SYSTEMS)}}}' or SCENE"
+            names = f"'{{{'|'.join(system_names())}}}' or SCENE"
             raise click.BadParameter(f"{value!r} is neither a system nor a scene.", ctx, param, names) from None
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
         """Systems, and what completes a scene."""
-        systems = [CompletionItem(name) for name in SYSTEMS if name.startswith(incomplete)]
+        systems = [CompletionItem(name) for name in system_names() if name.startswith(incomplete)]
         return SCENE.shell_complete(ctx, param, incomplete) + systems
 
 
+def system_names() -> tuple[str, ...]:
+    """The systems that there are."""
+    from wavesym.systems import SYSTEMS
+
+    return tuple(SYSTEMS)
+
+
 @click.command()
-@click.argument("source", type=_Source(), metavar=f"{{{'|'.join(SYSTEMS)}}}|SCENE")
+@click.argument("source", type=_Source(), metavar="SYSTEM|SCENE")
 @click.option("--m", type=int, metavar="M", help="Write every line out for M elastic elements; a scene has its own.")
 @click.option(
     "--format",
@@ -57,8 +63,8 @@ class _Source(click.ParamType[Any]):
 def derive(source: str | Scene, m: int | None, format: str, walks: bool, intervals: int | None) -> None:
     """Derive boundary conditions, delay equations and coefficient recurrences.
 
-    Of a system for any number m of elastic elements, with the coefficients for common patterns of equal parameters; of
-    a SCENE with those for its own.
+    Of a SYSTEM (collision, drive or building) for any number m of elastic elements, with the coefficients for common
+    patterns of equal parameters; of a SCENE with those for its own.
 
     \b
     Example:

@@ -125,6 +125,8 @@ def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
     stated = stated_problem(lower(scene))
     at = taus(stated.until, samples, "double")
     for rival in RIVALS:
+        if rival.undamped and stated.dashpots:
+            continue
         for resolution in rival.resolutions:
             subject = opponent(rival, resolution, stated, at)
             start = perf_counter()

@@ -133,4 +133,4 @@ def _pushed(w: Array, t: Array, force: Array) -> tuple[Array, Array]:
     return np.where(free, position, drift[0]), np.where(free, speed, drift[1])
 
 
-RIVAL = Rival("modal superposition", "NumPy", "modes", (10, 30, 100, 300, 1000), _prepare)
+RIVAL = Rival("modal superposition", "NumPy", "modes", (10, 30, 100, 300, 1000), _prepare, undamped=True)

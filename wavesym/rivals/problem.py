@@ -73,6 +73,11 @@ class Problem:
         """What stands before the velocity once the waves are told apart: damping + (alpha + beta)/2."""
         return np.asarray(self.damping + (self.alpha + self.beta) / 2)
 
+    @property
+    def dashpots(self) -> bool:
+        """Whether something brakes the chain; a base that moves as it is told is no dashpot."""
+        return bool(np.any((self.damping > 0) & (self.alpha + self.beta > 0)))
+
     @cached_property
     def velocity(self) -> Array:
         """The nodes' velocities at tau = 0: a body's are those of its rods, a contact's what balances two rods."""
@@ -109,7 +114,8 @@ class Problem:
 class Rival:
     """A method: `prepare` does what a new parameter set needs, and gives what is called for values.
 
-    `resolutions`, from coarse to fine, are what its accuracy is bought with; `unit` says of what.
+    `resolutions`, from coarse to fine, are what its accuracy is bought with; `unit` says of what. One that is
+    `undamped` takes no chain with dashpots.
     """
 
     name: str
@@ -117,6 +123,7 @@ class Rival:
     unit: str
     resolutions: tuple[float, ...]
     prepare: Callable[[Problem, float], Evaluate]
+    undamped: bool = False
 
 
 def problem(chain: Chain, loads: Sequence[Applied], probes: Sequence[Probe], until: float) -> Problem:

@@ -99,6 +99,6 @@ _DIMENSIONS = {
 }
 
 
-def dimensions(system: System) -> Dimensions:
-    """The dimensional quantities of a system."""
-    return _DIMENSIONS[system]
+def dimensions(system: System) -> Dimensions | None:
+    """The dimensional quantities of a system; None where only its dimensionless form is known."""
+    return _DIMENSIONS.get(system)

@@ -109,6 +109,10 @@ class Text:
         interval = "n" if back == 0 else f"(n-{back})"
         return f"{self.indexed(function, rod)}^{interval}[{self.expression(rate)},{self._short(power)}]"
 
+    def term(self, name: str, power: Expr) -> str:
+        """The coefficient of a power of time."""
+        return f"{name}[{self._short(power)}]"
+
     def _short(self, power: Expr) -> str:
         return self.expression(power).replace(" ", "")
 
@@ -207,6 +211,9 @@ class Latex(Text):
         interval = "n" if back == 0 else f"n-{back}"
         place = rf"{self.expression(rod)};\,{self.expression(rate)},{self._short(power)}"
         return rf"{function}^{{({interval})}}_{{{place}}}"
+
+    def term(self, name: str, power: Expr) -> str:
+        return f"{name}_{{{self._short(power)}}}"
 
     def constants(self, number: Expr, tau0: Expr, x0: Expr, velocity: Expr) -> str:
         values = (self.expression(value) for value in (tau0, x0, velocity))

@@ -84,7 +84,8 @@ _COLLISION = (
 
 def patterns(system: System) -> tuple[Pattern, ...]:
     """The patterns of a system; the last one is the general case."""
-    return {COLLISION: _COLLISION, DRIVE: _DRIVE, BUILDING_FORCE: _BUILDING, BUILDING_GROUND: _BUILDING}[system]
+    known = {COLLISION: _COLLISION, DRIVE: _DRIVE, BUILDING_FORCE: _BUILDING, BUILDING_GROUND: _BUILDING}
+    return known.get(system, (GENERIC,))
 
 
 def pattern_laws(system: System, pattern: Pattern) -> tuple[CoefficientLaw, ...]:

@@ -21,16 +21,13 @@ from wavesym.documents.derivation.patterns import Pattern, pattern_laws, pattern
 from wavesym.documents.derivation.writer import Place, Writer
 from wavesym.errors import WavesymError
 from wavesym.model.node import Node, System
-from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
-from wavesym.systems.collision import COLLISION
-from wavesym.systems.drive import DRIVE
+from wavesym.systems import SYSTEMS
 
 if TYPE_CHECKING:
     from wavesym.model.symbolic import SymbolicChain
 
 LARGEST_WRITTEN_OUT = 100
 MOST_FAMILIES = 6  # beyond that the law at one rate g is easier to read than a line for each
-SYSTEMS = {"collision": (COLLISION,), "drive": (DRIVE,), "building": (BUILDING_FORCE, BUILDING_GROUND)}
 
 
 @dataclass(frozen=True)
@@ -72,7 +69,8 @@ class Powers:
 class Statement:
     """A system's derivation in one notation; interval n of every function starts at z = `start`.
 
-    `quantities` are those of section 2, `rods` has (4.2) with Table 1, `nodes` the conditions with (4.2) put in.
+    `quantities` are those of section 2, `rods` has (4.2) with Table 1, `nodes` the conditions with (4.2) put in;
+    `stretches` has the laws of the nodes on powers of time.
     """
 
     name: str
@@ -87,17 +85,19 @@ class Statement:
     equations: tuple[Entry, ...]
     recurrences: tuple[Entry, ...]
     displacements: tuple[Entry, ...]
+    stretches: tuple[Entry, ...]
     families: tuple[Families, ...]
     powers: tuple[Powers, ...]
 
 
 def systems(name: str, m: int | None) -> tuple[System, ...]:
     """ "collision", "drive" or "building" (both bases). WavesymError for an m that these do not have or none reads."""
-    for system in SYSTEMS[name]:
+    variants = SYSTEMS[name].variants
+    for system in variants:
         if m is not None and m not in range(system.smallest, LARGEST_WRITTEN_OUT + 1, system.step):
             even = "even, " if system.step == 2 else ""
             raise WavesymError(f"--m: {m} given, {even}{system.smallest} ... {LARGEST_WRITTEN_OUT} expected")
-    return SYSTEMS[name]
+    return variants
 
 
 def statements(name: str, m: int | None, notation: Text) -> tuple[Statement, ...]:
@@ -133,15 +133,16 @@ class _Author:
             name=system.name,
             size=self._size(system),
             start="(n - 1)" if laws.interval == 1 else f"{laws.interval} (n - 1)",
-            legend=tuple(Entry(self.n.word(words), (self.n.expression(letter),)) for letter, words in units.legend),
-            note=self.n.word(units.note),
-            quantities=tuple(self._quantities(units)),
+            legend=tuple(self._legend(units)) if units else (),
+            note=self.n.word(units.note) if units else "",
+            quantities=tuple(self._quantities(units)) if units else (),
             conditions=tuple(self._nodes(system, self.w.condition)),
             rods=tuple(self._rods(system)),
             nodes=tuple(self._nodes(system, self.w.at_node)),
             equations=tuple(self._equations(system)),
             recurrences=tuple(self._laws(laws.laws)),
             displacements=tuple(self._displacements()),
+            stretches=tuple(self._nodes(system, self.w.stretch)),
             families=tuple(families),
             powers=tuple(self._powers(system)),
         )
@@ -150,7 +151,7 @@ class _Author:
         return f"m = {self.m}" if self.m is not None else self.n.at_least(of.smallest)
 
     def _powers(self, system: System) -> Iterator[Powers]:
-        for family in POWERS[system.name]:
+        for family in POWERS.get(system.name, ()):
             if self.m is not None and self.m < family.smallest:
                 continue
             rows = (
@@ -169,6 +170,10 @@ class _Author:
                 walks=self.n.word(family.walks),
                 leading=(self.n.expression(family.leading),) if family.leading else (),
             )
+
+    def _legend(self, units: Dimensions) -> Iterator[Entry]:
+        for letter, words in units.legend:
+            yield Entry(self.n.word(words), (self.n.expression(letter),))
 
     def _quantities(self, units: Dimensions) -> Iterator[str]:
         u, a, b = (IndexedBase(name)[INDEX] for name in (units.displacement, "A", "B"))

@@ -9,7 +9,8 @@ from sympy import Expr, Integer, Rational, Symbol
 
 from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, Side, balance, side, sides
 from wavesym.derivation.delay_terms import Line, Source, exact
-from wavesym.derivation.recurrence import POWER, RATE, CoefficientLaw, SymbolicLoad, SymbolicWeights
+from wavesym.derivation.node_law import node_law
+from wavesym.derivation.recurrence import POWER, RATE, CoefficientLaw, SymbolicLoad, SymbolicWeights, stretch_law
 from wavesym.derivation.rods import RodKind
 from wavesym.documents.derivation.families import Coefficient, Solved, own_rate, solved
 from wavesym.documents.derivation.highest_powers import PowerFamily, PowerRow, plain
@@ -95,6 +96,14 @@ class Writer:
             yield f"{self._in_time(left.velocity, at)} = {self._in_time(right.velocity, at)}"
         motion, force = balance(node, x)
         yield f"{self._in_time(motion, at)} = {self._in_time(force, at)}"
+
+    def stretch(self, node: Node, x: Expr, at: Place) -> Iterator[str]:
+        """The law of the node at x on powers of time, where no front passes."""
+        law = stretch_law(node_law().at(node))
+        own = [(at(law.own.same), self.n.term("q", POWER)), (at(law.own.raised), self.n.term("q", POWER + 1))]
+        arriving = ((law.left, "a"), (law.right, "b"), (law.load if node.loads else Integer(0), "s"))
+        right = [(at(factor), self.n.term(name, POWER)) for factor, name in arriving]
+        yield self._balanced(own, right)
 
     def _in_time(self, line: Line, at: Place) -> str:
         """A line in waves of tau; what a load is before tau = 0 need not be said there."""
