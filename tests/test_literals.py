@@ -143,7 +143,7 @@ def test_polynomials_are_those_of_the_exact_tables(name: str, record_property) -
     pieces = kept(name)
     checked = 0
     with ctx.workprec(400):
-        outputs = [segments(signal) for signal in signals(lower(pieces.scene))]
+        outputs = [segments(signal, ctx.prec) for signal in signals(lower(pieces.scene))]
         for members, starts, centres, rows in pieces.grids():
             cuts = pieces.cuts(pieces.scene.outputs[members[0]].x)
             assert not wrong(starts, cuts)
@@ -191,7 +191,7 @@ def test_the_end_of_a_contact_is_right_in_all_its_digits() -> None:
     scene = Scene.from_toml("collision_m4")
     (strain,) = (signal for signal in signals(lower(scene)) if signal.name == "strain@2")
     with ctx.workprec(300):
-        balls = Balls(segments(strain))
+        balls = Balls(segments(strain, ctx.prec))
         end, last = Fraction(digits), Fraction(1, 2 * 10 ** len(digits.partition(".")[2]))
         assert balls.at(rational(end - last)) < 0 < balls.at(rational(end + last))
 
@@ -201,7 +201,7 @@ def test_reference_values_are_those_of_the_windows(name: str, record_property) -
     scene, given = Scene.from_toml(name), tables(read(name, "_selftest.c"))
     taus, expected = [float(text) for text in given["taus"]], given["expected"]
     motion = Motion(lower(scene), rational(scene.output.until))
-    rows = [values(partial(motion.segments, place), taus, float(scene.output.until)) for place in motion.places]
+    rows = [values(partial(motion.segments, place), taus) for place in motion.probes]
     record_property("values", len(expected))
     assert [float(text).hex() for text in expected] == [value.hex() for row in rows for value in row]
 

@@ -12,9 +12,10 @@ from tests.support.truth import Truth
 from wavesym.errors import RangeError
 from wavesym.exact import ball as room
 from wavesym.exact import reference
-from wavesym.exact.ball import Balls, Segment, largest, precise, segments, shifted, values
+from wavesym.exact.ball import Balls, Segment, largest, segments, shifted, values
 from wavesym.exact.reference import Reference
 from wavesym.exact.signal import Arrival, Signal
+from wavesym.numbers.balls import precise
 from wavesym.scene import lower
 
 SMALLEST = Fraction(2) ** -1074
@@ -46,7 +47,7 @@ def test_a_segment_is_the_sum_of_its_families():
 def test_a_signal_carries_what_came_before():
     gained = ({fmpq(1): [fmpq(2)]}, {fmpq(0): [fmpq(1)], fmpq(1): [fmpq(0), fmpq(3)]}, {fmpq(2): [fmpq(-1)]})
     times = (fmpq(1), fmpq(5, 3), fmpq(7, 2))
-    made = Balls(segments(Signal("made", tuple(map(Arrival, times, gained)))))
+    made = Balls(segments(Signal("made", tuple(map(Arrival, times, gained))), ctx.prec))
     assert made.at(fmpq(999, 1000)) == 0
     for tau in (fmpq(1), fmpq(3, 2), fmpq(5, 3), fmpq(3), fmpq(7, 2), fmpq(9)):
         exact = arb(0)
@@ -99,17 +100,17 @@ def test_a_largest_value_is_a_lower_bound_of_what_is_in_the_ball():
 
 def test_the_largest_value_of_a_blurred_output_takes_more_bits():
     made = deque([[polynomial(0, arb(0, 1))], [polynomial(0, arb(2, 1))]])
-    assert largest(made.popleft, 1.0) <= 1
+    assert largest(lambda bits: made.popleft(), 1.0) <= 1
     assert not made
-    assert largest(lambda: [polynomial(0)], 1.0) == 0
+    assert largest(lambda bits: [polynomial(0)], 1.0) == 0
 
 
 def test_bits_are_doubled_until_they_tell():
     asked = []
 
-    def attempt(enough):
-        asked.append(ctx.prec)
-        return "told" if ctx.prec >= enough else None
+    def attempt(enough, bits):
+        asked.append(bits)
+        return "told" if ctx.prec == bits >= enough else None
 
     assert precise(partial(attempt, 500), 100) == "told"
     assert asked == [100, 200, 400, 800]
@@ -121,7 +122,7 @@ def test_bits_are_doubled_until_they_tell():
         precise(partial(attempt, 401), 100, 400)
     assert asked == [100, 200, 400]
     asked.clear()
-    assert precise(lambda: 0) == 0  # a result that is false is one
+    assert precise(lambda bits: 0) == 0  # a result that is false is one
     precise(partial(attempt, 1))
     assert asked == [128]
 
@@ -129,7 +130,7 @@ def test_bits_are_doubled_until_they_tell():
 def constant(*balls):
     """Segments of one value that come from ever smaller balls, one for each attempt."""
     made = deque(balls)
-    return lambda: [polynomial(0, made.popleft() if len(made) > 1 else made[0])]
+    return lambda bits: [polynomial(0, made.popleft() if len(made) > 1 else made[0])]
 
 
 def test_a_ball_across_the_middle_of_two_doubles_takes_more_bits():

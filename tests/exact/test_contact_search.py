@@ -7,9 +7,10 @@ from math import factorial
 import pytest
 from flint import arb, arb_poly, ctx, fmpq
 
-from wavesym.exact.ball import Segment, precise
+from wavesym.exact.ball import Segment
 from wavesym.exact.contact import _compressed_at_first, _first_return, _not_compressed, _Series, _zero
 from wavesym.exact.signal import Arrival, Signal
+from wavesym.numbers.balls import precise
 
 # a zero that a polynomial crosses at a slope of about 1 is known to some widths of the search
 NEAR = fmpq(1, 2**76)
@@ -176,7 +177,7 @@ def test_a_series_is_off_by_what_is_cut_off(bits):
     length = fmpq(1, 2)
     families = {fmpq(0): [7, 0, 5], fmpq(1): [3, 4], fmpq(2): [1, 1, 9]}
     with ctx.workprec(bits):
-        series = _Series.of({rate: arb_poly(powers) for rate, powers in families.items()}, length)
+        series = _Series.of({rate: arb_poly(powers) for rate, powers in families.items()}, length, ctx.prec)
     terms = series.polynomial.length() - 2
     assert factorial(terms) >= 2**bits > factorial(terms - 1)
     with ctx.workprec(8 * bits):
@@ -256,9 +257,9 @@ def test_of_families_that_cancel_only_the_sum_tells(bits):
 
 def test_the_search_begins_where_it_is_told_to():
     piece = Segment(fmpq(0), {fmpq(0): arb_poly([-2, 3, -1])})  # 0 at 1 and 2
-    assert abs(_not_compressed(piece, fmpq(0), fmpq(9)) - 1) < NEAR
-    assert _not_compressed(piece, fmpq(5, 2), fmpq(9)) == arb.pos_inf()
-    assert _not_compressed(piece, fmpq(0), fmpq(99, 100)) == arb.pos_inf()
+    assert abs(_not_compressed(piece, fmpq(0), fmpq(9), ctx.prec) - 1) < NEAR
+    assert _not_compressed(piece, fmpq(5, 2), fmpq(9), ctx.prec) == arb.pos_inf()
+    assert _not_compressed(piece, fmpq(0), fmpq(99, 100), ctx.prec) == arb.pos_inf()
 
 
 @pytest.mark.parametrize("compressed", [increment(r0=[0, 0, 0, -1]), increment(r0=[-1], r1=[1, 1])])

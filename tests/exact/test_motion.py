@@ -32,7 +32,7 @@ def made(scene):
 
 
 def enclosures(motion, place, taus):
-    balls = Balls(motion.segments(place))
+    balls = Balls(motion.segments(place, ctx.prec))
     return [balls.at(tau) for tau in taus]
 
 
@@ -128,7 +128,7 @@ def test_errors_of_velocity_pile_up_in_displacement():
 def test_a_displacement_begins_at_0_and_goes_on_where_it_was():
     steady = [Wave(arb_poly([1, 2 + n]), arb(0)) for n in range(4)]
     motion = by_hand(drive(3, displacement=["5/4"]), {1: steady}, {2: steady})
-    segments = motion.segments(motion.probes[0])
+    segments = motion.segments(motion.probes[0], ctx.prec)
     assert Balls(segments).at(fmpq(0)) == 0
     for one, other in pairwise(segments):
         assert one.at(other.start - one.start).overlaps(other.at(fmpq(0)))
@@ -150,28 +150,28 @@ def test_segments_start_where_an_output_can_bend():
     motion = made(drive(1, [{"body": 2, "times": ["1/2"], "steps": [1]}], strain=["5/4"]))
     (place,) = motion.probes
     assert motion.starts(place) == [fmpq(0), fmpq(1, 4), fmpq(3, 4)]
-    assert motion.segments(place)[0].at(fmpq(1, 8)) == 0
+    assert motion.segments(place, ctx.prec)[0].at(fmpq(1, 8)) == 0
 
 
 @pytest.mark.parametrize("quantity", ["strain", "velocity", "displacement"])
 def test_segments_for_some_taus_are_those_of_all(quantity):
     motion = made(drive(6, **{quantity: ["4/3"]}))
     (place,) = motion.probes
-    every = {segment.start: segment.families for segment in motion.segments(place)}
+    every = {segment.start: segment.families for segment in motion.segments(place, ctx.prec)}
     taus = [fmpq(0), fmpq(1, 3), fmpq(5, 2), fmpq(29, 10), fmpq(6)]
-    some = motion.segments(place, taus)
+    some = motion.segments(place, ctx.prec, taus)
     assert [segment.start for segment in some] == sorted({segment.start for segment in some})
     assert len(some) == (len(every) if quantity == "displacement" else 5)
     for segment in some:
         (found,), (expected,) = segment.families.values(), every[segment.start].values()
         assert [str(c) for c in found.coeffs()] == [str(c) for c in expected.coeffs()]
     for tau in taus:
-        assert str(Balls(some).at(tau)) == str(Balls(motion.segments(place)).at(tau))
+        assert str(Balls(some).at(tau)) == str(Balls(motion.segments(place, ctx.prec)).at(tau))
 
 
 def test_of_what_begins_at_the_end_only_the_first_value_is_seen():
     motion = made(drive(3, strain=["1+"]))
-    last = motion.segments(motion.probes[0])[-1]
+    last = motion.segments(motion.probes[0], ctx.prec)[-1]
     assert last.start == 3
     (polynomial,) = last.families.values()
     assert polynomial.length() == 1
@@ -201,9 +201,9 @@ def test_more_bits_make_smaller_balls_and_fewer_do_not_spoil_them():
 
 def test_nothing_is_zero_but_what_has_no_terms():
     still = made(drive(1, strain=["5/2"]))
-    assert is_zero(still.segments(still.probes[0]))
+    assert is_zero(still.segments(still.probes[0], ctx.prec))
     moving = made(drive(4, strain=["5/2"]))
-    assert not is_zero(moving.segments(moving.probes[0]))
+    assert not is_zero(moving.segments(moving.probes[0], ctx.prec))
 
 
 def stiff(kappa, until, **load):
@@ -286,8 +286,8 @@ def test_values_that_would_take_minutes_are_refused_before_the_first(monkeypatch
 def test_the_seconds_told_are_those_of_segments_and_values(quantity, taus, monkeypatch):
     """Counted apart, a second for each: of a displacement all segments are needed for any value."""
     motion = made(drive("39/10", [{"body": 2, "times": [0, "1/2"], "steps": [1, 1]}], **{quantity: ["1/2", "3/2"]}))
-    terms = motion._waves.left[1][0].polynomial.length()
-    made_for = sum(len(motion.segments(place)) for place in motion.probes)
+    terms = motion._waves(ctx.prec).left[1][0].polynomial.length()
+    made_for = sum(len(motion.segments(place, ctx.prec)) for place in motion.probes)
     expected = made_for if quantity == "displacement" else min(made_for, 2 * taus)
     assert terms == motion.first_bits // 4 == 32
     monkeypatch.setattr(room, "MOST_SECONDS", -1)

@@ -10,8 +10,9 @@ from flint import arb, ctx, fmpq
 import wavesym
 from tests.support.truth import Truth
 from wavesym.errors import CostError, RangeError
-from wavesym.exact import ball, motion, reference
+from wavesym.exact import motion, reference
 from wavesym.exact.reference import Reference, beginning
+from wavesym.numbers import balls
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.scene import lower
 
@@ -77,13 +78,13 @@ def test_breakpoints_are_the_first_doubles_that_feel_them(route):
 def test_windows_are_asked_only_for_the_segments_that_are_needed(monkeypatch):
     monkeypatch.setattr(reference, "_MODERATE", 0)
     composed = []
-    value = motion.Motion._value
+    value = motion._value
 
-    def counted(self, place, start):
+    def counted(waves, probe, start):
         composed.append(start)
-        return value(self, place, start)
+        return value(waves, probe, start)
 
-    monkeypatch.setattr(motion.Motion, "_value", counted)
+    monkeypatch.setattr(motion, "_value", counted)
     Reference(lower(scene(strain=["1/2"]))).values([1.0, 1.001, 3.9])
     assert len(composed) == 2
 
@@ -100,8 +101,7 @@ def test_values_that_would_take_long_are_refused_before_work(monkeypatch):
 
 
 def test_more_bits_than_can_be_had_are_a_cost(monkeypatch):
-    monkeypatch.setattr(ball, "_MOST_BITS", 64)
-    monkeypatch.setattr(ball.precise, "__defaults__", (128, 64))
+    monkeypatch.setattr(balls.precise, "__defaults__", (128, 64))
     with pytest.raises(CostError, match=r"^output.until: right to the last bit would take minutes, as 64 bits are not"):
         Reference(lower(scene())).values([1.0])
 

@@ -133,7 +133,7 @@ def test_errors_pass_through_nodes_as_waves_do(monkeypatch):
         return right(sent, x, rod, step)
 
     monkeypatch.setattr(room, "_arriving", arriving)
-    result = windows(made, range(1, 2), (), 1, 30)
+    result = windows(made, range(1, 2), (), 1, 30, ctx.prec)
     node = made.nodes[1]
     q = (node.alpha * fmpq(1, 8) + node.beta * fmpq(1, 2)) / ((node.alpha + node.beta) / 2)
     assert node.alpha != node.beta
@@ -177,7 +177,7 @@ def test_waves_are_where_they_are_said_to_be(name, terms):
     until = rational(scene.output.until)
     made = scene.system.chain
     nodes = lower(scene).light_cone(lower(scene).until)
-    result = windows(made, nodes, lower(scene).loads, int(until), terms)
+    result = windows(made, nodes, lower(scene).loads, int(until), terms, ctx.prec)
     exact = Truth(scene, scene.output.until)
     number = {(o.quantity, o.x, o.side): k for k, o in enumerate(scene.outputs)}
     m = scene.system.m
@@ -278,4 +278,4 @@ def test_waves_that_would_fill_the_memory_are_refused_before_the_first(monkeypat
     monkeypatch.setattr(_Body, "moved", begun)
     made = watched("drive").system.chain
     with pytest.raises(CostError, match=r"^output.until: the waves of 4 nodes on 30000 windows with 256 bits would"):
-        windows(made, range(4), (), 30_000, 64)
+        windows(made, range(4), (), 30_000, 64, ctx.prec)

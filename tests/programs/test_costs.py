@@ -9,7 +9,6 @@ from flint import ctx
 import wavesym
 from wavesym.errors import CostError, ToleranceError
 from wavesym.exact import motion, reference
-from wavesym.exact.motion import Motion
 from wavesym.exact.reference import Reference
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs import choice, pieces
@@ -61,7 +60,7 @@ def test_numbers_of_99_characters_cost_tables_and_not_windows(idle):
     """Exact tables would have coefficients of tens of thousands of digits; in balls a number is as short as another."""
     scene = drive(long_numbers(3), long_numbers(4), 40)
     with pytest.raises(CostError, match=r"^output.until: the tables would hold .* fewer digits in the scene's numbers"):
-        choice.signals(scene, 50_000)
+        choice.signals(lower(scene), 50_000)
     made = Reference(lower(scene))
     assert made.signals is None
     with pytest.raises(Begun):
@@ -82,7 +81,7 @@ def test_a_long_record_is_not_for_closed_forms_nor_large_ones_for_pieces(samples
     scene = record(samples, outputs)
     for asked in (choice._WORTH_TRYING, 1e5):
         with pytest.raises(CostError, match=r"^load: .* increments would arrive at the outputs, at most"):
-            choice.refuse_many(scene, asked)
+            choice.refuse_many(lower(scene), asked)
     assert Reference(lower(scene)).signals is None
     with pytest.raises(pieces._TooLarge if outputs == 2000 else Begun):
         choose(lower(scene), "pieces")
@@ -132,7 +131,7 @@ def test_a_heavy_shaft_for_long_is_refused_by_all_but_the_tables(monkeypatch):
 
 
 def fits(scene, tolerance="1e-8"):
-    return pieces._Fits(scene, DOUBLE, pieces.rational(Fraction(tolerance)))
+    return pieces._Fits(lower(scene), DOUBLE, pieces.rational(Fraction(tolerance)))
 
 
 @pytest.mark.parametrize(
@@ -193,14 +192,14 @@ def test_one_value_that_needs_many_bits_does_not_cost_the_others(monkeypatch):
         output={"until": 2, "strain": ["1/4", "1/2"]},
     )
     lengths = {}
-    value = Motion._value
+    value = motion._value
 
-    def counted(self, place, start):
-        found = value(self, place, start)
-        lengths.setdefault((place.observable.name, ctx.prec), []).append(found.polynomial.length())
+    def counted(waves, probe, start):
+        found = value(waves, probe, start)
+        lengths.setdefault((probe.name, ctx.prec), []).append(found.polynomial.length())
         return found
 
-    monkeypatch.setattr(Motion, "_value", counted)
+    monkeypatch.setattr(motion, "_value", counted)
     taus = [0.1 * k for k in range(20)] + [1.0]
     first, _ = Reference(lower(scene)).values(taus)
     assert first[-1] == 0.0

@@ -52,8 +52,8 @@ def test_waves_on_windows_and_exact_tables_agree_to_30_digits(drawn, random):
     until = rational(lower(drawn).horizon())
     motion = Motion(lower(drawn), until)
     with ctx.workprec(512):
-        for signal, place in zip(signals(lower(drawn)), motion.places, strict=True):
-            tables, windows = Balls(segments(signal)), Balls(motion.segments(place))
+        for signal, place in zip(signals(lower(drawn)), motion.probes, strict=True):
+            tables, windows = Balls(segments(signal, ctx.prec)), Balls(motion.segments(place, ctx.prec))
             size = tables.largest(until)
             for _ in range(10):
                 tau = rational(random.uniform(0, float(until)))

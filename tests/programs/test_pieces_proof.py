@@ -15,6 +15,7 @@ from wavesym.exact.ball import Segment
 from wavesym.numbers import chebyshev
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.pieces import Pieces, PiecesOutput, _cut_off, _Cuts, _Fits, _shortened, _underflow
+from wavesym.scene import lower
 
 CLOSE = arb(fmpq(1002, 1000))  # the proof's second order, and a little
 TINY = fmpq(1, 2**90)
@@ -50,7 +51,7 @@ def product(powers: Sequence[fmpq], half: fmpq, first: int, u: fmpq | int = 0) -
 
 
 def series(powers: Sequence[fmpq]) -> list[arb]:
-    return chebyshev.coefficients([arb_poly([arb(c) for c in powers])])[0]
+    return chebyshev.coefficients([arb_poly([arb(c) for c in powers])], ctx.prec)[0]
 
 
 @both
@@ -151,7 +152,7 @@ def fitted(polynomials: Sequence[arb_poly], tolerance: fmpq, real=DOUBLE):
     """Bound, largest value and powers of what is one of these polynomials in each unit of tau."""
     segments = [Segment(fmpq(n), {fmpq(0): polynomial}) for n, polynomial in enumerate(polynomials)]
     cuts = _Cuts([segment.start for segment in segments], len(segments) - fmpq(1, 8), 1, real)
-    return _Fits(SIMPLE, real, tolerance)._output(segments, cuts)
+    return _Fits(lower(SIMPLE), real, tolerance)._output(segments, cuts, ctx.prec)
 
 
 @pytest.mark.parametrize("power", [0, 1, 5])

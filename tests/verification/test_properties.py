@@ -47,7 +47,7 @@ def windows(scene, taus=TAUS):
     """By the node law on windows, each value rounded once."""
     until = lower(scene).horizon()
     motion = Motion(lower(scene), rational(until))
-    return np.array([values(partial(motion.segments, place), taus) for place in motion.places])
+    return np.array([values(partial(motion.segments, place), taus) for place in motion.probes])
 
 
 def assert_same(found, *parts):

@@ -9,20 +9,16 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.exact.increments import Increment
 from wavesym.exact.signal import Signal
+from wavesym.numbers.balls import FIRST_BITS, precise
 from wavesym.numbers.doubles import midpoint, rational, rounded
 
-FIRST_BITS = 128
-_MOST_BITS = 1 << 17
 # a quarter of the smallest double
 _NEGLIGIBLE = arb(2) ** -1076
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -54,9 +50,14 @@ def shifted(families: dict[fmpq, arb_poly], by: fmpq) -> dict[fmpq, arb_poly]:
     return {rate: (-arb(rate) * arb(by)).exp() * polynomial(later) for rate, polynomial in families.items()}
 
 
-def segments(signal: Signal) -> list[Segment]:
-    """The segments of a signal, at the working precision."""
-    return list(_segments(signal))
+Source = Callable[[int], Sequence[Segment]]
+"""An output as its segments, with so many bits."""
+
+
+def segments(signal: Signal, bits: int) -> list[Segment]:
+    """The segments of a signal, with so many bits."""
+    with ctx.workprec(bits):
+        return list(_segments(signal))
 
 
 def _segments(signal: Signal) -> Iterator[Segment]:
@@ -100,18 +101,7 @@ class Balls:
         return self.segments[place].at(tau - self._starts[place]) if place >= 0 else arb(0)
 
 
-def precise(attempt: Callable[[], T | None], bits: int = FIRST_BITS, most: int = _MOST_BITS) -> T:
-    """The first result of `attempt` that is not None, each time with twice the bits of working precision."""
-    while bits <= most:
-        with ctx.workprec(bits):
-            result = attempt()
-        if result is not None:
-            return result
-        bits *= 2
-    raise ArithmeticError(f"{most} bits are not enough")
-
-
-def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float], bits: int = FIRST_BITS) -> list[float]:
+def values(source: Source, taus: Sequence[float], bits: int = FIRST_BITS) -> list[float]:
     """The correctly rounded values of an output at doubles tau of its horizon; `source` gives its segments.
 
     Where a value is so near to the middle between two doubles that a ball smaller than all of them does not tell, it is
@@ -119,8 +109,8 @@ def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float], bits:
     """
     exact = [rational(tau) for tau in taus]
 
-    def attempt() -> list[float] | None:
-        balls = Balls(source())
+    def attempt(bits: int) -> list[float] | None:
+        balls = Balls(source(bits))
         results = []
         for tau in exact:
             value = balls.at(tau)
@@ -135,11 +125,11 @@ def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float], bits:
     return precise(attempt, bits)
 
 
-def largest(source: Callable[[], Sequence[Segment]], until: float, bits: int = FIRST_BITS) -> arb:
+def largest(source: Source, until: float, bits: int = FIRST_BITS) -> arb:
     """A lower bound, a ball, of an output's largest absolute value on [0, until]; 0 where it is 0 throughout."""
 
-    def attempt() -> arb | None:
-        balls = Balls(source())
+    def attempt(bits: int) -> arb | None:
+        balls = Balls(source(bits))
         size = balls.largest(rational(until))
         return size if size > 0 or balls.zero else None
 

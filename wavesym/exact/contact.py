@@ -6,15 +6,16 @@ from dataclasses import dataclass
 from functools import partial
 from math import factorial
 
-from flint import arb, arb_poly, ctx, fmpq
+from flint import arb, arb_poly, fmpq
 
 from wavesym.derivation.exact_rule import DERIVATIVE
 from wavesym.errors import CostError
-from wavesym.exact.ball import Segment, polynomials, precise, segments
+from wavesym.exact.ball import Segment, polynomials, segments
 from wavesym.exact.increments import Increment, apply, start, trimmed
 from wavesym.exact.signal import RuledChain, Signal, observed
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
+from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import midpoint, rational
 from wavesym.numbers.reals import DOUBLE, Real
 
@@ -77,10 +78,10 @@ def contact_ends(model: Model, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
     return tuple(ends)
 
 
-def _first_return(strain: Signal, until: fmpq) -> arb | None:
+def _first_return(strain: Signal, until: fmpq, bits: int) -> arb | None:
     """The first tau at which a compressed contact is compressed no more; infinite where it stays closed.
 
-    A contact that is pulled before it was compressed opens then. None where the working precision does not tell.
+    A contact that is pulled before it was compressed opens then. None where so many bits do not tell.
     """
     if not strain.arrivals:
         return arb.pos_inf()
@@ -88,18 +89,18 @@ def _first_return(strain: Signal, until: fmpq) -> arb | None:
     calm = _compressed_at_first(first.increment)
     if calm is None:
         return arb(first.time)
-    pieces = segments(strain)
+    pieces = segments(strain, bits)
     ends = [piece.start for piece in pieces[1:]] + [until]
     for piece, end in zip(pieces, ends, strict=True):
         if piece.start != first.time:
             calm = fmpq(0)
             start = piece.at(calm)
-            if start.contains(0) and ctx.prec < _BITS_FOR_ZERO:
+            if start.contains(0) and bits < _BITS_FOR_ZERO:
                 return None
             if not start < 0:  # over zero by a jump, or on it
                 return arb(piece.start)
         length = end - piece.start
-        opening = _not_compressed(piece, min(calm, length), length)
+        opening = _not_compressed(piece, min(calm, length), length, bits)
         if opening is None or opening.is_finite():
             return None if opening is None else arb(piece.start) + opening
     return arb.pos_inf()
@@ -124,7 +125,7 @@ def _compressed_at_first(increment: Increment) -> fmpq | None:
     return width
 
 
-def _not_compressed(piece: Segment, low: fmpq, high: fmpq) -> arb | None:
+def _not_compressed(piece: Segment, low: fmpq, high: fmpq, bits: int) -> arb | None:
     """The first interval of width `_WIDTH`, a ball in u, where the strain is not certainly negative; infinite for none.
 
     Where families cancel, as for nearly equal rates, only their sum tells: it is searched as a power series as soon as
@@ -137,7 +138,7 @@ def _not_compressed(piece: Segment, low: fmpq, high: fmpq) -> arb | None:
         if piece.at(arb(low).union(arb(high))) < 0:
             continue
         if fastest * (high - low) <= 1:
-            opening = _zero(_Series.of(piece.shifted(low), high - low), high - low)
+            opening = _zero(_Series.of(piece.shifted(low), high - low, bits), high - low)
             if opening is None or opening.is_finite():
                 return None if opening is None else arb(low) + opening
             continue
@@ -154,10 +155,10 @@ class _Series:
     error: arb
 
     @staticmethod
-    def of(families: dict[fmpq, arb_poly], length: fmpq) -> _Series:
-        """sum exp(-g u) P_g(u) on [0, length], with g length <= 1, cut off where that is less than the precision."""
+    def of(families: dict[fmpq, arb_poly], length: fmpq, bits: int) -> _Series:
+        """sum exp(-g u) P_g(u) on [0, length], with g length <= 1, cut off where that is beyond so many bits."""
         terms = 2
-        while factorial(terms) >> ctx.prec == 0:
+        while factorial(terms) >> bits == 0:
             terms += 1
         total, error = arb_poly(), arb(0)
         for rate, polynomial in families.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from math import inf
 
@@ -92,8 +92,8 @@ class Motion:
         times = [n + part for n in range(int(self.until.floor()) + 1) for part in parts]
         return [fmpq(0)] * (parts[0] != 0) + [time for time in times if time <= self.until]
 
-    def segments(self, probe: Probe, taus: Sequence[fmpq] | None = None) -> list[Segment]:
-        """An output between its breakpoints, at the working precision, as polynomials (rate 0) in balls.
+    def segments(self, probe: Probe, bits: int, taus: Sequence[fmpq] | None = None) -> list[Segment]:
+        """An output between its breakpoints, with so many bits, as polynomials (rate 0) in balls.
 
         Where `taus` are given, only those on which one of them lies, as far as the others are not needed.
         """
@@ -102,43 +102,47 @@ class Motion:
         wanted: Sequence[int] = range(len(starts))
         if taus is not None and probe.order == 0:
             wanted = sorted({bisect_right(starts, tau) - 1 for tau in taus})
-        result = []
-        displacement = arb(0)
-        for start, end in ((starts[k], ends[k]) for k in wanted):
-            value = self._value(probe, start)
-            polynomial = value.polynomial
-            if probe.order < 0:
-                polynomial = polynomial.integral() + displacement + arb(0, (value.error * arb(end - start)).upper())
-                displacement = polynomial(arb(end - start))
-            elif value.error != 0:
-                polynomial = polynomial + arb(0, value.error)
-            if start == end:  # of what begins at the end of the horizon only the first value is seen
-                polynomial = arb_poly(polynomial.coeffs()[:1])
-            result.append(Segment(start, {fmpq(0): polynomial}))
-        return result
+        waves = self._waves(bits)
+        with ctx.workprec(bits):
+            return list(_segments(waves, probe, [(starts[k], ends[k]) for k in wanted]))
 
-    def _value(self, probe: Probe, start: fmpq) -> Wave:
-        """Strain, or velocity, from tau = `start` on: the left-going wave less, or plus, the right-going one."""
-        polynomial, error = arb_poly(), arb(0)
-        right, left = probe.weights
-        for factor, wave, offset in (
-            (right, *self._waves.sent("right", probe.rod - 1, start - probe.place)),
-            (left, *self._waves.sent("left", probe.rod, start - 1 + probe.place)),
-        ):
-            if wave.polynomial.length():
-                later = wave.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else wave.polynomial
-                polynomial += factor * later
-            error += wave.error
-        return Wave(polynomial, error)
-
-    @property
-    def _waves(self) -> Windows:
-        """At the working precision; what needs more bits, and so more terms, costs the others nothing."""
-        if ctx.prec not in self._marched:
+    def _waves(self, bits: int) -> Windows:
+        """What needs more bits, and so more terms, costs the others nothing."""
+        if bits not in self._marched:
             count = int(self.until.floor()) + 1
-            made = windows(self._chain, self._nodes, self._acting, count, terms=ctx.prec // 4)
-            self._marched[ctx.prec] = made
-        return self._marched[ctx.prec]
+            self._marched[bits] = windows(self._chain, self._nodes, self._acting, count, bits // 4, bits)
+        return self._marched[bits]
+
+
+def _segments(waves: Windows, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]]) -> Iterator[Segment]:
+    """An output on each of these stretches, which come in order."""
+    displacement = arb(0)
+    for start, end in stretches:
+        value = _value(waves, probe, start)
+        polynomial = value.polynomial
+        if probe.order < 0:
+            polynomial = polynomial.integral() + displacement + arb(0, (value.error * arb(end - start)).upper())
+            displacement = polynomial(arb(end - start))
+        elif value.error != 0:
+            polynomial = polynomial + arb(0, value.error)
+        if start == end:  # of what begins at the end of the horizon only the first value is seen
+            polynomial = arb_poly(polynomial.coeffs()[:1])
+        yield Segment(start, {fmpq(0): polynomial})
+
+
+def _value(waves: Windows, probe: Probe, start: fmpq) -> Wave:
+    """Strain, or velocity, from tau = `start` on: the left-going wave less, or plus, the right-going one."""
+    polynomial, error = arb_poly(), arb(0)
+    right, left = probe.weights
+    for factor, wave, offset in (
+        (right, *waves.sent("right", probe.rod - 1, start - probe.place)),
+        (left, *waves.sent("left", probe.rod, start - 1 + probe.place)),
+    ):
+        if wave.polynomial.length():
+            later = wave.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else wave.polynomial
+            polynomial += factor * later
+        error += wave.error
+    return Wave(polynomial, error)
 
 
 def is_zero(segments: Sequence[Segment]) -> bool:

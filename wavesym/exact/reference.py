@@ -6,17 +6,18 @@ windows, where they are not (many unequal rates, many reflections).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cached_property, partial
 
 from flint import arb, fmpq
 
 from wavesym.errors import CostError, RangeError
-from wavesym.exact.ball import FIRST_BITS, Segment, largest, segments, values
+from wavesym.exact.ball import Source, largest, segments, values
 from wavesym.exact.motion import Motion
 from wavesym.exact.signal import Signal, signals
 from wavesym.exact.windows import stored
 from wavesym.model.model import Model
+from wavesym.numbers.balls import FIRST_BITS
 from wavesym.numbers.doubles import not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.closed import refuse_many
@@ -66,12 +67,12 @@ class Reference:
     def _motion(self) -> Motion:
         return Motion(self.model, rational(self.tau_max))
 
-    def _sources(self, taus: Sequence[float] | None = None) -> list[Callable[[], Sequence[Segment]]]:
+    def _sources(self, taus: Sequence[float] | None = None) -> list[Source]:
         """The outputs, or as much of them as values at `taus` need."""
         if self.signals is not None:
             return [partial(segments, signal) for signal in self.signals]
         exact = None if taus is None else [rational(tau) for tau in taus]
-        return [partial(self._motion.segments, probe, exact) for probe in self._motion.probes]
+        return [partial(self._motion.segments, probe, taus=exact) for probe in self._motion.probes]
 
     @property
     def _first_bits(self) -> int:
@@ -94,5 +95,5 @@ class Reference:
 
     def breakpoints(self) -> list[float]:
         """All tau at which an output may jump or bend, as doubles at or just above."""
-        starts = {segment.start for source in self._sources() for segment in source()}
+        starts = {segment.start for source in self._sources() for segment in source(self._first_bits)}
         return sorted(not_below(start) for start in starts)

@@ -83,18 +83,25 @@ class Windows:
         return waves[int(window) * len(self.panels) + place], tau - window - self._starts[place]
 
 
-def windows(chain: Chain, nodes: range, loads: Sequence[Applied], count: int, terms: int) -> Windows:
-    """The waves of a chain on the windows [0, 1), ... [count - 1, count), in `terms` terms at the working precision.
+def windows(chain: Chain, nodes: range, loads: Sequence[Applied], count: int, terms: int, bits: int) -> Windows:
+    """The waves of a chain on the windows [0, 1), ... [count - 1, count), in `terms` terms with so many bits.
 
     What reaches the first and last of `nodes` from outside must not matter. CostError where they would fill the memory.
     """
     forces = _NodeLoads(chain, nodes, loads)
     panels = panels_of(chain, nodes, loads)
-    if (size := stored(2 * len(nodes) * count * len(panels), terms, ctx.prec)) > _LARGEST:
+    if (size := stored(2 * len(nodes) * count * len(panels), terms, bits)) > _LARGEST:
         raise CostError(
-            f"output.until: the waves of {len(nodes)} nodes on {count} windows with {ctx.prec} bits would take "
+            f"output.until: the waves of {len(nodes)} nodes on {count} windows with {bits} bits would take "
             f"{size:.1e} bytes, at most {_LARGEST:.1e} expected"
         )
+    with ctx.workprec(bits):
+        return _marched(chain, nodes, panels, forces, count, terms)
+
+
+def _marched(
+    chain: Chain, nodes: range, panels: tuple[Panel, ...], forces: _NodeLoads, count: int, terms: int
+) -> Windows:
     result = Windows(chain, nodes, panels, {x: [] for x in nodes}, {x: [] for x in nodes})
     bodies = {x: _Body(chain.nodes[x]) for x in nodes}
     for step in range(count * len(panels)):

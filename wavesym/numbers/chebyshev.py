@@ -30,14 +30,15 @@ def _from_powers(size: int, bits: int) -> arb_mat:
     return arb_mat([[arb(entry) for entry in row] for row in entries])
 
 
-def coefficients(polynomials: Sequence[arb_poly]) -> list[list[arb]]:
-    """The Chebyshev coefficients of each polynomial, all of the length of the longest."""
+def coefficients(polynomials: Sequence[arb_poly], bits: int) -> list[list[arb]]:
+    """The Chebyshev coefficients of each polynomial, all of the length of the longest, with so many bits."""
     size = max((p.length() for p in polynomials), default=0)
     if size == 0:
         return [[] for _ in polynomials]
     columns = [[*p.coeffs(), *[arb(0)] * (size - p.length())] for p in polynomials]
     powers = arb_mat([list(row) for row in zip(*columns, strict=True)])
-    product = _from_powers(size, ctx.prec) * powers
+    with ctx.workprec(bits):
+        product = _from_powers(size, bits) * powers
     return [[product[n, j] for n in range(size)] for j in range(len(polynomials))]
 
 

@@ -22,13 +22,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
-from flint import arb, arb_poly, ctx, fmpq
+from flint import arb, arb_poly, fmpq
 
 from wavesym.errors import CostError
-from wavesym.exact.ball import Segment, precise
+from wavesym.exact.ball import Segment
 from wavesym.exact.motion import Motion, is_zero
 from wavesym.model.model import Model
 from wavesym.numbers import chebyshev
+from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import bound, middle, nearest, rational
 from wavesym.numbers.reals import SINGLE, Real
 from wavesym.programs.march.plan import plan
@@ -209,14 +210,14 @@ class _Fits:
         if self._least(per_unit) * self._real.bytes > most:
             raise _too_large(self._least(per_unit) * self._real.bytes, most)
 
-        def attempt() -> Pieces | None:
-            self._bits = ctx.prec  # what did for one number of pieces is where the next one starts
+        def attempt(bits: int) -> Pieces | None:
+            self._bits = bits  # what did for one number of pieces is where the next one starts
             if self._least(per_unit) * self._bits > _MOST_WORK:
                 raise CostError(
                     f"output.until: {self._least(per_unit):.0e} pieces would be fitted with {self._bits} bits, "
                     f"at most {_MOST_WORK // self._bits:.0e} expected"
                 )
-            return self._fit(per_unit, most)
+            return self._fit(per_unit, most, bits)
 
         try:
             return precise(attempt, self._bits, _MOST_BITS)
@@ -240,7 +241,7 @@ class _Fits:
             shared.setdefault(self._motion.breaks(probe), []).append(k)
         return shared
 
-    def _fit(self, per_unit: int, most: int) -> Pieces | None:
+    def _fit(self, per_unit: int, most: int, bits: int) -> Pieces | None:
         probes = self._motion.probes
         grids: list[Grid] = []
         bounds: dict[int, tuple[float, float]] = {}
@@ -248,9 +249,9 @@ class _Fits:
         for members in self._shared.values():
             columns = []
             for k in members:
-                segments = self._motion.segments(probes[k])
+                segments = self._motion.segments(probes[k], bits)
                 cuts = _Cuts([segment.start for segment in segments], self._motion.until, per_unit, self._real)
-                fit = self._output(segments, cuts)
+                fit = self._output(segments, cuts, bits)
                 if fit is None and k in self._silent:
                     fit = _nothing(cuts)
                 if fit is None:
@@ -265,12 +266,12 @@ class _Fits:
         return Pieces(outputs, self._tau_max, self._real, tuple(grids), per_unit)
 
     def _output(
-        self, segments: Sequence[Segment], cuts: _Cuts
+        self, segments: Sequence[Segment], cuts: _Cuts, bits: int
     ) -> tuple[tuple[float, float], list[tuple[float, ...]]] | None:
-        """Bound and largest value of an output, and its powers on every piece; None where the precision does not do."""
+        """Bound and largest value of an output, and its powers on every piece; None where so many bits do not do."""
         if is_zero(segments):
             return _nothing(cuts)
-        if self._too_blurred(segments, cuts):
+        if self._too_blurred(segments, cuts, bits):
             return None
         local = list(_on_pieces(segments, cuts))
         scale = max(map(cuts.size, range(len(local)), local))
@@ -279,7 +280,7 @@ class _Fits:
         allowed, enough = self._allowed(scale)
         worst = arb(0)
         powers = []
-        for coefficients, half in zip(chebyshev.coefficients(local), cuts.halves, strict=True):
+        for coefficients, half in zip(chebyshev.coefficients(local, bits), cuts.halves, strict=True):
             blurred = sum((c.rad() for c in coefficients), arb(0))
             if not blurred < enough:
                 return None
@@ -294,13 +295,13 @@ class _Fits:
         allowed = self._tolerance * scale
         return allowed, allowed.max(arb(self._real.roundoff) * scale) / 1000
 
-    def _too_blurred(self, segments: Sequence[Segment], cuts: _Cuts) -> bool:
+    def _too_blurred(self, segments: Sequence[Segment], cuts: _Cuts, bits: int) -> bool:
         """Whether balls, which grow with time, hide the last piece, however large the largest value is."""
         largest = arb(0)
         for segment, end in zip(segments, [*(s.start for s in segments[1:]), self._motion.until], strict=True):
             (polynomial,) = segment.families.values()
             largest = largest.max(abs(polynomial(arb(0).union(arb(end - segment.start)))).upper())
-        (last,) = chebyshev.coefficients(list(_on_pieces(segments, cuts, len(cuts.middles) - 1)))
+        (last,) = chebyshev.coefficients(list(_on_pieces(segments, cuts, len(cuts.middles) - 1)), bits)
         return not sum((c.rad() for c in last), arb(0)) < self._allowed(largest)[1]
 
 
