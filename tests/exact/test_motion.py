@@ -14,7 +14,7 @@ from wavesym.errors import CostError
 from wavesym.exact import motion as room
 from wavesym.exact.ball import Balls
 from wavesym.exact.motion import Motion, is_zero
-from wavesym.exact.windows import Panel, Wave, Windows
+from wavesym.exact.windows import PanelWave, WindowPanel, Windows
 from wavesym.model.loads import Applied
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.scene import lower
@@ -64,7 +64,7 @@ def by_hand(scene, right, left, panels=1):
     """The motion of a scene whose waves are given: those that nodes send right, and left, `panels` in a window."""
     motion = made(scene)
     length = fmpq(1, panels)
-    parts = tuple(Panel(k * length, length) for k in range(panels))
+    parts = tuple(WindowPanel(k * length, length) for k in range(panels))
     motion.__dict__["_panels"] = parts
     waves = Windows(motion._chain, motion._nodes, parts, left, right)
     motion._marched = dict.fromkeys((53, *(2**k for k in range(6, 14))), waves)  # at every precision
@@ -72,7 +72,7 @@ def by_hand(scene, right, left, panels=1):
 
 
 def waves(count, *powers, error=0):
-    return [Wave(arb_poly([fmpq(c) for c in powers]), arb(error))] * count
+    return [PanelWave(arb_poly([fmpq(c) for c in powers]), arb(error))] * count
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,7 @@ def test_strain_is_the_difference_of_the_waves_and_velocity_their_sum(output, ex
     """One polynomial in tau for the whole of a wave: as each panel has its own start, the waves are cut to it here."""
     sides = {}
     for name, (start, slope) in {"right": (3, 5), "left": (7, 11)}.items():
-        sides[name] = [Wave(arb_poly([start + slope * n, slope]), arb(0)) for n in range(4)]
+        sides[name] = [PanelWave(arb_poly([start + slope * n, slope]), arb(0)) for n in range(4)]
     motion = by_hand(drive(3, **output), {1: sides["right"]}, {2: sides["left"]})
     (place,) = motion.probes
     for tau in (fmpq(1), fmpq(5, 4), fmpq(3, 2), fmpq(7, 4), fmpq(2), fmpq(13, 5)):
@@ -126,7 +126,7 @@ def test_errors_of_velocity_pile_up_in_displacement():
 
 
 def test_a_displacement_begins_at_0_and_goes_on_where_it_was():
-    steady = [Wave(arb_poly([1, 2 + n]), arb(0)) for n in range(4)]
+    steady = [PanelWave(arb_poly([1, 2 + n]), arb(0)) for n in range(4)]
     motion = by_hand(drive(3, displacement=["5/4"]), {1: steady}, {2: steady})
     segments = motion.segments(motion.probes[0], ctx.prec)
     assert Balls(segments).at(fmpq(0)) == 0

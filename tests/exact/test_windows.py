@@ -10,7 +10,7 @@ import wavesym
 from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import windows as room
-from wavesym.exact.windows import STILL, Panel, Wave, Windows, _Body, panels_of, windows
+from wavesym.exact.windows import STILL, PanelWave, WindowPanel, Windows, _Body, panels_of, windows
 from wavesym.model.loads import Applied
 from wavesym.model.node import Node, Rod
 from wavesym.numbers.doubles import rational
@@ -30,7 +30,7 @@ def body(alpha, beta, velocity=0, extra=0):
 
 
 def wave(powers, error=0):
-    return Wave(arb_poly(powers), arb(error))
+    return PanelWave(arb_poly(powers), arb(error))
 
 
 def driven(gamma, powers, start, u):
@@ -109,7 +109,7 @@ def test_a_node_without_mass_follows_at_once():
 def test_what_does_not_move_is_exactly_still():
     assert _Body(body(1, 1)).moved(STILL, STILL, arb_poly(), fmpq(1), 9) is STILL
     assert _Body(body(1, 1, velocity=2)).moved(STILL, STILL, arb_poly(), fmpq(1), 9) is not STILL
-    blurred = _Body(body(1, 1)).moved(Wave(arb_poly(), arb(fmpq(1, 4))), STILL, arb_poly(), fmpq(1), 9)
+    blurred = _Body(body(1, 1)).moved(PanelWave(arb_poly(), arb(fmpq(1, 4))), STILL, arb_poly(), fmpq(1), 9)
     assert blurred.error == fmpq(1, 4)  # alpha/gamma = 1
     assert blurred.at(fmpq(1)).contains(arb(fmpq(-1, 4)))
     assert blurred.at(fmpq(0)).contains(arb(fmpq(1, 4)))
@@ -129,7 +129,7 @@ def test_errors_pass_through_nodes_as_waves_do(monkeypatch):
 
     def arriving(sent, x, rod, step):
         if step < 0 and x in (0, 2):
-            return Wave(arb_poly(), arb(told["right" if x == 0 else "left", x]))
+            return PanelWave(arb_poly(), arb(told["right" if x == 0 else "left", x]))
         return right(sent, x, rod, step)
 
     monkeypatch.setattr(room, "_arriving", arriving)
@@ -237,7 +237,7 @@ def test_an_error_is_kept_without_a_radius():
 
 def test_before_the_first_window_rods_move_with_half_their_velocity():
     made = watched("collision").system.chain
-    result = Windows(made, range(7), (Panel(fmpq(0), fmpq(1)),), {}, {})
+    result = Windows(made, range(7), (WindowPanel(fmpq(0), fmpq(1)),), {}, {})
     for direction, x, rod in (("right", 1, 2), ("right", 2, 3), ("left", 3, 3), ("left", 2, 2)):
         sent, offset = result.sent(direction, x, fmpq(-1, 1000))
         assert sent.at(fmpq(1, 2)).contains(made.rod(rod).velocity / 2)
@@ -247,7 +247,7 @@ def test_before_the_first_window_rods_move_with_half_their_velocity():
 
 def test_the_wave_at_a_panels_start_is_the_one_that_begins_there():
     made = watched("drive").system.chain
-    panels = (Panel(fmpq(0), fmpq(1, 3)), Panel(fmpq(1, 3), fmpq(2, 3)))
+    panels = (WindowPanel(fmpq(0), fmpq(1, 3)), WindowPanel(fmpq(1, 3), fmpq(2, 3)))
     waves = [wave([k]) for k in range(6)]
     result = Windows(made, range(1), panels, {0: waves}, {0: [wave([10 + k]) for k in range(6)]})
     for tau, k, u in (("0", 0, "0"), ("1/3", 1, "0"), ("333/1000", 0, "333/1000"), ("5/3", 3, "1/3"), ("2", 4, "0")):

@@ -14,7 +14,7 @@ from wavesym.cli import main
 from wavesym.compiler import evaluator
 from wavesym.lab import subjects as listed
 from wavesym.lab.floor import floor
-from wavesym.lab.measure import Measured, Row, _Judge, measure, to_csv
+from wavesym.lab.measure import ChartRow, Measured, _Judge, measure, to_csv
 from wavesym.lab.subjects import Subject, spacing, subjects, taus
 from wavesym.lab.timing import medians
 from wavesym.rivals.every import RIVALS
@@ -100,7 +100,7 @@ def test_the_floor_is_a_straight_line(single):
 
 
 def row(name, k, kind="rival", **changes):
-    made = Row(name, kind, "C", "double", f"{k}", 2.0 * k, 1e-3 * k, 0.1**k, 0.2, None)
+    made = ChartRow(name, kind, "C", "double", f"{k}", 2.0 * k, 1e-3 * k, 0.1**k, 0.2, None)
     return replace(made, **changes)
 
 

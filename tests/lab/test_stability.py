@@ -21,7 +21,7 @@ from wavesym.lab.atlas import endurance, extremes, fronts, gaps, limits, reflect
 from wavesym.lab.atlas import twisted_shaft as twist
 from wavesym.lab.atlas.attempts import ROUNDED, truth
 from wavesym.lab.atlas.drawing import draw
-from wavesym.lab.atlas.family import Axis, Family, Point, to_csv
+from wavesym.lab.atlas.family import Axis, CurveFamily, Point, to_csv
 from wavesym.lab.atlas.lumped import strains
 from wavesym.lab.atlas.scenes import TOLERANCE, aimed, drive, made
 from wavesym.programs import pieces
@@ -275,7 +275,7 @@ def test_pieces_refuse_tables_that_are_too_large(monkeypatch):
 # pictures, tables and the command
 
 
-FAMILY = Family(
+FAMILY = CurveFamily(
     "example",
     "An example",
     Axis("gap", zero=1e-5, falling=True),

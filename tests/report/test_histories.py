@@ -28,7 +28,7 @@ pytest.importorskip("matplotlib")
 from matplotlib.figure import Figure
 
 from wavesym.report import panels
-from wavesym.report.panels import Panel, apart, draw, jumps, notes, stacked, thinned
+from wavesym.report.panels import PlotPanel, apart, draw, jumps, notes, stacked, thinned
 from wavesym.report.saving import save
 
 THIRDS = Scene(
@@ -254,7 +254,7 @@ def test_names_hang_where_a_curve_is_alone() -> None:
 
 
 def test_history_of_a_load_needs_no_scene() -> None:
-    figure = stacked([Panel("load", (History(Probe("a", "load", 1, fmpq(0)), (RAMP,)),))], 1.0, ["title"])
+    figure = stacked([PlotPanel("load", (History(Probe("a", "load", 1, fmpq(0)), (RAMP,)),))], 1.0, ["title"])
     assert [text.get_text() for text in figure.axes[0].texts] == ["a"]
     assert History(Probe("a", "load", 1, fmpq(0)), (RAMP,)).formal == inf
 

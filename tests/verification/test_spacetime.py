@@ -15,7 +15,7 @@ from wavesym.rivals.problem import Event, Problem, Watch
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks, spacetime
 from wavesym.verification.reference import reference
-from wavesym.verification.spacetime import Grid, grid
+from wavesym.verification.spacetime import SpaceTimeGrid, grid
 
 
 def building(load, until=6, base="ground", **outputs):
@@ -91,9 +91,9 @@ def test_a_struck_bar():
     )
     found = []
     for cells in (20, 40, 80):
-        instants = Grid(problem, 20).instants(until) * (cells // 20)
+        instants = SpaceTimeGrid(problem, 20).instants(until) * (cells // 20)
         # (2.4) of the mass: its acceleration is 1 + alpha dU/dx under a step, so its velocity after an impulse
-        velocity = 1 + alpha * Grid(problem, cells).integrate(instants).values[0]
+        velocity = 1 + alpha * SpaceTimeGrid(problem, cells).integrate(instants).values[0]
         exact = [displacement(k / cells) - (displacement(k / cells - 2) if k >= 2 * cells else 0) for k in instants]
         found.append(np.abs(velocity - exact).max())
     assert found[-1] < 2e-3
@@ -106,11 +106,11 @@ def test_a_front_is_as_sharp_as_it_is():
     for cells in (16, 64):
         half = cells // 2
         around = np.array([half - 1, half, half + 1])
-        strain, velocity = Grid(grid(scene).problem, cells).integrate(around).values
+        strain, velocity = SpaceTimeGrid(grid(scene).problem, cells).integrate(around).values
         np.testing.assert_allclose(strain, [0, 2, 4], atol=1e-12)
         np.testing.assert_allclose(velocity, [0, -2, -4], atol=1e-12)
-        assert not set(around[1:2]) & set(Grid(grid(scene).problem, cells).instants(1.0))
-        assert {half - 1, half + 1} <= set(Grid(grid(scene).problem, cells).instants(1.0))
+        assert not set(around[1:2]) & set(SpaceTimeGrid(grid(scene).problem, cells).instants(1.0))
+        assert {half - 1, half + 1} <= set(SpaceTimeGrid(grid(scene).problem, cells).instants(1.0))
 
 
 def test_fronts_off_the_grid_are_kept_away_from_and_allowed_for():

@@ -31,7 +31,7 @@ class Polynomial:
 
 
 @dataclass(frozen=True)
-class Response:
+class WalkResponse:
     """The polynomials for one source, over `unit`."""
 
     source: str
@@ -47,11 +47,11 @@ class Walks:
     m: int
     intervals: int
     letters: tuple[tuple[str, str], ...]
-    responses: tuple[Response, ...]
+    responses: tuple[WalkResponse, ...]
 
 
 @dataclass(frozen=True)
-class Document:
+class WalksDocument:
     """templates/text/walks.txt.j2 and templates/latex/walks.tex.j2."""
 
     systems: tuple[Walks, ...]
@@ -66,7 +66,7 @@ def walk_polynomials(chains: Iterable[SymbolicChain], intervals: int, format: st
     made = tuple(_walks(symbols, intervals, write) for symbols in chains)
     if format == "json":
         return json.dumps([asdict(walks) for walks in made], indent=2) + "\n"
-    return render("latex/walks.tex.j2" if format == "latex" else "text/walks.txt.j2", Document(made))
+    return render("latex/walks.tex.j2" if format == "latex" else "text/walks.txt.j2", WalksDocument(made))
 
 
 def _walks(symbols: SymbolicChain, intervals: int, write: Callable[[str], str]) -> Walks:
@@ -91,7 +91,7 @@ def _meanings(names: Letters, write: Callable[[str], str]) -> Iterator[tuple[str
 
 def _response(
     symbols: SymbolicChain, unit: Unit, names: Letters, intervals: int, write: Callable[[str], str]
-) -> Response:
+) -> WalkResponse:
     chain = symbols.chain
     step = Rules(chain).interval
     times = departures(chain, step, intervals)
@@ -112,7 +112,7 @@ def _response(
                     powers = tuple((write(name), d - 1) for name, d in degrees if d and name in names.rates)
                     polynomials.append(Polynomial(write(f"{letter}_{rod}"), n, write(str(polynomial)), powers))
     over = "s" if unit.power == 0 else f"s^{unit.power + 1}"
-    return Response(unit.name, f"({write(_plain(unit.value))})/{over}", tuple(polynomials))
+    return WalkResponse(unit.name, f"({write(_plain(unit.value))})/{over}", tuple(polynomials))
 
 
 def _plain(value: Quantity) -> str:

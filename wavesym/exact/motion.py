@@ -11,7 +11,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
-from wavesym.exact.windows import Panel, Wave, Windows, panels_of, windows
+from wavesym.exact.windows import PanelWave, WindowPanel, Windows, panels_of, windows
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 
@@ -41,7 +41,7 @@ class Motion:
             )
 
     @cached_property
-    def _panels(self) -> tuple[Panel, ...]:
+    def _panels(self) -> tuple[WindowPanel, ...]:
         return panels_of(self._chain, self._nodes, self._acting)
 
     @cached_property
@@ -130,7 +130,7 @@ def _segments(waves: Windows, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq
         yield Segment(start, {fmpq(0): polynomial})
 
 
-def _value(waves: Windows, probe: Probe, start: fmpq) -> Wave:
+def _value(waves: Windows, probe: Probe, start: fmpq) -> PanelWave:
     """Strain, or velocity, from tau = `start` on: the left-going wave less, or plus, the right-going one."""
     polynomial, error = arb_poly(), arb(0)
     right, left = probe.weights
@@ -142,7 +142,7 @@ def _value(waves: Windows, probe: Probe, start: fmpq) -> Wave:
             later = wave.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else wave.polynomial
             polynomial += factor * later
         error += wave.error
-    return Wave(polynomial, error)
+    return PanelWave(polynomial, error)
 
 
 def is_zero(segments: Sequence[Segment]) -> bool:

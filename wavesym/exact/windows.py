@@ -33,7 +33,7 @@ from wavesym.model.node import Node, Rod
 _LARGEST = 5 << 27  # bytes
 
 
-class Wave(NamedTuple):
+class PanelWave(NamedTuple):
     """A function on a panel: |function - polynomial| <= error."""
 
     polynomial: arb_poly
@@ -45,10 +45,10 @@ class Wave(NamedTuple):
         return value if self.error == 0 else value + arb(0, self.error)
 
 
-STILL = Wave(arb_poly(), arb(0))
+STILL = PanelWave(arb_poly(), arb(0))
 
 
-class Panel(NamedTuple):
+class WindowPanel(NamedTuple):
     """A part of every unit window: from n + start on, `length` long."""
 
     start: fmpq
@@ -64,15 +64,15 @@ class Windows:
 
     chain: Chain
     nodes: range
-    panels: tuple[Panel, ...]
-    left: dict[int, list[Wave]]
-    right: dict[int, list[Wave]]
+    panels: tuple[WindowPanel, ...]
+    left: dict[int, list[PanelWave]]
+    right: dict[int, list[PanelWave]]
 
     @cached_property
     def _starts(self) -> list[fmpq]:
         return [panel.start for panel in self.panels]
 
-    def sent(self, direction: str, x: int, tau: fmpq) -> tuple[Wave, fmpq]:
+    def sent(self, direction: str, x: int, tau: fmpq) -> tuple[PanelWave, fmpq]:
         """The wave that the node at x sends "left" or "right" at tau and just after, and where in it tau is."""
         window = tau.floor()
         if window < 0:
@@ -100,7 +100,7 @@ def windows(chain: Chain, nodes: range, loads: Sequence[Applied], count: int, te
 
 
 def _marched(
-    chain: Chain, nodes: range, panels: tuple[Panel, ...], forces: _NodeLoads, count: int, terms: int
+    chain: Chain, nodes: range, panels: tuple[WindowPanel, ...], forces: _NodeLoads, count: int, terms: int
 ) -> Windows:
     result = Windows(chain, nodes, panels, {x: [] for x in nodes}, {x: [] for x in nodes})
     bodies = {x: _Body(chain.nodes[x]) for x in nodes}
@@ -113,8 +113,8 @@ def _marched(
             b = _arriving(result.left, x + 1, node.right, step - len(panels))
             load = forces.on(x, n + panel.start)
             q = bodies[x].moved(a, b, load, panel.length, terms)
-            result.left[x].append(Wave(q.polynomial - a.polynomial, q.error + a.error))
-            result.right[x].append(Wave(q.polynomial - b.polynomial, q.error + b.error))
+            result.left[x].append(PanelWave(q.polynomial - a.polynomial, q.error + a.error))
+            result.right[x].append(PanelWave(q.polynomial - b.polynomial, q.error + b.error))
     return result
 
 
@@ -123,11 +123,11 @@ def stored(waves: int, terms: int, bits: int) -> int:
     return waves * terms * (48 + bits // 8)
 
 
-def _constant(value: fmpq) -> Wave:
-    return Wave(arb_poly([arb(value)]), arb(0)) if value != 0 else STILL
+def _constant(value: fmpq) -> PanelWave:
+    return PanelWave(arb_poly([arb(value)]), arb(0)) if value != 0 else STILL
 
 
-def _arriving(sent: dict[int, list[Wave]], x: int, rod: Rod | None, step: int) -> Wave:
+def _arriving(sent: dict[int, list[PanelWave]], x: int, rod: Rod | None, step: int) -> PanelWave:
     if rod is None:
         return STILL
     if step < 0 or x not in sent:
@@ -135,12 +135,12 @@ def _arriving(sent: dict[int, list[Wave]], x: int, rod: Rod | None, step: int) -
     return sent[x][step]
 
 
-def panels_of(chain: Chain, nodes: range, loads: Iterable[Applied]) -> tuple[Panel, ...]:
+def panels_of(chain: Chain, nodes: range, loads: Iterable[Applied]) -> tuple[WindowPanel, ...]:
     """The parts of a window between the instants of the loads on `nodes`."""
     acting = {load.source for x in nodes for load in chain.nodes[x].loads}
     times = (load.time for load in loads if load.source in acting)
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
-    return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
+    return tuple(WindowPanel(low, high - low) for low, high in pairwise(cuts))
 
 
 class _Body:
@@ -154,12 +154,12 @@ class _Body:
         self._q = _constant(node.velocity)
         self._start = self._q.at(fmpq(0))
 
-    def moved(self, a: Wave, b: Wave, load: arb_poly, length: fmpq, terms: int) -> Wave:
+    def moved(self, a: PanelWave, b: PanelWave, load: arb_poly, length: fmpq, terms: int) -> PanelWave:
         """The velocity on the next panel."""
         right = self._left * a.polynomial + self._right * b.polynomial + self._load * load
         error = self._left * a.error + self._right * b.error
         if not any(self._raised):
-            return Wave(right * (1 / self._same), _upper(error / self._same))
+            return PanelWave(right * (1 / self._same), _upper(error / self._same))
         if right.length() == 0 and error == 0 and self._start.is_zero():
             return STILL
         coefficients = [self._start]
@@ -172,7 +172,7 @@ class _Body:
             coefficients.append(last)
         # what the series does not balance: the last power of gamma q, and powers of r that it does not reach
         defect = (given[terms - 1] - same * last) * arb(length) ** (terms - 1)
-        wave = Wave(arb_poly(coefficients), _upper((error + abs(defect)) / same))
+        wave = PanelWave(arb_poly(coefficients), _upper((error + abs(defect)) / same))
         self._start = wave.at(length)
         return wave
 

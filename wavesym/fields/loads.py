@@ -10,14 +10,14 @@ from typing import ClassVar
 from pydantic import Field, ValidationInfo, field_validator
 
 from wavesym.fields.numbers import Numbers, Positive
-from wavesym.fields.table import Table, shown, wrong
+from wavesym.fields.table import SceneTable, shown, wrong
 from wavesym.model.loads import Applied
 from wavesym.numbers.doubles import rational
 
 _LONG = 440  # characters of a load that is written out
 
 
-class Load(Table):
+class Load(SceneTable):
     """A load of a scene."""
 
     def refused(self, m: int) -> tuple[str, str] | None:

@@ -76,7 +76,7 @@ def listed(value: object) -> tuple[object, ...]:
     return tuple(value)
 
 
-class Table(BaseModel):
+class SceneTable(BaseModel):
     """A table of a scene: every key is known, none that is needed is missing; a field's description says what it is."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)

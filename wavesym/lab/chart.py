@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from wavesym.lab.measure import NEAR, Measured, Row
+from wavesym.lab.measure import NEAR, ChartRow, Measured
 from wavesym.report.labels import Curve, label
 from wavesym.scene import Scene
 
@@ -84,9 +84,9 @@ def _title(scene: Scene, measured: Measured) -> str:
     )
 
 
-def _curves(rows: Sequence[Row]) -> list[tuple[_Style, list[Row]]]:
+def _curves(rows: Sequence[ChartRow]) -> list[tuple[_Style, list[ChartRow]]]:
     """The points of each curve, and how it is drawn: wavesym's first, else in the order of the measurements."""
-    grouped: dict[tuple[str, str, str], list[Row]] = {}
+    grouped: dict[tuple[str, str, str], list[ChartRow]] = {}
     for row in sorted(rows, key=lambda row: row.kind != "wavesym"):
         grouped.setdefault((row.name, row.language, row.precision), []).append(row)
     rivals = cycle(_RIVALS)
@@ -99,7 +99,9 @@ def _curves(rows: Sequence[Row]) -> list[tuple[_Style, list[Row]]]:
     return curves
 
 
-def _panel(axes: Axes, title: str, curves: Sequence[tuple[_Style, list[Row]]], measured: Measured, error: str) -> None:
+def _panel(
+    axes: Axes, title: str, curves: Sequence[tuple[_Style, list[ChartRow]]], measured: Measured, error: str
+) -> None:
     axes.set(xscale="log", yscale="log", xlim=(_LEAST_ERROR / 2, _LARGEST_ERROR * 3))
     times = [row.ns_per_value for row in measured.rows]
     axes.set_ylim(measured.floor / 2.5, max(times, default=1.0) * 3)
@@ -132,7 +134,7 @@ def _panel(axes: Axes, title: str, curves: Sequence[tuple[_Style, list[Row]]], m
     label(axes, named, _FONT)
 
 
-def _setup(axes: Axes, curves: Sequence[tuple[_Style, list[Row]]]) -> None:
+def _setup(axes: Axes, curves: Sequence[tuple[_Style, list[ChartRow]]]) -> None:
     """What a new parameter set costs, from the least to the most of a curve's points."""
     axes.set(xscale="log", ylim=(len(curves) - 0.5, -0.5))
     for place, (style, rows) in enumerate(curves):

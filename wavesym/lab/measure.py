@@ -33,7 +33,7 @@ _ROUNDED = {False: 1e-9, True: 1e-5}  # by whether it is in single precision
 
 
 @dataclass(frozen=True)
-class Row:
+class ChartRow:
     """A point of the chart. Errors are relative to each output's largest value, and of the outputs the largest."""
 
     name: str
@@ -52,7 +52,7 @@ class Row:
 class Measured:
     """A scene's chart in numbers: its points, and the nanoseconds that writing a double takes."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[ChartRow, ...]
     floor: float
     samples: int
 
@@ -69,7 +69,7 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
     outputs = len(scene.outputs)
     line, *times = medians([floor(outputs, samples), *(subject.sample for subject, _ in found)])
     rows = (
-        Row(
+        ChartRow(
             name=subject.name,
             kind=subject.kind,
             language=subject.language,
@@ -89,7 +89,7 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
 def to_csv(measured: Measured) -> str:
     """All numbers, with the floor as a row of its own."""
     text = StringIO()
-    writer = csv.DictWriter(text, [field.name for field in fields(Row)], lineterminator="\n")
+    writer = csv.DictWriter(text, [field.name for field in fields(ChartRow)], lineterminator="\n")
     writer.writeheader()
     line = {"name": "straight line", "kind": "floor", "language": "C", "precision": "double"}
     writer.writerow(line | {"ns_per_value": f"{measured.floor:.3g}"})

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from wavesym.lab.atlas import endurance, extremes, fronts, gaps, limits, reflections
 from wavesym.lab.atlas.drawing import draw
-from wavesym.lab.atlas.family import Family, Progress, to_csv
+from wavesym.lab.atlas.family import CurveFamily, Progress, to_csv
 from wavesym.report.saving import save
 from wavesym.writing import write_whole
 
-FAMILIES: Mapping[str, Callable[[Progress], Family]] = {
+FAMILIES: Mapping[str, Callable[[Progress], CurveFamily]] = {
     "reflections": reflections.family,
     "gaps": gaps.family,
     "kappa": extremes.family,

@@ -19,10 +19,10 @@ from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest
 from wavesym.papers.pielorz1979 import figures as section_5
-from wavesym.papers.pielorz1979.figures import Finding, Statement
+from wavesym.papers.pielorz1979.figures import FigureStatement, Finding
 from wavesym.papers.record import Record, judge, shown
 from wavesym.report.histories import Histories, History, histories
-from wavesym.report.panels import CHARACTERS, Instant, Mark, Panel, axis_title, stacked
+from wavesym.report.panels import CHARACTERS, Instant, Mark, PlotPanel, axis_title, stacked
 from wavesym.report.saving import save
 from wavesym.scene import lower
 
@@ -83,7 +83,7 @@ def marks(finding: Finding, text: str, made: Histories, load: str) -> Iterator[M
         yield Mark(text, np.array([(taus[point.instant], curves[point.output][point.instant]) for point in spot]))
 
 
-def _panel(made: Histories, quantity: str, load: str, found: Mapping[str, Statement]) -> Panel:
+def _panel(made: Histories, quantity: str, load: str, found: Mapping[str, FigureStatement]) -> PlotPanel:
     own = tuple(history for history in made.outputs if history.output.quantity == quantity)
     noted = [
         mark
@@ -91,7 +91,7 @@ def _panel(made: Histories, quantity: str, load: str, found: Mapping[str, Statem
         for mark in marks(statement.findings[load], id.removeprefix("text."), made, load)
         if statement.findings[load].spots[0][0].output.startswith(quantity)
     ]
-    return Panel(axis_title(made.model, quantity), own, tuple(noted), height=3.6 if len(own) > 4 else 2.9)
+    return PlotPanel(axis_title(made.model, quantity), own, tuple(noted), height=3.6 if len(own) > 4 else 2.9)
 
 
 def _ends(record: Record) -> list[Instant]:
@@ -103,7 +103,7 @@ def _ends(record: Record) -> list[Instant]:
     ]
 
 
-def _load(model: Model) -> Panel:
+def _load(model: Model) -> PlotPanel:
     """The load over tau, exactly: steps and ramps, summed. The moments of Fig. 7 are equal: one stands for both."""
     moments = sorted({load.source for load in model.loads} - {"a", "b"})
     acting = [load for load in model.loads if load.source not in moments[1:]]
@@ -120,7 +120,7 @@ def _load(model: Model) -> Panel:
     )
     name = " = ".join(moments) or "acceleration of the base"
     unit = "moment\nin G J\u2080\u2081 \u03b8\u2080 / l" if moments else "load (3.2)\n(dimensionless)"
-    return Panel(unit, (History(Probe(name, "load", 1, fmpq(0)), stretches),), height=1.2)
+    return PlotPanel(unit, (History(Probe(name, "load", 1, fmpq(0)), stretches),), height=1.2)
 
 
 def _title(number: int, model: Model, load: str) -> Iterator[str]:
@@ -136,7 +136,7 @@ def _title(number: int, model: Model, load: str) -> Iterator[str]:
     yield "Numbers stand where a statement of section 5 was measured; jumps are thin and upright."
 
 
-def _list(number: int, load: str, found: Mapping[str, Statement], records: Mapping[str, Record]) -> Iterator[str]:
+def _list(number: int, load: str, found: Mapping[str, FigureStatement], records: Mapping[str, Record]) -> Iterator[str]:
     """The statements, what each was taken to mean, and for which loads it is true."""
     for id, statement in found.items():
         yield f"{id.removeprefix('text.')}  {statement.text}: {records[id].verdict}"

@@ -70,7 +70,7 @@ class Instant:
 
 
 @dataclass(frozen=True)
-class Panel:
+class PlotPanel:
     """Curves that share an axis: what is drawn upwards, how high the panel is (inches), what is marked."""
 
     title: str
@@ -108,15 +108,15 @@ def notes(histories: Histories) -> list[str]:
     return lines
 
 
-def panels(histories: Histories) -> list[Panel]:
+def panels(histories: Histories) -> list[PlotPanel]:
     """A panel for each quantity that moves, or several where one would be crowded; an empty one if nothing moves."""
     result = []
     for quantity, shown in _quantities(histories).items():
         count = min(-(-len(shown) // len(_STYLES)), _MOST_PANELS)
         kept = shown[: count * len(_STYLES)]
         title = axis_title(histories.model, quantity)
-        result += [Panel(title, tuple(part)) for part in _even(kept, count)]
-    return result or [Panel(axis_title(histories.model, histories.outputs[0].output.quantity), ())]
+        result += [PlotPanel(title, tuple(part)) for part in _even(kept, count)]
+    return result or [PlotPanel(axis_title(histories.model, histories.outputs[0].output.quantity), ())]
 
 
 def axis_title(model: Model, quantity: str) -> str:
@@ -141,7 +141,7 @@ def _even(shown: Sequence[History], count: int) -> list[Sequence[History]]:
 
 
 def stacked(
-    panels: Sequence[Panel],
+    panels: Sequence[PlotPanel],
     until: float,
     title: Sequence[str],
     below: Sequence[str] = (),
@@ -172,7 +172,7 @@ def stacked(
     return figure
 
 
-def _fill(axes: Axes, panel: Panel, instants: Sequence[Instant]) -> None:
+def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
     axes.set_ylabel(panel.title)
     axes.set_axisbelow(True)
     axes.grid(True, color="0.92", linewidth=0.5)
@@ -194,7 +194,7 @@ def _fill(axes: Axes, panel: Panel, instants: Sequence[Instant]) -> None:
         text.set(zorder=5, path_effects=[withStroke(linewidth=2, foreground="white")])
 
 
-def _named(axes: Axes, panel: Panel, instants: Sequence[Instant]) -> list[Curve]:
+def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Curve]:
     """What is to be labelled: curves, where they run apart from the others; marks; instants."""
     low, high = axes.get_ylim()
     curves = []

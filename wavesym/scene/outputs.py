@@ -10,7 +10,7 @@ from typing import Annotated, Self
 from pydantic import BeforeValidator, FailFast, Field, PlainSerializer, PlainValidator, field_validator, model_validator
 
 from wavesym.fields.numbers import Exact, Positive, exact, written
-from wavesym.fields.table import Table, Written, listed, shown, wrong
+from wavesym.fields.table import SceneTable, Written, listed, shown, wrong
 from wavesym.systems import Preset
 
 # Beyond it even the integer part of an argument costs a double most of its digits.
@@ -52,7 +52,7 @@ Place = Annotated[Position, PlainValidator(_position), PlainSerializer(lambda pl
 Positions = Annotated[tuple[Place, ...], FailFast(), BeforeValidator(listed)]
 
 
-class Output(Table):
+class Output(SceneTable):
     """The outputs, the horizon (in tau), and the largest error allowed relative to an output's largest value."""
 
     until: Positive = Field(description="the horizon, a positive number,")

@@ -11,7 +11,7 @@ from pydantic import Field, SerializeAsAny, ValidationError, ValidationInfo, fie
 
 from wavesym.errors import SceneError
 from wavesym.fields.loads import Load
-from wavesym.fields.table import Table, first_error, key_path, shown, wrong
+from wavesym.fields.table import SceneTable, first_error, key_path, shown, wrong
 from wavesym.scene.loads import loads
 from wavesym.scene.names import Name
 from wavesym.scene.outputs import Observable, Output, observables
@@ -20,7 +20,7 @@ from wavesym.scene.reading import read_toml
 from wavesym.systems import SYSTEMS, Preset
 
 
-class Scene(Table):
+class Scene(SceneTable):
     """A chain, its loads, and what to watch of it: `Scene(name=..., system={...}, load=[...], output={...})`.
 
     The fields are those of a scene file. Everything is dimensionless: x in rod lengths, tau = c t / l. Numbers may be

@@ -14,13 +14,13 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from wavesym.fields.loads import LoadKinds
 from wavesym.fields.numbers import Integer
-from wavesym.fields.table import Table, shown, wrong
+from wavesym.fields.table import SceneTable, shown, wrong
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters, System
 from wavesym.numbers.doubles import rational
 
 
-class Preset(Table):
+class Preset(SceneTable):
     """m elastic elements of a system, with numbers for its parameters.
 
     `variants` are what `derive` prints of it; their m and their indices say how many numbers a list has, `counts` the

@@ -52,14 +52,14 @@ class Balance:
     allowed: float
 
 
-class Weights(NamedTuple):
+class MomentumWeights(NamedTuple):
     """What stands before velocities in the momentum: of nodes with inertia and others, and of rods."""
 
     nodes: tuple[fmpq, ...]
     rods: tuple[fmpq, ...]
 
 
-def weights(system: Chain) -> Weights:
+def weights(system: Chain) -> MomentumWeights:
     """The weights of nodes x = 0 ... m and rods i = 1 ... m; 0 for a node that no rod acts on."""
     rods = [fmpq(1)]
     first = system.nodes[0].beta
@@ -67,7 +67,7 @@ def weights(system: Chain) -> Weights:
     for node in system.nodes[1:]:
         nodes.append(2 * rods[-1] / node.alpha if node.alpha != 0 else fmpq(0))
         rods.append(nodes[-1] * node.beta / 2)
-    return Weights(tuple(nodes), tuple(rods[:-1]))
+    return MomentumWeights(tuple(nodes), tuple(rods[:-1]))
 
 
 def watched(model: Model, until: int) -> Model:

@@ -28,14 +28,14 @@ Change = dict[fmpq, fmpq_poly]
 """sum over rates g of exp(-g w) * polynomial(w); what is 0 is left out."""
 
 
-class Sent(NamedTuple):
+class SentWaves(NamedTuple):
     """What the wave that a node sends to the left and to the right gains at tau = 0, 1, 2, ..."""
 
     left: list[Change]
     right: list[Change]
 
 
-class Difference(NamedTuple):
+class WaveDifference(NamedTuple):
     """Where a table and the node law differ: the increment of `function` at physical time tau."""
 
     source: str
@@ -45,7 +45,7 @@ class Difference(NamedTuple):
     node_law: Change
 
 
-def unit_waves(chain: Chain, source: str, times: int) -> tuple[Sent, ...]:
+def unit_waves(chain: Chain, source: str, times: int) -> tuple[SentWaves, ...]:
     """What the nodes at x = 0, 1, ... send at tau = 0, 1, ... times - 1 for a unit of `source`.
 
     The waves v/2 that are in the rods before do not count as gained: these are the f', g' of (4.2). ValueError where
@@ -54,7 +54,7 @@ def unit_waves(chain: Chain, source: str, times: int) -> tuple[Sent, ...]:
     if source not in chain.sources:
         raise ValueError(f"{source}: not among {', '.join(chain.sources)}")
     nodes = chain.nodes
-    sent = tuple(Sent([], []) for _ in nodes)
+    sent = tuple(SentWaves([], []) for _ in nodes)
     for n in range(times):
         for x, node in enumerate(nodes):
             a = _arrived(sent[x - 1].right, start(node.left), n) if node.left else {}
@@ -66,7 +66,7 @@ def unit_waves(chain: Chain, source: str, times: int) -> tuple[Sent, ...]:
     return sent
 
 
-def differences(chain: Chain, table: Table) -> Iterator[Difference]:
+def differences(chain: Chain, table: Table) -> Iterator[WaveDifference]:
     """Every increment in which a table of the chain differs from the node law; none where both are right."""
     last = max(
         (
@@ -87,7 +87,7 @@ def differences(chain: Chain, table: Table) -> Iterator[Difference]:
             for tau in range(min(gained, default=0), chain.leaves(*function, table.interval * len(increments))):
                 ours, theirs = node[tau] if tau >= 0 else {}, gained.get(tau, {})
                 if ours != theirs:
-                    yield Difference(source, function, tau, theirs, ours)
+                    yield WaveDifference(source, function, tau, theirs, ours)
 
 
 def _arrived(sent: list[Change], v: fmpq, n: int) -> Change:

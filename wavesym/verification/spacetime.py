@@ -57,7 +57,7 @@ class Displaced:
 
 
 @dataclass(frozen=True)
-class Grid:
+class SpaceTimeGrid:
     """A problem on rods of `cells` cells each. An instant k is tau = k / cells. Everything is dimensionless."""
 
     problem: Problem
@@ -68,9 +68,9 @@ class Grid:
         """Whether all loads begin on the grid. All fronts are on it then, and errors are a series in h^2."""
         return all(_whole(float(cut) * self.cells) for cut in self.problem.cuts)
 
-    def finer(self, times: int) -> Grid:
+    def finer(self, times: int) -> SpaceTimeGrid:
         """The grid with that many cells for one."""
-        return Grid(self.problem, self.cells * times)
+        return SpaceTimeGrid(self.problem, self.cells * times)
 
     def cost(self, until: float) -> float:
         """What it takes to come to tau = `until`: points moved, roughly."""
@@ -147,14 +147,14 @@ class Grid:
         return np.unique([point for terms in self._terms for _, point, _ in terms])
 
 
-def grid(model: Model) -> Grid:
+def grid(model: Model) -> SpaceTimeGrid:
     """The coarsest grid for a model: its loads and outputs are on it where their denominators are small."""
     common = 1
     for place in (*(load.time for load in model.loads), *(probe.x for probe in model.probes)):
         if lcm(common, int(place.q)) <= _FINEST_ALIGNED:
             common = lcm(common, int(place.q))
     fewest = max(COARSEST, int((COARSEST / min(fmpq(1), model.until)).ceil()))
-    return Grid(stated(model), common * ceil(fewest / common))
+    return SpaceTimeGrid(stated(model), common * ceil(fewest / common))
 
 
 class _Nodes:

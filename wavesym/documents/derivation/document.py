@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Document:
+class DerivationDocument:
     """templates/text/derivation.txt.j2 and templates/latex/derivation.tex.j2."""
 
     systems: tuple[Statement, ...]
@@ -38,4 +38,6 @@ def _notation(format: str) -> Text:
 def _written(made: tuple[Statement, ...], format: str) -> str:
     if format == "json":
         return json.dumps([asdict(statement) for statement in made], indent=2) + "\n"
-    return render({"latex": "latex/derivation.tex.j2", "text": "text/derivation.txt.j2"}[format], Document(made))
+    return render(
+        {"latex": "latex/derivation.tex.j2", "text": "text/derivation.txt.j2"}[format], DerivationDocument(made)
+    )

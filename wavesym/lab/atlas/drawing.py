@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
 from numpy.typing import NDArray
 
-from wavesym.lab.atlas.family import Family, Point
+from wavesym.lab.atlas.family import CurveFamily, Point
 from wavesym.report.labels import Curve, label
 
 Places = NDArray[np.float64]
@@ -39,7 +39,7 @@ _STYLES = (
 )
 
 
-def draw(family: Family) -> Figure:
+def draw(family: CurveFamily) -> Figure:
     """The picture of a family; the same bytes from the same numbers when it is written by `saving.save`."""
     panels = family.panels
     columns = min(len(panels), _MOST_COLUMNS) if len(panels) != 4 else 2
@@ -64,7 +64,7 @@ def draw(family: Family) -> Figure:
     return figure
 
 
-def _panel(axes: Axes, family: Family, panel: str, named: bool) -> None:
+def _panel(axes: Axes, family: CurveFamily, panel: str, named: bool) -> None:
     axes.set(xscale=family.x.scale, yscale="log", ylim=(family.least, family.most))
     axes.set_xlabel(family.x.label)
     if named:
@@ -104,20 +104,20 @@ def _line(axes: Axes, places: Places, points: Sequence[Point], **style: Any) -> 
     axes.plot(places[joined, 0], places[joined, 1], **style)
 
 
-def _places(family: Family, points: Sequence[Point], values: Sequence[float]) -> Places:
+def _places(family: CurveFamily, points: Sequence[Point], values: Sequence[float]) -> Places:
     """Where points are drawn: inside the axes."""
     heights = np.clip(values, family.least * 1.5, family.most / 1.5)
     return np.column_stack([[point.x or family.x.zero or 0.0 for point in points], heights])
 
 
-def _missing(family: Family, panel: str, name: str, points: Sequence[Point]) -> Places:
+def _missing(family: CurveFamily, panel: str, name: str, points: Sequence[Point]) -> Places:
     """Where points without a value are drawn: near the top, each curve's on a line of its own."""
     depth = (1.5 + family.curves(panel).index(name)) / _CROSSES
     height = family.most * (family.least / family.most) ** depth
     return _places(family, points, [height] * len(points))
 
 
-def _mark_zero(axes: Axes, family: Family) -> None:
+def _mark_zero(axes: Axes, family: CurveFamily) -> None:
     """Exactly 0 gets a place of its own on the axis."""
     zero = family.x.zero
     assert zero is not None
@@ -129,7 +129,7 @@ def _mark_zero(axes: Axes, family: Family) -> None:
     axes.axvline(math.sqrt(zero * xs[0]), color="0.7", linewidth=0.8)
 
 
-def _label(axes: Axes, family: Family, panel: str) -> None:
+def _label(axes: Axes, family: CurveFamily, panel: str) -> None:
     curves = []
     for (_, _, grey), name in zip(_STYLES, family.curves(panel), strict=False):
         valued, missing, proved = _parts(family.curve(panel, name))

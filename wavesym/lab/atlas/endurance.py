@@ -13,7 +13,7 @@ from fractions import Fraction
 import numpy as np
 
 from wavesym.lab.atlas import twisted_shaft as twist
-from wavesym.lab.atlas.family import Axis, Family, Point, Progress
+from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
 from wavesym.model.model import Model
 from wavesym.programs.march.evaluator import MarchEvaluator, marched
 from wavesym.running.native import FAST, address, library
@@ -58,7 +58,9 @@ class Followed:
     alarm: bool
 
 
-def family(progress: Progress, horizon: int = HORIZON, tried: Mapping[Fraction, Sequence[int]] = DEGREES) -> Family:
+def family(
+    progress: Progress, horizon: int = HORIZON, tried: Mapping[Fraction, Sequence[int]] = DEGREES
+) -> CurveFamily:
     """A curve of errors and one of drifts for each kappa; the last point of each is at the degree that is chosen."""
     points = []
     for kappa, degrees in tried.items():
@@ -72,7 +74,7 @@ def family(progress: Progress, horizon: int = HORIZON, tried: Mapping[Fraction, 
             refused = f"the program reports that degree {degree} is too low" if found.alarm else ""
             points.append(Point(panel, "error", degree, found.error, bound, refused))
             points.append(Point(panel, "energy drift", degree, found.drift, refused=refused))
-    return Family(
+    return CurveFamily(
         "march",
         f"March to tau = {horizon:g}: error and energy drift reach rounding at the degree it takes (the last point)",
         Axis("degree of the polynomials", scale="linear"),

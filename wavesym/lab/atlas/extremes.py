@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from wavesym.lab.atlas.attempts import EVALUATORS, attempt, not_tried, truth
-from wavesym.lab.atlas.family import Axis, Family, Point, Progress
+from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
 from wavesym.lab.atlas.scenes import LEGEND, drive
 
 # at 1e4 the march may take a minute, as degrees up to the largest are tried before it refuses
@@ -18,7 +18,7 @@ _PIECES_TO = 10
 _WHY = "a fit to so light a body takes minutes"
 
 
-def family(progress: Progress, exponents: Sequence[int] = EXPONENTS) -> Family:
+def family(progress: Progress, exponents: Sequence[int] = EXPONENTS) -> CurveFamily:
     """Two equal discs and their shaft, kappa from 1e-6 to 1e6."""
     points: list[Point] = []
     for exponent in exponents:
@@ -29,7 +29,7 @@ def family(progress: Progress, exponents: Sequence[int] = EXPONENTS) -> Family:
             tried = name != "pieces" or kappa <= _PIECES_TO
             one = attempt(known, name) if tried else not_tried(known, name, _WHY)
             points.append(one.point(f"drive, m = 1, {REFLECTIONS} reflections", name, float(kappa)))
-    return Family(
+    return CurveFamily(
         "kappa",
         "Error against kappa: heavy bodies cost the closed form digits, light ones cost the others degrees",
         Axis("kappa, impedance of the shaft against inertia of the disc"),

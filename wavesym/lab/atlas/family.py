@@ -38,7 +38,7 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Family:
+class CurveFamily:
     """Curves in one or more panels that share their axes, from `least` to `most`.
 
     `name` names the files, `title` says what is seen, `note` how to read it.
@@ -67,7 +67,7 @@ class Family:
         return _distinct(point.panel for point in self.points)
 
 
-def to_csv(family: Family) -> str:
+def to_csv(family: CurveFamily) -> str:
     """All points; a bound that is infinite and an error that is no number are left empty."""
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from wavesym.lab.atlas.attempts import Truth, truth
-from wavesym.lab.atlas.family import Axis, Family, Point, Progress
+from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
 from wavesym.lab.atlas.scenes import made
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.peers import PEERS
@@ -33,7 +33,7 @@ def scene() -> Scene:
     return made(system, load, UNTIL, strain=[Fraction(1, 2), Fraction(3, 2)])
 
 
-def family(progress: Progress) -> Family:
+def family(progress: Progress) -> CurveFamily:
     """A curve for each rival, at fronts and away from them. Rivals that are other packages are left to the chart."""
     known = truth(scene(), per_unit=40, around=AROUND)
     points = []
@@ -45,7 +45,7 @@ def family(progress: Progress) -> Family:
             at, away = errors(rival, resolution, known)
             finer = refinement(rival, resolution)
             points += [Point(AT, rival.name, finer, at), Point(AWAY, rival.name, finer, away)]
-    return Family(
+    return CurveFamily(
         "fronts",
         "What rivals do at a front: four of seven never converge there, however fine they are away from it",
         Axis("how many times finer than the coarsest grid, series or steps"),

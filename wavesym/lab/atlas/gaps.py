@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from wavesym.lab.atlas.attempts import attempts, truth
-from wavesym.lab.atlas.family import Axis, Family, Point, Progress
+from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
 from wavesym.lab.atlas.scenes import LEGEND, drive
 from wavesym.scene import Scene
 
@@ -18,7 +18,7 @@ REFLECTIONS = (5, 10)
 ZERO = 1e-18
 
 
-def family(progress: Progress, gaps: Sequence[Fraction] = GAPS, counts: Sequence[int] = REFLECTIONS) -> Family:
+def family(progress: Progress, gaps: Sequence[Fraction] = GAPS, counts: Sequence[int] = REFLECTIONS) -> CurveFamily:
     """Two and three rates that meet, after so many reflections."""
     points: list[Point] = []
     for rates, scene in ((2, _two), (3, _three)):
@@ -28,7 +28,7 @@ def family(progress: Progress, gaps: Sequence[Fraction] = GAPS, counts: Sequence
                 known = truth(scene(gap, 2 * reflections), per_unit=4)
                 panel = f"{rates} rates, {reflections} reflections"
                 points += [one.point(panel, one.name, float(gap)) for one in attempts(known)]
-    return Family(
+    return CurveFamily(
         "gaps",
         "Error against the gap of rates: the closed form fails where rates nearly meet, not where they do",
         Axis("gap between neighbouring rates, of which the smallest is 1", zero=ZERO, falling=True),

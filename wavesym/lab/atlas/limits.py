@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wavesym.lab.atlas.family import Axis, Family, Point, Progress
+from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
 from wavesym.lab.atlas.lumped import strains
 from wavesym.lab.atlas.scenes import made
 from wavesym.programs.march.evaluator import marched
@@ -63,14 +63,14 @@ SYSTEMS = (
 )
 
 
-def family(progress: Progress, kappas: Sequence[Fraction] = KAPPAS) -> Family:
+def family(progress: Progress, kappas: Sequence[Fraction] = KAPPAS) -> CurveFamily:
     """A curve for each system, its order in its name."""
     points = []
     for system in SYSTEMS:
         for kappa in kappas:
             progress(f"masses and springs, {system.name}, kappa = {kappa}")
             points.append(Point("all systems", system.name, float(kappa), difference(system, kappa)))
-    return Family(
+    return CurveFamily(
         "springs",
         "Waves against a chain of masses and springs: its order in kappa depends on the load, and may be none",
         Axis("kappa", falling=True),

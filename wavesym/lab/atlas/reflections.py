@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from wavesym.lab.atlas.attempts import EVALUATORS, attempt, truth
-from wavesym.lab.atlas.family import Axis, Family, Point, Progress
+from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
 from wavesym.lab.atlas.scenes import LEGEND, drive
 from wavesym.numbers.doubles import nearest
 
@@ -18,14 +18,14 @@ COUNTS = (1, 2, 3, 5, 7, 10, 14, 20, 30, 40, 50, 70, 100, 140, 200)
 FITTED = {Fraction(1, 20): 200, Fraction(1, 2): 100, Fraction(5): 50}
 
 
-def family(progress: Progress, kappas: Sequence[Fraction] = KAPPAS, counts: Sequence[int] = COUNTS) -> Family:
+def family(progress: Progress, kappas: Sequence[Fraction] = KAPPAS, counts: Sequence[int] = COUNTS) -> CurveFamily:
     """One drive of two equal discs for each kappa; its first front meets each disc once in two units of tau."""
     points = []
     for kappa in kappas:
         for name in EVALUATORS:
             progress(f"reflections, kappa = {kappa}, {name}")
             points += _points(kappa, name, counts)
-    return Family(
+    return CurveFamily(
         "reflections",
         "Error against reflections: the closed form loses all its digits, pieces and march stay within their bounds",
         Axis("reflections n of the first front at either disc, tau up to 2 n"),

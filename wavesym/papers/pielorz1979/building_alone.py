@@ -8,7 +8,7 @@ from functools import cache
 from flint import fmpq
 
 from wavesym.papers.pielorz1979.building_lines import CORRECTIONS, PRINTED
-from wavesym.papers.pielorz1979.recurrence import At, Line
+from wavesym.papers.pielorz1979.recurrence import At, PrintedLine
 from wavesym.papers.truth import Exact, building
 
 Key = tuple[str, str, int, int, int]
@@ -22,7 +22,7 @@ class NotGivenError(Exception):
 class Alone:
     """The coefficients for one source of one building, from a list of lines."""
 
-    def __init__(self, lines: Iterable[Line], m: int, kappa: Mapping[int, fmpq], source: str) -> None:
+    def __init__(self, lines: Iterable[PrintedLine], m: int, kappa: Mapping[int, fmpq], source: str) -> None:
         self._targets = [(line, target) for line in lines for target in line.targets]
         self._m, self._kappa, self._source = m, kappa, source
         self._known: dict[Key, fmpq | None] = {}
@@ -64,7 +64,7 @@ class Alone:
         raise NotGivenError(f"{_named(key)} is in no line's range")
 
 
-def corrected(*but: int) -> list[Line]:
+def corrected(*but: int) -> list[PrintedLine]:
     """The list with all corrections, except those of the lines in `but`."""
     return [
         CORRECTIONS[line.number].line if line.number in CORRECTIONS and line.number not in but else line
@@ -72,7 +72,7 @@ def corrected(*but: int) -> list[Line]:
     ]
 
 
-def compared(lines: Iterable[Line], m: int, most_n: int) -> Iterator[tuple[str, fmpq, fmpq]]:
+def compared(lines: Iterable[PrintedLine], m: int, most_n: int) -> Iterator[tuple[str, fmpq, fmpq]]:
     """Every coefficient for n = 0 ... most_n: its name, its value by the list, its true value."""
     exact = building(m)
     kappa = exact.chain.parameters.kappa

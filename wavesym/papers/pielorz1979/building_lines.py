@@ -9,9 +9,9 @@ from wavesym.papers.pielorz1979.recurrence import (
     Correction,
     Count,
     Family,
-    Line,
+    PrintedLine,
+    PrintedTerm,
     Target,
-    Term,
     down,
     first,
     minus,
@@ -32,49 +32,49 @@ from wavesym.papers.pielorz1979.recurrence import (
 _FIRST = (Target("f", "c", first, first), Target("f", "0", first, first))
 
 
-def _constants(number: int, family: Family) -> Line:
+def _constants(number: int, family: Family) -> PrintedLine:
     """III.2 and III.3, the same but for the index 0."""
     mark = "_0" if family == "0" else ""
-    return Line(
+    return PrintedLine(
         number,
         f"f{mark}^{{k,1,n+1}} = f{mark}^{{k,2,n}} + H(n-2) g{mark}^{{k,2,n}} - f{mark}^{{k,1,n}}",
         "n >= 1",
         (Target("f", family, first, first, start=1),),
         (
-            Term(f"f{mark}^{{k,2,n}}", plus, "f", family, rod(2), 1, zero),
-            Term(f"H(n-2) g{mark}^{{k,2,n}}", plus, "g", family, rod(2), 1, zero, (n_2,)),
-            Term(f"-f{mark}^{{k,1,n}}", minus, "f", family, rod(1), 1, zero),
+            PrintedTerm(f"f{mark}^{{k,2,n}}", plus, "f", family, rod(2), 1, zero),
+            PrintedTerm(f"H(n-2) g{mark}^{{k,2,n}}", plus, "g", family, rod(2), 1, zero, (n_2,)),
+            PrintedTerm(f"-f{mark}^{{k,1,n}}", minus, "f", family, rod(1), 1, zero),
         ),
     )
 
 
-def _left_going(number: int, family: Family) -> Line:
+def _left_going(number: int, family: Family) -> PrintedLine:
     """III.4 and III.7, the same but for the index 0."""
     mark = "_0" if family == "0" else ""
-    return Line(
+    return PrintedLine(
         number,
         f"g{mark}^{{k,j,n+1}} = H(n-1) (f{mark}^{{k,j+1,n}} - f{mark}^{{k,j,n}}) + H(n-2) g{mark}^{{k,j+1,n}}",
         "j = 2, 3, ..., m-1",
         (Target("g", family, second, under_roof),),
         (
-            Term(f"H(n-1) f{mark}^{{k,j+1,n}}", plus, "f", family, this_rod(1), 1, zero, (n_1,)),
-            Term(f"-H(n-1) f{mark}^{{k,j,n}}", minus, "f", family, this_rod(), 1, zero, (n_1,)),
-            Term(f"H(n-2) g{mark}^{{k,j+1,n}}", plus, "g", family, this_rod(1), 1, zero, (n_2,)),
+            PrintedTerm(f"H(n-1) f{mark}^{{k,j+1,n}}", plus, "f", family, this_rod(1), 1, zero, (n_1,)),
+            PrintedTerm(f"-H(n-1) f{mark}^{{k,j,n}}", minus, "f", family, this_rod(), 1, zero, (n_1,)),
+            PrintedTerm(f"H(n-2) g{mark}^{{k,j+1,n}}", plus, "g", family, this_rod(1), 1, zero, (n_2,)),
         ),
     )
 
 
-def _roof_constant(family: Family) -> Line:
+def _roof_constant(family: Family) -> PrintedLine:
     """III.5; the linear part's index 0 is missing as printed."""
     mark = "_0" if family == "0" else ""
-    return Line(
+    return PrintedLine(
         5,
         rf"g^{{k,m,n+1}} = H(n-1) (f^{{k,m,n}} - \frac{{2}}{{\kappa_m}} f{mark}^{{k,m,n}})",
         "",
         (Target("g", "c", roof, roof),),
         (
-            Term("H(n-1) f^{k,m,n}", plus, "f", "c", top_rod(), 1, zero, (n_1,)),
-            Term(
+            PrintedTerm("H(n-1) f^{k,m,n}", plus, "f", "c", top_rod(), 1, zero, (n_1,)),
+            PrintedTerm(
                 rf"-H(n-1) \frac{{2}}{{\kappa_m}} f{mark}^{{k,m,n}}",
                 lambda at: -2 / at.kappa[at.m],
                 "f",
@@ -88,21 +88,21 @@ def _roof_constant(family: Family) -> Line:
     )
 
 
-def _right_constant(letter: str) -> Line:
+def _right_constant(letter: str) -> PrintedLine:
     """III.6; the linear part of the other wave has the wrong letter as printed."""
 
     def lag(at: At) -> fmpq:
         return -1 / (2 * at.kappa[1])
 
-    return Line(
+    return PrintedLine(
         6,
         r"f^{k,j,n+1} = f^{k,j-1,n+1} - \frac{1}{2\kappa_1} "
         f"[H(n-1) {letter}_0^{{k,j,n+1}} + f_0^{{k,j-1,n+1}}]",
         "j = 2, 3, ..., m",
         (Target("f", "c", second, roof),),
         (
-            Term("f^{k,j-1,n+1}", plus, "f", "c", this_rod(-1), 0, zero),
-            Term(
+            PrintedTerm("f^{k,j-1,n+1}", plus, "f", "c", this_rod(-1), 0, zero),
+            PrintedTerm(
                 rf"-\frac{{1}}{{2\kappa_1}} H(n-1) {letter}_0^{{k,j,n+1}}",
                 lag,
                 letter,
@@ -112,42 +112,42 @@ def _right_constant(letter: str) -> Line:
                 zero,
                 (n_1,),
             ),
-            Term(r"-\frac{1}{2\kappa_1} f_0^{k,j-1,n+1}", lag, "f", "0", this_rod(-1), 0, zero),
+            PrintedTerm(r"-\frac{1}{2\kappa_1} f_0^{k,j-1,n+1}", lag, "f", "0", this_rod(-1), 0, zero),
         ),
     )
 
 
-def _left_power(shift: int, begun: tuple[Count, ...] = ()) -> Line:
+def _left_power(shift: int, begun: tuple[Count, ...] = ()) -> PrintedLine:
     """III.12; the rod of the wave that returns is j+1 as printed. `begun`: see `_next_to_roof`."""
 
     def guard(at: At) -> int:
         return 2 * at.n + at.j - 4 - at.i
 
     returned = "f_{1,i}^{k,j+1,n}" if shift else "f_{1,i}^{k,j,n}"
-    return Line(
+    return PrintedLine(
         12,
         f"g_{{1,i}}^{{k,j,n+1}} = f_{{1,i}}^{{k,j+1,n}} + H(2n+j-4-i)(g_{{1,i}}^{{k,j+1,n}} - {returned})",
         "j = 2, 3, ..., m-2; i = 2n+j-3, 2n+j-4, ..., 0",
         (Target("g", "1", second, lambda m: m - 2, top=lambda at: 2 * at.n + at.j - 3),),
         (
-            Term("f_{1,i}^{k,j+1,n}", plus, "f", "1", this_rod(1), 1),
-            Term("H(2n+j-4-i) g_{1,i}^{k,j+1,n}", plus, "g", "1", this_rod(1), 1, guards=(guard, *begun)),
-            Term(f"-H(2n+j-4-i) {returned}", minus, "f", "1", this_rod(shift), 1, guards=(guard,)),
+            PrintedTerm("f_{1,i}^{k,j+1,n}", plus, "f", "1", this_rod(1), 1),
+            PrintedTerm("H(2n+j-4-i) g_{1,i}^{k,j+1,n}", plus, "g", "1", this_rod(1), 1, guards=(guard, *begun)),
+            PrintedTerm(f"-H(2n+j-4-i) {returned}", minus, "f", "1", this_rod(shift), 1, guards=(guard,)),
         ),
         strict=1,
     )
 
 
-def _next_to_roof(begun: tuple[Count, ...] = ()) -> Line:
+def _next_to_roof(begun: tuple[Count, ...] = ()) -> PrintedLine:
     """III.13. `begun` = (n-2,): g has no coefficients in the first interval, whatever H(2n+m-6-i) says for n = 1."""
-    return Line(
+    return PrintedLine(
         13,
         "g_{1,i}^{k,m-1,n+1} = f_{1,i}^{k,m,n} + H(2n+m-6-i)g_{1,i}^{k,m,n} - H(2n+m-5-i)f_{1,i}^{k,m-1,n}",
         "i = 2n+m-4, 2n+m-5, ..., 0",
         (Target("g", "1", under_roof, under_roof, top=lambda at: 2 * at.n + at.m - 4),),
         (
-            Term("f_{1,i}^{k,m,n}", plus, "f", "1", top_rod(), 1),
-            Term(
+            PrintedTerm("f_{1,i}^{k,m,n}", plus, "f", "1", top_rod(), 1),
+            PrintedTerm(
                 "H(2n+m-6-i)g_{1,i}^{k,m,n}",
                 plus,
                 "g",
@@ -156,7 +156,7 @@ def _next_to_roof(begun: tuple[Count, ...] = ()) -> Line:
                 1,
                 guards=(lambda at: 2 * at.n + at.m - 6 - at.i, *begun),
             ),
-            Term(
+            PrintedTerm(
                 "-H(2n+m-5-i)f_{1,i}^{k,m-1,n}",
                 minus,
                 "f",
@@ -170,7 +170,7 @@ def _next_to_roof(begun: tuple[Count, ...] = ()) -> Line:
     )
 
 
-def _roof_power(index: str, power: Count) -> Line:
+def _roof_power(index: str, power: Count) -> PrintedLine:
     """III.14; an index is i+n as printed."""
 
     def guard(at: At) -> int:
@@ -179,14 +179,14 @@ def _roof_power(index: str, power: Count) -> Line:
     def raised(at: At) -> fmpq:
         return (at.i + 1) / at.gap
 
-    return Line(
+    return PrintedLine(
         14,
         rf"g_{{1,i}}^{{k,m,n+1}} = \frac{{1}}{{2\kappa_1 - \kappa_m}} [(i+1)(g_{{1,{index}}}^{{k,m,n+1}} + "
         r"f_{1,i+1}^{k,m,n})H(2n+m-5-i) - (2\kappa_1 + \kappa_m)f_{1,i}^{k,m,n}]",
         "i = 2n+m-4, 2n+m-5, ..., 0",
         (Target("g", "1", roof, roof, top=lambda at: 2 * at.n + at.m - 4),),
         (
-            Term(
+            PrintedTerm(
                 rf"\frac{{i+1}}{{2\kappa_1 - \kappa_m}} H(2n+m-5-i) g_{{1,{index}}}^{{k,m,n+1}}",
                 raised,
                 "g",
@@ -196,7 +196,7 @@ def _roof_power(index: str, power: Count) -> Line:
                 power,
                 (guard,),
             ),
-            Term(
+            PrintedTerm(
                 r"\frac{i+1}{2\kappa_1 - \kappa_m} H(2n+m-5-i) f_{1,i+1}^{k,m,n}",
                 raised,
                 "f",
@@ -206,7 +206,7 @@ def _roof_power(index: str, power: Count) -> Line:
                 up,
                 (guard,),
             ),
-            Term(
+            PrintedTerm(
                 r"-\frac{2\kappa_1 + \kappa_m}{2\kappa_1 - \kappa_m} f_{1,i}^{k,m,n}",
                 lambda at: -(2 * at.kappa[1] + at.kappa[at.m]) / at.gap,
                 "f",
@@ -220,31 +220,31 @@ def _roof_power(index: str, power: Count) -> Line:
     )
 
 
-def _roof_start(own: str, family: Family) -> Line:
+def _roof_start(own: str, family: Family) -> PrintedLine:
     """III.17; as printed the coefficient stands on both sides."""
-    return Line(
+    return PrintedLine(
         17,
         f"g_{{m,0}}^{{k,m,n+1}} = -{own}^{{k,m,n+1}} - g_{{1,0}}^{{k,m,n+1}}H(n-1)",
         "n >= 1, where III.16 ends",
         (Target("g", "m", roof, roof, start=1),),
         (
-            Term(f"-{own}^{{k,m,n+1}}", minus, "g", family, top_rod(), 0, zero),
-            Term("-g_{1,0}^{k,m,n+1}H(n-1)", minus, "g", "1", top_rod(), 0, zero, (n_1,)),
+            PrintedTerm(f"-{own}^{{k,m,n+1}}", minus, "g", family, top_rod(), 0, zero),
+            PrintedTerm("-g_{1,0}^{k,m,n+1}H(n-1)", minus, "g", "1", top_rod(), 0, zero, (n_1,)),
         ),
     )
 
 
-def _floor_start(own: str, family: Family, shift: int) -> Line:
+def _floor_start(own: str, family: Family, shift: int) -> PrintedLine:
     """III.22; as printed the coefficient stands on both sides, and H switches f_(m,0) on one interval early."""
     guard = "H(n-m+j-1)" if shift else "H(n-m+j)"
-    return Line(
+    return PrintedLine(
         22,
         f"f_{{1,0}}^{{k,j,n+1}} = -{own}^{{k,j,n+1}} - {guard}f_{{m,0}}^{{k,j,n+1}}",
         "j = 2, 3, ..., m",
         (Target("f", "1", second, roof),),
         (
-            Term(f"-{own}^{{k,j,n+1}}", minus, "f", family, this_rod(), 0, zero),
-            Term(
+            PrintedTerm(f"-{own}^{{k,j,n+1}}", minus, "f", family, this_rod(), 0, zero),
+            PrintedTerm(
                 f"-{guard}f_{{m,0}}^{{k,j,n+1}}",
                 minus,
                 "f",
@@ -258,8 +258,8 @@ def _floor_start(own: str, family: Family, shift: int) -> Line:
     )
 
 
-PRINTED: tuple[Line, ...] = (
-    Line(
+PRINTED: tuple[PrintedLine, ...] = (
+    PrintedLine(
         1,
         r"f^{k,1,1} = -\frac{1}{\kappa_0} \bar{a}_k, \quad f_0^{k,1,1} = -\frac{1}{\kappa_0} \bar{b}_k",
         "",
@@ -273,40 +273,44 @@ PRINTED: tuple[Line, ...] = (
     _roof_constant("c"),
     _right_constant("f"),
     _left_going(7, "0"),
-    Line(
+    PrintedLine(
         8,
         "g_0^{k,m,n+1} = H(n-1) f_0^{k,m,n}",
         "",
         (Target("g", "0", roof, roof),),
-        (Term("H(n-1) f_0^{k,m,n}", plus, "f", "0", top_rod(), 1, zero, (n_1,)),),
+        (PrintedTerm("H(n-1) f_0^{k,m,n}", plus, "f", "0", top_rod(), 1, zero, (n_1,)),),
     ),
-    Line(
+    PrintedLine(
         9,
         "f_0^{k,j,n+1} = f_0^{k,j-1,n+1}",
         "j = 2, 3, ..., m",
         (Target("f", "0", second, roof),),
-        (Term("f_0^{k,j-1,n+1}", plus, "f", "0", this_rod(-1), 0, zero),),
+        (PrintedTerm("f_0^{k,j-1,n+1}", plus, "f", "0", this_rod(-1), 0, zero),),
     ),
-    Line(
+    PrintedLine(
         10,
         "f_{1,i}^{k,1,n+1} = f_{1,i}^{k,2,n} + H(2n-3-i) g_{1,i}^{k,2,n} - H(2n-4-i) f_{1,i}^{k,1,n}",
         "i = 2n-2, 2n-3, ..., 0",
         (Target("f", "1", first, first, top=lambda at: 2 * at.n - 2),),
         (
-            Term("f_{1,i}^{k,2,n}", plus, "f", "1", rod(2), 1),
-            Term("H(2n-3-i) g_{1,i}^{k,2,n}", plus, "g", "1", rod(2), 1, guards=(lambda at: 2 * at.n - 3 - at.i,)),
-            Term("-H(2n-4-i) f_{1,i}^{k,1,n}", minus, "f", "1", rod(1), 1, guards=(lambda at: 2 * at.n - 4 - at.i,)),
+            PrintedTerm("f_{1,i}^{k,2,n}", plus, "f", "1", rod(2), 1),
+            PrintedTerm(
+                "H(2n-3-i) g_{1,i}^{k,2,n}", plus, "g", "1", rod(2), 1, guards=(lambda at: 2 * at.n - 3 - at.i,)
+            ),
+            PrintedTerm(
+                "-H(2n-4-i) f_{1,i}^{k,1,n}", minus, "f", "1", rod(1), 1, guards=(lambda at: 2 * at.n - 4 - at.i,)
+            ),
         ),
     ),
-    Line(
+    PrintedLine(
         11,
         "f_{m,i}^{k,1,n+1} = f_{m,i}^{k,2,n} + g_{m,i}^{k,2,n} - H(n-m-1-i) f_{m,i}^{k,1,n}",
         "i = n-m, n-m-1, ..., 0",
         (Target("f", "m", first, first, top=lambda at: at.n - at.m),),
         (
-            Term("f_{m,i}^{k,2,n}", plus, "f", "m", rod(2), 1),
-            Term("g_{m,i}^{k,2,n}", plus, "g", "m", rod(2), 1),
-            Term(
+            PrintedTerm("f_{m,i}^{k,2,n}", plus, "f", "m", rod(2), 1),
+            PrintedTerm("g_{m,i}^{k,2,n}", plus, "g", "m", rod(2), 1),
+            PrintedTerm(
                 "-H(n-m-1-i) f_{m,i}^{k,1,n}", minus, "f", "m", rod(1), 1, guards=(lambda at: at.n - at.m - 1 - at.i,)
             ),
         ),
@@ -314,15 +318,15 @@ PRINTED: tuple[Line, ...] = (
     _left_power(1),
     _next_to_roof(),
     _roof_power("i+n", lambda at: at.i + at.n),
-    Line(
+    PrintedLine(
         15,
         "g_{m,i}^{k,j,n+1} = f_{m,i}^{k,j+1,n} + g_{m,i}^{k,j+1,n} - H(n-2-m+j-i)f_{m,i}^{k,j,n}",
         "j = 2, 3, ..., m-1; i = n-m+j-1, n-m+j-2, ..., 0",
         (Target("g", "m", second, under_roof, top=lambda at: at.n - at.m + at.j - 1),),
         (
-            Term("f_{m,i}^{k,j+1,n}", plus, "f", "m", this_rod(1), 1),
-            Term("g_{m,i}^{k,j+1,n}", plus, "g", "m", this_rod(1), 1),
-            Term(
+            PrintedTerm("f_{m,i}^{k,j+1,n}", plus, "f", "m", this_rod(1), 1),
+            PrintedTerm("g_{m,i}^{k,j+1,n}", plus, "g", "m", this_rod(1), 1),
+            PrintedTerm(
                 "-H(n-2-m+j-i)f_{m,i}^{k,j,n}",
                 minus,
                 "f",
@@ -333,14 +337,16 @@ PRINTED: tuple[Line, ...] = (
             ),
         ),
     ),
-    Line(
+    PrintedLine(
         16,
         r"g_{m,i}^{k,m,n+1} = -H(n-2-i)f_{m,i}^{k,m,n} + \frac{2\kappa_m}{i}f_{m,i-1}^{k,m,n}",
         "i = n-1, n-2, ..., 1",
         (Target("g", "m", roof, roof, top=lambda at: at.n - 1, bottom=1),),
         (
-            Term("-H(n-2-i)f_{m,i}^{k,m,n}", minus, "f", "m", top_rod(), 1, guards=(lambda at: at.n - 2 - at.i,)),
-            Term(
+            PrintedTerm(
+                "-H(n-2-i)f_{m,i}^{k,m,n}", minus, "f", "m", top_rod(), 1, guards=(lambda at: at.n - 2 - at.i,)
+            ),
+            PrintedTerm(
                 r"\frac{2\kappa_m}{i}f_{m,i-1}^{k,m,n}",
                 lambda at: 2 * at.kappa[at.m] / at.i,
                 "f",
@@ -352,16 +358,18 @@ PRINTED: tuple[Line, ...] = (
         ),
     ),
     _roof_start("g_{m,0}", "m"),
-    Line(
+    PrintedLine(
         18,
         r"f_{1,i}^{k,2,n+1} = -H(2n-1-i)g_{1,i}^{k,2,n+1} + \frac{2\kappa_1}{i}[g_{1,i-1}^{k,2,n+1} + "
         "H(2n-1-i)f_{1,i-1}^{k,1,n+1}]",
         "i = 2n, 2n-1, ..., 1",
         (Target("f", "1", second, second, top=lambda at: 2 * at.n, bottom=1),),
         (
-            Term("-H(2n-1-i)g_{1,i}^{k,2,n+1}", minus, "g", "1", rod(2), 0, guards=(lambda at: 2 * at.n - 1 - at.i,)),
-            Term(r"\frac{2\kappa_1}{i} g_{1,i-1}^{k,2,n+1}", visits, "g", "1", rod(2), 0, down),
-            Term(
+            PrintedTerm(
+                "-H(2n-1-i)g_{1,i}^{k,2,n+1}", minus, "g", "1", rod(2), 0, guards=(lambda at: 2 * at.n - 1 - at.i,)
+            ),
+            PrintedTerm(r"\frac{2\kappa_1}{i} g_{1,i-1}^{k,2,n+1}", visits, "g", "1", rod(2), 0, down),
+            PrintedTerm(
                 r"\frac{2\kappa_1}{i} H(2n-1-i)f_{1,i-1}^{k,1,n+1}",
                 visits,
                 "f",
@@ -373,14 +381,14 @@ PRINTED: tuple[Line, ...] = (
             ),
         ),
     ),
-    Line(
+    PrintedLine(
         19,
         r"f_{1,i}^{k,j,n+1} = -H(2n+j-3-i)H(n-1)g_{1,i}^{k,j,n+1} + \frac{2\kappa_1}{i}[H(n-1)g_{1,i-1}^{k,j,n+1} + "
         "f_{1,i-1}^{k,j-1,n+1}]",
         "j = 3, 4, ..., m-1; i = 2n+j-2, 2n+j-3, ..., 1",
         (Target("f", "1", lambda m: 3, under_roof, top=lambda at: 2 * at.n + at.j - 2, bottom=1),),
         (
-            Term(
+            PrintedTerm(
                 "-H(2n+j-3-i)H(n-1)g_{1,i}^{k,j,n+1}",
                 minus,
                 "g",
@@ -389,18 +397,20 @@ PRINTED: tuple[Line, ...] = (
                 0,
                 guards=(lambda at: 2 * at.n + at.j - 3 - at.i, n_1),
             ),
-            Term(r"\frac{2\kappa_1}{i} H(n-1)g_{1,i-1}^{k,j,n+1}", visits, "g", "1", this_rod(), 0, down, (n_1,)),
-            Term(r"\frac{2\kappa_1}{i} f_{1,i-1}^{k,j-1,n+1}", visits, "f", "1", this_rod(-1), 0, down),
+            PrintedTerm(
+                r"\frac{2\kappa_1}{i} H(n-1)g_{1,i-1}^{k,j,n+1}", visits, "g", "1", this_rod(), 0, down, (n_1,)
+            ),
+            PrintedTerm(r"\frac{2\kappa_1}{i} f_{1,i-1}^{k,j-1,n+1}", visits, "f", "1", this_rod(-1), 0, down),
         ),
     ),
-    Line(
+    PrintedLine(
         20,
         r"f_{1,i}^{k,m,n+1} = -H(2n+m-4-i)H(n-1)g_{1,i}^{k,m,n+1} + "
         r"\frac{2\kappa_1}{i}[H(2n+m-3-i)H(n-1)g_{1,i-1}^{k,m,n+1} + f_{1,i-1}^{k,m-1,n+1}]",
         "i = 2n+m-2, 2n+m-3, ..., 1",
         (Target("f", "1", roof, roof, top=lambda at: 2 * at.n + at.m - 2, bottom=1),),
         (
-            Term(
+            PrintedTerm(
                 "-H(2n+m-4-i)H(n-1)g_{1,i}^{k,m,n+1}",
                 minus,
                 "g",
@@ -409,7 +419,7 @@ PRINTED: tuple[Line, ...] = (
                 0,
                 guards=(lambda at: 2 * at.n + at.m - 4 - at.i, n_1),
             ),
-            Term(
+            PrintedTerm(
                 r"\frac{2\kappa_1}{i} H(2n+m-3-i)H(n-1)g_{1,i-1}^{k,m,n+1}",
                 visits,
                 "g",
@@ -419,10 +429,10 @@ PRINTED: tuple[Line, ...] = (
                 down,
                 (lambda at: 2 * at.n + at.m - 3 - at.i, n_1),
             ),
-            Term(r"\frac{2\kappa_1}{i} f_{1,i-1}^{k,m-1,n+1}", visits, "f", "1", top_rod(-1), 0, down),
+            PrintedTerm(r"\frac{2\kappa_1}{i} f_{1,i-1}^{k,m-1,n+1}", visits, "f", "1", top_rod(-1), 0, down),
         ),
     ),
-    Line(
+    PrintedLine(
         21,
         r"f_{m,i}^{k,j,n+1} = \frac{1}{2\kappa_1 - \kappa_m} [-(i+1)H(n-m+j-2-i)(f_{m,i+1}^{k,j,n+1} + "
         r"g_{m,i+1}^{k,j,n+1}) + \kappa_m g_{m,i}^{k,j,n+1} + 2\kappa_1 H(n-m+j-2-i)f_{m,i}^{k,j-1,n+1}]",
@@ -430,7 +440,7 @@ PRINTED: tuple[Line, ...] = (
         (Target("f", "m", second, roof, top=lambda at: at.n - at.m + at.j - 1),),
         (
             *(
-                Term(
+                PrintedTerm(
                     rf"-\frac{{i+1}}{{2\kappa_1 - \kappa_m}} H(n-m+j-2-i){letter}_{{m,i+1}}^{{k,j,n+1}}",
                     lambda at: -(at.i + 1) / at.gap,
                     letter,
@@ -442,7 +452,7 @@ PRINTED: tuple[Line, ...] = (
                 )
                 for letter in "fg"
             ),
-            Term(
+            PrintedTerm(
                 r"\frac{\kappa_m}{2\kappa_1 - \kappa_m} g_{m,i}^{k,j,n+1}",
                 lambda at: at.kappa[at.m] / at.gap,
                 "g",
@@ -450,7 +460,7 @@ PRINTED: tuple[Line, ...] = (
                 this_rod(),
                 0,
             ),
-            Term(
+            PrintedTerm(
                 r"\frac{2\kappa_1}{2\kappa_1 - \kappa_m} H(n-m+j-2-i)f_{m,i}^{k,j-1,n+1}",
                 lambda at: 2 * at.kappa[1] / at.gap,
                 "f",
@@ -465,7 +475,7 @@ PRINTED: tuple[Line, ...] = (
 )
 
 
-def _corrected(line: Line, note: str) -> Correction:
+def _corrected(line: PrintedLine, note: str) -> Correction:
     return Correction("misprint", line.printed, line, note)
 
 

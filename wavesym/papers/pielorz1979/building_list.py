@@ -9,7 +9,7 @@ from flint import fmpq
 
 from wavesym.papers.pielorz1979.building_alone import consequence
 from wavesym.papers.pielorz1979.building_lines import CORRECTIONS, PRINTED
-from wavesym.papers.pielorz1979.recurrence import At, Count, Factor, Line, Target, Term, with_terms
+from wavesym.papers.pielorz1979.recurrence import At, Count, Factor, PrintedLine, PrintedTerm, Target, with_terms
 from wavesym.papers.record import Case, Claim, Slip, by_size
 from wavesym.papers.truth import Exact, building
 
@@ -17,7 +17,7 @@ MOST_STOREYS, MOST_N = 7, 8
 SOURCES = ("a", "b")
 
 
-def claims() -> Iterator[Claim[Line]]:
+def claims() -> Iterator[Claim[PrintedLine]]:
     """The 22 lines."""
     for line in PRINTED:
         correction = CORRECTIONS.get(line.number)
@@ -44,7 +44,7 @@ def claims() -> Iterator[Claim[Line]]:
         )
 
 
-def coefficient(exact: Exact, source: str, term: Term | Target, rod: int, interval: int, power: int) -> fmpq:
+def coefficient(exact: Exact, source: str, term: PrintedTerm | Target, rod: int, interval: int, power: int) -> fmpq:
     """The true value of a coefficient; 0 where there is none."""
     rate, place = _place(exact, term.family, power)
     powers = exact.increment(source, term.letter, rod, interval).get(rate, [])
@@ -61,7 +61,7 @@ def _place(exact: Exact, family: str, power: int) -> tuple[fmpq, int]:
     }[family]
 
 
-def cases(line: Line) -> Iterator[Case]:
+def cases(line: PrintedLine) -> Iterator[Case]:
     """All values first: a wrong one says more than a wrong range."""
     for exact, target, at in _places(line):
         for i in target.powers(at):
@@ -74,7 +74,7 @@ def cases(line: Line) -> Iterator[Case]:
                 yield from _guards(exact, line, replace(at, i=i))
 
 
-def _places(line: Line) -> Iterator[tuple[Exact, Target, At]]:
+def _places(line: PrintedLine) -> Iterator[tuple[Exact, Target, At]]:
     for m, n in by_size((m, n) for m in range(3, MOST_STOREYS + 1) for n in range(MOST_N + 1)):
         exact = building(m)
         for target in line.targets:
@@ -90,7 +90,7 @@ def _range(exact: Exact, target: Target, at: At) -> Case:
     return Case({"m": at.m, "n": at.n, "j": at.j, "claim": "highest power"}, claimed, degree, telling=degree >= 0)
 
 
-def _guards(exact: Exact, line: Line, at: At) -> Iterator[Case]:
+def _guards(exact: Exact, line: PrintedLine, at: At) -> Iterator[Case]:
     """H is 1 exactly where the coefficient behind it exists."""
     for term in line.terms:
         rod, interval, power = term.rod(at), at.n + 1 - term.back, term.power(at)
@@ -103,7 +103,7 @@ def _guards(exact: Exact, line: Line, at: At) -> Iterator[Case]:
         yield Case(where, term.on(at), exists, telling=bool(term.guards))
 
 
-def _value(exact: Exact, line: Line, target: Target, at: At, source: str) -> Case:
+def _value(exact: Exact, line: PrintedLine, target: Target, at: At, source: str) -> Case:
     true = coefficient(exact, source, target, at.j, at.n + 1, at.i)
     printed = fmpq(0)
     for term in line.terms:
@@ -125,7 +125,7 @@ def _numbers(at: At) -> dict[str, object]:
     return {"kappa_0": at.kappa[0], "kappa_1": at.kappa[1], "kappa_m": at.kappa[at.m]}
 
 
-def _faults(line: Line) -> Iterator[tuple[str, Line]]:
+def _faults(line: PrintedLine) -> Iterator[tuple[str, PrintedLine]]:
     """Every sign, factor, index, H and range, each wrong once."""
     for place, term in enumerate(line.terms):
         for change, wrong in _term_faults(term):
@@ -138,7 +138,7 @@ def _faults(line: Line) -> Iterator[tuple[str, Line]]:
         yield f"sign of the load {key[0]}", replace(line, loads={**(line.loads or {}), key: _times(load, -1)})
 
 
-def _term_faults(term: Term) -> Iterator[tuple[str, Term]]:
+def _term_faults(term: PrintedTerm) -> Iterator[tuple[str, PrintedTerm]]:
     yield "sign of", replace(term, factor=_times(term.factor, -1))
     yield "factor 2 on", replace(term, factor=_times(term.factor, 2))
     if term.family in "1m":
@@ -158,10 +158,10 @@ def _shifted(count: Count, by: int) -> Count:
     return lambda at: count(at) + by
 
 
-def _minus(right: Line) -> Callable[[Line], str]:
+def _minus(right: PrintedLine) -> Callable[[PrintedLine], str]:
     """Printed minus right, as the terms in which they differ."""
 
-    def difference(line: Line) -> str:
+    def difference(line: PrintedLine) -> str:
         mine, theirs = [t.text for t in line.terms], [t.text for t in right.terms]
         extra = [text for text in mine if text not in theirs]
         missing = [text for text in theirs if text not in mine]

@@ -13,8 +13,16 @@ from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.delay_terms import Line, Wave, exact
 from wavesym.model.node import Node
 from wavesym.papers.pielorz1979.delays import II, III, Example, I, line_text
-from wavesym.papers.pielorz1979.node_motion import Condition, Formally, Motion, Printed, Stated, Tabulated, case
-from wavesym.papers.pielorz1979.signals import Faulty, Place, Signal, Symbols
+from wavesym.papers.pielorz1979.node_motion import (
+    Condition,
+    Formally,
+    NodeMotion,
+    PrintedCondition,
+    Stated,
+    Tabulated,
+    case,
+)
+from wavesym.papers.pielorz1979.signals import Faulty, Place, PrintedSignal, Symbols
 from wavesym.papers.record import Case, Claim, Slip
 from wavesym.papers.truth import grounded_building, uneven_building
 
@@ -34,16 +42,16 @@ def _contacts(m: int) -> range:
     return range(2, m - 1, 2)
 
 
-def _continuous(y: Motion, i: Place) -> Any:
+def _continuous(y: NodeMotion, i: Place) -> Any:
     return y.t(i) - y.t(i + 1)
 
 
-def _stiffness(y: Motion, i: Place) -> Any:
+def _stiffness(y: NodeMotion, i: Place) -> Any:
     """The A_i of (2.4) for a drive, in units in which B_i is J_i."""
     return y.k[i] * y.J[i]
 
 
-def _force(y: Motion, body: Place) -> Any:
+def _force(y: NodeMotion, body: Place) -> Any:
     """The S of (2.4) for a drive."""
     return y.A(body) * y.J[body] * y.M(body)
 
@@ -81,8 +89,8 @@ def _signed(text: str, condition: Callable[[int], Condition]) -> Slip[Stated]:
     return Slip("convention", text, Stated(condition(-1), _RIGHT), _AGAINST)
 
 
-GENERAL: tuple[Printed, ...] = (
-    Printed(
+GENERAL: tuple[PrintedCondition, ...] = (
+    PrintedCondition(
         "(2.3)",
         r"\frac{\partial U_i}{\partial t} = \frac{\partial U_{i+1}}{\partial t}, x = il",
         (I, II, III),
@@ -97,7 +105,7 @@ GENERAL: tuple[Printed, ...] = (
             "At x = ml there is no rod m+1; (4.3), (4.4), (4.5) have i = 1, ..., m-1.",
         ),
     ),
-    Printed(
+    PrintedCondition(
         "(2.4).1",
         r"\frac{\partial U_i}{\partial x} = 0",
         (I,),
@@ -105,7 +113,7 @@ GENERAL: tuple[Printed, ...] = (
         None,
         ranges="free ends",
     ),
-    Printed(
+    PrintedCondition(
         "(2.4).2",
         r"S_i(t) + A_i \frac{\partial U_i}{\partial x} - A_{i-1} \frac{\partial U_{i-1}}{\partial x} "
         r"- B_i \frac{\partial^2 U_i}{\partial t^2} = 0",
@@ -123,7 +131,7 @@ GENERAL: tuple[Printed, ...] = (
         step=1,
         ranges="bodies between two rods",
     ),
-    Printed(
+    PrintedCondition(
         "(2.4).3",
         r"A_i \frac{\partial U_i}{\partial x} = A_{i+1} \frac{\partial U_{i+1}}{\partial x}",
         (I,),
@@ -132,7 +140,7 @@ GENERAL: tuple[Printed, ...] = (
         step=2,
         ranges="contacts; equal A",
     ),
-    Printed(
+    PrintedCondition(
         "(2.4).4",
         r"S_i(t) + A_i \frac{\partial U_i}{\partial x} - B_i \frac{\partial^2 U_i}{\partial t^2} = 0",
         (II,),
@@ -140,7 +148,7 @@ GENERAL: tuple[Printed, ...] = (
         Integer(0),
         ranges="a body at the left end",
     ),
-    Printed(
+    PrintedCondition(
         "(2.4).5",
         r"S_i(t) + A_i \frac{\partial U_i}{\partial x} + B_i \frac{\partial^2 U_i}{\partial t^2} = 0",
         (II,),
@@ -151,15 +159,15 @@ GENERAL: tuple[Printed, ...] = (
     ),
 )
 
-DIMENSIONLESS: tuple[Printed, ...] = (
-    Printed(
+DIMENSIONLESS: tuple[PrintedCondition, ...] = (
+    PrintedCondition(
         "(4.3).1",
         r"\frac{\partial \bar{u}_1}{\partial \bar{x}} = 0, \bar{x} = 0",
         (I,),
         Stated(lambda y, i: y.x(1), _LEFT),
         Integer(0),
     ),
-    Printed(
+    PrintedCondition(
         "(4.3).2",
         r"\frac{\partial \bar{u}_i}{\partial \tau} = \frac{\partial \bar{u}_{i+1}}{\partial \tau}, \bar{x} = i",
         (I,),
@@ -168,7 +176,7 @@ DIMENSIONLESS: tuple[Printed, ...] = (
         step=1,
         ranges="i = 1, 2, ..., m-1",
     ),
-    Printed(
+    PrintedCondition(
         "(4.3).3",
         r"\frac{\partial \bar{u}_i}{\partial \bar{x}} = \frac{\partial \bar{u}_{i+1}}{\partial \bar{x}}, \bar{x} = i",
         (I,),
@@ -177,7 +185,7 @@ DIMENSIONLESS: tuple[Printed, ...] = (
         step=2,
         ranges="i = 2, 4, ..., m-2",
     ),
-    Printed(
+    PrintedCondition(
         "(4.3).4",
         r"-\frac{\partial \bar{u}_i}{\partial \bar{x}} + \frac{\partial \bar{u}_{i+1}}{\partial \bar{x}} "
         r"- \frac{1}{\kappa_i} \frac{\partial^2 \bar{u}_i}{\partial \tau^2} = 0, \bar{x} = i",
@@ -186,7 +194,7 @@ DIMENSIONLESS: tuple[Printed, ...] = (
         INDEX,
         ranges="i = 1, 3, ..., m-3",
     ),
-    Printed(
+    PrintedCondition(
         "(4.3).5",
         r"-\frac{\partial \bar{u}_{m-1}}{\partial \bar{x}} + \frac{\partial \bar{u}_m}{\partial \bar{x}} "
         r"- \frac{1}{\kappa_{m-1}} \frac{\partial^2 \bar{u}_m}{\partial \tau^2} = 0, \bar{x} = m-1",
@@ -197,14 +205,14 @@ DIMENSIONLESS: tuple[Printed, ...] = (
         ),
         COUNT - 1,
     ),
-    Printed(
+    PrintedCondition(
         "(4.3).6",
         r"\frac{\partial \bar{u}_m}{\partial \bar{x}} = 0, \bar{x} = m",
         (I,),
         Stated(lambda y, i: y.x(y.m), _RIGHT),
         COUNT,
     ),
-    Printed(
+    PrintedCondition(
         "(4.4).1",
         r"\bar{A}_1 \bar{M}(\tau) - \frac{\partial^2 \bar{\theta}_1}{\partial \tau^2} "
         r"+ \kappa_1 \frac{\partial \bar{\theta}_1}{\partial \bar{x}} = 0, \bar{x} = 0",
@@ -218,7 +226,7 @@ DIMENSIONLESS: tuple[Printed, ...] = (
             "The moment has no index; no other moment than the first holds here: beyond doubt.",
         ),
     ),
-    Printed(
+    PrintedCondition(
         "(4.4).2",
         r"\bar{A}_{i+1} \bar{M}_{i+1}(\tau) + \kappa_{i+1} \frac{\partial \bar{\theta}_{i+1}}{\partial \bar{x}} "
         r"- \kappa_i \frac{J_i}{J_{i+1}} \frac{\partial \bar{\theta}_i}{\partial \bar{x}} "
@@ -233,7 +241,7 @@ DIMENSIONLESS: tuple[Printed, ...] = (
         INDEX,
         ranges="i = 1, 2, ..., m-1",
     ),
-    Printed(
+    PrintedCondition(
         "(4.4).3",
         r"\frac{\partial \bar{\theta}_i}{\partial \tau} = \frac{\partial \bar{\theta}_{i+1}}{\partial \tau}, "
         r"\bar{x} = i",
@@ -243,7 +251,7 @@ DIMENSIONLESS: tuple[Printed, ...] = (
         step=1,
         ranges="i = 1, 2, ..., m-1",
     ),
-    Printed(
+    PrintedCondition(
         "(4.4).4",
         r"\bar{A}_{m+1} \bar{M}_{m+1}(\tau) + \frac{\partial^2 \bar{\theta}_m}{\partial \tau^2} "
         r"+ \kappa_m \frac{J_m}{J_{m+1}} \frac{\partial \bar{\theta}_m}{\partial \bar{x}} = 0, \bar{x} = m",
@@ -252,7 +260,7 @@ DIMENSIONLESS: tuple[Printed, ...] = (
         COUNT,
         slip=_signed(r"as printed, \bar{M}_{m+1} counted against positive rotation", _last_disc),
     ),
-    Printed(
+    PrintedCondition(
         "(4.5).2",
         r"\frac{\partial \bar{y}_{i+1}}{\partial \bar{x}} - \frac{\partial \bar{y}_i}{\partial \bar{x}} "
         r"- \frac{1}{\kappa_1} \frac{\partial^2 \bar{y}_{i+1}}{\partial \tau^2} = 0, \bar{x} = i",
@@ -269,7 +277,7 @@ DIMENSIONLESS: tuple[Printed, ...] = (
             "kappa for i = 0, 1, m only.",
         ),
     ),
-    Printed(
+    PrintedCondition(
         "(4.5).3",
         r"\frac{\partial \bar{y}_i}{\partial \tau} = \frac{\partial \bar{y}_{i+1}}{\partial \tau}, \bar{x} = i",
         (III,),
@@ -278,7 +286,7 @@ DIMENSIONLESS: tuple[Printed, ...] = (
         step=1,
         ranges="i = 1, 2, ..., m-1",
     ),
-    Printed(
+    PrintedCondition(
         "(4.5).4",
         r"\frac{\partial \bar{y}_m}{\partial \bar{x}} + \frac{1}{\kappa_m} \frac{\partial^2 \bar{y}_m}{\partial "
         r"\tau^2} "
@@ -298,7 +306,7 @@ def claims() -> Iterator[Claim[Any]]:
         yield _claim(printed)
 
 
-def _claim(printed: Printed) -> Claim[Stated]:
+def _claim(printed: PrintedCondition) -> Claim[Stated]:
     slip = printed.slip
     right = slip.reading if slip else printed.stated
     line = printed.id.removeprefix("(")
@@ -326,28 +334,28 @@ def _cases(examples: Iterable[Example], stated: Stated) -> Iterator[Case]:
                     yield case(table, source, stated.condition, i)
 
 
-def _faults(printed: Printed, right: Stated) -> Iterator[tuple[str, Stated]]:
+def _faults(printed: PrintedCondition, right: Stated) -> Iterator[tuple[str, Stated]]:
     if printed.step:
         longer = replace(right, span=lambda m: [*right.span(m), *[max(right.span(m), default=0) + printed.step]])
         yield "range one longer", longer
     for name, factor, late in (("sign", -1, 0), ("factor", 2, 0), ("lag", 1, 1)):
         for nth in (1, 2):
 
-            def faulty(y: Tabulated, i: int, nth: int = nth, factor: int = factor, late: int = late) -> Signal:
+            def faulty(y: Tabulated, i: int, nth: int = nth, factor: int = factor, late: int = late) -> PrintedSignal:
                 wrong = Tabulated(Faulty(y.waves, nth, factor, late), y._table, i)
-                result: Signal = right.condition(wrong, i)
+                result: PrintedSignal = right.condition(wrong, i)
                 return result
 
             yield f"{name} of term {nth}", replace(right, condition=faulty)
 
 
-def _difference(printed: Printed, stated: Stated) -> str:
+def _difference(printed: PrintedCondition, stated: Stated) -> str:
     """Printed less derived for symbolic i and m, both scaled to the same strain (contact: velocity)."""
     mine: Line = stated.condition(Formally(Symbols()), printed.place).line
     return line_text(_scaled(mine) - _scaled(_balance(_node(printed), printed.place)))
 
 
-def _node(printed: Printed) -> Node:
+def _node(printed: PrintedCondition) -> Node:
     families = printed.examples[0].system.families(COUNT, SYMBOLS)
     place = exact(printed.place)
     alone = [f for f in families if exact(f.first - f.last) == 0 and exact(f.first - place) == 0]

@@ -33,7 +33,7 @@ III = Example(BUILDING_FORCE, uneven_building, range(2, 7))
 
 
 @dataclass(frozen=True)
-class Printed:
+class PrintedEquation:
     """A printed equation: its text, its range of i, left less right side, how many waves and loads that has.
 
     `derived` names the derived equations (function, rod, first i) it is to be, `through` those to be put into them;
@@ -81,8 +81,8 @@ def _last_shaft(limit: Callable[[Place, Place], Place]) -> Formula:
     )
 
 
-EQUATIONS: tuple[Printed, ...] = (
-    Printed(
+EQUATIONS: tuple[PrintedEquation, ...] = (
+    PrintedEquation(
         "(4.6).1",
         "f'_1(z) = g'_1(z-2), g'_m(z) = f'_m(z-2)",
         I,
@@ -91,7 +91,7 @@ EQUATIONS: tuple[Printed, ...] = (
         2,
         (("f", 1, 1), ("g", COUNT, COUNT)),
     ),
-    Printed(
+    PrintedEquation(
         "(4.6).2",
         r"g''_1(z) + 2\kappa_1 g'_1(z) = -g''_1(z-2) + 2\kappa_1 g'_2(z)",
         I,
@@ -100,7 +100,7 @@ EQUATIONS: tuple[Printed, ...] = (
         4,
         (("g", 1, 1),),
     ),
-    Printed(
+    PrintedEquation(
         "(4.6).3",
         r"g''_i(z) + 2\kappa_i g'_i(z) = -f''_i(z-2) + 2\kappa_i g'_{i+1}(z-2)",
         I,
@@ -110,7 +110,7 @@ EQUATIONS: tuple[Printed, ...] = (
         (("g", INDEX, 3),),
         ranges="i = 3, 5, ..., m-3",
     ),
-    Printed(
+    PrintedEquation(
         "(4.6).4",
         "g'_{m-1}(z) = -f'_{m-1}(z-2) + f'_m(z-2) + f'_m(z-4)",
         I,
@@ -119,7 +119,7 @@ EQUATIONS: tuple[Printed, ...] = (
         4,
         (("g", COUNT - 1, COUNT - 1),),
     ),
-    Printed(
+    PrintedEquation(
         "(4.6).5",
         r"g'_i(z) = -\frac{\bar{v}_{i-1} - \bar{v}_{i+1}}{2} + g'_{i+1}(z)",
         I,
@@ -129,7 +129,7 @@ EQUATIONS: tuple[Printed, ...] = (
         (("g", INDEX, 2),),
         ranges="i = 2, 4, ..., m-2",
     ),
-    Printed(
+    PrintedEquation(
         "(4.6).6",
         "f'_2(z) = g'_1(z-2) - g'_2(z-2) + g'_1(z-4)",
         I,
@@ -138,7 +138,7 @@ EQUATIONS: tuple[Printed, ...] = (
         4,
         (("f", 2, 2),),
     ),
-    Printed(
+    PrintedEquation(
         "(4.6).7",
         "f'_i(z) = g'_{i-1}(z) + f'_{i-1}(z-2) - g'_i(z-2)",
         I,
@@ -148,7 +148,7 @@ EQUATIONS: tuple[Printed, ...] = (
         (("f", INDEX, 4),),
         ranges="i = 4, 6, ..., m-2",
     ),
-    Printed(
+    PrintedEquation(
         "(4.6).8",
         r"f'_i(z) = \frac{\bar{v}_{i-2} - \bar{v}_i}{2} + f'_{i-1}(z)",
         I,
@@ -158,7 +158,7 @@ EQUATIONS: tuple[Printed, ...] = (
         (("f", INDEX, 3),),
         ranges="i = 3, 5, ..., m-1",
     ),
-    Printed(
+    PrintedEquation(
         "(4.6).9",
         r"f''_m(z) + 2\kappa_{m-1} f'_m(z) = -f''_m(z-2) + 2\kappa_{m-1} f'_{m-1}(z)",
         I,
@@ -167,7 +167,7 @@ EQUATIONS: tuple[Printed, ...] = (
         4,
         (("f", COUNT, COUNT),),
     ),
-    Printed(
+    PrintedEquation(
         "(4.7).1",
         "g'_i(z) = -f'_i(z-2) + f'_{i+1}(z-1) + g'_{i+1}(z-1)",
         II,
@@ -177,7 +177,7 @@ EQUATIONS: tuple[Printed, ...] = (
         (("g", INDEX, 1),),
         ranges="i = 1, 2, ..., m-1",
     ),
-    Printed(
+    PrintedEquation(
         "(4.7).2",
         r"g''_m(z) + \kappa_m \frac{J_m}{J_{m+1}} g'_m(z) = -\bar{A}_{m+1} \sum_{k=0}^{m+1} \bar{M}_{m+1, k} "
         r"H(z-1-\tau_{m+1, k}) - f''_m(z-2) + \kappa_m \frac{J_m}{J_{m+1}} f'_m(z-2)",
@@ -196,7 +196,7 @@ EQUATIONS: tuple[Printed, ...] = (
             "against positive rotation, as in (4.4).4.",
         ),
     ),
-    Printed(
+    PrintedEquation(
         "(4.7).3",
         r"f_1''(z) + \kappa_1 f_1'(z) = \bar{A}_1 \sum_{k=0}^{m_1} \bar{M}_{1,k} H(z - \tau_{1,k}) - g_1''(z) "
         r"+ \kappa_1 g_1'(z)",
@@ -206,7 +206,7 @@ EQUATIONS: tuple[Printed, ...] = (
         5,
         (("f", 1, 1),),
     ),
-    Printed(
+    PrintedEquation(
         "(4.7).4",
         r"f_i''(z) + \left(\kappa_i + \kappa_{i-1} \frac{J_{i-1}}{J_i}\right) f_i'(z) = \bar{A}_i \sum_{k=0}^{m_i} "
         r"\bar{M}_{i,k} H(z - \tau_{i,k}) - g_i''(z) + \left(\kappa_i - \kappa_{i-1} \frac{J_{i-1}}{J_i}\right) "
@@ -226,7 +226,7 @@ EQUATIONS: tuple[Printed, ...] = (
         (("f", INDEX, 2),),
         ranges="i = 2, 3, ..., m",
     ),
-    Printed(
+    PrintedEquation(
         "(4.8).1",
         "g_1'(z) = f_2'(z-2) + g_2'(z-2) - f_1'(z-2)",
         III,
@@ -235,7 +235,7 @@ EQUATIONS: tuple[Printed, ...] = (
         4,
         (("g", 1, 1),),
     ),
-    Printed(
+    PrintedEquation(
         "(4.8).2",
         r"f_1'(z) = f_2'(z-2) + g_2'(z-2) - f_1'(z-2) - \frac{1}{\kappa_0} \sum_{k=0}^{m_1} H(z - \tau_k) "
         r"[\bar{a}_k + \bar{b}_k(z - \tau_k)]",
@@ -246,7 +246,7 @@ EQUATIONS: tuple[Printed, ...] = (
         (("f", 1, 1),),
         through=(("g", 1),),
     ),
-    Printed(
+    PrintedEquation(
         "(4.8).3",
         "g_i'(z) = f_{i+1}'(z-2) + g_{i+1}'(z-2) - f_i'(z-2)",
         III,
@@ -256,7 +256,7 @@ EQUATIONS: tuple[Printed, ...] = (
         (("g", INDEX, 1),),
         ranges="i = 2, 3, ..., m-1",
     ),
-    Printed(
+    PrintedEquation(
         "(4.8).4",
         r"g_m''(z) + \kappa_m g_m'(z) = -f_m''(z-2) + \kappa_m f_m'(z-2)",
         III,
@@ -265,7 +265,7 @@ EQUATIONS: tuple[Printed, ...] = (
         4,
         (("g", COUNT, COUNT),),
     ),
-    Printed(
+    PrintedEquation(
         "(4.8).5",
         r"f_i''(z) + 2\kappa_i f_i'(z) = -g_i''(z) + 2\kappa_i f_{i-1}'(z)",
         III,
@@ -308,7 +308,7 @@ def claims() -> Iterator[Claim[Formula]]:
         )
 
 
-def _tried(printed: Printed) -> Callable[[Formula], Iterator[Case]]:
+def _tried(printed: PrintedEquation) -> Callable[[Formula], Iterator[Case]]:
     def cases(formula: Formula) -> Iterator[Case]:
         for m in printed.example.sizes:
             table = printed.example.tables(m)
@@ -320,7 +320,7 @@ def _tried(printed: Printed) -> Callable[[Formula], Iterator[Case]]:
     return cases
 
 
-def _minus_derived(printed: Printed) -> Callable[[Formula], str]:
+def _minus_derived(printed: PrintedEquation) -> Callable[[Formula], str]:
     """Printed less derived, both as left less right side, for symbolic i and m."""
 
     def difference(formula: Formula) -> str:

@@ -48,7 +48,7 @@ _QUAKES = {
 }
 
 
-class Point(NamedTuple):
+class MeasuredPoint(NamedTuple):
     """A place on a curve: the output, and which of its instants."""
 
     output: str
@@ -59,7 +59,7 @@ class Finding(NamedTuple):
     """What was measured, and where: each spot is a point, or two that lie as far apart as the measure says."""
 
     value: float
-    spots: tuple[tuple[Point, ...], ...] = ()
+    spots: tuple[tuple[MeasuredPoint, ...], ...] = ()
 
 
 Measure = Callable[[Curves], Finding]
@@ -75,7 +75,7 @@ class Said:
 
 
 @dataclass(frozen=True)
-class Statement:
+class FigureStatement:
     """A sentence of section 5."""
 
     figure: int
@@ -102,10 +102,10 @@ def _apart(*names: str) -> Measure:
     return measured
 
 
-def _across(c: Curves, names: tuple[str, ...], k: int) -> tuple[Point, ...]:
+def _across(c: Curves, names: tuple[str, ...], k: int) -> tuple[MeasuredPoint, ...]:
     """The lowest and the highest of curves at an instant."""
     low, *_, high = sorted(names, key=lambda name: float(c[name][k]))
-    return Point(low, k), Point(high, k)
+    return MeasuredPoint(low, k), MeasuredPoint(high, k)
 
 
 def _at_most(bound: float) -> Callable[[float], bool]:
@@ -122,7 +122,7 @@ def _peaks(one: str, other: str) -> Measure:
     def measured(c: Curves) -> Finding:
         tops = {name: int(np.argmax(np.abs(c[name]))) for name in (one, other)}
         high, low = (abs(c[name][k]) for name, k in tops.items())
-        return Finding(float(high / low), tuple((Point(*top),) for top in tops.items()))
+        return Finding(float(high / low), tuple((MeasuredPoint(*top),) for top in tops.items()))
 
     return measured
 
@@ -134,7 +134,7 @@ def _turn(name: str, sign: int) -> Measure:
         curve = sign * c[name]
         top = int(np.argmax(curve))
         value = min(curve[top] - curve[0], curve[top] - curve[-1]) / np.max(np.abs(curve))
-        return Finding(float(value), ((Point(name, top),),))
+        return Finding(float(value), ((MeasuredPoint(name, top),),))
 
     return measured
 
@@ -148,7 +148,8 @@ def _outside(inner: str, one: str, other: str) -> Measure:
         worst = int(np.argmax(beyond))
         band = _across(c, (one, other), int(np.argmax(high - low)))
         return Finding(
-            float(beyond[worst] / np.max(np.abs(high))), ((Point(inner, worst),) if beyond[worst] > 0 else band,)
+            float(beyond[worst] / np.max(np.abs(high))),
+            ((MeasuredPoint(inner, worst),) if beyond[worst] > 0 else band,),
         )
 
     return measured
@@ -176,7 +177,7 @@ def _unevenness(*names: str) -> Measure:
         if len(swings) < 3:
             return Finding(0.0)
         small, large = (abs(curve[b] - curve[a]) for a, b in (swings[0], swings[-1]))
-        spots = tuple((Point(name, a), Point(name, b)) for a, b in (swings[-1], swings[0]))
+        spots = tuple((MeasuredPoint(name, a), MeasuredPoint(name, b)) for a, b in (swings[-1], swings[0]))
         return Finding(float(large / small), spots)
 
     return _both(*(lambda c, name=name: one(name, c[name]) for name in names), worst=min)
@@ -211,85 +212,85 @@ def _both(*measures: Measure, worst: Callable[[Any], float] = max) -> Measure:
 _SLIGHTLY, _CLEARLY = f"at most {SLIGHT:.3g}", f"more than {CLEAR:.3g}"
 _INNER = ("displacement@3/2", "displacement@2", "displacement@5/2")
 
-STATEMENTS: tuple[Statement, ...] = (
-    Statement(
+STATEMENTS: tuple[FigureStatement, ...] = (
+    FigureStatement(
         6,
         "the strain at x = 2 differs considerably from that at x = 1-",
         _apart("strain@2", "strain@1-"),
         _more_than(CLEAR),
         f"largest distance {_CLEARLY} of the largest value",
     ),
-    Statement(
+    FigureStatement(
         6,
         "the strain at x = 2 differs considerably from that at x = 3+",
         _apart("strain@2", "strain@3+"),
         _more_than(CLEAR),
         f"largest distance {_CLEARLY} of the largest value",
     ),
-    Statement(
+    FigureStatement(
         6,
         "the displacements of x = 0 and x = 1 differ slightly",
         _apart("displacement@0", "displacement@1"),
         _at_most(SLIGHT),
         f"largest distance {_SLIGHTLY} of the largest value",
     ),
-    Statement(
+    FigureStatement(
         6,
         "so do those of x = 3 and x = 4",
         _apart("displacement@3", "displacement@4"),
         _at_most(SLIGHT),
         f"largest distance {_SLIGHTLY} of the largest value",
     ),
-    Statement(
+    FigureStatement(
         6,
         "the displacements of x = 0; 1 rise at first and fall later",
         _both(_turn("displacement@0", 1), _turn("displacement@1", 1), worst=min),
         _more_than(0.01),
         "rise and fall, the smaller more than 0.01 of the largest value",
     ),
-    Statement(
+    FigureStatement(
         6,
         "those of x = 3; 4 the other way round",
         _both(_turn("displacement@3", -1), _turn("displacement@4", -1), worst=min),
         _more_than(0.01),
         "fall and rise, the smaller more than 0.01 of the largest value",
     ),
-    Statement(
+    FigureStatement(
         6,
         "the displacements of x = 1.5; 2; 2.5 lie between those of x = 1 and x = 3",
         _both(*(_outside(name, "displacement@1", "displacement@3") for name in _INNER)),
         _at_most(1e-12),
         "nowhere outside",
     ),
-    Statement(
+    FigureStatement(
         6,
         "at the end of the collision the displacements differ slightly",
         _spread(("displacement@1", *_INNER, "displacement@3")),
         _at_most(SLIGHT),
         f"spread {_SLIGHTLY} of the largest value",
     ),
-    Statement(
+    FigureStatement(
         7,
         "the strains at x = 0; 0.5; 1 differ slightly",
         _apart("strain@0", "strain@0.5", "strain@1"),
         _at_most(SLIGHT),
         f"largest distance {_SLIGHTLY} of the largest value",
     ),
-    Statement(
+    FigureStatement(
         7,
         "the displacement of x = 0 differs clearly from that of x = 1",
         _apart("displacement@0", "displacement@1"),
         _more_than(CLEAR),
         f"largest distance {_CLEARLY} of the largest value",
     ),
-    Statement(
+    FigureStatement(
         8,
         "the larger velocities occur at x = 0.5",
         _peaks("velocity@0.5", "velocity@1.5"),
         _more_than(1),
         "ratio of the largest values, x = 0.5 to x = 1.5, more than 1",
     ),
-    Statement(
+    FigureStatement(
         8,
         "the larger strains occur at x = 0.5",
         _peaks("strain@0.5", "strain@1.5"),
@@ -297,7 +298,7 @@ STATEMENTS: tuple[Statement, ...] = (
         "ratio of the largest values, x = 0.5 to x = 1.5, more than 1",
     ),
     *(
-        Statement(
+        FigureStatement(
             8,
             f"the {many} are irregular oscillations",
             _unevenness(f"{one}@0.5", f"{one}@1.5"),
@@ -322,7 +323,7 @@ END = f"text.{_BEFORE + len(STATEMENTS) + 1}"
 """The id of the number 8.85."""
 
 
-def numbered() -> dict[str, Statement]:
+def numbered() -> dict[str, FigureStatement]:
     """The statements by id."""
     return {f"text.{number}": statement for number, statement in enumerate(STATEMENTS, _BEFORE + 1)}
 
@@ -384,13 +385,13 @@ def contact_end() -> float:
     return float(end.digits)
 
 
-def _cases(statement: Statement, said: Said) -> Iterator[Case]:
+def _cases(statement: FigureStatement, said: Said) -> Iterator[Case]:
     for load in said.loads:
         value = said.measured(curves(statement.figure, load)).value
         yield Case({"load": load, "measured": value, "claim": statement.meaning}, True, said.true(value))
 
 
-def _claim(id: str, statement: Statement) -> Claim[Said]:
+def _claim(id: str, statement: FigureStatement) -> Claim[Said]:
     tried = loads(statement.figure)
     values = {load: finding.value for load, finding in statement.findings.items()}
     true = tuple(load for load, value in values.items() if statement.true(value))

@@ -16,12 +16,12 @@ from sympy import Integer
 from wavesym.derivation.delay_terms import Line, Operator, Wave, exact
 from wavesym.model.node import Rod
 from wavesym.papers.pielorz1979.delays import Example
-from wavesym.papers.pielorz1979.signals import Formal, Numbers, Place, Signal, Waves, residual_case
+from wavesym.papers.pielorz1979.signals import Formal, Numbers, Place, PrintedSignal, Waves, residual_case
 from wavesym.papers.record import Case, Slip
 from wavesym.papers.truth import Exact
 
 
-class Motion(ABC):
+class NodeMotion(ABC):
     """The motion at a node, and the loads and parameters of its system."""
 
     def __init__(self, waves: Waves) -> None:
@@ -55,29 +55,29 @@ def lags(rod: Rod, x: int) -> tuple[int, int]:
     return rod.tau0 + x - rod.x0, rod.tau0 - x + rod.x0
 
 
-class Tabulated(Motion):
+class Tabulated(NodeMotion):
     """Exact increments in the clock tau, by (4.2) and Table 1; accelerations between jumps."""
 
     def __init__(self, waves: Waves, table: Exact, place: int, ansatz: Ansatz = lags) -> None:
         super().__init__(waves)
         self._table, self._place, self._ansatz = table, place, ansatz
 
-    def _waves(self, rod: int) -> tuple[Signal, Signal]:
+    def _waves(self, rod: int) -> tuple[PrintedSignal, PrintedSignal]:
         if not 1 <= rod <= self.m:
             raise LookupError(f"rod {rod}")
         late_f, late_g = self._ansatz(self._table.chain.rod(rod), self._place)
         return self.waves.f(rod, late_f), self.waves.g(rod, late_g)
 
-    def x(self, rod: int) -> Signal:
+    def x(self, rod: int) -> PrintedSignal:
         f, g = self._waves(rod)
         return g - f
 
-    def t(self, rod: int) -> Signal:
+    def t(self, rod: int) -> PrintedSignal:
         f, g = self._waves(rod)
-        return f + g + Signal({0: {fmpq(0): [fmpq(self._table.chain.rod(rod).velocity)]}})
+        return f + g + PrintedSignal({0: {fmpq(0): [fmpq(self._table.chain.rod(rod).velocity)]}})
 
 
-class Formally(Motion):
+class Formally(NodeMotion):
     """Strain and velocity as they are, for symbolic i and m."""
 
     def x(self, rod: Place) -> Formal:
@@ -103,7 +103,7 @@ class Stated:
 
 
 @dataclass(frozen=True)
-class Printed:
+class PrintedCondition:
     """A printed condition; `place` is its x for symbolic i and m, `step` that of its range, 0 for a single place.
 
     `examples` are those that have such nodes.
@@ -122,8 +122,8 @@ class Printed:
 def case(table: Exact, source: str, condition: Condition, i: int, ansatz: Ansatz = lags) -> Case:
     """What is left of a condition at x = i."""
 
-    def formula(waves: Waves, i: int) -> Signal:
-        result: Signal = condition(Tabulated(waves, table, i, ansatz), i)
+    def formula(waves: Waves, i: int) -> PrintedSignal:
+        result: PrintedSignal = condition(Tabulated(waves, table, i, ansatz), i)
         return result
 
     # rods of example I may be read up to two units early

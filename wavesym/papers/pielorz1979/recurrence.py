@@ -38,7 +38,7 @@ Factor = Callable[[At], fmpq | int]
 
 
 @dataclass(frozen=True)
-class Term:
+class PrintedTerm:
     """factor * product of H(guard) * coefficient, e.g. -H(n-2-i) f_(m,i)^(m,n)."""
 
     text: str
@@ -76,7 +76,7 @@ class Target:
 
 
 @dataclass(frozen=True)
-class Line:
+class PrintedLine:
     """A printed line.
 
     `loads` is the constant part of III.1, by source. `strict` is the first n of the range's test. `scan`: see `Claim`.
@@ -86,7 +86,7 @@ class Line:
     printed: str
     ranges: str
     targets: tuple[Target, ...]
-    terms: tuple[Term, ...]
+    terms: tuple[PrintedTerm, ...]
     loads: Mapping[tuple[str, Family], Factor] | None = None
     strict: int = 0
     scan: str | None = None
@@ -98,7 +98,7 @@ class Correction:
 
     kind: Slipped
     corrected: str
-    line: Line
+    line: PrintedLine
     note: str
 
 
@@ -177,6 +177,6 @@ def visits(at: At) -> fmpq:
     return 2 * at.kappa[1] / at.i
 
 
-def with_terms(line: Line, place: int, term: Term) -> Line:
+def with_terms(line: PrintedLine, place: int, term: PrintedTerm) -> PrintedLine:
     """The line with another term at `place`."""
     return replace(line, terms=(*line.terms[:place], term, *line.terms[place + 1 :]))

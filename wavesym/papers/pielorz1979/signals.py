@@ -26,33 +26,33 @@ Place = Any
 
 
 @dataclass(frozen=True)
-class Signal:
+class PrintedSignal:
     """Increments by the time at which they start."""
 
     parts: Mapping[Quantity, Increment]
 
-    def __add__(self, other: Signal) -> Signal:
+    def __add__(self, other: PrintedSignal) -> PrintedSignal:
         total = {start: {rate: list(powers) for rate, powers in part.items()} for start, part in self.parts.items()}
         for start, part in other.parts.items():
             add(total.setdefault(start, {}), part)
-        return Signal(total)
+        return PrintedSignal(total)
 
-    def __rmul__(self, factor: Quantity) -> Signal:
+    def __rmul__(self, factor: Quantity) -> PrintedSignal:
         total: dict[Quantity, Increment] = {start: {} for start in self.parts}
         for start, part in self.parts.items():
             add(total[start], part, fmpq(factor))
-        return Signal(total)
+        return PrintedSignal(total)
 
-    def __neg__(self) -> Signal:
+    def __neg__(self) -> PrintedSignal:
         return -1 * self
 
-    def __sub__(self, other: Signal) -> Signal:
+    def __sub__(self, other: PrintedSignal) -> PrintedSignal:
         return self + -other
 
     @property
-    def d(self) -> Signal:
+    def d(self) -> PrintedSignal:
         """The derivative, between the starts."""
-        return Signal(
+        return PrintedSignal(
             {
                 start: {
                     rate: [
@@ -160,17 +160,17 @@ class Numbers(Waves):
         self.m, self.k, self.J, self.v = self.exact.m, parameters.kappa, parameters.inertia, parameters.velocity
         self.intervals = len(next(iter(self.exact.responses[self.source].values())))
 
-    def wave(self, letter: str, rod: int, lag: Quantity) -> Signal:
+    def wave(self, letter: str, rod: int, lag: Quantity) -> PrintedSignal:
         if not 1 <= rod <= self.m:
             raise LookupError(f"rod {rod}")
         step = self.exact.interval
         parts = {lag + step * n: self.exact.increment(self.source, letter, rod, n + 1) for n in range(self.intervals)}
         self.seen = self.seen or any(parts.values())
-        return Signal(parts)
+        return PrintedSignal(parts)
 
-    def load(self, kind: str, number: int | None, lag: int, power: int) -> Signal:
+    def load(self, kind: str, number: int | None, lag: int, power: int) -> PrintedSignal:
         name = kind if number is None else f"{kind}{number}"
-        return Signal({lag: {fmpq(0): [fmpq(0)] * power + [fmpq(1)]}} if name == self.source else {})
+        return PrintedSignal({lag: {fmpq(0): [fmpq(0)] * power + [fmpq(1)]}} if name == self.source else {})
 
 
 class Symbols(Waves):
