@@ -24,7 +24,7 @@ def test_a_key_that_is_missing_is_an_error():
 
 def test_a_field_that_is_missing_is_an_error():
     with pytest.raises(UndefinedError):
-        render("c/header.h.j2", make_dataclass("Context", ["scene"])(object()))
+        render("numpy/closed.py.j2", make_dataclass("Context", ["scene", "outputs"])(object(), ()))
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))

@@ -15,9 +15,7 @@ from wavesym.exact.ball import segments, values
 from wavesym.exact.signal import horizon, signals
 from wavesym.programs.closed import closed_form
 from wavesym.running.compiled import imported
-from wavesym.targets.closed import numpy_source
-from wavesym.targets.description import describe
-from wavesym.targets.files import files
+from wavesym.targets.files import files, numpy_text
 
 
 @settings(max_examples=40, deadline=None)
@@ -26,7 +24,7 @@ def test_no_error_is_above_the_bound(scene, random):
     merged = signals(scene)
     form = closed_form(merged, horizon(scene))
     taus = form.check_points + [random.uniform(0, form.tau_max) for _ in range(50)]
-    module = imported(numpy_source(describe(scene, form, "test", ()), form), "made")
+    module = imported(numpy_text(scene, form), "made")
     found = module.evaluate(np.array(taus))
     for signal, output, row in zip(merged, form.outputs, found, strict=True):
         expected = np.array(values(partial(segments, signal), taus))
@@ -55,7 +53,7 @@ def test_the_bound_is_not_idle():
     scene = drive_m1(16)
     merged = signals(scene)
     form = closed_form(merged, horizon(scene))
-    module = imported(numpy_source(describe(scene, form, "test", ()), form), "made")
+    module = imported(numpy_text(scene, form), "made")
     taus = np.linspace(8, 16, 2001)
     expected = np.array(values(partial(segments, merged[0]), taus.tolist()))
     error = np.abs(module.evaluate(taus)[0] - expected).max() / np.abs(expected).max()

@@ -19,12 +19,9 @@ from wavesym.exact.signal import horizon, signals
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs import choice, pieces
-from wavesym.programs.closed import ClosedForm, closed_form
+from wavesym.programs.closed import closed_form
 from wavesym.running.compiled import compiled, imported
-from wavesym.targets.closed import numpy_source as closed_source
-from wavesym.targets.description import describe
-from wavesym.targets.files import files
-from wavesym.targets.pieces import numpy_source as pieces_source
+from wavesym.targets.files import files, numpy_text
 
 BUILDING = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"}
 
@@ -76,8 +73,7 @@ CASES = [
 
 def holds(scene, form) -> bool:
     """Whether its program's errors are all within the bound, at check points and between."""
-    source = closed_source if isinstance(form, ClosedForm) else pieces_source
-    module = imported(source(describe(scene, form, "test", ()), form), "made")
+    module = imported(numpy_text(scene, form), "made")
     truth = Truth(scene, Fraction(form.tau_max))
     taus = [form.real.nearest(rational(form.tau_max * k / 40)) for k in range(41)]
     taus = sorted({*form.check_points, *taus})

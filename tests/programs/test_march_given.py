@@ -22,8 +22,7 @@ from wavesym.programs.march.tail import tail_after
 from wavesym.programs.march.watch import Watch
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
+from wavesym.targets.files import numpy_text
 
 OUTPUTS = {"strain": ["1/3"], "velocity": [1], "displacement": ["3/2"]}
 DRIVE = {"type": "drive", "m": 2, "kappa": [1, "1/3"], "inertia": [1, 2, "1/2"]}
@@ -166,7 +165,7 @@ def test_no_march_is_wrong_by_more_than_proved(system):
         made_from = steps(system, windows, [Fraction(0), Fraction(1, 2)], np.random.default_rng(seed))
         made = marched(made_from, degree=degree)
         proved = given(made.plan, degree, DOUBLE, windows)
-        text = numpy_source(describe(made_from, made, "test", ()), made).replace("if leak >", "if 0 * leak >")
+        text = numpy_text(made_from, made).replace("if leak >", "if 0 * leak >")
         taus = np.linspace(0, windows, 41)[:-1] + 1 / 64
         truth = Truth(made_from, Fraction(windows))
         for o, row in enumerate(imported(text, "made").evaluate(taus)):

@@ -14,8 +14,7 @@ from wavesym.programs.march.plan import plan
 from wavesym.programs.march.run import Run
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
+from wavesym.targets.files import numpy_text
 
 TABLES = ("_RATIO", "_FIRST", "_LAST", "_SLACK", "_LOSS", "_LEAK")
 
@@ -64,7 +63,7 @@ def module(step, degree):
         output={"until": "1/2", "tolerance": "1e-2", "strain": ["1/2"]},
     )
     made = marched(scene, degree=degree)
-    return imported(numpy_source(describe(scene, made, "test", ()), made), "made")
+    return imported(numpy_text(scene, made), "made")
 
 
 def in_numpy(step, degree, monkeypatch):

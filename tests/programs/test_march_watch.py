@@ -12,18 +12,14 @@ from flint import fmpq
 from tests.support.truth import Truth
 from wavesym.errors import ToleranceError
 from wavesym.programs.choice import choose
-from wavesym.programs.closed import ClosedForm
 from wavesym.programs.march import run as running
-from wavesym.programs.march.evaluator import MarchEvaluator, marched
+from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.plan import Panel, Stretch
 from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.programs.march.watch import Watch
-from wavesym.programs.pieces import Pieces
 from wavesym.running.compiled import compiled, imported
 from wavesym.scene import Scene
-from wavesym.targets import closed, march, pieces
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
+from wavesym.targets.files import numpy_text, program_files
 
 LOAD = {"times": ["1/3", "5/2"], "a": [1, "-1/2"], "b": ["-1/4", 0]}
 PLACES = [0, "1/3", "1/2", 1, "8/5", 2]
@@ -42,7 +38,7 @@ def building(until, load=LOAD, **outputs):
 
 
 def program(scene, made):
-    return imported(numpy_source(describe(scene, made, "test", ()), made), "made").evaluate
+    return imported(numpy_text(scene, made), "made").evaluate
 
 
 @pytest.mark.parametrize("until", [3, "29/8"])
@@ -148,12 +144,10 @@ def check_arrived(scene, evaluator, language):
 
 
 def values_of(scene, made, taus, language):
-    emitter = {MarchEvaluator: march, Pieces: pieces, ClosedForm: closed}[type(made)]
-    description = describe(scene, made, "test", ())
     if language == "numpy":
-        return imported(emitter.numpy_source(description, made), "made").evaluate(np.array(taus))
-    sources = {"made.h": emitter.c_header(description, made), "made.c": emitter.c_source(description, made)}
-    sources["made_selftest.c"] = "int main(void)\n{\n    return 0;\n}\n"
+        return imported(numpy_text(scene, made), "made").evaluate(np.array(taus))
+    sources = program_files(scene, made, "c")
+    sources[f"{scene.name}_selftest.c"] = "int main(void)\n{\n    return 0;\n}\n"
     with compiled(sources, 1) as run:
         return run(taus)
 

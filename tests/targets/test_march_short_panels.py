@@ -13,8 +13,7 @@ from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.run import LEFT, RIGHT
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
+from wavesym.targets.files import numpy_text
 
 FIRST = Fraction(1, 3)
 SHORT = Fraction(1, 10**9)
@@ -149,18 +148,18 @@ def in_c(change):
     return read
 
 
-def numpy_text():
-    return numpy_source(describe(SCENE, made(), "test", ()), made())
+def generated():
+    return numpy_text(SCENE, made())
 
 
 def test_waves_are_read_from_exact_instants_in_numpy():
-    assert missed(in_numpy(numpy_text())) <= 1
+    assert missed(in_numpy(generated())) <= 1
 
 
 def test_without_the_excess_they_would_not_be_in_numpy():
     exact_w = "((t - _START[s]) + _EXCESS[s])"
-    assert exact_w in numpy_text()
-    assert missed(in_numpy(numpy_text().replace(exact_w, "(t - _START[s])"))) > 1e5
+    assert exact_w in generated()
+    assert missed(in_numpy(generated().replace(exact_w, "(t - _START[s])"))) > 1e5
 
 
 def test_waves_are_read_from_exact_instants_in_c():

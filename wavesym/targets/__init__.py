@@ -1,1 +1,1 @@
-"""Program -> files: C, NumPy and the manifest."""
+"""Program -> files: a folder for each language, and the manifest. Other rooms ask files.py."""

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from textwrap import wrap
 
-import numpy as np
 from flint import fmpq
 
 from wavesym.exact.contact import ContactEnd
@@ -20,6 +19,8 @@ from wavesym.programs.choice import Evaluator
 from wavesym.scene import Building, Record, Scene
 from wavesym.scene.loads import Load
 from wavesym.targets.literals import c_literal, literal
+from wavesym.targets.number_format import number_format
+from wavesym.targets.reference import ReferenceValues
 
 _WIDTH = 110
 _LONG = 4 * _WIDTH  # characters of a load that is written out
@@ -50,6 +51,7 @@ class Description:
 
     `name_size` is what the longest name of an output takes in C; `command` makes the same file again.
     `real` and `numpy_real` are the type of all values in C and in NumPy; numbers that C reads have its suffix.
+    `reference` is what a self-test compares with, None where there is to be none.
     """
 
     name: str
@@ -68,13 +70,20 @@ class Description:
     error_bound: str
     c_error_bound: str
     contacts: tuple[Contact, ...]
+    reference: ReferenceValues | None = None
 
 
 def describe(
-    scene: Scene, evaluator: Evaluator, reason: str, contacts: Sequence[ContactEnd], options: str = ""
+    scene: Scene,
+    evaluator: Evaluator,
+    reason: str,
+    contacts: Sequence[ContactEnd],
+    options: str = "",
+    reference: ReferenceValues | None = None,
 ) -> Description:
     """The description of a scene and of the evaluator chosen for it; `options` are those that the files depend on."""
     real = evaluator.real
+    called = number_format(real)
     names = [output.name for output in evaluator.outputs]
     bound = _not_below(evaluator.error_bound, real)
     return Description(
@@ -82,8 +91,8 @@ def describe(
         prefix=scene.name.upper(),
         command=f"wavesym generate {scene.name}.toml{options}",
         model=tuple(line for part in _model(scene) for line in wrap(part, _WIDTH, subsequent_indent="  ")),
-        real="double" if real is DOUBLE else "float",
-        numpy_real="float64" if real is DOUBLE else "float32",
+        real=called.c_type,
+        numpy_real=called.numpy_type,
         reason=reason,
         tolerance=_tolerance(scene),
         outputs=tuple(
@@ -97,6 +106,7 @@ def describe(
         error_bound=literal(bound, real),
         c_error_bound=c_literal(bound, real),
         contacts=tuple(_contact(end, real) for end in contacts),
+        reference=reference,
     )
 
 
@@ -115,7 +125,7 @@ def constants(names: Sequence[str]) -> list[str]:
 
 def _not_below(value: float, real: Real) -> float:
     """The smallest number not below a bound; the largest for an infinite one, which no program can write down."""
-    largest = float(np.finfo(np.float64 if real is DOUBLE else np.float32).max)
+    largest = number_format(real).largest
     return real.not_below(rational(value)) if value <= largest else largest
 
 

@@ -1,4 +1,7 @@
-"""The files of a scene: the evaluator that meets its tolerance, in the languages asked for, and the manifest."""
+"""The files of a scene: the evaluator that meets its tolerance, in the languages asked for, and the manifest.
+
+Of all rooms only this file talks to targets: a new one is a folder beside this file, and a line in `_TARGETS`.
+"""
 
 from __future__ import annotations
 
@@ -8,17 +11,20 @@ from pathlib import Path
 from wavesym.errors import WavesymError
 from wavesym.exact.contact import contact_ends
 from wavesym.numbers.reals import REALS
-from wavesym.programs.choice import choose
+from wavesym.programs.choice import MAKERS, Made, choose
 from wavesym.scene import Scene
-from wavesym.targets import closed, march, pieces
+from wavesym.targets.c import C
 from wavesym.targets.description import describe
 from wavesym.targets.manifest import manifest
-from wavesym.targets.selftest import selftest
+from wavesym.targets.numpy import NumPy
+from wavesym.targets.reference import reference_values
+from wavesym.targets.target import Target
+
+_TARGETS: tuple[Target, ...] = (C(), NumPy())
 
 MARKS = (b": made by wavesym", b'"generator": "wavesym"')
-LANGUAGES = {"c": ("c",), "numpy": ("numpy",), "all": ("c", "numpy")}
-EMITTERS = {"closed": closed, "pieces": pieces, "march": march}
-EVALUATORS = ("auto", *EMITTERS)
+LANGUAGES: dict[str, tuple[Target, ...]] = {target.name: (target,) for target in _TARGETS} | {"all": _TARGETS}
+EVALUATORS = ("auto", *MAKERS)
 
 
 def _refuse_unknown(**options: tuple[str, Iterable[str]]) -> None:
@@ -52,13 +58,23 @@ def files(
     options = "" if evaluator == "auto" else f" --evaluator {evaluator}"
     options += "" if precision == "double" else f" --precision {precision}"
     options += "" if windows is None else f" --windows {windows}"
-    description = describe(scene, chosen, reason, contact_ends(scene, chosen.real), options)
-    emitter = EMITTERS[name]
+    targets = LANGUAGES[language]
+    reference = reference_values(scene, chosen) if any(target.tested for target in targets) else None
+    description = describe(scene, chosen, reason, contact_ends(scene, chosen.real), options, reference)
     made = {f"{scene.name}.json": manifest(scene, description, chosen, name)}
-    if "c" in LANGUAGES[language]:
-        made[f"{scene.name}.h"] = emitter.c_header(description, chosen)
-        made[f"{scene.name}.c"] = emitter.c_source(description, chosen)
-        made[f"{scene.name}_selftest.c"] = selftest(scene, description, chosen)
-    if "numpy" in LANGUAGES[language]:
-        made[f"{scene.name}.py"] = emitter.numpy_source(description, chosen)
+    for target in targets:
+        made |= target.files(description, chosen)
     return dict(sorted(made.items()))
+
+
+def program_files(scene: Scene, evaluator: Made, language: str, *, tested: bool = False) -> dict[str, str]:
+    """The program of an evaluator in a language, by file name, whatever its bound; with its self-test if `tested`."""
+    (target,) = LANGUAGES[language]
+    reference = reference_values(scene, evaluator) if tested else None
+    return target.files(describe(scene, evaluator, evaluator.summary, (), reference=reference), evaluator)
+
+
+def numpy_text(scene: Scene, evaluator: Made) -> str:
+    """The same as the text of one Python module."""
+    (text,) = program_files(scene, evaluator, NumPy.name).values()
+    return text

@@ -5,21 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import accumulate
 
-import numpy as np
-
 from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.targets.number_format import number_format
 
 
 def literal(value: float, real: Real = DOUBLE) -> str:
     """A number as C, Python and JSON write it, without a suffix. ValueError for what is not finite."""
     if value - value != 0.0:
         raise ValueError(f"{value} is no literal")
-    return repr(value) if real is DOUBLE else str(np.float32(value))
+    return number_format(real).shortest(value)
 
 
 def c_literal(value: float, real: Real) -> str:
     """A number as C writes it."""
-    return literal(value, real) + ("" if real is DOUBLE else "f")
+    return literal(value, real) + number_format(real).c_suffix
+
+
+def c_literals(values: Iterable[float], real: Real) -> tuple[str, ...]:
+    """Numbers as lines of a table in C."""
+    return lines(c_literal(value, real) for value in values)
 
 
 def lines(items: Iterable[str], width: int = 116) -> tuple[str, ...]:

@@ -17,8 +17,7 @@ from wavesym.model.chain import chain
 from wavesym.programs.choice import choose
 from wavesym.running.compiled import compiled, imported
 from wavesym.scene import Scene
-from wavesym.targets.description import describe
-from wavesym.targets.files import EMITTERS, files
+from wavesym.targets.files import files, numpy_text
 from wavesym.verification.characteristics import COARSEST, Motion, integrate
 from wavesym.verification.invariants import Balance, Evaluate, balances, values_per_window, watched
 from wavesym.verification.reference import Reference
@@ -194,9 +193,10 @@ def invariants(reference: Reference) -> list[Outcome]:
 
 def _numpy(scene: Scene) -> tuple[Evaluate, list[float]]:
     """The generated NumPy of a scene, and the proved errors of its outputs, absolute."""
-    name, chosen, reason = choose(scene)
-    text = EMITTERS[name].numpy_source(describe(scene, chosen, reason, ()), chosen)
-    return imported(text, scene.name).evaluate, [output.bound * output.largest for output in chosen.outputs]
+    chosen = choose(scene).evaluator
+    return imported(numpy_text(scene, chosen), scene.name).evaluate, [
+        output.bound * output.largest for output in chosen.outputs
+    ]
 
 
 def _some(instants: Instants) -> Instants:

@@ -21,8 +21,7 @@ from wavesym.programs.choice import MAKERS
 from wavesym.programs.closed import ClosedForm
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene
-from wavesym.targets.description import describe
-from wavesym.targets.files import EMITTERS
+from wavesym.targets.files import numpy_text
 
 Array = NDArray[np.float64]
 
@@ -91,9 +90,8 @@ def attempt(known: Truth, name: str) -> Attempt:
     met = form.error_bound <= scene.output.tolerance
     refused = "" if met else form.shortfall(rational(scene.output.tolerance))
     bounds = _reached(form, taus) if isinstance(form, ClosedForm) else np.full(len(taus), form.error_bound)
-    text = EMITTERS[name].numpy_source(describe(scene, form, "the atlas", ()), form)
     with np.errstate(over="ignore", invalid="ignore"):
-        found = imported(text, scene.name).evaluate(taus)
+        found = imported(numpy_text(scene, form), scene.name).evaluate(taus)
     wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
     errors = np.where(np.isfinite(wrong), wrong, math.inf)
     return Attempt(name, taus, errors, bounds, refused)

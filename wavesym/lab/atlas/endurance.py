@@ -17,8 +17,7 @@ from wavesym.lab.atlas.family import Axis, Family, Point, Progress
 from wavesym.programs.march.evaluator import MarchEvaluator, marched
 from wavesym.running.native import FAST, address, library
 from wavesym.scene import Scene
-from wavesym.targets.description import describe
-from wavesym.targets.march import c_header, c_source
+from wavesym.targets.files import program_files
 
 HORIZON = 10**5
 DEGREES = {
@@ -96,9 +95,10 @@ def follow(kappa: Fraction, evaluator: MarchEvaluator) -> Followed:
 
 def _run(scene: Scene, evaluator: MarchEvaluator, taus: twist.Array) -> tuple[twist.Array, twist.Array, bool]:
     """Outputs (outputs, n), energies and the alarm."""
-    description = describe(scene, evaluator, "the atlas", ())
-    text = c_source(description, evaluator) + _FOLLOW.replace("NAME", scene.name)
-    program = library(text, FAST, (f"{scene.name}.h", c_header(description, evaluator)))
+    made = program_files(scene, evaluator, "c")
+    header = f"{scene.name}.h"
+    text = made[f"{scene.name}.c"] + _FOLLOW.replace("NAME", scene.name)
+    program = library(text, FAST, (header, made[header]))
     out, energy = np.empty((len(taus), len(scene.outputs))), np.empty(len(taus))
     places = [ctypes.c_void_p(address(array)) for array in (taus, out, energy)]
     low = program.follow(places[0], ctypes.c_size_t(len(taus)), *places[1:])

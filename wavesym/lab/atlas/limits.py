@@ -20,8 +20,7 @@ from wavesym.programs.march.evaluator import marched
 from wavesym.rivals.problem import scene_problem
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
+from wavesym.targets.files import numpy_text
 
 KAPPAS = tuple(Fraction(1, 10**k) for k in range(1, 6))
 # sqrt(kappa) tau at the end: about a period of the springs
@@ -86,7 +85,7 @@ def difference(system: System, kappa: Fraction) -> float:
     until = math.ceil(SLOW_TIME / math.sqrt(kappa))
     scene = _scene(system, kappa, until)
     march = marched(scene)
-    program = imported(numpy_source(describe(scene, march, "the atlas", ()), march), scene.name)
+    program = imported(numpy_text(scene, march), scene.name)
     taus = until / SAMPLES * np.arange(SAMPLES)
     springs = strains(scene_problem(scene), until / SAMPLES, SAMPLES - 1)[[rod - 1 for rod in system.rods]]
     return float(np.max(np.abs(program.evaluate(taus) - springs)) / np.max(np.abs(springs)))

@@ -9,26 +9,18 @@ from dataclasses import dataclass
 from flint import arb, ctx, fmpq
 
 from wavesym.numbers.doubles import middle, rational
-from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.numbers.reals import Real
 from wavesym.programs.march.evaluator import MarchEvaluator
 from wavesym.programs.march.given import SMOOTH
 from wavesym.programs.march.plan import Plan, Stretch
 from wavesym.rendering import render
 from wavesym.targets.description import Description
-from wavesym.targets.literals import c_literal, firsts, lines, literal
+from wavesym.targets.literals import c_literal, firsts, lines
 
 _QUANTITIES = ("strain", "velocity", "displacement")
 _NOTHING = len(_QUANTITIES)  # 0 throughout
-_END_OF_DECLARATIONS = "\n#ifdef __cplusplus\n}\n"
 
 Lines = tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Header:
-    """templates/c/header.h.j2."""
-
-    scene: Description
 
 
 @dataclass(frozen=True)
@@ -102,24 +94,17 @@ class Program:
     march: March
 
 
-def c_source(scene: Description, evaluator: MarchEvaluator) -> str:
+def source(scene: Description, evaluator: MarchEvaluator) -> str:
     """NAME.c."""
-    return render("c/march.c.j2", Program(scene, _march(scene, evaluator, c_literal)))
+    return render("c/march.c.j2", Program(scene, march_text(scene, evaluator, c_literal)))
 
 
-def c_header(scene: Description, evaluator: MarchEvaluator) -> str:
-    """NAME.h: what every evaluator declares, and the march window by window, for C++ too."""
-    common, end, tail = render("c/header.h.j2", Header(scene)).rpartition(_END_OF_DECLARATIONS)
-    streaming = render("c/march.h.j2", Program(scene, _march(scene, evaluator, c_literal)))
-    return f"{common}\n{streaming}{end.lstrip()}{tail}"
+def streaming(scene: Description, evaluator: MarchEvaluator) -> str:
+    """What NAME.h declares besides: the march window by window."""
+    return render("c/march.h.j2", Program(scene, march_text(scene, evaluator, c_literal)))
 
 
-def numpy_source(scene: Description, evaluator: MarchEvaluator) -> str:
-    """NAME.py."""
-    return render("numpy/march.py.j2", Program(scene, _march(scene, evaluator, literal)))
-
-
-def _march(scene: Description, evaluator: MarchEvaluator, text: Callable[[float, Real], str]) -> March:
+def march_text(scene: Description, evaluator: MarchEvaluator, text: Callable[[float, Real], str]) -> March:
     plan, real, degree = evaluator.plan, evaluator.real, evaluator.degree
     nodes, panels = plan.junctions, plan.panels
     rows = {step: row for row, step in enumerate(evaluator.operators)}
@@ -205,7 +190,7 @@ def _march(scene: Description, evaluator: MarchEvaluator, text: Callable[[float,
 def _last_window(plan: Plan, real: Real) -> str:
     """The last window that can be counted, in an int and in real numbers, and on which all is modelled."""
     if math.isinf(plan.valid):
-        return "INT_MAX - 1" if real is DOUBLE else str(int(1 / real.roundoff) - 1)
+        return "INT_MAX - 1" if 1 / real.roundoff > 2**31 else str(int(1 / real.roundoff) - 1)
     return str(math.ceil(plan.valid) - 1 if plan.valid > plan.tau_max else int(plan.tau_max))
 
 

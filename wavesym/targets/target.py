@@ -1,0 +1,23 @@
+"""What a language is to the room: a name, and files made of a description and a program."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from wavesym.programs.choice import Made
+from wavesym.targets.description import Description
+
+
+class Target(Protocol):
+    """A language that programs are written in. Each has a folder here, and a line in files.py."""
+
+    @property
+    def name(self) -> str:
+        """As `generate --language` calls it."""
+
+    @property
+    def tested(self) -> bool:
+        """Whether its files contain a self-test, for which `Description.reference` is needed."""
+
+    def files(self, description: Description, evaluator: Made) -> dict[str, str]:
+        """Text by file name; without a self-test where the description has no reference values."""
