@@ -163,7 +163,7 @@ def test_a_degree_that_is_too_low_is_never_silent():
     truth = program(scene, march(scene))(np.linspace(290, 300, 101))
     coarse = np.abs(truth).max()
     # and it was lost indeed: without the alarm the values are wrong
-    text = numpy_text(scene, low).replace("if leak >", "if 0 * leak >")
+    text = numpy_text(scene, low).replace("if self._leak >", "if 0 * self._leak >")
     error = np.abs(imported(text, "made").evaluate(np.linspace(290, 300, 101)) - truth).max() / coarse
     assert 1e-9 < error < low.error_bound
 
@@ -177,7 +177,7 @@ def test_truncation_is_bounded_by_what_is_missed():
         verdict = judge(plan(scene), degree, DOUBLE)
         assert verdict.truncated > verdict.rounded
         made = marched(scene, degree=degree)
-        text = numpy_text(scene, made).replace("if leak >", "if 0 * leak >")
+        text = numpy_text(scene, made).replace("if self._leak >", "if 0 * self._leak >")
         errors = np.abs(imported(text, "made").evaluate(np.array(truth.taus)) - exact).max(axis=1)
         assert (errors <= verdict.errors).all()
         assert (errors > 1e-15).all()

@@ -165,7 +165,7 @@ def test_no_march_is_wrong_by_more_than_proved(system):
         made_from = steps(system, windows, [Fraction(0), Fraction(1, 2)], np.random.default_rng(seed))
         made = marched(made_from, degree=degree)
         proved = given(made.plan, degree, DOUBLE, windows)
-        text = numpy_text(made_from, made).replace("if leak >", "if 0 * leak >")
+        text = numpy_text(made_from, made).replace("if self._leak >", "if 0 * self._leak >")
         taus = np.linspace(0, windows, 41)[:-1] + 1 / 64
         truth = Truth(made_from, Fraction(windows))
         for o, row in enumerate(imported(text, "made").evaluate(taus)):

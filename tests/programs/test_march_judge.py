@@ -108,7 +108,7 @@ def test_a_verdict_adds_up_all_windows(scene, real, size, monkeypatch):
 def sizes(scene, prepared):
     """The largest values that the program gives at 17 points of each window, none of them beyond the horizon."""
     made = marched(scene, degree=12)
-    text = numpy_text(scene, made).replace("if leak >", "if 0 * leak >")
+    text = numpy_text(scene, made).replace("if self._leak >", "if 0 * self._leak >")
     taus = [window + np.linspace(0, min(1, prepared.tau_max - window), 17) for window in range(prepared.windows)]
     return np.max(np.abs(imported(text, "made").evaluate(np.minimum(taus, prepared.tau_max))), axis=(1, 2))
 

@@ -123,14 +123,14 @@ def missed(read):
 
 
 def in_numpy(text):
-    module = imported(text, "made")
+    scheme = imported(text, "made")._PROGRAM
 
     def read(both, t):
         n, at = np.zeros(1, int), np.array([t])
-        for output, quantity in enumerate(module._QUANTITY):
-            read = module._gathered if quantity == module._DISPLACEMENT else module._arrived
-            left, right = module._both(read, both, output, n, at)
-            yield (left - right if quantity == module._STRAIN else left + right)[0]
+        for output, quantity in enumerate(scheme.quantity):
+            read = scheme._gathered if quantity == scheme.DISPLACEMENT else scheme._arrived
+            left, right = read(both, output, n, at)
+            yield (left - right if quantity == scheme.STRAIN else left + right)[0]
 
     return lambda both, t: np.array(list(read(both, t)))
 
@@ -157,9 +157,9 @@ def test_waves_are_read_from_exact_instants_in_numpy():
 
 
 def test_without_the_excess_they_would_not_be_in_numpy():
-    exact_w = "((t - _START[s]) + _EXCESS[s])"
+    exact_w = "((t - self.start[s]) + self.excess[s])"
     assert exact_w in generated()
-    assert missed(in_numpy(generated().replace(exact_w, "(t - _START[s])"))) > 1e5
+    assert missed(in_numpy(generated().replace(exact_w, "(t - self.start[s])"))) > 1e5
 
 
 def test_waves_are_read_from_exact_instants_in_c():

@@ -33,11 +33,13 @@ from wavesym.numbers.doubles import bound, middle, nearest, rational
 from wavesym.numbers.reals import SINGLE, Real
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.zero import silent
+from wavesym.programs.program import ProgramOutput
 from wavesym.scene import Scene
 
 # A table larger than this is for the march.
 MOST_BYTES = 4 << 20
-# C evaluates so many samples at once: their sums and offsets fill the vector registers of common machines.
+# C evaluates so many samples at once (templates/c/pieces.c): their sums and offsets fill the vector registers of common
+# machines.
 BLOCK = 32
 # Pieces in a unit of tau: shorter ones have lower degrees, which is faster and rounds less, in larger tables.
 _USUAL = (8, 4, 2, 1)
@@ -71,19 +73,10 @@ class Grid:
 
 
 @dataclass(frozen=True)
-class PiecesOutput:
-    """An output's name, its proved largest error relative to its largest value, and a lower bound of that value."""
-
-    name: str
-    bound: float
-    largest: float
-
-
-@dataclass(frozen=True)
 class Pieces:
     """Polynomial pieces for the outputs of a scene on [0, tau_max]."""
 
-    outputs: tuple[PiecesOutput, ...]
+    outputs: tuple[ProgramOutput, ...]
     tau_max: float
     real: Real
     grids: tuple[Grid, ...]
@@ -262,7 +255,7 @@ class _Fits:
                 if size > most:
                     raise _too_large(size, most)
             grids.append(cuts.grid(members, columns))
-        outputs = tuple(PiecesOutput(place.observable.name, *bounds[k]) for k, place in enumerate(places))
+        outputs = tuple(ProgramOutput(place.observable.name, *bounds[k]) for k, place in enumerate(places))
         return Pieces(outputs, self._tau_max, self._real, tuple(grids), per_unit)
 
     def _output(

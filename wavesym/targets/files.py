@@ -11,6 +11,7 @@ from pathlib import Path
 from wavesym.errors import WavesymError
 from wavesym.exact.contact import contact_ends
 from wavesym.numbers.reals import REALS
+from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import MAKERS, Made, choose
 from wavesym.scene import Scene
 from wavesym.targets.c import C
@@ -58,12 +59,13 @@ def files(
     options = "" if evaluator == "auto" else f" --evaluator {evaluator}"
     options += "" if precision == "double" else f" --precision {precision}"
     options += "" if windows is None else f" --windows {windows}"
+    program = assemble(chosen, reason)
     targets = LANGUAGES[language]
     reference = reference_values(scene, chosen) if any(target.tested for target in targets) else None
     description = describe(scene, chosen, reason, contact_ends(scene, chosen.real), options, reference)
     made = {f"{scene.name}.json": manifest(scene, description, chosen, name)}
     for target in targets:
-        made |= target.files(description, chosen)
+        made |= target.files(description, program)
     return dict(sorted(made.items()))
 
 
@@ -71,7 +73,7 @@ def program_files(scene: Scene, evaluator: Made, language: str, *, tested: bool 
     """The program of an evaluator in a language, by file name, whatever its bound; with its self-test if `tested`."""
     (target,) = LANGUAGES[language]
     reference = reference_values(scene, evaluator) if tested else None
-    return target.files(describe(scene, evaluator, evaluator.summary, (), reference=reference), evaluator)
+    return target.files(describe(scene, evaluator, evaluator.summary, (), reference=reference), assemble(evaluator))
 
 
 def numpy_text(scene: Scene, evaluator: Made) -> str:

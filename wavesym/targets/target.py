@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from wavesym.programs.choice import Made
+from wavesym.programs.program import Program
 from wavesym.targets.description import Description
 
 
@@ -19,5 +19,5 @@ class Target(Protocol):
     def tested(self) -> bool:
         """Whether its files contain a self-test, for which `Description.reference` is needed."""
 
-    def files(self, description: Description, evaluator: Made) -> dict[str, str]:
+    def files(self, description: Description, program: Program) -> dict[str, str]:
         """Text by file name; without a self-test where the description has no reference values."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from wavesym.programs.choice import Made
-from wavesym.programs.closed import ClosedForm
-from wavesym.programs.march.evaluator import MarchEvaluator
-from wavesym.programs.pieces import Pieces
+from wavesym.programs.program import Program
 from wavesym.targets.c import closed, march, pieces
 from wavesym.targets.c.header import header
 from wavesym.targets.c.selftest import selftest
 from wavesym.targets.description import Description
+
+_SOURCES = {"closed": closed.source, "pieces": pieces.source, "march": march.source}
 
 
 class C:
@@ -18,16 +17,13 @@ class C:
     name = "c"
     tested = True
 
-    def files(self, description: Description, evaluator: Made) -> dict[str, str]:
+    def files(self, description: Description, program: Program) -> dict[str, str]:
         name = description.name
-        match evaluator:
-            case ClosedForm():
-                made = {f"{name}.h": header(description), f"{name}.c": closed.source(description, evaluator)}
-            case Pieces():
-                made = {f"{name}.h": header(description), f"{name}.c": pieces.source(description, evaluator)}
-            case MarchEvaluator():
-                streaming = march.streaming(description, evaluator)
-                made = {f"{name}.h": header(description, streaming), f"{name}.c": march.source(description, evaluator)}
+        streaming = march.streaming(description, program) if program.kind == "march" else ""
+        made = {
+            f"{name}.h": header(description, streaming),
+            f"{name}.c": _SOURCES[program.kind](description, program),
+        }
         if description.reference:
-            made[f"{name}_selftest.c"] = selftest(description, evaluator, description.reference)
+            made[f"{name}_selftest.c"] = selftest(description, program, description.reference)
         return made

@@ -1,13 +1,10 @@
-"""Python that imports nothing but NumPy: NAME.py."""
+"""Python that imports nothing but NumPy: NAME.py, whatever the kind of program."""
 
 from __future__ import annotations
 
-from wavesym.programs.choice import Made
-from wavesym.programs.closed import ClosedForm
-from wavesym.programs.march.evaluator import MarchEvaluator
-from wavesym.programs.pieces import Pieces
+from wavesym.programs.program import Program
 from wavesym.targets.description import Description
-from wavesym.targets.numpy import closed, march, pieces
+from wavesym.targets.numpy.program import source
 
 
 class NumPy:
@@ -16,12 +13,5 @@ class NumPy:
     name = "numpy"
     tested = False
 
-    def files(self, description: Description, evaluator: Made) -> dict[str, str]:
-        match evaluator:
-            case ClosedForm():
-                text = closed.source(description, evaluator)
-            case Pieces():
-                text = pieces.source(description, evaluator)
-            case MarchEvaluator():
-                text = march.source(description, evaluator)
-        return {f"{description.name}.py": text}
+    def files(self, description: Description, program: Program) -> dict[str, str]:
+        return {f"{description.name}.py": source(description, program)}
