@@ -18,8 +18,8 @@ from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.given import SMOOTH, batch_size, given
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.run import LEFT, RIGHT, Block, Run
+from wavesym.programs.march.sampler import OutputSampler
 from wavesym.programs.march.tail import tail_after
-from wavesym.programs.march.watch import Watch
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene
 from wavesym.targets.files import numpy_text
@@ -91,7 +91,7 @@ def test_what_is_proved_is_the_sum_over_all_single_loads(made_from, degree, real
     run = Run(prepared, degree)
     roundings = Roundings(prepared, run, real, scale)
     weights = [reading_weights(degree, displaced=False), reading_weights(degree, displaced=True)]
-    watches = [Watch(prepared, output, degree) for output in prepared.outputs]
+    watches = [OutputSampler(prepared, output, degree) for output in prepared.outputs]
     energies, values, integrals = np.zeros(windows), np.zeros(3), np.zeros((windows, 3))
     places = list(product(range(windows), range(len(prepared.panels))))
     assert batch_size(prepared) == len(prepared.channels) * len(prepared.panels) * 5

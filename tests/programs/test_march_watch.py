@@ -14,9 +14,9 @@ from wavesym.errors import ToleranceError
 from wavesym.programs.choice import choose
 from wavesym.programs.march import run as running
 from wavesym.programs.march.evaluator import marched
-from wavesym.programs.march.plan import Panel, Stretch
+from wavesym.programs.march.plan import MarchPanel, Stretch
 from wavesym.programs.march.run import LEFT, RIGHT, Run
-from wavesym.programs.march.watch import Watch
+from wavesym.programs.march.sampler import OutputSampler
 from wavesym.running.compiled import compiled, imported
 from wavesym.scene import Scene
 from wavesym.targets.files import numpy_text, program_files
@@ -46,7 +46,7 @@ def test_the_generator_sees_what_the_program_gives(until):
     scene = building(until)
     made = marched(scene)
     (block,) = Run(made.plan, made.degree).blocks()
-    values = [Watch(made.plan, output, made.degree).values(block) for output in made.plan.outputs]
+    values = [OutputSampler(made.plan, output, made.degree).values(block) for output in made.plan.outputs]
     windows = np.arange(made.plan.windows)[:, np.newaxis]
     taus = windows + np.linspace(0, np.minimum(1, made.tau_max - windows[:, 0]), 17).T
     # at the end of a window it sees what was there before a jump, the program what comes after it
@@ -63,7 +63,7 @@ def test_a_front_counts_from_its_own_instant_on():
         made = marched(scene)
         (block,) = Run(made.plan, made.degree).blocks()
         for output, x in zip(made.plan.outputs, (0, 0.5, 0.25), strict=True):
-            seen = Watch(made.plan, output, made.degree).values(block).ravel()
+            seen = OutputSampler(made.plan, output, made.degree).values(block).ravel()
             points = np.concatenate([n + np.linspace(0, 1, 17) for n in range(3)] + [np.full(17, 3.0)])
             assert (seen[points < start + x] == 0).all()
             # the end of a window belongs to it
@@ -76,9 +76,9 @@ def test_a_displacement_is_summed_up_from_block_to_block(monkeypatch):
     outputs = made.plan.outputs
     (whole,) = Run(made.plan, made.degree).blocks()
     monkeypatch.setattr(running, "_BLOCK", 1)
-    watches = [Watch(made.plan, output, made.degree) for output in outputs]
+    watches = [OutputSampler(made.plan, output, made.degree) for output in outputs]
     parts = [[watch.values(block) for watch in watches] for block in Run(made.plan, made.degree).blocks()]
-    expected = [Watch(made.plan, output, made.degree).values(whole) for output in outputs]
+    expected = [OutputSampler(made.plan, output, made.degree).values(whole) for output in outputs]
     np.testing.assert_allclose(np.concatenate(parts, axis=1), expected, rtol=0, atol=1e-13)
 
 
@@ -97,7 +97,9 @@ def test_sizes_are_those_of_both_waves_on_the_larger_panel():
             )
             for n in range(made.plan.windows)
         ]
-        np.testing.assert_allclose(Watch(made.plan, output, made.degree).size(block, weights), expected, rtol=1e-14)
+        np.testing.assert_allclose(
+            OutputSampler(made.plan, output, made.degree).size(block, weights), expected, rtol=1e-14
+        )
 
 
 def drive(until, time=0, tolerance="1e-10"):
@@ -170,7 +172,7 @@ def test_stretches_cover_the_window_once(delay, panels, expected):
     cuts = [*map(exact, panels), fmpq(1)]
     made = replace(
         marched(building(1)).plan,
-        panels=tuple(Panel(low, high - low) for low, high in pairwise(cuts)),
+        panels=tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts)),
     )
     assert made.stretches(exact(delay)) == tuple(Stretch(exact(start), back, p) for start, back, p in expected)
 

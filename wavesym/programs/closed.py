@@ -42,7 +42,7 @@ _MOST_ADDED = arb(fmpq(1, 2))  # additions, in 1/u
 
 
 @dataclass(frozen=True)
-class Family:
+class PulseFamily:
     """exp(-rate w) * (powers[0] + powers[1] w + ...)."""
 
     rate: float
@@ -55,7 +55,7 @@ class Pulse:
 
     start: float
     excess: float
-    families: tuple[Family, ...]
+    families: tuple[PulseFamily, ...]
 
 
 @dataclass(frozen=True)
@@ -155,7 +155,7 @@ def _closed_output(signal: Signal, tau_max: float, real: Real) -> ClosedOutput:
 
 def _pulse(time: fmpq, increment: Increment, real: Real) -> Pulse:
     start = real.not_below(time)
-    families = (Family(real.nearest(g), tuple(real.nearest(c) for c in increment[g])) for g in sorted(increment))
+    families = (PulseFamily(real.nearest(g), tuple(real.nearest(c) for c in increment[g])) for g in sorted(increment))
     return Pulse(start, real.nearest(rational(start) - time), tuple(families))
 
 

@@ -56,7 +56,7 @@ _NEGLIGIBLE = arb(2) ** -200
 
 
 @dataclass(frozen=True)
-class Grid:
+class PieceGrid:
     """Pieces that some outputs share: piece p is for starts[p] <= tau < starts[p + 1].
 
     `powers[p][j]` are the coefficients of output `outputs[j]` in w = tau - centres[p], lowest first. `first[b]` is the
@@ -79,7 +79,7 @@ class Pieces:
     outputs: tuple[ProgramOutput, ...]
     tau_max: float
     real: Real
-    grids: tuple[Grid, ...]
+    grids: tuple[PieceGrid, ...]
     per_unit: int
 
     @property
@@ -236,7 +236,7 @@ class _Fits:
 
     def _fit(self, per_unit: int, most: int) -> Pieces | None:
         places = self._motion.places
-        grids: list[Grid] = []
+        grids: list[PieceGrid] = []
         bounds: dict[int, tuple[float, float]] = {}
         size = 0
         for members in self._shared.values():
@@ -358,7 +358,7 @@ class _Cuts:
         places = (low, max(low, min(middle, high)), high)
         return max(abs(polynomial(arb((tau - middle) / self.halves[piece]))).lower() for tau in places)
 
-    def grid(self, outputs: Sequence[int], columns: Sequence[Sequence[tuple[float, ...]]]) -> Grid:
+    def grid(self, outputs: Sequence[int], columns: Sequence[Sequence[tuple[float, ...]]]) -> PieceGrid:
         """The pieces with their powers, output by output."""
         pieces = len(self.centres)
         count = pieces
@@ -371,7 +371,7 @@ class _Cuts:
             if steps <= 3 or count > 4 * pieces:
                 break
             count *= 2
-        return Grid(
+        return PieceGrid(
             tuple(outputs),
             tuple(self.starts),
             tuple(self.centres),
@@ -409,7 +409,7 @@ def _underflow(powers: Sequence[arb], real: Real) -> arb:
     return arb(real.smallest) * sum((2 + 2 * abs(c).upper() for c in powers), arb(0))
 
 
-def _bytes(grid: Grid, real: Real) -> int:
+def _bytes(grid: PieceGrid, real: Real) -> int:
     numbers = len(grid.starts) + len(grid.centres) + sum(len(p) for piece in grid.powers for p in piece)
     indices = len(grid.first) + len(grid.powers) * len(grid.outputs) + 1
     return numbers * real.bytes + indices * 4

@@ -27,7 +27,7 @@ _LONG = 4 * _WIDTH  # characters of a load that is written out
 
 
 @dataclass(frozen=True)
-class Output:
+class NamedOutput:
     """An output's name, as text and as a constant, and its proved bound, relative to its largest value."""
 
     name: str
@@ -36,7 +36,7 @@ class Output:
 
 
 @dataclass(frozen=True)
-class Contact:
+class NamedContact:
     """The end of a contact: its place for identifiers, tau as a literal of C and of Python, and with 20 digits."""
 
     position: str
@@ -62,14 +62,14 @@ class Description:
     numpy_real: str
     reason: str
     tolerance: str
-    outputs: tuple[Output, ...]
+    outputs: tuple[NamedOutput, ...]
     output_count: str
     name_size: str
     tau_max: str
     c_tau_max: str
     error_bound: str
     c_error_bound: str
-    contacts: tuple[Contact, ...]
+    contacts: tuple[NamedContact, ...]
     reference: ReferenceValues | None = None
 
 
@@ -96,7 +96,7 @@ def describe(
         reason=reason,
         tolerance=_tolerance(scene),
         outputs=tuple(
-            Output(output.name, constant, literal(_not_below(output.bound, DOUBLE)))
+            NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)))
             for output, constant in zip(evaluator.outputs, constants(names), strict=True)
         ),
         output_count=str(len(names)),
@@ -129,9 +129,9 @@ def _not_below(value: float, real: Real) -> float:
     return real.not_below(rational(value)) if value <= largest else largest
 
 
-def _contact(end: ContactEnd, real: Real) -> Contact:
+def _contact(end: ContactEnd, real: Real) -> NamedContact:
     tau = real.nearest(rational(end.double))
-    return Contact(str(end.x), c_literal(tau, real), literal(tau, real), end.digits)
+    return NamedContact(str(end.x), c_literal(tau, real), literal(tau, real), end.digits)
 
 
 def parameters(scene: Scene) -> dict[str, dict[int, fmpq]]:

@@ -14,14 +14,14 @@ from wavesym.numbers.reals import REALS
 from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import MAKERS, Made, choose
 from wavesym.scene import Scene
-from wavesym.targets.c import C
+from wavesym.targets.c import CTarget
 from wavesym.targets.description import describe
 from wavesym.targets.manifest import manifest
-from wavesym.targets.numpy import NumPy
+from wavesym.targets.numpy import NumPyTarget
 from wavesym.targets.reference import reference_values
 from wavesym.targets.target import Target
 
-_TARGETS: tuple[Target, ...] = (C(), NumPy())
+_TARGETS: tuple[Target, ...] = (CTarget(), NumPyTarget())
 
 MARKS = (b": made by wavesym", b'"generator": "wavesym"')
 LANGUAGES: dict[str, tuple[Target, ...]] = {target.name: (target,) for target in _TARGETS} | {"all": _TARGETS}
@@ -78,5 +78,5 @@ def program_files(scene: Scene, evaluator: Made, language: str, *, tested: bool 
 
 def numpy_text(scene: Scene, evaluator: Made) -> str:
     """The same as the text of one Python module."""
-    (text,) = program_files(scene, evaluator, NumPy.name).values()
+    (text,) = program_files(scene, evaluator, NumPyTarget.name).values()
     return text

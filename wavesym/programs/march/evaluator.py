@@ -20,7 +20,7 @@ from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.bound import Verdict, judge
 from wavesym.programs.march.given import Given, batch_size, given
-from wavesym.programs.march.operator import Operator
+from wavesym.programs.march.operator import PanelOperator
 from wavesym.programs.march.plan import Plan, plan
 from wavesym.programs.march.run import operator_count, operators, steps
 from wavesym.programs.program import ProgramOutput
@@ -58,7 +58,7 @@ class MarchEvaluator:
         return max(output.bound for output in self.outputs)
 
     @cached_property
-    def operators(self) -> dict[fmpq, Operator]:
+    def operators(self) -> dict[fmpq, PanelOperator]:
         """By rate times length of a panel."""
         return operators(self.plan, self.degree)
 

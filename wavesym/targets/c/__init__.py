@@ -11,7 +11,7 @@ from wavesym.targets.description import Description
 _SOURCES = {"closed": closed.source, "pieces": pieces.source, "march": march.source}
 
 
-class C:
+class CTarget:
     """C as a target."""
 
     name = "c"

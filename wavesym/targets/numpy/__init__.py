@@ -7,7 +7,7 @@ from wavesym.targets.description import Description
 from wavesym.targets.numpy.program import source
 
 
-class NumPy:
+class NumPyTarget:
     """NumPy as a target."""
 
     name = "numpy"
