@@ -13,9 +13,10 @@ from tests.support.drawn import scenes
 from wavesym.errors import ToleranceError
 from wavesym.exact.ball import segments, values
 from wavesym.exact.signal import horizon, signals
+from wavesym.programs.assembly import assemble
 from wavesym.programs.closed import closed_form
 from wavesym.running.compiled import imported
-from wavesym.targets.files import files, numpy_text
+from wavesym.targets.files import files
 
 
 @settings(max_examples=40, deadline=None)
@@ -24,7 +25,7 @@ def test_no_error_is_above_the_bound(scene, random):
     merged = signals(scene)
     form = closed_form(merged, horizon(scene))
     taus = form.check_points + [random.uniform(0, form.tau_max) for _ in range(50)]
-    module = imported(numpy_text(scene, form), "made")
+    module = assemble(form)
     found = module.evaluate(np.array(taus))
     for signal, output, row in zip(merged, form.outputs, found, strict=True):
         expected = np.array(values(partial(segments, signal), taus))
@@ -53,7 +54,7 @@ def test_the_bound_is_not_idle():
     scene = drive_m1(16)
     merged = signals(scene)
     form = closed_form(merged, horizon(scene))
-    module = imported(numpy_text(scene, form), "made")
+    module = assemble(form)
     taus = np.linspace(8, 16, 2001)
     expected = np.array(values(partial(segments, merged[0]), taus.tolist()))
     error = np.abs(module.evaluate(taus)[0] - expected).max() / np.abs(expected).max()

@@ -19,9 +19,10 @@ from wavesym.exact.signal import horizon, signals
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs import choice, pieces
+from wavesym.programs.assembly import assemble
 from wavesym.programs.closed import closed_form
 from wavesym.running.compiled import compiled, imported
-from wavesym.targets.files import files, numpy_text
+from wavesym.targets.files import files
 
 BUILDING = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"}
 
@@ -73,7 +74,7 @@ CASES = [
 
 def holds(scene, form) -> bool:
     """Whether its program's errors are all within the bound, at check points and between."""
-    module = imported(numpy_text(scene, form), "made")
+    module = assemble(form)
     truth = Truth(scene, Fraction(form.tau_max))
     taus = [form.real.nearest(rational(form.tau_max * k / 40)) for k in range(41)]
     taus = sorted({*form.check_points, *taus})

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from wavesym.errors import CostError, ToleranceError
 from wavesym.model.chain import chain
 from wavesym.numbers.reals import DOUBLE, SINGLE
+from wavesym.programs.assembly import assemble
 from wavesym.programs.march.bound import judge
 from wavesym.programs.march.evaluator import march, marched
 from wavesym.programs.march.operator import operator
@@ -26,7 +27,7 @@ from wavesym.verification.reference import reference
 
 
 def program(scene, made):
-    return imported(numpy_text(scene, made), "made").evaluate
+    return assemble(made).evaluate
 
 
 def building(until, load, m=2, base="force", kappa="3/5", tolerance="1e-6", **outputs):

@@ -11,15 +11,16 @@ from flint import fmpq
 
 from tests.support.truth import Truth
 from wavesym.errors import ToleranceError
+from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import choose
 from wavesym.programs.march import run as running
 from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.plan import MarchPanel, Stretch
 from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.programs.march.sampler import OutputSampler
-from wavesym.running.compiled import compiled, imported
+from wavesym.running.compiled import compiled
 from wavesym.scene import Scene
-from wavesym.targets.files import numpy_text, program_files
+from wavesym.targets.files import program_files
 
 LOAD = {"times": ["1/3", "5/2"], "a": [1, "-1/2"], "b": ["-1/4", 0]}
 PLACES = [0, "1/3", "1/2", 1, "8/5", 2]
@@ -38,7 +39,7 @@ def building(until, load=LOAD, **outputs):
 
 
 def program(scene, made):
-    return imported(numpy_text(scene, made), "made").evaluate
+    return assemble(made).evaluate
 
 
 @pytest.mark.parametrize("until", [3, "29/8"])
@@ -147,7 +148,7 @@ def check_arrived(scene, evaluator, language):
 
 def values_of(scene, made, taus, language):
     if language == "numpy":
-        return imported(numpy_text(scene, made), "made").evaluate(np.array(taus))
+        return assemble(made).evaluate(np.array(taus))
     sources = program_files(scene, made, "c")
     sources[f"{scene.name}_selftest.c"] = "int main(void)\n{\n    return 0;\n}\n"
     with compiled(sources, 1) as run:

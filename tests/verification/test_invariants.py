@@ -11,10 +11,9 @@ from hypothesis import given, settings
 import wavesym
 from tests.support.drawn import scenes
 from wavesym.model.chain import chain
+from wavesym.programs.assembly import assemble
 from wavesym.programs.march.evaluator import marched
-from wavesym.running.compiled import imported
 from wavesym.scene import Scene
-from wavesym.targets.files import numpy_text
 from wavesym.verification import checks
 from wavesym.verification.invariants import balances, watched, weights
 from wavesym.verification.reference import reference
@@ -189,7 +188,7 @@ def test_the_march_keeps_them_for_long(scene):
     seen = watched(scene, 100)
     seen = seen.model_copy(update={"output": seen.output.model_copy(update={"tolerance": Fraction(1, 10**4)})})
     made = marched(seen)
-    evaluate = imported(numpy_text(seen, made), "made").evaluate
+    evaluate = assemble(made).evaluate
     for balance in balances(seen, evaluate, [output.bound * output.largest for output in made.outputs]):
         assert balance.error <= balance.allowed
         assert balance.error < 1e-9

@@ -1,8 +1,8 @@
 """Outputs over time, ready to be drawn: as right as a picture can show, and broken where they jump.
 
-Values are those of the NumPy that `generate` would write, with a tolerance that no eye can tell from a smaller one: so
-there is a picture of every scene that can be generated. When fronts can arrive is known from the loads and the places
-alone; there an output is asked for its value and for the one just before.
+Values are those of the program that `generate` would write, with a tolerance that no eye can tell from a smaller one:
+so there is a picture of every scene that can be generated. When fronts can arrive is known from the loads and the
+places alone; there an output is asked for its value and for the one just before.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from wavesym.exact.contact import ContactEnd, contact_ends
 from wavesym.numbers.doubles import not_below, rational
-from wavesym.running.compiled import imported
+from wavesym.programs.assembly import assemble
+from wavesym.programs.choice import choose
 from wavesym.scene import Observable, Scene
-from wavesym.targets.files import files
 
 Points = NDArray[np.float64]
 
@@ -69,13 +69,12 @@ class Histories:
 def histories(scene: Scene) -> Histories:
     """The histories of all outputs. ToleranceError, CostError where nothing can be generated either."""
     output = scene.output.model_copy(update={"tolerance": max(scene.output.tolerance, _TOLERANCE)})
-    made = files(scene.model_copy(update={"output": output}), "numpy")
-    program = imported(made[f"{scene.name}.py"], scene.name)
+    program = assemble(choose(scene.model_copy(update={"output": output})).evaluator)
     contacts = contact_ends(scene)
     formal = [_formal(place, contacts) for place in scene.outputs]
     dense = sum(len(_parts(scene, place)) for place in scene.outputs) * scene.output.until > MOST_FRONTS
     fronts = [[] if dense else arrivals(scene, place) for place in scene.outputs]
-    taus = _instants(program.TAU_MAX, fronts, formal)
+    taus = _instants(program.tau_max, fronts, formal)
     values = program.evaluate(taus)
     return Histories(
         scene,

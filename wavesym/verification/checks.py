@@ -14,10 +14,11 @@ import numpy as np
 from wavesym.errors import ToleranceError
 from wavesym.exact.reference import Reference as Exact
 from wavesym.model.chain import chain
+from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import choose
 from wavesym.running.compiled import compiled, imported
 from wavesym.scene import Scene
-from wavesym.targets.files import files, numpy_text
+from wavesym.targets.files import files
 from wavesym.verification.characteristics import COARSEST, Motion, integrate
 from wavesym.verification.invariants import Balance, Evaluate, balances, values_per_window, watched
 from wavesym.verification.reference import Reference
@@ -162,7 +163,7 @@ def spacetime(reference: Reference) -> list[Outcome]:
 
 
 def invariants(reference: Reference) -> list[Outcome]:
-    """The balances of momentum and energy, in the reference itself and in generated NumPy."""
+    """The balances of momentum and energy, in the reference itself and in the program, which generated NumPy is."""
     scene = reference.scene
     outputs, values = values_per_window(scene)
     windows = min(int(reference.until), _MOST_VALUES // values, _MOST_WINDOWS // outputs)
@@ -179,7 +180,7 @@ def invariants(reference: Reference) -> list[Outcome]:
     note = ""
     made: Sequence[Balance | None] = (None, None)
     try:
-        made = balances(seen, *_numpy(seen))
+        made = balances(seen, *_program(seen))
     except ToleranceError as error:
         note = str(error)
     outcomes = []
@@ -191,12 +192,10 @@ def invariants(reference: Reference) -> list[Outcome]:
     return outcomes
 
 
-def _numpy(scene: Scene) -> tuple[Evaluate, list[float]]:
-    """The generated NumPy of a scene, and the proved errors of its outputs, absolute."""
-    chosen = choose(scene).evaluator
-    return imported(numpy_text(scene, chosen), scene.name).evaluate, [
-        output.bound * output.largest for output in chosen.outputs
-    ]
+def _program(scene: Scene) -> tuple[Evaluate, list[float]]:
+    """The program of a scene, and the proved errors of its outputs, absolute."""
+    program = assemble(choose(scene).evaluator)
+    return program.evaluate, [output.bound * output.largest for output in program.outputs]
 
 
 def _some(instants: Instants) -> Instants:

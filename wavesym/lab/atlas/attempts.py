@@ -1,4 +1,4 @@
-"""Each evaluator tried on a scene, by the NumPy that would be generated, where it refuses too; and the truth."""
+"""Each evaluator tried on a scene, by the program that would be generated, where it refuses too; and the truth."""
 
 from __future__ import annotations
 
@@ -17,11 +17,10 @@ from wavesym.lab.atlas.family import Point
 from wavesym.lab.atlas.scenes import AIM, aimed
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import MAKERS
 from wavesym.programs.closed import ClosedForm
-from wavesym.running.compiled import imported
 from wavesym.scene import Scene
-from wavesym.targets.files import numpy_text
 
 Array = NDArray[np.float64]
 
@@ -91,7 +90,7 @@ def attempt(known: Truth, name: str) -> Attempt:
     refused = "" if met else form.shortfall(rational(scene.output.tolerance))
     bounds = _reached(form, taus) if isinstance(form, ClosedForm) else np.full(len(taus), form.error_bound)
     with np.errstate(over="ignore", invalid="ignore"):
-        found = imported(numpy_text(scene, form), scene.name).evaluate(taus)
+        found = assemble(form).evaluate(taus)
     wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
     errors = np.where(np.isfinite(wrong), wrong, math.inf)
     return Attempt(name, taus, errors, bounds, refused)

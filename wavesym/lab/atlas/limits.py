@@ -16,11 +16,10 @@ import numpy as np
 from wavesym.lab.atlas.family import Axis, Family, Point, Progress
 from wavesym.lab.atlas.lumped import strains
 from wavesym.lab.atlas.scenes import made
+from wavesym.programs.assembly import assemble
 from wavesym.programs.march.evaluator import marched
 from wavesym.rivals.problem import scene_problem
-from wavesym.running.compiled import imported
 from wavesym.scene import Scene
-from wavesym.targets.files import numpy_text
 
 KAPPAS = tuple(Fraction(1, 10**k) for k in range(1, 6))
 # sqrt(kappa) tau at the end: about a period of the springs
@@ -84,8 +83,7 @@ def difference(system: System, kappa: Fraction) -> float:
     """Between the strains in the middle of the rods and those of springs, relative to the largest of the latter."""
     until = math.ceil(SLOW_TIME / math.sqrt(kappa))
     scene = _scene(system, kappa, until)
-    march = marched(scene)
-    program = imported(numpy_text(scene, march), scene.name)
+    program = assemble(marched(scene))
     taus = until / SAMPLES * np.arange(SAMPLES)
     springs = strains(scene_problem(scene), until / SAMPLES, SAMPLES - 1)[[rod - 1 for rod in system.rods]]
     return float(np.max(np.abs(program.evaluate(taus) - springs)) / np.max(np.abs(springs)))
