@@ -42,7 +42,8 @@ ERROR_BOUND = 9.4e-09
 CONTACT_END = {
 }
 _REAL = np.float64
-# What these are is said in the class below.
+
+# the numbers of the program; the first class below says what they are
 _TABLES = {
     "first_member": [
         0, 6

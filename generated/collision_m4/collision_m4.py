@@ -54,7 +54,8 @@ CONTACT_END = {
     "2": 8.901878478505665,  # 8.9018784785056660529
 }
 _REAL = np.float64
-# What these are is said in the class below.
+
+# the numbers of the program; the first class below says what they are
 _TABLES = {
     "first_member": [
         0, 8, 10

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.builds import LANGUAGES, SOURCES, STRICT, source
+from tests.support.builds import LANGUAGES, SOURCES, STRICT, scene, source
+from wavesym.programs.assembly import assemble
+from wavesym.programs.choice import choose
 from wavesym.running.toolchain import CompilerError, compiler
 
 C = Path(__file__).parents[2] / "templates" / "c"
@@ -41,6 +43,18 @@ def test_a_broken_kernel_is_seen(kernel, right, wrong, tmp_path):
     (tmp_path / kernel).write_text(text.replace(right, wrong))
     with pytest.raises(CompilerError):
         read(kernel, tmp_path)
+
+
+@pytest.mark.parametrize("of", SOURCES, ids="-".join)
+def test_tables_are_declared_as_they_are_written(of):
+    """So that what a compiler says of a kernel holds for programs; and a program writes all tables that it has."""
+    made = source(*of)
+    text = made.made[f"{made.name}.c"]
+    written = set(re.findall(r"^static const (int|real) (\w+)\[\]", text, re.MULTILINE))
+    declared = re.findall(r"^extern const (int|real) (\w+)\[\];", (C / f"{of[0]}_tables.h").read_text(), re.MULTILINE)
+    assert written == set(declared)
+    of_program = assemble(choose(scene(made.name, "1e-2"), *of).evaluator).tables
+    assert {name for _, name in written} == of_program.keys() - {"point"}  # which the header declares
 
 
 @pytest.mark.parametrize("of", SOURCES, ids="-".join)

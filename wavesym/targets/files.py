@@ -1,11 +1,12 @@
 """The files of a scene: the evaluator that meets its tolerance, in the languages asked for, and the manifest.
 
-Of all rooms only this file talks to targets: a new one is a folder beside this file, and a line in `_TARGETS`.
+Only this file talks to the folders of languages: a new one is a folder beside it, and a name in __init__.py.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from importlib import import_module
 from pathlib import Path
 
 from wavesym.errors import WavesymError
@@ -14,17 +15,13 @@ from wavesym.numbers.reals import REALS
 from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import MAKERS, Made, choose
 from wavesym.scene import Scene
-from wavesym.targets.c import CTarget
+from wavesym.targets import LANGUAGES, TARGETS
 from wavesym.targets.description import describe
 from wavesym.targets.manifest import manifest
-from wavesym.targets.numpy import NumPyTarget
 from wavesym.targets.reference import reference_values
 from wavesym.targets.target import Target
 
-_TARGETS: tuple[Target, ...] = (CTarget(), NumPyTarget())
-
 MARKS = (b": made by wavesym", b'"generator": "wavesym"')
-LANGUAGES: dict[str, tuple[Target, ...]] = {target.name: (target,) for target in _TARGETS} | {"all": _TARGETS}
 EVALUATORS = ("auto", *MAKERS)
 
 
@@ -60,7 +57,7 @@ def files(
     options += "" if precision == "double" else f" --precision {precision}"
     options += "" if windows is None else f" --windows {windows}"
     program = assemble(chosen, reason)
-    targets = LANGUAGES[language]
+    targets = [_target(name) for name in (TARGETS if language == "all" else (language,))]
     reference = reference_values(scene, chosen) if any(target.tested for target in targets) else None
     description = describe(scene, chosen, reason, contact_ends(scene, chosen.real), options, reference)
     made = {f"{scene.name}.json": manifest(scene, description, chosen, name)}
@@ -71,12 +68,18 @@ def files(
 
 def program_files(scene: Scene, evaluator: Made, language: str, *, tested: bool = False) -> dict[str, str]:
     """The program of an evaluator in a language, by file name, whatever its bound; with its self-test if `tested`."""
-    (target,) = LANGUAGES[language]
     reference = reference_values(scene, evaluator) if tested else None
-    return target.files(describe(scene, evaluator, evaluator.summary, (), reference=reference), assemble(evaluator))
+    description = describe(scene, evaluator, evaluator.summary, (), reference=reference)
+    return _target(language).files(description, assemble(evaluator))
 
 
 def numpy_text(scene: Scene, evaluator: Made) -> str:
     """The same as the text of one Python module."""
-    (text,) = program_files(scene, evaluator, NumPyTarget.name).values()
+    (text,) = program_files(scene, evaluator, "numpy").values()
     return text
+
+
+def _target(name: str) -> Target:
+    """The language of a folder."""
+    target: Target = import_module(f"wavesym.targets.{name}").TARGET
+    return target

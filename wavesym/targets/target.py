@@ -1,4 +1,4 @@
-"""What a language is to the room: a name, and files made of a description and a program."""
+"""What a language is to the room: files made of a description and a program."""
 
 from __future__ import annotations
 
@@ -9,11 +9,7 @@ from wavesym.targets.description import Description
 
 
 class Target(Protocol):
-    """A language that programs are written in. Each has a folder here, and a line in files.py."""
-
-    @property
-    def name(self) -> str:
-        """As `generate --language` calls it."""
+    """A language that programs are written in. Each has a folder here, whose name is that of the language."""
 
     @property
     def tested(self) -> bool:

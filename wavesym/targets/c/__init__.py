@@ -7,6 +7,7 @@ from wavesym.targets.c import closed, march, pieces
 from wavesym.targets.c.header import header
 from wavesym.targets.c.selftest import selftest
 from wavesym.targets.description import Description
+from wavesym.targets.target import Target
 
 _SOURCES = {"closed": closed.source, "pieces": pieces.source, "march": march.source}
 
@@ -14,7 +15,6 @@ _SOURCES = {"closed": closed.source, "pieces": pieces.source, "march": march.sou
 class CTarget:
     """C as a target."""
 
-    name = "c"
     tested = True
 
     def files(self, description: Description, program: Program) -> dict[str, str]:
@@ -27,3 +27,6 @@ class CTarget:
         if description.reference:
             made[f"{name}_selftest.c"] = selftest(description, program, description.reference)
         return made
+
+
+TARGET: Target = CTarget()
