@@ -172,11 +172,9 @@ def test_polynomials_are_those_of_the_exact_tables(name: str, record_property) -
 def test_numpy_and_manifest_have_the_same_numbers_as_c(name: str) -> None:
     pieces, module, manifest = kept(name), {}, json.loads(read(name, ".json"))
     exec(read(name, ".py"), module)
-    for (members, starts, centres, rows), grid in zip(pieces.grids(), module["_GRIDS"], strict=True):
-        assert tuple(members) == grid[0]
-        assert [float(text) for text in starts] == grid[1]
-        assert [float(text) for text in centres] == grid[2]
-        assert [[[float(text) for text in powers] for powers in row] for row in rows] == grid[3]
+    given = {**pieces.integer, **{key: [float(text) for text in table] for key, table in pieces.real.items()}}
+    assert {"start", "centre", "coefficient", "member"} < module["_TABLES"].keys() <= given.keys()
+    assert module["_TABLES"] == {key: given[key] for key in module["_TABLES"]}
     header = dict(re.findall(rf"#define {name.upper()}_(\w+) (\S+)", read(name, ".h")))
     assert module["TAU_MAX"] == manifest["tau_max"] == float(header["TAU_MAX"]) == float(pieces.until)
     assert module["ERROR_BOUND"] == manifest["error_bound"] == float(header["ERROR_BOUND"])

@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from jinja2 import UndefinedError
 
+from wavesym.numbers.reals import DOUBLE
 from wavesym.rendering import render
-from wavesym.targets.literals import lines, literal
+from wavesym.targets.literals import c_literals, lines, literal
 
 
 def test_a_key_that_is_not_used_is_an_error():
@@ -24,7 +25,7 @@ def test_a_key_that_is_missing_is_an_error():
 
 def test_a_field_that_is_missing_is_an_error():
     with pytest.raises(UndefinedError):
-        render("c/header.h.j2", make_dataclass("Context", ["scene"])(object()))
+        render("c/header.h.j2", make_dataclass("Context", ["scene", "more"])(object(), ""))
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
@@ -43,4 +44,5 @@ def test_lines_keep_every_item_and_are_never_empty():
     items = [str(n) for n in range(1000)]
     assert ", ".join(items).split() == " ".join(lines(items)).split()
     assert max(map(len, lines(items))) <= 116
-    assert lines([]) == ("0",)
+    assert lines([]) == ()
+    assert c_literals([], DOUBLE) == ("0",)  # C has no empty array

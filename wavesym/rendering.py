@@ -44,6 +44,13 @@ def render_stream(template: str, context: DataclassInstance) -> Iterator[str]:
     return _environment().get_template(template).generate(given)
 
 
+def text_of(file: str) -> str:
+    """A file among the templates that is none itself, as it stands."""
+    environment = _environment()
+    assert environment.loader is not None
+    return environment.loader.get_source(environment, file)[0]
+
+
 @cache
 def _used(template: str) -> frozenset[str]:
     """The names that a template, or one that it includes, takes from outside."""

@@ -9,18 +9,7 @@
 
 typedef double real;
 
-enum { GRIDS = 2, BLOCK = 32 };
-
-/* Loops over a block are unrolled, so that its values stay in registers; not where size counts more than speed. */
-#if defined(__OPTIMIZE_SIZE__)
-#define UNROLLED
-#elif defined(__clang__)
-#define UNROLLED _Pragma("clang loop unroll(full)")
-#elif defined(__GNUC__)
-#define UNROLLED _Pragma("GCC unroll 32")
-#else
-#define UNROLLED
-#endif
+enum { GRIDS = 2 };
 
 const char drive_m1_output_name[DRIVE_M1_OUTPUTS][15] = {
     "strain@0",
@@ -454,9 +443,26 @@ static const real coefficient[] = {
     -0.6307558950301868, 1.663343901564661, -0.5555733225704397
 };
 
-static const real offset[] = {
-    0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0,
-    21.0, 22.0, 23.0, 24.0, 25.0, 26.0, 27.0, 28.0, 29.0, 30.0, 31.0
+/* Up to here numbers of samples, and sums with those in a block, are exact. */
+static const real exact = 9007199254740960.0;
+
+/* Loops over a block of samples are unrolled, so that its values stay in registers; not where size counts more than
+ * speed. */
+enum { BLOCK = 32 };
+
+#if defined(__OPTIMIZE_SIZE__)
+#define UNROLLED
+#elif defined(__clang__)
+#define UNROLLED _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define UNROLLED _Pragma("GCC unroll 32")
+#else
+#define UNROLLED
+#endif
+
+static const real offset[BLOCK] = {
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15,
+    16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31,
 };
 
 static int inside(real tau)
@@ -549,8 +555,8 @@ static void run(int grid, int piece, const samples *s, size_t k, size_t end)
     const int *const power = first_power + first_polynomial[grid] + piece * count;
     const real middle = centre[first_piece[grid] + piece];
     real w[BLOCK], rest[BLOCK];
-    /* short runs by themselves */
-    if (end - k < BLOCK / 4) {
+    /* short runs by themselves; long ones too, where (real)k is no longer exact */
+    if (end - k < BLOCK / 4 || (real)end > exact) {
         for (; k < end; ++k) {
             at(grid, instant(s->tau0, s->dtau, s->one, (real)k), s->out + k, s->count);
         }
@@ -596,7 +602,7 @@ static size_t run_end(const real *starts, const samples *s, size_t k)
     return end;
 }
 
-int drive_m1_eval(double tau, double out[DRIVE_M1_OUTPUTS])
+int drive_m1_eval(real tau, real out[DRIVE_M1_OUTPUTS])
 {
     if (!inside(tau)) {
         for (int output = 0; output < DRIVE_M1_OUTPUTS; ++output) {
@@ -610,7 +616,7 @@ int drive_m1_eval(double tau, double out[DRIVE_M1_OUTPUTS])
     return 0;
 }
 
-int drive_m1_sample(double tau0, double dtau, size_t count, double *out)
+int drive_m1_sample(real tau0, real dtau, size_t count, real *out)
 {
     const volatile real unity = 1;
     const samples s = {tau0, dtau, unity, dtau < 0 || dtau > 0 ? 1 / dtau : 0, count, out};

@@ -25,12 +25,10 @@ COSTS = {"work", "bytes", "state_bytes", "least_bytes", "stored", "operator_coun
 COSTS |= {"_bytes", "_least", "_size", "_state", "_refuse_long", "_first_degree", "degrees"}
 TEXTS = {"summary", "shortfall", "check_points"}  # and where a self-test looks
 
-# what in a template does not compute: texts, comments, errors, sizes of blocks, and the template's own language
-NO_CODE = re.compile(
-    r'"{3}[\s\S]*?"{3}|/\*[\s\S]*?\*/|"[^"\n]*"|(#|raise|return f|_(BLOCK|SAMPLES) =).*|\{%.*?%\}|\{\{.*?\}\}'
-)
-FUNCTION = re.compile(r"^(?:[ ]*def |[a-z].*?)(\w+)\(", re.MULTILINE)
-TEMPLATE = [
+# what in C does not compute: comments, texts, directives, tables and sizes outside of functions
+NO_CODE = re.compile(r'/\*[\s\S]*?\*/|"[^"\n]*"|^#.*|^(static const|enum) [^;]*;', re.MULTILINE)
+FUNCTION = re.compile(r"^[a-z].*?(\w+)\(", re.MULTILINE)
+IN_C = [
     (re.compile(r"(?<=\S )([+-])(?==? )"), lambda sign: ["-" if sign == "+" else "+"]),
     (re.compile(r"(?<= )([<>]=?)(?= )"), lambda sign: [sign[0] if sign[1:] else f"{sign}="]),
     (re.compile(r"( [+-] \w+(\[[\w\[\] *+-]*\])?)(?![\w\[(.])"), lambda term: [""]),
@@ -73,7 +71,7 @@ class Mutant:
 
 def mutants(file: str, source: str) -> Iterator[list[Mutant]]:
     """The mutants of each place of a source."""
-    for function, edits in _Python(source).places() if file.endswith(".py") else _in_template(source):
+    for function, edits in _Python(source).places() if file.endswith(".py") else _in_c(source):
         made = []
         for start, end, other in edits:
             low, high = source.rfind("\n", 0, start) + 1, source.index("\n", end)
@@ -199,11 +197,11 @@ def _children(node: ast.AST) -> Iterator[ast.AST]:
     yield from ast.iter_child_nodes(node)
 
 
-def _in_template(source: str) -> Iterator[tuple[str, list[Edit]]]:
-    """The same of a template, sign by sign."""
+def _in_c(source: str) -> Iterator[tuple[str, list[Edit]]]:
+    """The same of C, sign by sign."""
     code = NO_CODE.sub(lambda found: re.sub(r"\S", " ", found[0]), source)
     functions = [(found.start(), found[1]) for found in FUNCTION.finditer(code)]
-    for pattern, others in TEMPLATE:
+    for pattern, others in IN_C:
         for place in pattern.finditer(code):
             function = max((each for each in functions if each[0] <= place.start()), default=(0, ""))[1]
             yield function, [(*place.span(), other) for other in others(place[1])]

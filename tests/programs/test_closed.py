@@ -13,11 +13,10 @@ from tests.support.drawn import scenes
 from wavesym.errors import ToleranceError
 from wavesym.exact.ball import segments, values
 from wavesym.exact.signal import signals
+from wavesym.programs.assembly import assemble
 from wavesym.programs.closed import closed_form
 from wavesym.running.compiled import imported
 from wavesym.scene import lower
-from wavesym.targets.closed import numpy_source
-from wavesym.targets.description import describe
 from wavesym.targets.files import files
 
 
@@ -27,7 +26,7 @@ def test_no_error_is_above_the_bound(scene, random):
     merged = signals(lower(scene))
     form = closed_form(merged, lower(scene).horizon())
     taus = form.check_points + [random.uniform(0, form.tau_max) for _ in range(50)]
-    module = imported(numpy_source(describe(lower(scene), form, "test", ()), form), "made")
+    module = assemble(form)
     found = module.evaluate(np.array(taus))
     for signal, output, row in zip(merged, form.outputs, found, strict=True):
         expected = np.array(values(partial(segments, signal), taus))
@@ -56,7 +55,7 @@ def test_the_bound_is_not_idle():
     scene = drive_m1(16)
     merged = signals(lower(scene))
     form = closed_form(merged, lower(scene).horizon())
-    module = imported(numpy_source(describe(lower(scene), form, "test", ()), form), "made")
+    module = assemble(form)
     taus = np.linspace(8, 16, 2001)
     expected = np.array(values(partial(segments, merged[0]), taus.tolist()))
     error = np.abs(module.evaluate(taus)[0] - expected).max() / np.abs(expected).max()

@@ -19,13 +19,11 @@ from wavesym.exact.signal import signals
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs import choice, pieces
-from wavesym.programs.closed import ClosedForm, closed_form
+from wavesym.programs.assembly import assemble
+from wavesym.programs.closed import closed_form
 from wavesym.running.compiled import compiled, imported
 from wavesym.scene import lower
-from wavesym.targets.closed import numpy_source as closed_source
-from wavesym.targets.description import describe
 from wavesym.targets.files import files
-from wavesym.targets.pieces import numpy_source as pieces_source
 
 BUILDING = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"}
 
@@ -77,8 +75,7 @@ CASES = [
 
 def holds(scene, form) -> bool:
     """Whether its program's errors are all within the bound, at check points and between."""
-    source = closed_source if isinstance(form, ClosedForm) else pieces_source
-    module = imported(source(describe(lower(scene), form, "test", ()), form), "made")
+    module = assemble(form)
     truth = Truth(scene, Fraction(form.tau_max))
     taus = [form.real.nearest(rational(form.tau_max * k / 40)) for k in range(41)]
     taus = sorted({*form.check_points, *taus})

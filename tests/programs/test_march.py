@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from wavesym.errors import CostError, ToleranceError
 from wavesym.numbers.reals import DOUBLE, SINGLE
+from wavesym.programs.assembly import assemble
 from wavesym.programs.march.bound import judge
 from wavesym.programs.march.evaluator import march, marched
 from wavesym.programs.march.operator import operator
@@ -19,14 +20,13 @@ from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.programs.march.zero import silent
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
+from wavesym.targets.files import numpy_text
 from wavesym.verification.characteristics import integrate
 from wavesym.verification.reference import reference
 
 
 def program(scene, made):
-    return imported(numpy_source(describe(lower(scene), made, "test", ()), made), "made").evaluate
+    return assemble(made).evaluate
 
 
 def building(until, load, m=2, base="force", kappa="3/5", tolerance="1e-6", **outputs):
@@ -163,7 +163,7 @@ def test_a_degree_that_is_too_low_is_never_silent():
     truth = program(scene, march(lower(scene)))(np.linspace(290, 300, 101))
     coarse = np.abs(truth).max()
     # and it was lost indeed: without the alarm the values are wrong
-    text = numpy_source(describe(lower(scene), low, "test", ()), low).replace("if leak >", "if 0 * leak >")
+    text = numpy_text(lower(scene), low).replace("if self._leak >", "if 0 * self._leak >")
     error = np.abs(imported(text, "made").evaluate(np.linspace(290, 300, 101)) - truth).max() / coarse
     assert 1e-9 < error < low.error_bound
 
@@ -177,7 +177,7 @@ def test_truncation_is_bounded_by_what_is_missed():
         verdict = judge(plan(lower(scene)), degree, DOUBLE)
         assert verdict.truncated > verdict.rounded
         made = marched(lower(scene), degree=degree)
-        text = numpy_source(describe(lower(scene), made, "test", ()), made).replace("if leak >", "if 0 * leak >")
+        text = numpy_text(lower(scene), made).replace("if self._leak >", "if 0 * self._leak >")
         errors = np.abs(imported(text, "made").evaluate(np.array(truth.taus)) - exact).max(axis=1)
         assert (errors <= verdict.errors).all()
         assert (errors > 1e-15).all()

@@ -11,7 +11,7 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march.bound import Roundings, _constants, largest_wave
 from wavesym.programs.march.evaluator import marched
-from wavesym.programs.march.plan import Panel, plan
+from wavesym.programs.march.plan import MarchPanel, plan
 from wavesym.programs.march.run import LEFT, RIGHT, Block, Run
 from wavesym.programs.march.tail import Tail, tail
 from wavesym.scene import Scene, lower
@@ -88,7 +88,7 @@ def test_what_a_window_loses_is_added_up_by_nodes_and_panels(real):
     )
     prepared, degree = plan(lower(scene)), 9
     third = fmpq(1, 3)
-    prepared = replace(prepared, panels=(Panel(fmpq(0), third), Panel(third, 2 * third)))
+    prepared = replace(prepared, panels=(MarchPanel(fmpq(0), third), MarchPanel(third, 2 * third)))
     run = Run(prepared, degree)
     random = np.random.default_rng(1)
     unit, smallest = float(real.roundoff), float(real.smallest)

@@ -18,12 +18,11 @@ from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.given import SMOOTH, batch_size, given
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.run import LEFT, RIGHT, Block, Run
+from wavesym.programs.march.sampler import OutputSampler
 from wavesym.programs.march.tail import tail_after
-from wavesym.programs.march.watch import Watch
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
+from wavesym.targets.files import numpy_text
 
 OUTPUTS = {"strain": ["1/3"], "velocity": [1], "displacement": ["3/2"]}
 DRIVE = {"type": "drive", "m": 2, "kappa": [1, "1/3"], "inertia": [1, 2, "1/2"]}
@@ -92,7 +91,7 @@ def test_what_is_proved_is_the_sum_over_all_single_loads(made_from, degree, real
     run = Run(prepared, degree)
     roundings = Roundings(prepared, run, real, scale)
     weights = [reading_weights(degree, displaced=False), reading_weights(degree, displaced=True)]
-    watches = [Watch(prepared, output, degree) for output in prepared.outputs]
+    watches = [OutputSampler(prepared, output, degree) for output in prepared.outputs]
     energies, values, integrals = np.zeros(windows), np.zeros(3), np.zeros((windows, 3))
     places = list(product(range(windows), range(len(prepared.panels))))
     assert batch_size(prepared) == len(prepared.channels) * len(prepared.panels) * 5
@@ -166,7 +165,7 @@ def test_no_march_is_wrong_by_more_than_proved(system):
         made_from = steps(system, windows, [Fraction(0), Fraction(1, 2)], np.random.default_rng(seed))
         made = marched(lower(made_from), degree=degree)
         proved = given(made.plan, degree, DOUBLE, windows)
-        text = numpy_source(describe(lower(made_from), made, "test", ()), made).replace("if leak >", "if 0 * leak >")
+        text = numpy_text(lower(made_from), made).replace("if self._leak >", "if 0 * self._leak >")
         taus = np.linspace(0, windows, 41)[:-1] + 1 / 64
         truth = Truth(made_from, Fraction(windows))
         for o, row in enumerate(imported(text, "made").evaluate(taus)):

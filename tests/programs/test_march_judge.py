@@ -17,8 +17,7 @@ from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.programs.march.tail import tail
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
+from wavesym.targets.files import numpy_text
 
 PULSE = {"times": [0, "1/3", 2], "a": [1, 0, -1], "b": [0, "1/2", 0]}
 # what comes back from a wall that hardly moves is taken up: it is loud at first and then still
@@ -109,7 +108,7 @@ def test_a_verdict_adds_up_all_windows(scene, real, size, monkeypatch):
 def sizes(scene, prepared):
     """The largest values that the program gives at 17 points of each window, none of them beyond the horizon."""
     made = marched(lower(scene), degree=12)
-    text = numpy_source(describe(lower(scene), made, "test", ()), made).replace("if leak >", "if 0 * leak >")
+    text = numpy_text(lower(scene), made).replace("if self._leak >", "if 0 * self._leak >")
     taus = [window + np.linspace(0, min(1, prepared.tau_max - window), 17) for window in range(prepared.windows)]
     return np.max(np.abs(imported(text, "made").evaluate(np.minimum(taus, prepared.tau_max))), axis=(1, 2))
 

@@ -6,7 +6,7 @@ import pytest
 from flint import fmpq
 
 from wavesym.numbers.reals import DOUBLE, SINGLE
-from wavesym.programs.march.plan import Channel, Event, Panel, Watched, plan
+from wavesym.programs.march.plan import Channel, LoadEvent, MarchPanel, Watched, plan
 from wavesym.programs.march.run import Run, operator_count
 from wavesym.scene import Scene, lower
 
@@ -60,13 +60,13 @@ def test_rods_begin_with_half_their_velocity_each_way():
 def test_panels_begin_where_loads_do():
     loads = [{"body": 1, "times": ["1/3", "5/2"], "steps": [1, "-1/2"]}, {"body": 3, "times": [0], "steps": [2]}]
     made = planned(DRIVE, loads)
-    assert made.panels == tuple(Panel(*numbers(*pair)) for pair in ((0, "1/3"), ("1/3", "1/6"), ("1/2", "1/2")))
+    assert made.panels == tuple(MarchPanel(*numbers(*pair)) for pair in ((0, "1/3"), ("1/3", "1/6"), ("1/2", "1/2")))
     none = tuple(numbers(0, 0))
     # moments over g = kappa_1 J_1/J_i and the like; on the last body they count against rotation
     assert made.events == (
-        Event(0, 0, 2, (fmpq(-3, 2), *none)),
-        Event(0, 1, 0, (fmpq(1), *none)),
-        Event(2, 2, 0, (fmpq(1, 2), *none)),
+        LoadEvent(0, 0, 2, (fmpq(-3, 2), *none)),
+        LoadEvent(0, 1, 0, (fmpq(1), *none)),
+        LoadEvent(2, 2, 0, (fmpq(1, 2), *none)),
     )
     assert made.loaded == (0, 1, 2)
     gains = numbers(1, "3/7", "-3/4")
@@ -88,7 +88,7 @@ def test_accelerations_are_integrated_where_the_ground_moves():
     assert list(made.changes(2)) == [(2, 0, more)]
     since = fmpq(13, 6)
     total = (since + fmpq(3, 2) * since**2, 1 + 3 * since + 2, fmpq(5, 4))
-    assert made.events == (Event(0, 1, 0, begun), Event(2, 2, 0, total))
+    assert made.events == (LoadEvent(0, 1, 0, begun), LoadEvent(2, 2, 0, total))
     assert made.channels == (Channel("a", 0, fmpq(1), 1),)
     pushed = planned(TOWER | {"base": "force"}, [RAMPS])
     assert pushed.channels == (Channel("a", 0, fmpq(-4), 0),)

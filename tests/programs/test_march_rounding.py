@@ -1,23 +1,20 @@
 """The march's weights of rounding and underflow against a count, operation by operation, of what programs do."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 from flint import fmpq
 
 from tests.support.rounded import Rounded
+from wavesym.programs.assembly import assemble
 from wavesym.programs.march.bound import _constants, _norm
 from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.operator import operator
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.run import Run
-from wavesym.running.compiled import imported
+from wavesym.programs.schemes.march import MarchScheme, PanelBodies
 from wavesym.scene import Scene, lower
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
 
-TABLES = ("_RATIO", "_FIRST", "_LAST", "_SLACK", "_LOSS", "_LEAK")
+TABLES = ("ratio", "first", "last", "slack", "loss", "leak")
 
 
 def inputs(degree):
@@ -54,25 +51,24 @@ def in_c(step, degree):
     return q, velocity
 
 
-@cache
-def module(step, degree):
-    """NumPy made for two discs of that step on a panel."""
+def march(step, degree):
+    """The march of two discs of that step on a panel, in NumPy."""
     scene = Scene(
         name="made",
         system={"type": "drive", "m": 1, "kappa": [step], "inertia": [1, 1]},
         load=[{"body": 1, "times": [0], "steps": [1]}],
         output={"until": "1/2", "tolerance": "1e-2", "strain": ["1/2"]},
     )
-    made = marched(lower(scene), degree=degree)
-    return imported(numpy_source(describe(lower(scene), made, "test", ()), made), "made")
+    program = assemble(marched(lower(scene), degree=degree))
+    return MarchScheme(program.tables, program.constants, program.tau_max, np.float64)
 
 
-def in_numpy(step, degree, monkeypatch):
-    """What is generated, with numbers that count in place of its own; of its two bodies the first."""
-    made = module(step, degree)
+def in_numpy(step, degree):
+    """The scheme, with numbers that count in place of its own; of its two bodies the first."""
+    made = march(step, degree)
     for name in TABLES:
-        monkeypatch.setattr(made, name, Rounded.table(getattr(made, name)))
-    body = made._Bodies(0)
+        setattr(made, name, Rounded.table(getattr(made, name)))
+    body = PanelBodies(made, 0)
     both = [inputs(degree) for _ in body.nodes]
     q, velocity, _ = body.moved(np.stack([p for p, _ in both]), Rounded.array([velocity for _, velocity in both]))
     return q[0], velocity[0]
@@ -91,9 +87,9 @@ def norms(q, end):
 @pytest.mark.parametrize(
     ("step", "degree"), [("1/1000", 8), ("1/10", 21), ("1/10", 33), ("1", 8), ("1", 21), ("8", 21), ("100", 13)]
 )
-def test_constants_are_no_less_than_a_count_and_little_more(step, degree, monkeypatch):
+def test_constants_are_no_less_than_a_count_and_little_more(step, degree):
     claimed = np.array(_constants(operator(fmpq(step), degree)))
-    c, numpy = norms(*in_c(step, degree)), norms(*in_numpy(step, degree, monkeypatch))
+    c, numpy = norms(*in_c(step, degree)), norms(*in_numpy(step, degree))
     assert (claimed >= c).all()
     assert (claimed >= numpy).all()
     if fmpq(step) <= 1:  # of light bodies errors cancel, and the constants do not count with it

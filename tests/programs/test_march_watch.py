@@ -11,19 +11,16 @@ from flint import fmpq
 
 from tests.support.truth import Truth
 from wavesym.errors import ToleranceError
+from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import choose
-from wavesym.programs.closed import ClosedForm
 from wavesym.programs.march import run as running
-from wavesym.programs.march.evaluator import MarchEvaluator, marched
-from wavesym.programs.march.plan import Panel, Stretch
+from wavesym.programs.march.evaluator import marched
+from wavesym.programs.march.plan import MarchPanel, Stretch
 from wavesym.programs.march.run import LEFT, RIGHT, Run
-from wavesym.programs.march.watch import Watch
-from wavesym.programs.pieces import Pieces
-from wavesym.running.compiled import compiled, imported
+from wavesym.programs.march.sampler import OutputSampler
+from wavesym.running.compiled import compiled
 from wavesym.scene import Scene, lower
-from wavesym.targets import closed, march, pieces
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
+from wavesym.targets.files import program_files
 
 LOAD = {"times": ["1/3", "5/2"], "a": [1, "-1/2"], "b": ["-1/4", 0]}
 PLACES = [0, "1/3", "1/2", 1, "8/5", 2]
@@ -42,7 +39,7 @@ def building(until, load=LOAD, **outputs):
 
 
 def program(scene, made):
-    return imported(numpy_source(describe(lower(scene), made, "test", ()), made), "made").evaluate
+    return assemble(made).evaluate
 
 
 @pytest.mark.parametrize("until", [3, "29/8"])
@@ -50,7 +47,7 @@ def test_the_generator_sees_what_the_program_gives(until):
     scene = building(until)
     made = marched(lower(scene))
     (block,) = Run(made.plan, made.degree).blocks()
-    values = [Watch(made.plan, output, made.degree).values(block) for output in made.plan.outputs]
+    values = [OutputSampler(made.plan, output, made.degree).values(block) for output in made.plan.outputs]
     windows = np.arange(made.plan.windows)[:, np.newaxis]
     taus = windows + np.linspace(0, np.minimum(1, made.tau_max - windows[:, 0]), 17).T
     # at the end of a window it sees what was there before a jump, the program what comes after it
@@ -67,7 +64,7 @@ def test_a_front_counts_from_its_own_instant_on():
         made = marched(lower(scene))
         (block,) = Run(made.plan, made.degree).blocks()
         for output, x in zip(made.plan.outputs, (0, 0.5, 0.25), strict=True):
-            seen = Watch(made.plan, output, made.degree).values(block).ravel()
+            seen = OutputSampler(made.plan, output, made.degree).values(block).ravel()
             points = np.concatenate([n + np.linspace(0, 1, 17) for n in range(3)] + [np.full(17, 3.0)])
             assert (seen[points < start + x] == 0).all()
             # the end of a window belongs to it
@@ -80,9 +77,9 @@ def test_a_displacement_is_summed_up_from_block_to_block(monkeypatch):
     outputs = made.plan.outputs
     (whole,) = Run(made.plan, made.degree).blocks()
     monkeypatch.setattr(running, "_BLOCK", 1)
-    watches = [Watch(made.plan, output, made.degree) for output in outputs]
+    watches = [OutputSampler(made.plan, output, made.degree) for output in outputs]
     parts = [[watch.values(block) for watch in watches] for block in Run(made.plan, made.degree).blocks()]
-    expected = [Watch(made.plan, output, made.degree).values(whole) for output in outputs]
+    expected = [OutputSampler(made.plan, output, made.degree).values(whole) for output in outputs]
     np.testing.assert_allclose(np.concatenate(parts, axis=1), expected, rtol=0, atol=1e-13)
 
 
@@ -101,7 +98,9 @@ def test_sizes_are_those_of_both_waves_on_the_larger_panel():
             )
             for n in range(made.plan.windows)
         ]
-        np.testing.assert_allclose(Watch(made.plan, output, made.degree).size(block, weights), expected, rtol=1e-14)
+        np.testing.assert_allclose(
+            OutputSampler(made.plan, output, made.degree).size(block, weights), expected, rtol=1e-14
+        )
 
 
 def drive(until, time=0, tolerance="1e-10"):
@@ -148,12 +147,10 @@ def check_arrived(scene, evaluator, language):
 
 
 def values_of(scene, made, taus, language):
-    emitter = {MarchEvaluator: march, Pieces: pieces, ClosedForm: closed}[type(made)]
-    description = describe(lower(scene), made, "test", ())
     if language == "numpy":
-        return imported(emitter.numpy_source(description, made), "made").evaluate(np.array(taus))
-    sources = {"made.h": emitter.c_header(description, made), "made.c": emitter.c_source(description, made)}
-    sources["made_selftest.c"] = "int main(void)\n{\n    return 0;\n}\n"
+        return assemble(made).evaluate(np.array(taus))
+    sources = program_files(lower(scene), made, "c")
+    sources[f"{scene.name}_selftest.c"] = "int main(void)\n{\n    return 0;\n}\n"
     with compiled(sources, 1) as run:
         return run(taus)
 
@@ -176,7 +173,7 @@ def test_stretches_cover_the_window_once(delay, panels, expected):
     cuts = [*map(exact, panels), fmpq(1)]
     made = replace(
         marched(lower(building(1))).plan,
-        panels=tuple(Panel(low, high - low) for low, high in pairwise(cuts)),
+        panels=tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts)),
     )
     assert made.stretches(exact(delay)) == tuple(Stretch(exact(start), back, p) for start, back, p in expected)
 

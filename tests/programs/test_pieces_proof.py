@@ -14,7 +14,8 @@ from tests.support.counted import Counted
 from wavesym.exact.ball import Segment
 from wavesym.numbers import chebyshev
 from wavesym.numbers.reals import DOUBLE, SINGLE
-from wavesym.programs.pieces import Pieces, PiecesOutput, _cut_off, _Cuts, _Fits, _shortened, _underflow
+from wavesym.programs.pieces import Pieces, _cut_off, _Cuts, _Fits, _shortened, _underflow
+from wavesym.programs.program import ProgramOutput
 from wavesym.scene import lower
 
 CLOSE = arb(fmpq(1002, 1000))  # the proof's second order, and a little
@@ -227,5 +228,5 @@ def test_what_is_zero_throughout_has_nothing_to_be_wrong():
 
 
 def test_a_program_is_as_wrong_as_its_worst_output():
-    outputs = (PiecesOutput("a", 0.1, 1.0), PiecesOutput("b", 0.3, 1.0), PiecesOutput("c", 0.2, 1.0))
+    outputs = (ProgramOutput("a", 0.1, 1.0), ProgramOutput("b", 0.3, 1.0), ProgramOutput("c", 0.2, 1.0))
     assert Pieces(outputs, 1.0, DOUBLE, (), 1).error_bound == 0.3

@@ -14,9 +14,7 @@ from wavesym.programs.march.evaluator import marched
 from wavesym.running.compiled import FLAGS, compiled, imported
 from wavesym.running.toolchain import at_hand
 from wavesym.scene import Scene, lower
-from wavesym.targets.description import describe
-from wavesym.targets.march import c_header, c_source, numpy_source
-from wavesym.targets.selftest import selftest
+from wavesym.targets.files import numpy_text, program_files
 
 COMPILERS = at_hand()
 
@@ -51,14 +49,12 @@ SCENES = pytest.mark.parametrize(
 
 
 def sources(scene, made):
-    description = describe(lower(scene), made, "test", ())
-    return {"made.h": c_header(description, made), "made.c": c_source(description, made)}
+    return program_files(lower(scene), made, "c")
 
 
 def with_selftest(scene, made):
     """With the self-test."""
-    description = describe(lower(scene), made, "test", ())
-    return sources(scene, made) | {"made_selftest.c": selftest(lower(scene), description, made)}
+    return program_files(lower(scene), made, "c", tested=True)
 
 
 @pytest.mark.parametrize("compiler", COMPILERS, ids=lambda each: each.name)
@@ -73,7 +69,7 @@ def test_c_passes_its_self_test(scene, real, compiler, monkeypatch):
 @SCENES
 def test_c_is_numpy_and_sample_is_eval(scene):
     made = marched(lower(scene))
-    module = imported(numpy_source(describe(lower(scene), made, "test", ()), made), "made")
+    module = imported(numpy_text(lower(scene), made), "made")
     taus = [0.0, 1 / 3, 0.9999, 1.0, 2.5, 2.4999999999999996, 5.7, 8.999999, 9.0, -1.0, 9.1, float("nan")]
     with compiled(with_selftest(scene, made), len(scene.outputs)) as program:
         assert program.names == module.OUTPUTS

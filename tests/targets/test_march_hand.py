@@ -13,8 +13,7 @@ from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march.evaluator import marched
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
-from wavesym.targets.description import describe
-from wavesym.targets.march import c_header, c_source
+from wavesym.targets.files import program_files
 
 SIZE = """
 #include "made.h"
@@ -111,8 +110,7 @@ def library(name, real=DOUBLE, degree=None, change=None):
     """Compiled once; the folder may go when it is loaded. With a change, one text stands for another in the C."""
     made_from = SCENES[name] if isinstance(name, str) else name
     made = marched(lower(made_from), real, degree)
-    description = describe(lower(made_from), made, "test", ())
-    sources = {"made.h": c_header(description, made), "made.c": c_source(description, made), "size.c": SIZE}
+    sources = {**program_files(lower(made_from), made, "c"), "size.c": SIZE}
     if change:
         assert change[0] in sources["made.c"]
         sources["made.c"] = sources["made.c"].replace(*change)

@@ -13,8 +13,7 @@ from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.run import LEFT, RIGHT
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
+from wavesym.targets.files import numpy_text
 
 FIRST = Fraction(1, 3)
 SHORT = Fraction(1, 10**9)
@@ -124,14 +123,14 @@ def missed(read):
 
 
 def in_numpy(text):
-    module = imported(text, "made")
+    scheme = imported(text, "made")._PROGRAM
 
     def read(both, t):
         n, at = np.zeros(1, int), np.array([t])
-        for output, quantity in enumerate(module._QUANTITY):
-            read = module._gathered if quantity == module._DISPLACEMENT else module._arrived
-            left, right = module._both(read, both, output, n, at)
-            yield (left - right if quantity == module._STRAIN else left + right)[0]
+        for output, quantity in enumerate(scheme.quantity):
+            read = scheme._gathered if quantity == scheme.DISPLACEMENT else scheme._arrived
+            left, right = read(both, output, n, at)
+            yield (left - right if quantity == scheme.STRAIN else left + right)[0]
 
     return lambda both, t: np.array(list(read(both, t)))
 
@@ -149,18 +148,18 @@ def in_c(change):
     return read
 
 
-def numpy_text():
-    return numpy_source(describe(lower(SCENE), made(), "test", ()), made())
+def generated():
+    return numpy_text(lower(SCENE), made())
 
 
 def test_waves_are_read_from_exact_instants_in_numpy():
-    assert missed(in_numpy(numpy_text())) <= 1
+    assert missed(in_numpy(generated())) <= 1
 
 
 def test_without_the_excess_they_would_not_be_in_numpy():
-    exact_w = "((t - _START[s]) + _EXCESS[s])"
-    assert exact_w in numpy_text()
-    assert missed(in_numpy(numpy_text().replace(exact_w, "(t - _START[s])"))) > 1e5
+    exact_w = "((t - self.start[s]) + self.excess[s])"
+    assert exact_w in generated()
+    assert missed(in_numpy(generated().replace(exact_w, "(t - self.start[s])"))) > 1e5
 
 
 def test_waves_are_read_from_exact_instants_in_c():

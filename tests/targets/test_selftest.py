@@ -21,7 +21,7 @@ from tests.support.truth import Truth
 from wavesym.running.compiled import FLAGS
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
-from wavesym.targets import selftest
+from wavesym.targets import reference
 from wavesym.targets.files import files
 
 SAMPLES = 2001
@@ -190,7 +190,7 @@ def test_a_change_far_below_the_bound_is_none(tmp_path):
 
 @pytest.mark.slow
 def test_a_self_test_of_few_points_would_miss_some(monkeypatch, tmp_path):
-    monkeypatch.setattr(selftest, "_MOST_POINTS", 12)
+    monkeypatch.setattr(reference, "_MOST_POINTS", 12)
     program = mutable("pieces", "double", "1e-9", tmp_path)
     assert program.passes()
     assert len(unseen(program, "coefficient", program.outputs())) > 100

@@ -1,17 +1,22 @@
-"""Every main check is made to fail: a coefficient, a sign in a template, a digit in a table, a wrong rule."""
+"""Every main check is made to fail: a coefficient, a sign in the arithmetic, a digit in a table, a wrong rule."""
 
+import importlib
+import inspect
 import re
+import sys
+from dataclasses import replace
 
 import pytest
 from flint import fmpq
-from jinja2 import FunctionLoader
 
-from wavesym import rendering
 from wavesym.errors import ToleranceError
 from wavesym.exact import table as tables
 from wavesym.exact.table import Function, full_table
 from wavesym.programs.choice import choose
+from wavesym.programs.schemes import SCHEMES
+from wavesym.rendering import text_of
 from wavesym.scene import Scene, lower
+from wavesym.targets.c import kernel
 from wavesym.targets.files import files
 from wavesym.verification import checks
 from wavesym.verification.node_law import differences
@@ -55,39 +60,46 @@ def made_with(monkeypatch, evaluator, change=lambda made: made):
 
 
 @pytest.mark.parametrize(
-    ("template", "right", "wrong"),
+    ("file", "right", "wrong"),
     [
-        ("c/closed.c.j2", "sum += polynomial", "sum -= polynomial"),
-        ("numpy/closed.py.j2", "row[late] += polynomial", "row[late] -= polynomial"),
-        ("c/pieces.c.j2", "tau - centre[first_piece", "tau + centre[first_piece"),
-        ("numpy/pieces.py.j2", "powers[:, 1:] + powers[:, :1]", "powers[:, 1:] - powers[:, :1]"),
+        ("closed.c", "sum += polynomial", "sum -= polynomial"),
+        ("closed.py", "row[late] += polynomial", "row[late] -= polynomial"),
+        ("pieces.c", "tau - centre[first_piece", "tau + centre[first_piece"),
+        ("pieces.py", "powers[:, 1:] + powers[:, :1]", "powers[:, 1:] - powers[:, :1]"),
         pytest.param(
-            "c/march.c.j2", "STRAIN ? leftward - rightward", "STRAIN ? leftward + rightward", marks=pytest.mark.slow
+            "march.c", "STRAIN ? leftward - rightward", "STRAIN ? leftward + rightward", marks=pytest.mark.slow
         ),
         pytest.param(
-            "numpy/march.py.j2",
-            "left - right if quantity == _STRAIN",
-            "left + right if quantity == _STRAIN",
+            "march.py",
+            "left - right if quantity == self.STRAIN",
+            "left + right if quantity == self.STRAIN",
             marks=pytest.mark.slow,
         ),
     ],
 )
-def test_a_sign_in_a_template_is_seen(template, right, wrong, monkeypatch):
+def test_a_sign_in_the_arithmetic_is_seen(file, right, wrong, monkeypatch, tmp_path):
     truth = reference(lower(DRIVE))
-    language, evaluator = re.split(r"[/.]", template)[:2]
+    evaluator, language = file.split(".")
     made_with(monkeypatch, evaluator)
     assert all(verdicts(checks.generated, truth) + verdicts(checks.invariants, truth))
-    environment = rendering._environment()
-
-    def changed(name):
-        text = environment.loader.get_source(environment, name)[0]
-        assert name != template or right in text
-        return text.replace(right, wrong) if name == template else text
-
-    broken = environment.overlay(loader=FunctionLoader(changed))
-    monkeypatch.setattr(rendering, "_environment", lambda: broken)
+    if language == "c":
+        text = text_of(f"c/{file}")
+        assert right in text
+        monkeypatch.setattr(kernel, "text_of", lambda _: text.replace(right, wrong))
+    else:
+        monkeypatch.setitem(SCHEMES, evaluator, changed(SCHEMES[evaluator], right, wrong, monkeypatch, tmp_path))
     assert not all(verdicts(checks.generated, truth))
     assert all(verdicts(checks.invariants, truth)) == (language == "c")  # which look at NumPy
+
+
+def changed(scheme, right, wrong, monkeypatch, folder):
+    """A scheme with one text of its file replaced."""
+    text = inspect.getsource(sys.modules[scheme.__module__])
+    assert right in text
+    (folder / "changed_scheme.py").write_text(text.replace(right, wrong))
+    monkeypatch.syspath_prepend(folder)
+    monkeypatch.delitem(sys.modules, "changed_scheme", raising=False)
+    return getattr(importlib.import_module("changed_scheme"), scheme.__name__)
 
 
 def a_digit_changed(text, file):
@@ -106,10 +118,17 @@ def test_a_digit_in_a_generated_table_is_seen(evaluator, file, monkeypatch):
     assert not all(verdicts(checks.generated, truth))
 
 
-def test_a_digit_in_the_generated_numpy_breaks_the_balances(monkeypatch):
+def test_a_digit_in_a_program_breaks_the_balances(monkeypatch):
     truth = reference(lower(DRIVE))
-    right = checks.imported
-    monkeypatch.setattr(checks, "imported", lambda text, name: right(a_digit_changed(text, name), name))
+    right = checks.assemble
+
+    def changed(evaluator):
+        program = right(evaluator)
+        *_, last = (number for number in program.tables["coefficient"] if abs(number) > 0.1)
+        wrong = tuple(1.0001 * number if number == last else number for number in program.tables["coefficient"])
+        return replace(program, tables={**program.tables, "coefficient": wrong})
+
+    monkeypatch.setattr(checks, "assemble", changed)
     assert not all(verdicts(checks.invariants, truth))
 
 

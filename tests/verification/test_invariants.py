@@ -11,11 +11,9 @@ from hypothesis import given, settings
 import wavesym
 from tests.support.drawn import scenes
 from wavesym.model.chain import chain
+from wavesym.programs.assembly import assemble
 from wavesym.programs.march.evaluator import marched
-from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
 from wavesym.verification import checks
 from wavesym.verification.invariants import balances, watched, weights
 from wavesym.verification.reference import reference
@@ -148,14 +146,14 @@ def test_another_system_is_seen(scene):
     other = again(scene, {"kappa": kappa})
     seen, _, errors = exactly(scene, 6)
     assert all(balance.error <= balance.allowed for balance in balances(*exactly(other, 6)))
-    assert all(balance.error > balance.allowed for balance in balances(lower(seen), exactly(other, 6)[1], errors))
+    assert all(balance.error > balance.allowed for balance in balances(seen, exactly(other, 6)[1], errors))
 
 
 @FOUR
 def test_a_leak_is_seen(scene):
     """Everything 1e-9 too small."""
     seen, evaluate, errors = exactly(scene, 4)
-    _, energy = balances(lower(seen), lambda taus: evaluate(taus) * (1 - 1e-9 * taus), errors)
+    _, energy = balances(seen, lambda taus: evaluate(taus) * (1 - 1e-9 * taus), errors)
     assert energy.error > energy.allowed
 
 
@@ -168,7 +166,7 @@ def test_one_wrong_output_is_seen():
             values[wrong] *= 1 + 1e-9
             return values
 
-        assert any(balance.error > balance.allowed for balance in balances(lower(seen), changed, errors))
+        assert any(balance.error > balance.allowed for balance in balances(seen, changed, errors))
 
 
 def test_what_is_not_looked_at_is_said(monkeypatch):
@@ -189,8 +187,8 @@ def test_what_is_not_looked_at_is_said(monkeypatch):
 def test_the_march_keeps_them_for_long(scene):
     seen = watched(lower(scene), 100)
     seen = seen.model_copy(update={"output": seen.output.model_copy(update={"tolerance": Fraction(1, 10**4)})})
-    made = marched(lower(seen))
-    evaluate = imported(numpy_source(describe(lower(seen), made, "test", ()), made), "made").evaluate
-    for balance in balances(lower(seen), evaluate, [output.bound * output.largest for output in made.outputs]):
+    made = marched(seen)
+    evaluate = assemble(made).evaluate
+    for balance in balances(seen, evaluate, [output.bound * output.largest for output in made.outputs]):
         assert balance.error <= balance.allowed
         assert balance.error < 1e-9

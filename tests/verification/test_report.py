@@ -80,7 +80,7 @@ def test_wrong_values_fail(monkeypatch, file):
     right = checks.files
     wrong = {
         "small.c": ("return sum;", "return sum * (1 + 1e-9);"),
-        "small.py": ("return out.reshape", "out *= 1 + 1e-9\n    return out.reshape"),
+        "small.py": ("return out.reshape", "out *= 1 + 1e-9\n        return out.reshape"),
     }[file]
 
     def tampered(scene, language):
@@ -100,7 +100,7 @@ def test_values_that_are_no_numbers_fail(monkeypatch):
 
     def tampered(scene, language):
         made = right(scene, language)
-        text = made["small.py"].replace("return out.reshape", "out[0, 7] = np.nan\n    return out.reshape")
+        text = made["small.py"].replace("return out.reshape", "out[0, 7] = np.nan\n        return out.reshape")
         return {**made, "small.py": text}
 
     monkeypatch.setattr(checks, "files", tampered)

@@ -10,11 +10,11 @@ import click
 
 from wavesym.cli.parameters import PATH, SCENE, put, scene_argument
 from wavesym.cli.progress import progress
+from wavesym.targets import LANGUAGES
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
 
-LANGUAGES = ["c", "numpy", "all"]
 EVALUATORS = ["auto", "closed", "pieces", "march"]
 PRECISIONS = ["double", "single"]
 MOST_WINDOWS = 2**31 - 2

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import ctypes
-import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +16,16 @@ from numpy.typing import NDArray
 from wavesym.errors import WavesymError
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import REALS
-from wavesym.programs.choice import MAKERS
+from wavesym.programs.assembly import assemble
+from wavesym.programs.choice import MAKERS, choose
+from wavesym.programs.program import Program
 from wavesym.results.response import Response
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.problem import Problem, Rival
 from wavesym.rivals.problem import stated as stated_problem
-from wavesym.running.compiled import imported
 from wavesym.running.native import address, library
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import files
+from wavesym.targets.files import program_files
 
 Values = NDArray[Any]
 
@@ -86,11 +86,10 @@ def subjects(scene: Scene, samples: int) -> Iterator[Subject]:
             for tolerance in TOLERANCES:
                 start = perf_counter()
                 made = _made(scene, evaluator, precision, tolerance)
-                if made is None or made[f"{scene.name}.c"] in seen:  # refused, or the same as for a larger tolerance
+                if made is None or made.c[f"{scene.name}.c"] in seen:  # refused, or the same as for a larger tolerance
                     continue
-                seen.add(made[f"{scene.name}.c"])
+                seen.add(made.c[f"{scene.name}.c"])
                 seconds = perf_counter() - start
-                bound = float(json.loads(made[f"{scene.name}.json"])["error_bound"])
                 for language, load in (("C", _c), ("NumPy", _numpy)):
                     start = perf_counter()
                     sample, at = load(scene, made, samples, precision)
@@ -101,7 +100,7 @@ def subjects(scene: Scene, samples: int) -> Iterator[Subject]:
                         precision=precision,
                         resolution=f"tolerance {float(tolerance):.0e}",
                         setup=seconds + perf_counter() - start,
-                        bound=bound,
+                        bound=made.program.error_bound,
                         samples=samples,
                         sample=sample,
                         at=at,
@@ -157,21 +156,28 @@ def opponent(rival: Rival, resolution: float, stated: Problem, at: Values) -> Su
     )
 
 
-def _made(scene: Scene, evaluator: str, precision: str, tolerance: Fraction) -> dict[str, str] | None:
-    """The files of an evaluator, None where it cannot meet the tolerance or would cost too much."""
+class _Made(NamedTuple):
+    program: Program
+    c: dict[str, str]
+
+
+def _made(scene: Scene, evaluator: str, precision: str, tolerance: Fraction) -> _Made | None:
+    """A program and its C by file name, None where it cannot meet the tolerance or would cost too much."""
+    asked = lower(scene).tolerating(rational(tolerance))
     try:
-        return files(lower(scene).tolerating(rational(tolerance)), "all", evaluator, precision)
+        chosen = choose(asked, evaluator, precision).evaluator
     except WavesymError:
         return None
+    return _Made(assemble(chosen), program_files(asked, chosen, "c"))
 
 
 Loaded = tuple[Callable[[], Values], Callable[[Values], Values]]
 
 
-def _c(scene: Scene, made: dict[str, str], samples: int, precision: str) -> Loaded:
+def _c(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
     name, outputs = scene.name, len(scene.outputs)
     number, dtype = (ctypes.c_float, np.float32) if precision == "single" else (ctypes.c_double, np.float64)
-    compiled = library(made[f"{name}.c"], header=(f"{name}.h", made[f"{name}.h"]))
+    compiled = library(made.c[f"{name}.c"], header=(f"{name}.h", made.c[f"{name}.h"]))
     call, evaluate = getattr(compiled, f"{name}_sample"), getattr(compiled, f"{name}_eval")
     call.argtypes = [number, number, ctypes.c_size_t, ctypes.c_void_p]
     evaluate.argtypes = [number, ctypes.c_void_p]
@@ -192,6 +198,6 @@ def _c(scene: Scene, made: dict[str, str], samples: int, precision: str) -> Load
     return sample, at
 
 
-def _numpy(scene: Scene, made: dict[str, str], samples: int, precision: str) -> Loaded:
-    evaluate = imported(made[f"{scene.name}.py"], scene.name).evaluate
+def _numpy(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
+    evaluate = made.program.evaluate
     return partial(evaluate, taus(float(scene.output.until), samples, precision)), evaluate

@@ -16,24 +16,12 @@ from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.closed import ClosedForm, closed_form, refuse_many
 from wavesym.programs.march.evaluator import MarchEvaluator, marched, unmet
 from wavesym.programs.pieces import Pieces, pieces
+from wavesym.programs.program import ProgramOutput
 
 Made = ClosedForm | Pieces | MarchEvaluator
 
 # Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
 _WORTH_TRYING = 50_000
-
-
-class Output(Protocol):
-    """An output of an evaluator: its name, its proved largest error relative to its largest value, and that value."""
-
-    @property
-    def name(self) -> str: ...
-
-    @property
-    def bound(self) -> float: ...
-
-    @property
-    def largest(self) -> float: ...
 
 
 class Evaluator(Protocol):
@@ -46,7 +34,7 @@ class Evaluator(Protocol):
     def tau_max(self) -> float: ...
 
     @property
-    def outputs(self) -> tuple[Output, ...]: ...
+    def outputs(self) -> tuple[ProgramOutput, ...]: ...
 
     @property
     def error_bound(self) -> float: ...

@@ -33,6 +33,7 @@ from wavesym.exact.signal import Signal
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.programs.program import ProgramOutput
 
 _EXP = 20  # an exponential, in multiplications
 # all that is of second order in u but for additions, as long as no factor of u reaches 1/1000
@@ -41,7 +42,7 @@ _MOST_ADDED = arb(fmpq(1, 2))  # additions, in 1/u
 
 
 @dataclass(frozen=True)
-class Family:
+class PulseFamily:
     """exp(-rate w) * (powers[0] + powers[1] w + ...)."""
 
     rate: float
@@ -54,21 +55,14 @@ class Pulse:
 
     start: float
     excess: float
-    families: tuple[Family, ...]
+    families: tuple[PulseFamily, ...]
 
 
 @dataclass(frozen=True)
-class ClosedOutput:
-    """One output as a sum of pulses.
+class ClosedOutput(ProgramOutput):
+    """One output as a sum of pulses; `reached[n]` is its bound up to the end of pulse n."""
 
-    `bound` is the proved largest error relative to the largest value, `reached[n]` the same up to the end of pulse n,
-    `largest` a lower bound of the largest value.
-    """
-
-    name: str
     pulses: tuple[Pulse, ...]
-    bound: float
-    largest: float
     reached: tuple[float, ...]
 
 
@@ -148,19 +142,19 @@ def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) 
 def _closed_output(signal: Signal, tau_max: float, real: Real) -> ClosedOutput:
     pulses = tuple(_pulse(arrival.time, arrival.increment, real) for arrival in signal.arrivals)
     if not pulses:
-        return ClosedOutput(signal.name, pulses, 0.0, 0.0, ())
+        return ClosedOutput(signal.name, 0.0, 0.0, pulses, ())
     size = largest(partial(segments, signal), tau_max)
     errors = [
         bound(error / size) if error is not None else math.inf
         for error in _segment_errors(signal, rational(tau_max), real)
     ]
     reached = tuple(max(errors[: n + 1]) for n in range(len(errors)))
-    return ClosedOutput(signal.name, pulses, reached[-1], float(size), reached)
+    return ClosedOutput(signal.name, reached[-1], float(size), pulses, reached)
 
 
 def _pulse(time: fmpq, increment: Increment, real: Real) -> Pulse:
     start = real.not_below(time)
-    families = (Family(real.nearest(g), tuple(real.nearest(c) for c in increment[g])) for g in sorted(increment))
+    families = (PulseFamily(real.nearest(g), tuple(real.nearest(c) for c in increment[g])) for g in sorted(increment))
     return Pulse(start, real.nearest(rational(start) - time), tuple(families))
 
 

@@ -34,10 +34,12 @@ from wavesym.numbers.doubles import bound, middle, nearest, rational
 from wavesym.numbers.reals import SINGLE, Real
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.zero import silent
+from wavesym.programs.program import ProgramOutput
 
 # A table larger than this is for the march.
 MOST_BYTES = 4 << 20
-# C evaluates so many samples at once: their sums and offsets fill the vector registers of common machines.
+# C evaluates so many samples at once (templates/c/pieces.c): their sums and offsets fill the vector registers of common
+# machines.
 BLOCK = 32
 # Pieces in a unit of tau: shorter ones have lower degrees, which is faster and rounds less, in larger tables.
 _USUAL = (8, 4, 2, 1)
@@ -54,7 +56,7 @@ _NEGLIGIBLE = arb(2) ** -200
 
 
 @dataclass(frozen=True)
-class Grid:
+class PieceGrid:
     """Pieces that some outputs share: piece p is for starts[p] <= tau < starts[p + 1].
 
     `powers[p][j]` are the coefficients of output `outputs[j]` in w = tau - centres[p], lowest first. `first[b]` is the
@@ -71,22 +73,13 @@ class Grid:
 
 
 @dataclass(frozen=True)
-class PiecesOutput:
-    """An output's name, its proved largest error relative to its largest value, and a lower bound of that value."""
-
-    name: str
-    bound: float
-    largest: float
-
-
-@dataclass(frozen=True)
 class Pieces:
     """Polynomial pieces for the outputs of a scene on [0, tau_max]."""
 
-    outputs: tuple[PiecesOutput, ...]
+    outputs: tuple[ProgramOutput, ...]
     tau_max: float
     real: Real
-    grids: tuple[Grid, ...]
+    grids: tuple[PieceGrid, ...]
     per_unit: int
 
     @property
@@ -243,7 +236,7 @@ class _Fits:
 
     def _fit(self, per_unit: int, most: int, bits: int) -> Pieces | None:
         probes = self._motion.probes
-        grids: list[Grid] = []
+        grids: list[PieceGrid] = []
         bounds: dict[int, tuple[float, float]] = {}
         size = 0
         for members in self._shared.values():
@@ -262,7 +255,7 @@ class _Fits:
                 if size > most:
                     raise _too_large(size, most)
             grids.append(cuts.grid(members, columns))
-        outputs = tuple(PiecesOutput(probe.name, *bounds[k]) for k, probe in enumerate(probes))
+        outputs = tuple(ProgramOutput(probe.name, *bounds[k]) for k, probe in enumerate(probes))
         return Pieces(outputs, self._tau_max, self._real, tuple(grids), per_unit)
 
     def _output(
@@ -365,7 +358,7 @@ class _Cuts:
         places = (low, max(low, min(middle, high)), high)
         return max(abs(polynomial(arb((tau - middle) / self.halves[piece]))).lower() for tau in places)
 
-    def grid(self, outputs: Sequence[int], columns: Sequence[Sequence[tuple[float, ...]]]) -> Grid:
+    def grid(self, outputs: Sequence[int], columns: Sequence[Sequence[tuple[float, ...]]]) -> PieceGrid:
         """The pieces with their powers, output by output."""
         pieces = len(self.centres)
         count = pieces
@@ -378,7 +371,7 @@ class _Cuts:
             if steps <= 3 or count > 4 * pieces:
                 break
             count *= 2
-        return Grid(
+        return PieceGrid(
             tuple(outputs),
             tuple(self.starts),
             tuple(self.centres),
@@ -416,7 +409,7 @@ def _underflow(powers: Sequence[arb], real: Real) -> arb:
     return arb(real.smallest) * sum((2 + 2 * abs(c).upper() for c in powers), arb(0))
 
 
-def _bytes(grid: Grid, real: Real) -> int:
+def _bytes(grid: PieceGrid, real: Real) -> int:
     numbers = len(grid.starts) + len(grid.centres) + sum(len(p) for piece in grid.powers for p in piece)
     indices = len(grid.first) + len(grid.powers) * len(grid.outputs) + 1
     return numbers * real.bytes + indices * 4

@@ -1,8 +1,8 @@
 """Outputs over time, ready to be drawn: as right as a picture can show, and broken where they jump.
 
-Values are those of the NumPy that `generate` would write, with a tolerance that no eye can tell from a smaller one: so
-there is a picture of every scene that can be generated. When fronts can arrive is known from the loads and the places
-alone; there an output is asked for its value and for the one just before.
+Values are those of the program that `generate` would write, with a tolerance that no eye can tell from a smaller one:
+so there is a picture of every scene that can be generated. When fronts can arrive is known from the loads and the
+places alone; there an output is asked for its value and for the one just before.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from wavesym.exact.contact import ContactEnd, contact_ends
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
-from wavesym.running.compiled import imported
-from wavesym.targets.files import files
+from wavesym.programs.assembly import assemble
+from wavesym.programs.choice import choose
 
 Points = NDArray[np.float64]
 
@@ -69,13 +69,12 @@ class Histories:
 
 def histories(model: Model) -> Histories:
     """The histories of all outputs. ToleranceError, CostError where nothing can be generated either."""
-    made = files(model.tolerating(max(model.tolerance, _TOLERANCE)), "numpy")
-    program = imported(made[f"{model.name}.py"], model.name)
+    program = assemble(choose(model.tolerating(max(model.tolerance, _TOLERANCE))).evaluator)
     contacts = contact_ends(model)
     formal = [_formal(probe, contacts) for probe in model.probes]
     dense = sum(len(_parts(model, probe)) for probe in model.probes) * model.until > MOST_FRONTS
     fronts = [[] if dense else arrivals(model, probe) for probe in model.probes]
-    taus = _instants(program.TAU_MAX, fronts, formal)
+    taus = _instants(program.tau_max, fronts, formal)
     values = program.evaluate(taus)
     return Histories(
         model,

@@ -1,1 +1,7 @@
-"""Program -> files: C, NumPy and the manifest."""
+"""Program -> files: a folder for each language, and the manifest. Other rooms ask files.py."""
+
+TARGETS = ("c", "numpy")
+"""The languages. Each is the name of a folder here, whose `TARGET` is what target.py says; a new one is a name more."""
+
+LANGUAGES = (*TARGETS, "all")
+"""What `generate --language` takes."""

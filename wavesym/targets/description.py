@@ -7,20 +7,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from textwrap import wrap
 
-import numpy as np
-
 from wavesym.exact.contact import ContactEnd
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.choice import Evaluator
 from wavesym.targets.literals import c_literal, literal
+from wavesym.targets.number_format import number_format
+from wavesym.targets.reference import ReferenceValues
 
 _WIDTH = 110
 
 
 @dataclass(frozen=True)
-class Output:
+class NamedOutput:
     """An output's name, as text and as a constant, and its proved bound, relative to its largest value."""
 
     name: str
@@ -29,7 +29,7 @@ class Output:
 
 
 @dataclass(frozen=True)
-class Contact:
+class NamedContact:
     """The end of a contact: its place for identifiers, tau as a literal of C and of Python, and with 20 digits."""
 
     position: str
@@ -44,6 +44,7 @@ class Description:
 
     `name_size` is what the longest name of an output takes in C; `command` makes the same file again.
     `real` and `numpy_real` are the type of all values in C and in NumPy; numbers that C reads have its suffix.
+    `reference` is what a self-test compares with, None where there is to be none.
     """
 
     name: str
@@ -54,21 +55,28 @@ class Description:
     numpy_real: str
     reason: str
     tolerance: str
-    outputs: tuple[Output, ...]
+    outputs: tuple[NamedOutput, ...]
     output_count: str
     name_size: str
     tau_max: str
     c_tau_max: str
     error_bound: str
     c_error_bound: str
-    contacts: tuple[Contact, ...]
+    contacts: tuple[NamedContact, ...]
+    reference: ReferenceValues | None = None
 
 
 def describe(
-    model: Model, evaluator: Evaluator, reason: str, contacts: Sequence[ContactEnd], options: str = ""
+    model: Model,
+    evaluator: Evaluator,
+    reason: str,
+    contacts: Sequence[ContactEnd],
+    options: str = "",
+    reference: ReferenceValues | None = None,
 ) -> Description:
     """The description of a model and of the evaluator chosen for it; `options` are those that the files depend on."""
     real = evaluator.real
+    called = number_format(real)
     names = [output.name for output in evaluator.outputs]
     bound = _not_below(evaluator.error_bound, real)
     return Description(
@@ -76,12 +84,12 @@ def describe(
         prefix=model.name.upper(),
         command=f"wavesym generate {model.name}.toml{options}",
         model=tuple(line for part in _model(model) for line in wrap(part, _WIDTH, subsequent_indent="  ")),
-        real="double" if real is DOUBLE else "float",
-        numpy_real="float64" if real is DOUBLE else "float32",
+        real=called.c_type,
+        numpy_real=called.numpy_type,
         reason=reason,
         tolerance=_tolerance(model),
         outputs=tuple(
-            Output(output.name, constant, literal(_not_below(output.bound, DOUBLE)))
+            NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)))
             for output, constant in zip(evaluator.outputs, constants(names), strict=True)
         ),
         output_count=str(len(names)),
@@ -91,6 +99,7 @@ def describe(
         error_bound=literal(bound, real),
         c_error_bound=c_literal(bound, real),
         contacts=tuple(_contact(end, real) for end in contacts),
+        reference=reference,
     )
 
 
@@ -109,13 +118,13 @@ def constants(names: Sequence[str]) -> list[str]:
 
 def _not_below(value: float, real: Real) -> float:
     """The smallest number not below a bound; the largest for an infinite one, which no program can write down."""
-    largest = float(np.finfo(np.float64 if real is DOUBLE else np.float32).max)
+    largest = number_format(real).largest
     return real.not_below(rational(value)) if value <= largest else largest
 
 
-def _contact(end: ContactEnd, real: Real) -> Contact:
+def _contact(end: ContactEnd, real: Real) -> NamedContact:
     tau = real.nearest(rational(end.double))
-    return Contact(str(end.x), c_literal(tau, real), literal(tau, real), end.digits)
+    return NamedContact(str(end.x), c_literal(tau, real), literal(tau, real), end.digits)
 
 
 def _model(model: Model) -> list[str]:

@@ -1,24 +1,28 @@
-"""The files of a scene: the evaluator that meets its tolerance, in the languages asked for, and the manifest."""
+"""The files of a scene: the evaluator that meets its tolerance, in the languages asked for, and the manifest.
+
+Only this file talks to the folders of languages: a new one is a folder beside it, and a name in __init__.py.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from importlib import import_module
 from pathlib import Path
 
 from wavesym.errors import WavesymError
 from wavesym.exact.contact import contact_ends
 from wavesym.model.model import Model
 from wavesym.numbers.reals import REALS
-from wavesym.programs.choice import choose
-from wavesym.targets import closed, march, pieces
+from wavesym.programs.assembly import assemble
+from wavesym.programs.choice import MAKERS, Made, choose
+from wavesym.targets import LANGUAGES, TARGETS
 from wavesym.targets.description import describe
 from wavesym.targets.manifest import manifest
-from wavesym.targets.selftest import selftest
+from wavesym.targets.reference import reference_values
+from wavesym.targets.target import Target
 
 MARKS = (b": made by wavesym", b'"generator": "wavesym"')
-LANGUAGES = {"c": ("c",), "numpy": ("numpy",), "all": ("c", "numpy")}
-EMITTERS = {"closed": closed, "pieces": pieces, "march": march}
-EVALUATORS = ("auto", *EMITTERS)
+EVALUATORS = ("auto", *MAKERS)
 
 
 def _refuse_unknown(**options: tuple[str, Iterable[str]]) -> None:
@@ -52,13 +56,30 @@ def files(
     options = "" if evaluator == "auto" else f" --evaluator {evaluator}"
     options += "" if precision == "double" else f" --precision {precision}"
     options += "" if windows is None else f" --windows {windows}"
-    description = describe(model, chosen, reason, contact_ends(model, chosen.real), options)
-    emitter = EMITTERS[name]
+    program = assemble(chosen, reason)
+    targets = [_target(name) for name in (TARGETS if language == "all" else (language,))]
+    reference = reference_values(model, chosen) if any(target.tested for target in targets) else None
+    description = describe(model, chosen, reason, contact_ends(model, chosen.real), options, reference)
     made = {f"{model.name}.json": manifest(model, description, chosen, name)}
-    if "c" in LANGUAGES[language]:
-        made[f"{model.name}.h"] = emitter.c_header(description, chosen)
-        made[f"{model.name}.c"] = emitter.c_source(description, chosen)
-        made[f"{model.name}_selftest.c"] = selftest(model, description, chosen)
-    if "numpy" in LANGUAGES[language]:
-        made[f"{model.name}.py"] = emitter.numpy_source(description, chosen)
+    for target in targets:
+        made |= target.files(description, program)
     return dict(sorted(made.items()))
+
+
+def program_files(model: Model, evaluator: Made, language: str, *, tested: bool = False) -> dict[str, str]:
+    """The program of an evaluator in a language, by file name, whatever its bound; with its self-test if `tested`."""
+    reference = reference_values(model, evaluator) if tested else None
+    description = describe(model, evaluator, evaluator.summary, (), reference=reference)
+    return _target(language).files(description, assemble(evaluator))
+
+
+def numpy_text(model: Model, evaluator: Made) -> str:
+    """The same as the text of one Python module."""
+    (text,) = program_files(model, evaluator, "numpy").values()
+    return text
+
+
+def _target(name: str) -> Target:
+    """The language of a folder."""
+    target: Target = import_module(f"wavesym.targets.{name}").TARGET
+    return target

@@ -2,28 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from itertools import accumulate
-
-import numpy as np
+from collections.abc import Iterable, Mapping
 
 from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.targets.number_format import number_format
+
+Lines = tuple[str, ...]
 
 
 def literal(value: float, real: Real = DOUBLE) -> str:
     """A number as C, Python and JSON write it, without a suffix. ValueError for what is not finite."""
     if value - value != 0.0:
         raise ValueError(f"{value} is no literal")
-    return repr(value) if real is DOUBLE else str(np.float32(value))
+    return number_format(real).shortest(value)
 
 
 def c_literal(value: float, real: Real) -> str:
     """A number as C writes it."""
-    return literal(value, real) + ("" if real is DOUBLE else "f")
+    return literal(value, real) + number_format(real).c_suffix
 
 
-def lines(items: Iterable[str], width: int = 116) -> tuple[str, ...]:
-    """Literals joined by commas, in lines of at most `width`; a lone 0 for none, as C has no empty array."""
+def c_literals(values: Iterable[float], real: Real) -> Lines:
+    """Numbers as lines of a table in C; indices stay whole."""
+    return lines(str(value) if isinstance(value, int) else c_literal(value, real) for value in values) or ("0",)
+
+
+def c_tables(tables: Mapping[str, Iterable[float]], real: Real) -> dict[str, Lines]:
+    """Tables as C writes them, by name; a lone 0 for none, as C has no empty array."""
+    return {name: c_literals(values, real) for name, values in tables.items()}
+
+
+def c_constants(constants: Mapping[str, float], real: Real) -> dict[str, str]:
+    """Single numbers as C writes them, by name."""
+    return {name: " ".join(c_literals([value], real)) for name, value in constants.items()}
+
+
+def lines(items: Iterable[str], width: int = 116) -> Lines:
+    """Literals joined by commas, in lines of at most `width`."""
     made: list[str] = []
     line = ""
     for item in items:
@@ -32,9 +47,4 @@ def lines(items: Iterable[str], width: int = 116) -> tuple[str, ...]:
             line = item
         else:
             line = f"{line}, {item}" if line else item
-    return (*made, line or "0")
-
-
-def firsts(counts: Iterable[int]) -> tuple[str, ...]:
-    """Where each group starts in a flat table, and where the last one ends."""
-    return lines(map(str, accumulate(counts, initial=0)))
+    return (*made, line) if line else ()

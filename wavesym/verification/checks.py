@@ -14,10 +14,10 @@ import numpy as np
 from wavesym.errors import ToleranceError
 from wavesym.exact.reference import Reference
 from wavesym.model.model import Model
+from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import choose
 from wavesym.running.compiled import compiled, imported
-from wavesym.targets.description import describe
-from wavesym.targets.files import EMITTERS, files
+from wavesym.targets.files import files
 from wavesym.verification.characteristics import COARSEST, Integrated, integrate
 from wavesym.verification.invariants import Balance, Evaluate, balances, values_per_window, watched
 from wavesym.verification.reference import Known
@@ -161,7 +161,7 @@ def spacetime(known: Known) -> list[Outcome]:
 
 
 def invariants(known: Known) -> list[Outcome]:
-    """The balances of momentum and energy, in the reference itself and in generated NumPy."""
+    """The balances of momentum and energy, in the reference itself and in the program, which generated NumPy is."""
     model = known.model
     outputs, values = values_per_window(model)
     windows = min(int(known.until), _MOST_VALUES // values, _MOST_WINDOWS // outputs)
@@ -178,7 +178,7 @@ def invariants(known: Known) -> list[Outcome]:
     note = ""
     made: Sequence[Balance | None] = (None, None)
     try:
-        made = balances(seen, *_numpy(seen))
+        made = balances(seen, *_program(seen))
     except ToleranceError as error:
         note = str(error)
     outcomes = []
@@ -190,11 +190,10 @@ def invariants(known: Known) -> list[Outcome]:
     return outcomes
 
 
-def _numpy(model: Model) -> tuple[Evaluate, list[float]]:
-    """The generated NumPy of a model, and the proved errors of its outputs, absolute."""
-    name, chosen, reason = choose(model)
-    text = EMITTERS[name].numpy_source(describe(model, chosen, reason, ()), chosen)
-    return imported(text, model.name).evaluate, [output.bound * output.largest for output in chosen.outputs]
+def _program(model: Model) -> tuple[Evaluate, list[float]]:
+    """The program of a model, and the proved errors of its outputs, absolute."""
+    program = assemble(choose(model).evaluator)
+    return program.evaluate, [output.bound * output.largest for output in program.outputs]
 
 
 def _some(instants: Instants) -> Instants:

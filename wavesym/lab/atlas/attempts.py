@@ -1,4 +1,4 @@
-"""Each evaluator tried on a scene, by the NumPy that would be generated, where it refuses too; and the truth."""
+"""Each evaluator tried on a scene, by the program that would be generated, where it refuses too; and the truth."""
 
 from __future__ import annotations
 
@@ -18,12 +18,10 @@ from wavesym.lab.atlas.scenes import AIM
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import MAKERS
 from wavesym.programs.closed import ClosedForm
-from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.description import describe
-from wavesym.targets.files import EMITTERS
 
 Array = NDArray[np.float64]
 
@@ -93,9 +91,8 @@ def attempt(known: Truth, name: str) -> Attempt:
     met = rational(min(form.error_bound, 2.0)) <= model.tolerance
     refused = "" if met else form.shortfall(model.tolerance)
     bounds = _reached(form, taus) if isinstance(form, ClosedForm) else np.full(len(taus), form.error_bound)
-    text = EMITTERS[name].numpy_source(describe(model, form, "the atlas", ()), form)
     with np.errstate(over="ignore", invalid="ignore"):
-        found = imported(text, model.name).evaluate(taus)
+        found = assemble(form).evaluate(taus)
     wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
     errors = np.where(np.isfinite(wrong), wrong, math.inf)
     return Attempt(name, taus, errors, bounds, refused)

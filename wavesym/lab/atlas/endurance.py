@@ -18,8 +18,7 @@ from wavesym.model.model import Model
 from wavesym.programs.march.evaluator import MarchEvaluator, marched
 from wavesym.running.native import FAST, address, library
 from wavesym.scene import lower
-from wavesym.targets.description import describe
-from wavesym.targets.march import c_header, c_source
+from wavesym.targets.files import program_files
 
 HORIZON = 10**5
 DEGREES = {
@@ -99,9 +98,10 @@ def follow(kappa: Fraction, evaluator: MarchEvaluator) -> Followed:
 
 def _run(model: Model, evaluator: MarchEvaluator, taus: twist.Array) -> tuple[twist.Array, twist.Array, bool]:
     """Outputs (outputs, n), energies and the alarm."""
-    description = describe(model, evaluator, "the atlas", ())
-    text = c_source(description, evaluator) + _FOLLOW.replace("NAME", model.name)
-    program = library(text, FAST, (f"{model.name}.h", c_header(description, evaluator)))
+    made = program_files(model, evaluator, "c")
+    header = f"{model.name}.h"
+    text = made[f"{model.name}.c"] + _FOLLOW.replace("NAME", model.name)
+    program = library(text, FAST, (header, made[header]))
     out, energy = np.empty((len(taus), len(model.probes))), np.empty(len(taus))
     places = [ctypes.c_void_p(address(array)) for array in (taus, out, energy)]
     low = program.follow(places[0], ctypes.c_size_t(len(taus)), *places[1:])

@@ -16,12 +16,10 @@ import numpy as np
 from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
 from wavesym.lab.atlas.lumped import strains
 from wavesym.lab.atlas.scenes import made
+from wavesym.programs.assembly import assemble
 from wavesym.programs.march.evaluator import marched
 from wavesym.rivals.problem import stated
-from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.description import describe
-from wavesym.targets.march import numpy_source
 
 KAPPAS = tuple(Fraction(1, 10**k) for k in range(1, 6))
 # sqrt(kappa) tau at the end: about a period of the springs
@@ -85,8 +83,7 @@ def difference(system: Lumped, kappa: Fraction) -> float:
     """Between the strains in the middle of the rods and those of springs, relative to the largest of the latter."""
     until = math.ceil(SLOW_TIME / math.sqrt(kappa))
     model = lower(_scene(system, kappa, until))
-    march = marched(model)
-    program = imported(numpy_source(describe(model, march, "the atlas", ()), march), model.name)
+    program = assemble(marched(model))
     taus = until / SAMPLES * np.arange(SAMPLES)
     springs = strains(stated(model), until / SAMPLES, SAMPLES - 1)[[rod - 1 for rod in system.rods]]
     return float(np.max(np.abs(program.evaluate(taus) - springs)) / np.max(np.abs(springs)))

@@ -38,11 +38,11 @@ from flint import fmpq
 
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.operator import Array, Operator
+from wavesym.programs.march.operator import Array, PanelOperator
 from wavesym.programs.march.plan import Plan, power_of_two
 from wavesym.programs.march.run import LEFT, RIGHT, Block, Run
+from wavesym.programs.march.sampler import OutputSampler
 from wavesym.programs.march.tail import Tail, tail
-from wavesym.programs.march.watch import Watch
 from wavesym.programs.march.zero import silent
 
 MARGIN = 1.01
@@ -101,20 +101,20 @@ def _judge(plan: Plan, degree: int, real: Real, scale: fmpq) -> Verdict:
     reach = nearest(min(real.reach / scale, DOUBLE.reach))
     roundings = Roundings(plan, run, real, scale)
     smooth = tail(plan, degree)
-    watches = [Watch(plan, output, degree) for output in plan.outputs]
+    samplers = [OutputSampler(plan, output, degree) for output in plan.outputs]
     displaced = [output.quantity == "displacement" for output in plan.outputs]
     truncated = rounded = summed = 0.0
     alarm = Alarm(plan.trusted)
-    largest, reading, sums = (np.zeros(len(watches)) for _ in range(3))
+    largest, reading, sums = (np.zeros(len(samplers)) for _ in range(3))
     for block in run.blocks():
         lost, inexact = roundings.of(block)
         truncated += float(np.sum(lost))
         rounded += float(np.sum(inexact))
         summed += len(lost) * (truncated + rounded)
         alarm.watch(block, roundings.leak)
-        for o, watch in enumerate(watches):
-            largest[o] = max(largest[o], float(np.max(np.abs(watch.values(block)))))
-            weighted = watch.size(block, reading_weights(degree, displaced[o]))
+        for o, sampler in enumerate(samplers):
+            largest[o] = max(largest[o], float(np.max(np.abs(sampler.values(block)))))
+            weighted = sampler.size(block, reading_weights(degree, displaced[o]))
             reading[o] = max(reading[o], float(np.max(weighted)))
             sums[o] += float(np.sum(weighted))
         if not np.max(np.abs(block.after)) < reach:
@@ -244,7 +244,7 @@ class _Constants(NamedTuple):
     end: tuple[float, float, float]
 
 
-def _constants(operator: Operator) -> _Constants:
+def _constants(operator: PanelOperator) -> _Constants:
     """Norms of T and t for the coefficients of q, and the same for its value at the end.
 
     Counts the roundings of the programs in C (one after the other) and in NumPy (scans and sums in pairs).

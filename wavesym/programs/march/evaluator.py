@@ -21,9 +21,10 @@ from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.bound import Verdict, judge
 from wavesym.programs.march.given import Given, batch_size, given
-from wavesym.programs.march.operator import Operator
+from wavesym.programs.march.operator import PanelOperator
 from wavesym.programs.march.plan import Plan, plan
 from wavesym.programs.march.run import operator_count, operators, steps
+from wavesym.programs.program import ProgramOutput
 
 _HIGHEST_DEGREE = 2000
 _MOST_WORK = 1e9  # nodes * coefficients * windows, half a minute or so
@@ -31,15 +32,6 @@ _BOUNDING = 1 / 20  # of an operator, in the same units per third power of the d
 _LARGEST_STATE = 1 << 22  # bytes; programs keep it on the stack
 _OVERHEAD = 1000  # of a window, in units of a coefficient
 _SETTLED = 0.8  # a bound that a higher degree does not bring below so much of it is left as it is
-
-
-@dataclass(frozen=True)
-class MarchOutput:
-    """An output's name, the proved bound of its error relative to its largest value, and a lower bound of that."""
-
-    name: str
-    bound: float
-    largest: float
 
 
 @dataclass(frozen=True)
@@ -52,7 +44,7 @@ class MarchEvaluator:
     plan: Plan
     degree: int
     real: Real
-    outputs: tuple[MarchOutput, ...]
+    outputs: tuple[ProgramOutput, ...]
     given: Given | None = None
 
     @property
@@ -66,7 +58,7 @@ class MarchEvaluator:
         return max(output.bound for output in self.outputs)
 
     @cached_property
-    def operators(self) -> dict[fmpq, Operator]:
+    def operators(self) -> dict[fmpq, PanelOperator]:
         """By rate times length of a panel."""
         return operators(self.plan, self.degree)
 
@@ -169,7 +161,7 @@ def _driven(made: MarchEvaluator, windows: int) -> MarchEvaluator:
 def _made(prepared: Plan, degree: int, real: Real) -> tuple[MarchEvaluator, Verdict]:
     verdict = judge(prepared, degree, real)
     outputs = tuple(
-        MarchOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)
+        ProgramOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)
         for output, error, size in zip(prepared.outputs, verdict.bounds, verdict.largest, strict=True)
     )
     return MarchEvaluator(prepared, degree, real, outputs), verdict

@@ -23,8 +23,8 @@ from wavesym.programs.march.bound import MARGIN, Roundings, impedance_at, larges
 from wavesym.programs.march.operator import Array
 from wavesym.programs.march.plan import Plan, power_of_two
 from wavesym.programs.march.run import LEFT, RIGHT, Block, Run
+from wavesym.programs.march.sampler import OutputSampler
 from wavesym.programs.march.tail import tail_after
-from wavesym.programs.march.watch import Watch
 
 SMOOTH = 4
 
@@ -58,16 +58,16 @@ def _given(plan: Plan, degree: int, real: Real, windows: int, scale: fmpq) -> Gi
     run = Run(plan, degree)
     unit = nearest(real.roundoff)
     roundings = Roundings(plan, run, real, scale)
-    watches = [Watch(plan, output, degree) for output in plan.outputs]
+    samplers = [OutputSampler(plan, output, degree) for output in plan.outputs]
     displaced = [output.quantity == "displacement" for output in plan.outputs]
     # by windows: in energy, and what reading the outputs costs
     lost, inexact = np.zeros(windows), np.zeros(windows)
-    read = np.zeros((len(watches), windows))
+    read = np.zeros((len(samplers), windows))
     weights = np.tile(np.where(np.arange(SMOOTH + 1) > 0, 4 / pi, 1.0), len(plan.channels) * len(plan.panels))
     for n, block in enumerate(_windows(plan, run, windows)):
         lost[n], inexact[n] = (float(weights @ part) for part in roundings.of(block))
-        for o, watch in enumerate(watches):
-            read[o, n] = weights @ watch.size(block, reading_weights(degree, displaced[o]))
+        for o, sampler in enumerate(samplers):
+            read[o, n] = weights @ sampler.size(block, reading_weights(degree, displaced[o]))
     smooth = tail_after(plan, degree, windows, [windows * jump for jump in _jumps(plan)])
     # loads of all windows: what each has cost so far, added up
     costs = np.cumsum(np.cumsum(lost + inexact))

@@ -36,7 +36,7 @@ _BITS = 300
 
 
 @dataclass(frozen=True)
-class Operator:
+class PanelOperator:
     """The tables of a rate on a panel; `ratio[k]`, `first[k]` and `last[k]` for k = 0 ... degree, entry 0 unused (0).
 
     All dimensionless. `step` is rate times the panel's length; `leak` is x_(degree + 1).
@@ -51,7 +51,7 @@ class Operator:
     leak: float
 
 
-def operator(step: fmpq, degree: int) -> Operator:
+def operator(step: fmpq, degree: int) -> PanelOperator:
     """The operator of bodies with rate * length = `step` > 0 on series of `degree`, each number rounded once."""
     with ctx.workprec(_BITS):
         x = [arb(step) / (4 * k) if k else arb(0) for k in range(degree + 2)]
@@ -63,7 +63,7 @@ def operator(step: fmpq, degree: int) -> Operator:
             first[k] = (-1) ** k - ratio[k + 1] * first[k + 1]
             last[k] = 1 - ratio[k + 1] * last[k + 1]
         doubled = 2 * ratio[1]
-        return Operator(
+        return PanelOperator(
             step=midpoint(arb(step)),
             ratio=tuple(map(midpoint, ratio[:-1])),
             first=tuple(map(midpoint, first[:-1])),

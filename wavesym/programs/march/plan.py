@@ -34,7 +34,7 @@ _ESTIMATED = 100
 
 
 @dataclass(frozen=True)
-class Panel:
+class MarchPanel:
     """Part of every window: from `start` on, `length` long."""
 
     start: fmpq
@@ -59,7 +59,7 @@ class Junction:
 
 
 @dataclass(frozen=True)
-class Event:
+class LoadEvent:
     """From panel `panel` of window `window` on, load `force` is a polynomial in the time since then (divided by g)."""
 
     window: int
@@ -111,11 +111,11 @@ class Watched:
 class Plan:
     """A scene made ready to march; columns number the nodes of the light cone from 0."""
 
-    panels: tuple[Panel, ...]
+    panels: tuple[MarchPanel, ...]
     junctions: tuple[Junction, ...]
     rods: tuple[fmpq, ...]  # half the initial velocity of the rods left of each column, and of that right of the last
     loaded: tuple[int, ...]  # the column of each force
-    events: tuple[Event, ...]
+    events: tuple[LoadEvent, ...]
     channels: tuple[Channel, ...]
     outputs: tuple[Watched, ...]
     tau_max: float
@@ -196,13 +196,13 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
     )
 
 
-def _panels(times: Iterable[fmpq]) -> tuple[Panel, ...]:
+def _panels(times: Iterable[fmpq]) -> tuple[MarchPanel, ...]:
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise CostError(
             f"load: march: the times have {len(cuts) - 1} different fractional parts, at most {MOST_PANELS} expected"
         )
-    return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
+    return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 
 
 def _junctions(nodes: Sequence[Node]) -> Iterator[Junction]:
@@ -223,8 +223,8 @@ def _junctions(nodes: Sequence[Node]) -> Iterator[Junction]:
 
 
 def _events(
-    nodes: Sequence[Node], loaded: Sequence[int], loads: Sequence[Applied], panels: Sequence[Panel]
-) -> list[Event]:
+    nodes: Sequence[Node], loaded: Sequence[int], loads: Sequence[Applied], panels: Sequence[MarchPanel]
+) -> list[LoadEvent]:
     gains: dict[fmpq, dict[int, fmpq_poly]] = defaultdict(dict)
     for load in loads:
         for force, column in enumerate(loaded):
@@ -242,7 +242,7 @@ def _events(
             total = before(fmpq_poly([time - since, 1])) + change
             now[force] = time, total
             window = int(time.floor())
-            events.append(Event(window, places[time - window], force, _three(total)))
+            events.append(LoadEvent(window, places[time - window], force, _three(total)))
     return events
 
 

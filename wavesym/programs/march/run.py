@@ -13,7 +13,7 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.march.operator import Array, Operator, Sweeps, operator
+from wavesym.programs.march.operator import Array, PanelOperator, Sweeps, operator
 from wavesym.programs.march.plan import Plan
 
 LEFT, RIGHT = 0, 1
@@ -83,7 +83,7 @@ class Run:
             yield Block(waves[:-1], waves[1:], starts, ends, excess, forces)
 
 
-def operators(plan: Plan, degree: int) -> dict[fmpq, Operator]:
+def operators(plan: Plan, degree: int) -> dict[fmpq, PanelOperator]:
     """One for every different rate times length of a panel."""
     return {step: operator(step, degree) for step in steps(plan)}
 
@@ -101,7 +101,7 @@ def steps(plan: Plan) -> dict[fmpq, None]:
 class _Step:
     """All bodies on one panel."""
 
-    def __init__(self, of: list[Operator], degree: int) -> None:
+    def __init__(self, of: list[PanelOperator], degree: int) -> None:
         def table(rows: list[tuple[float, ...]]) -> Array:
             return np.array(rows).reshape(len(of), degree + 1)
 

@@ -16,7 +16,7 @@ SAMPLES = 17
 """Points per window, both ends among them, at which the generator looks for an output's largest value."""
 
 
-class Watch:
+class OutputSampler:
     """An output at `SAMPLES` points of every window; of the last one as far as the horizon goes."""
 
     def __init__(self, plan: Plan, output: Watched, degree: int) -> None:

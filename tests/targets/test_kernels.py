@@ -1,0 +1,66 @@
+"""The plain C among the templates, read by a compiler as it stands; and put into programs with a scene's name."""
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.support.builds import LANGUAGES, SOURCES, STRICT, scene, source
+from wavesym.programs.assembly import assemble
+from wavesym.programs.choice import choose
+from wavesym.running.toolchain import CompilerError, compiler
+
+C = Path(__file__).parents[2] / "templates" / "c"
+KERNELS = sorted(path.name for path in C.glob("*.c"))
+FORMATS = {"double": (), "single": ("-DSINGLE",)}
+
+
+def read(file, folder, *flags):
+    compiler().run([*LANGUAGES["c99"], *STRICT, *flags, "-fsyntax-only", file], folder)
+
+
+@pytest.mark.parametrize("precision", FORMATS)
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_a_kernel_is_c_as_it_stands(kernel, precision):
+    read(kernel, C, *FORMATS[precision])
+
+
+@pytest.mark.parametrize(
+    ("kernel", "right", "wrong"),
+    [
+        ("closed.c", "+ excess[pulse];", "+ excess[pulse]"),
+        ("closed.c", "sum += polynomial", "sum += polynom"),
+        ("pieces.c", "(size_t)member[", "member["),
+        ("march.c", "const real twice = u + u;", "const float twice = u + u;"),
+        ("march.c", "int within = 1;", "int within = 1, before = 0;"),
+    ],
+)
+def test_a_broken_kernel_is_seen(kernel, right, wrong, tmp_path):
+    shutil.copytree(C, tmp_path, dirs_exist_ok=True)
+    text = (tmp_path / kernel).read_text()
+    assert right in text
+    (tmp_path / kernel).write_text(text.replace(right, wrong))
+    with pytest.raises(CompilerError):
+        read(kernel, tmp_path)
+
+
+@pytest.mark.parametrize("of", SOURCES, ids="-".join)
+def test_tables_are_declared_as_they_are_written(of):
+    """So that what a compiler says of a kernel holds for programs; and a program writes all tables that it has."""
+    made = source(*of)
+    text = made.made[f"{made.name}.c"]
+    written = set(re.findall(r"^static const (int|real) (\w+)\[\]", text, re.MULTILINE))
+    declared = re.findall(r"^extern const (int|real) (\w+)\[\];", (C / f"{of[0]}_tables.h").read_text(), re.MULTILINE)
+    assert written == set(declared)
+    of_program = assemble(choose(scene(made.name, "1e-2"), *of).evaluator).tables
+    assert {name for _, name in written} == of_program.keys() - {"point"}  # which the header declares
+
+
+@pytest.mark.parametrize("of", SOURCES, ids="-".join)
+def test_a_program_is_its_kernel_under_its_own_name(of):
+    made = source(*of)
+    text = made.made[f"{made.name}.c"]
+    assert not re.search(r"\b(name|NAME)_|_tables\.h", text)
+    kernel = (C / f"{of[0]}.c").read_text().partition("\n\n")[2]
+    assert text.endswith(re.sub(r"\bname_", f"{made.name}_", re.sub(r"\bNAME_", f"{made.name.upper()}_", kernel)))

@@ -1,0 +1,62 @@
+"""A language is a module with a TARGET: files.py asks for no more than that, and other rooms ask files.py."""
+
+import ast
+import re
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from tests.support.builds import SOURCES, scene
+from wavesym.programs.schemes import SCHEMES
+from wavesym.targets import TARGETS, files
+
+ROOT = Path(__file__).parents[2]
+
+
+class Basic:
+    """A language that says no more than its program's kind."""
+
+    tested = False
+
+    def files(self, description, program):
+        return {f"{description.name}.bas": f"10 PRINT {program.kind}, {description.reference}\n"}
+
+
+def test_another_language_is_a_name_and_a_target(monkeypatch):
+    monkeypatch.setitem(sys.modules, "wavesym.targets.basic", SimpleNamespace(TARGET=Basic()))
+    monkeypatch.setattr(files, "LANGUAGES", (*files.LANGUAGES, "basic"))
+    monkeypatch.setattr(files, "TARGETS", (*files.TARGETS, "basic"))
+    made = files.files(scene("made", "1e-2"), "basic", "pieces")
+    assert made["made.bas"] == "10 PRINT pieces, None\n"  # no self-test, so that no reference values are computed
+    assert made.keys() == {"made.bas", "made.json"}
+    every = files.files(scene("made", "1e-2"), "all", "pieces")
+    assert {"made.bas", "made.c", "made.py"} < every.keys()
+
+
+def test_no_room_but_files_imports_a_language():
+    inside = re.compile(rf"wavesym\.targets\.({'|'.join(TARGETS)})\b")
+    for path in (ROOT / "wavesym").rglob("*.py"):
+        if not path.is_relative_to(ROOT / "wavesym" / "targets"):
+            assert not inside.search(path.read_text(encoding="utf-8")), path
+
+
+def imports(text):
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            yield from (name.name for name in node.names)
+        if isinstance(node, ast.ImportFrom):
+            yield node.module
+
+
+@pytest.mark.parametrize(("evaluator", "precision"), SOURCES)
+def test_generated_python_imports_nothing_but_numpy(evaluator, precision):
+    made = files.files(scene("made", "1e-2"), "numpy", evaluator, precision)["made.py"]
+    assert set(imports(made)) == {"numpy", "numpy.typing"}
+
+
+@pytest.mark.parametrize("kind", SCHEMES)
+def test_nor_does_the_arithmetic_that_is_written_into_it(kind):
+    scheme = (ROOT / "wavesym" / "programs" / "schemes" / f"{kind}.py").read_text(encoding="utf-8")
+    assert set(imports(scheme)) == {"numpy", "numpy.typing"}

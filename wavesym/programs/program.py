@@ -1,0 +1,59 @@
+"""A program as a value: tables of numbers, what is proved of them, and what they compute."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from wavesym.numbers.reals import Real
+from wavesym.programs.schemes import SCHEMES, Scheme
+
+
+@dataclass(frozen=True)
+class ProgramOutput:
+    """An output: its name, its proved largest error relative to its largest value, and a lower bound of that value."""
+
+    name: str
+    bound: float
+    largest: float
+
+
+@dataclass(frozen=True)
+class Program:
+    """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
+
+    `kind` names its scheme: "closed", "pieces" or "march". `tables` are flat, by name, each number as it is written:
+    indices are ints, all else floats of the format; which there are, assembly.py says. `constants` are single numbers.
+    `reason` says why it was taken. Of a march, `sources` are the names of loads that it can be given, and it is `whole`
+    where no node was left out.
+    """
+
+    kind: str
+    real: Real
+    tau_max: float
+    outputs: tuple[ProgramOutput, ...]
+    tables: dict[str, tuple[float, ...]]
+    constants: dict[str, float]
+    reason: str
+    sources: tuple[str, ...] = ()
+    whole: bool = True
+
+    @property
+    def error_bound(self) -> float:
+        """The largest error of any output relative to its largest value; proved."""
+        return max(output.bound for output in self.outputs)
+
+    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
+        """All outputs at tau, of shape (outputs, *tau.shape), in the type of the format; NaN where tau is out of range.
+
+        Bit for bit what the generated NumPy gives. ArithmeticError where a march sees that its degree is too low.
+        """
+        return self._scheme.evaluate(tau)
+
+    @cached_property
+    def _scheme(self) -> Scheme:
+        real = np.dtype(f"f{self.real.bytes}").type
+        return SCHEMES[self.kind](self.tables, self.constants, self.tau_max, real)

@@ -1,0 +1,15 @@
+"""The arithmetic of programs in NumPy: run here on a program's tables, and written into generated Python as it stands.
+
+So the files of this folder import nothing but NumPy. What stands above their first class is left out in what is
+generated. Each scheme is made from the tables and single numbers that it names, tau_max, and the type of all values.
+"""
+
+from __future__ import annotations
+
+from wavesym.programs.schemes.closed import ClosedScheme
+from wavesym.programs.schemes.march import MarchScheme
+from wavesym.programs.schemes.pieces import PiecesScheme
+
+Scheme = ClosedScheme | PiecesScheme | MarchScheme
+
+SCHEMES: dict[str, type[Scheme]] = {"closed": ClosedScheme, "pieces": PiecesScheme, "march": MarchScheme}

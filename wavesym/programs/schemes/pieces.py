@@ -1,0 +1,102 @@
+"""Pieces in NumPy."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+class PiecesScheme:
+    """Pieces: for start[p] <= tau < start[p + 1] an output is one polynomial in w = tau - centre[p].
+
+    Outputs that may jump or bend at the same times share a grid of pieces. Of grid g the outputs are
+    member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces start at
+    first_piece[g] + g, as there is one more, the end of the last piece. Its polynomials stand piece by piece, and for
+    each piece member by member: coefficients, highest power first.
+    """
+
+    TABLES = (
+        "first_member",
+        "member",
+        "first_piece",
+        "start",
+        "centre",
+        "first_polynomial",
+        "first_power",
+        "coefficient",
+    )
+    CONSTANTS = ()
+
+    def __init__(
+        self,
+        tables: dict[str, tuple[float, ...]],
+        constants: dict[str, float],
+        tau_max: float,
+        real: type[np.float64],
+    ) -> None:
+        self._tau_max, self._real = tau_max, real
+        member, first_member, first_piece, first_polynomial, first_power = (
+            [int(place) for place in tables[name]]
+            for name in ("member", "first_member", "first_piece", "first_polynomial", "first_power")
+        )
+        start, centre, coefficient = (np.array(tables[name], real) for name in ("start", "centre", "coefficient"))
+        self._outputs = len(member)
+        self._grids = []
+        for g in range(len(first_piece) - 1):
+            members = member[first_member[g] : first_member[g + 1]]
+            low, high = first_piece[g], first_piece[g + 1]
+            ends = first_power[first_polynomial[g] : first_polynomial[g + 1] + 1]
+            size = int(np.diff(ends).max())
+            powers = np.zeros((len(ends) - 1, size), real)
+            for row, before, after in zip(powers, ends, ends[1:], strict=False):
+                row[: after - before] = coefficient[before:after][::-1]
+            # (pieces, degree + 1, outputs), lowest power first, 0 above the degree of each
+            grid_powers = powers.reshape(high - low, len(members), size).swapaxes(1, 2)
+            self._grids.append((members, start[low + g : high + g + 1], centre[low:high], grid_powers))
+
+    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
+        """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range."""
+        taus = np.asarray(tau, dtype=self._real)
+        flat = taus.ravel()
+        order = None
+        if flat.size > 1 and not np.all(flat[1:] >= flat[:-1]):
+            order = np.argsort(flat, kind="stable")
+            flat = flat[order]
+        inside = slice(np.searchsorted(flat, 0.0), np.searchsorted(flat, self._tau_max, side="right"))
+        out = np.full((self._outputs, flat.size), np.nan, self._real)
+        if inside.stop > inside.start:
+            for outputs, starts, centres, powers in self._grids:
+                out[outputs, inside] = self._on_pieces(flat[inside], starts, centres, powers)
+        if order is not None:
+            result = np.empty_like(out)
+            result[:, order] = out
+            out = result
+        return out.reshape(self._outputs, *taus.shape)
+
+    def _on_pieces(
+        self,
+        tau: NDArray[np.float64],
+        starts: NDArray[np.float64],
+        centres: NDArray[np.float64],
+        powers: NDArray[np.float64],
+    ) -> NDArray[np.float64]:
+        """Outputs at sorted tau inside the grid: (outputs, tau.size). All samples of a piece are one matrix product."""
+        edges = np.searchsorted(tau, starts)
+        counts = np.diff(edges)
+        widest = counts.max()
+        pieces, _, outputs = powers.shape
+        if pieces * widest > 4 * tau.size + 64:  # samples lie unevenly: pieces that have many go first, by themselves
+            out = np.empty((outputs, tau.size), self._real)
+            for piece in np.flatnonzero(counts):
+                part = slice(edges[piece], edges[piece + 1])
+                out[:, part] = self._product((tau[part] - centres[piece])[None], powers[piece : piece + 1])[0].T
+            return out
+        places = np.minimum(edges[:-1, None] + np.arange(widest), tau.size - 1)
+        values = self._product(tau[places] - centres[:, None], powers)
+        return values[np.arange(widest) < counts[:, None]].T
+
+    def _product(self, w: NDArray[np.float64], powers: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The polynomials `powers` (pieces, degree + 1, outputs) at w (pieces, samples): (pieces, samples, outputs)."""
+        size = powers.shape[1]
+        basis = np.empty((*w.shape, size - 1), self._real)
+        for k in range(size - 1):
+            np.multiply(basis[..., k - 1] if k else 1, w, out=basis[..., k])
+        return basis @ powers[:, 1:] + powers[:, :1]

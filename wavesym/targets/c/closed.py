@@ -1,0 +1,33 @@
+"""The closed form as C: its pulses, families and coefficients as tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from wavesym.programs.program import Program
+from wavesym.rendering import render
+from wavesym.targets.c.kernel import kernel
+from wavesym.targets.description import Description
+from wavesym.targets.literals import Lines, c_tables
+from wavesym.targets.number_format import number_format
+
+
+@dataclass(frozen=True)
+class CClosed:
+    """templates/c/closed.c.j2; every table as the lines between its braces."""
+
+    scene: Description
+    tables: dict[str, Lines]
+    exponential: str
+    kernel: str
+
+
+def source(scene: Description, program: Program) -> str:
+    """NAME.c."""
+    context = CClosed(
+        scene=scene,
+        tables=c_tables(program.tables, program.real),
+        exponential=number_format(program.real).c_exponential,
+        kernel=kernel("closed.c", scene),
+    )
+    return render("c/closed.c.j2", context)

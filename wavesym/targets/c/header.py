@@ -1,0 +1,21 @@
+"""NAME.h: what every program declares."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from wavesym.rendering import render
+from wavesym.targets.description import Description
+
+
+@dataclass(frozen=True)
+class CHeader:
+    """templates/c/header.h.j2; `more` is what a kind of program declares besides."""
+
+    scene: Description
+    more: str
+
+
+def header(scene: Description, more: str = "") -> str:
+    """The interface that all programs share, and more."""
+    return render("c/header.h.j2", CHeader(scene, more))

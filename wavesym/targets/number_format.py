@@ -1,0 +1,39 @@
+"""What languages call the numbers of a program: asked here and nowhere else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from wavesym.numbers.reals import DOUBLE, SINGLE, Real
+
+
+@dataclass(frozen=True)
+class NumberFormat:
+    """A format as languages know it.
+
+    `c_type`, `c_suffix` (of literals) and `c_exponential` are for C, `numpy_type` is the name of NumPy's type,
+    `largest` the largest finite number. `shortest` writes a number as the shortest decimal that reads back to it.
+    """
+
+    c_type: str
+    c_suffix: str
+    c_exponential: str
+    numpy_type: str
+    largest: float
+    shortest: Callable[[float], str]
+
+
+_FORMATS = {
+    DOUBLE.name: NumberFormat("double", "", "exp", "float64", float(np.finfo(np.float64).max), repr),
+    SINGLE.name: NumberFormat(
+        "float", "f", "expf", "float32", float(np.finfo(np.float32).max), lambda value: str(np.float32(value))
+    ),
+}
+
+
+def number_format(real: Real) -> NumberFormat:
+    """What languages call `real` numbers."""
+    return _FORMATS[real.name]

@@ -1,0 +1,51 @@
+"""NAME.py: the tables that a scheme reads, and the scheme itself."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from wavesym.programs.program import Program
+from wavesym.programs.schemes import SCHEMES, Scheme
+from wavesym.rendering import render
+from wavesym.targets.description import Description
+from wavesym.targets.literals import Lines, lines, literal
+
+_WIDTH = 112
+
+
+@dataclass(frozen=True)
+class NumPyProgram:
+    """templates/numpy/program.py.j2; every table as the lines between its brackets."""
+
+    scene: Description
+    tables: dict[str, Lines]
+    constants: dict[str, str]
+    scheme: str
+    scheme_name: str
+
+
+def source(scene: Description, program: Program) -> str:
+    """The text of the module."""
+
+    def written(values: Iterable[float]) -> Iterable[str]:
+        return (str(value) if isinstance(value, int) else literal(value, program.real) for value in values)
+
+    scheme = SCHEMES[program.kind]
+    context = NumPyProgram(
+        scene=scene,
+        tables={name: lines(written(program.tables[name]), _WIDTH) for name in scheme.TABLES},
+        constants=dict(zip(scheme.CONSTANTS, written(program.constants[n] for n in scheme.CONSTANTS), strict=True)),
+        scheme=_text(scheme),
+        scheme_name=scheme.__name__,
+    )
+    return render("numpy/program.py.j2", context)
+
+
+def _text(scheme: type[Scheme]) -> str:
+    """A scheme's file from its first class on."""
+    module = inspect.getmodule(scheme)
+    assert module  # it was imported from one
+    text = inspect.getsource(module)
+    return text[text.index("\nclass ") :].strip()

@@ -1,0 +1,35 @@
+"""Reference values for a self-test: where it looks, and what is right there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from wavesym.exact.reference import Reference, beginning
+from wavesym.model.model import Model
+from wavesym.programs.choice import Evaluator
+
+_MOST_POINTS = 2000
+_MOST_VALUES = 40_000
+
+
+@dataclass(frozen=True)
+class ReferenceValues:
+    """The outputs at `taus`, correctly rounded doubles: values[output][k] is that at taus[k]."""
+
+    taus: tuple[float, ...]
+    values: tuple[tuple[float, ...], ...]
+
+
+def reference_values(model: Model, evaluator: Evaluator) -> ReferenceValues:
+    """At the points that an evaluator wants checked. On very long horizons they cover only the beginning."""
+    reference = Reference(beginning(model), evaluator.real)
+    most = max(10, min(_MOST_POINTS, _MOST_VALUES // len(evaluator.outputs)))
+    taus = _thinned([tau for tau in evaluator.check_points if tau <= reference.tau_max], most)
+    return ReferenceValues(tuple(taus), tuple(map(tuple, reference.values(taus))))
+
+
+def _thinned(points: Sequence[float], most: int) -> Sequence[float]:
+    """No more points than a self-test should carry, spread evenly over those there are."""
+    step = -(-len(points) // most)
+    return [*points[::step], points[-1]] if step > 1 else points
