@@ -108,7 +108,7 @@ def precise(attempt: Callable[[], T | None], bits: int = FIRST_BITS, most: int =
         if result is not None:
             return result
         bits *= 2
-    raise ArithmeticError(f"{most} bits are not enough")
+    raise ArithmeticError(f"more than {most} bits would be needed, at most {most} expected")
 
 
 def values(source: Callable[[], Sequence[Segment]], taus: Sequence[float], bits: int = FIRST_BITS) -> list[float]:

@@ -92,7 +92,7 @@ def windows(chain: Chain, nodes: range, pieces: Sequence[Piece], count: int, ter
     if (size := stored(2 * len(nodes) * count * len(panels), terms, ctx.prec)) > _LARGEST:
         raise CostError(
             f"output.until: the waves of {len(nodes)} nodes on {count} windows with {ctx.prec} bits would take "
-            f"{size:.1e} bytes, at most {_LARGEST:.1e} expected"
+            f"{size:.1e} bytes, at most {_LARGEST:.1e} expected (a shorter horizon or fewer load times help)"
         )
     result = Windows(chain, nodes, panels, {x: [] for x in nodes}, {x: [] for x in nodes})
     bodies = {x: _Body(chain.nodes[x]) for x in nodes}

@@ -92,10 +92,10 @@ def choose(scene: Scene, name: str = "auto", precision: str = "double", windows:
             break  # it takes as long for a value as for all windows before it
         try:
             evaluator = MAKERS[each](scene, real, name != "auto", windows)
-        except CostError:
+        except CostError as refusal:
             if name != "auto":
                 raise
-            refused.append(f"{each}: costs too much")
+            refused.append(f"{each}: {refusal}")
             continue
         except OverflowError:
             if name != "auto":

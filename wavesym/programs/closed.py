@@ -138,7 +138,10 @@ def refuse_many(scene: Scene, most: float) -> None:
     later = [piece.time for piece in scene.pieces if first[piece.source] < piece.time <= until]
     windows = sum(float(until - time) + 1 for time in later)
     if (arrivals := 2 * len(scene.outputs) * windows) > most:
-        raise CostError(f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected")
+        raise CostError(
+            f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected (fewer load "
+            "times or outputs, or a shorter horizon, help)"
+        )
 
 
 def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) -> ClosedForm:

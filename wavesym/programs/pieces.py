@@ -154,8 +154,8 @@ class _TooLarge(CostError):
 
 def _too_large(size: int, most: int) -> _TooLarge:
     return _TooLarge(
-        f"output.until: pieces would take at least {size / 2**20:.2g} MiB, at most {most / 2**20:.2g} expected; a "
-        "shorter horizon, fewer outputs or load times help"
+        f"output.until: pieces would take at least {size / 2**20:.2g} MiB, at most {most / 2**20:.2g} expected "
+        "(a shorter horizon, fewer outputs or load times help)"
     )
 
 
@@ -194,7 +194,7 @@ class _Fits:
         if self._bits > _MOST_BITS:
             raise CostError(
                 f"output.until: pieces would need {self._bits} bits to be known to tau = {self._tau_max:g}, at most "
-                f"{_MOST_BITS} expected"
+                f"{_MOST_BITS} expected (a shorter horizon, or smaller kappa, helps)"
             )
 
     @cached_property
@@ -214,15 +214,16 @@ class _Fits:
             self._bits = ctx.prec  # what did for one number of pieces is where the next one starts
             if self._least(per_unit) * self._bits > _MOST_WORK:
                 raise CostError(
-                    f"output.until: {self._least(per_unit):.0e} pieces would be fitted with {self._bits} bits, "
-                    f"at most {_MOST_WORK // self._bits:.0e} expected"
+                    f"output.until: {self._least(per_unit):.1e} pieces would be fitted with {self._bits} bits, "
+                    f"at most {_MOST_WORK // self._bits:.1e} expected (a shorter horizon, fewer outputs or "
+                    "load times help)"
                 )
             return self._fit(per_unit, most)
 
         try:
             return precise(attempt, self._bits, _MOST_BITS)
         except ArithmeticError as error:
-            raise CostError(f"output.until: pieces would take minutes to fit, as {error}") from None
+            raise CostError(f"output.until: to fit pieces, {error} (a shorter horizon helps)") from None
 
     def _least(self, per_unit: int) -> int:
         """How many pieces there are at least, of all outputs."""

@@ -199,23 +199,24 @@ def _refuse_extreme(prepared: Plan, real: Real) -> None:
 def _refuse_long(prepared: Plan, degree: int, spent: float, windows: int = 0, marches: int = 1) -> float:
     """What trying a degree costs, with what is `spent` already; CostError where that is too much."""
     asked, until = ("--windows", float(windows)) if windows else ("output.until", prepared.tau_max)
+    shorter = "fewer windows" if windows else "a shorter horizon"
     work = (windows or prepared.windows) * len(prepared.panels)
     work *= _OVERHEAD + marches * len(prepared.junctions) * degree
     if degree > _HIGHEST_DEGREE:
         raise CostError(
-            f"{asked}: march: bodies of rates up to {nearest(prepared.rate):g} would need polynomials of degree "
-            f"{degree:.2g} to tau = {until:g}, at most {_HIGHEST_DEGREE} expected"
+            f"{asked}: for bodies of rates up to {nearest(prepared.rate):g} a march would need polynomials of degree "
+            f"{degree} to tau = {until:g}, at most {_HIGHEST_DEGREE} expected ({shorter}, or smaller kappa, helps)"
         )
     spent += work + _BOUNDING * operator_count(prepared) * degree**3
     if spent > _MOST_WORK:
         raise CostError(
-            f"{asked}: march: degree {degree} to tau = {until:g} would cost {spent:.0e} operations, at most "
-            f"{_MOST_WORK:.0e} expected; a shorter time helps"
+            f"{asked}: a march of degree {degree} to tau = {until:g} would cost {spent:.1e} operations, at most "
+            f"{_MOST_WORK:.1e} expected ({shorter} helps)"
         )
     if 8 * _state(prepared, degree) > _LARGEST_STATE:
         raise CostError(
-            f"system.m: march: its state would have {8 * _state(prepared, degree):.0e} bytes, at most "
-            f"{_LARGEST_STATE:.0e} expected"
+            f"system.m: the state of a march would have {8 * _state(prepared, degree):.1e} bytes, at most "
+            f"{_LARGEST_STATE:.1e} expected (smaller m, or fewer fractional parts of load times, help)"
         )
     return spent
 

@@ -201,7 +201,8 @@ def _panels(times: Iterable[fmpq]) -> tuple[Panel, ...]:
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise CostError(
-            f"load: march: the times have {len(cuts) - 1} different fractional parts, at most {MOST_PANELS} expected"
+            f"load: the times, k*spacing in a record, have {len(cuts) - 1} different fractional parts, at most "
+            f"{MOST_PANELS} expected for a march (a spacing of p/q with q up to {MOST_PANELS}, or fewer samples, helps)"
         )
     return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
 
