@@ -1,4 +1,4 @@
-"""README.md and GUIDE.md: what they tell a reader to type is run, and what they show is what comes out.
+"""README.md and the pages of docs/: what they tell a reader to type is run, and what they show is what comes out.
 
 The first word after ``` says what a block is, a second one the file that it is saved as:
 toml, c     a scene, a program in C; a later command uses the file
@@ -31,7 +31,7 @@ from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene
 
 ROOT = Path(wavesym.__file__).parents[1]
-DOCUMENTS = ("README.md", "GUIDE.md")
+DOCUMENTS = ("README.md", "docs/guide.md")
 LONG = re.compile(r"wavesym (chart|stability|plot --published|verify --published)\b")  # half a minute and more
 SHELL = set("|<>;&$`*?~=")  # what a line is for a shell with
 
@@ -186,7 +186,7 @@ def test_the_example_in_the_help_of_a_command_works(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     line = shlex.join(["wavesym", *example(name, capsys)])
-    if line not in re.findall(r"^(wavesym .*?) *(?:#.*)?$", document("GUIDE.md"), re.MULTILINE):
+    if line not in re.findall(r"^(wavesym .*?) *(?:#.*)?$", document("docs/guide.md"), re.MULTILINE):
         assert Reader(tmp_path, patience=True).line(line) is not None  # what is in the guide too is run there
 
 
@@ -214,7 +214,7 @@ def test_the_readme_is_one_screen() -> None:
 
 
 def test_the_guide_has_every_command() -> None:
-    code = "".join(block.text for block in blocks(document("GUIDE.md")) if block.language == "sh")
+    code = "".join(block.text for block in blocks(document("docs/guide.md")) if block.language == "sh")
     assert {name for name in COMMANDS if f"wavesym {name}" in code} == set(COMMANDS)
 
 

@@ -82,8 +82,8 @@ def test_files_of_others_are_replaced_by_force_only(capsys: pytest.CaptureFixtur
 def test_what_takes_long_first_asks_where_it_may_write(
     command: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for work in ("measure.measure", "stability.atlas", "figures.published"):
-        monkeypatch.setattr(f"wavesym.report.{work}", lambda *_: pytest.fail("worked before it asked"))
+    for work in ("lab.measure.measure", "lab.stability.atlas", "report.figures.published"):
+        monkeypatch.setattr(f"wavesym.{work}", lambda *_: pytest.fail("worked before it asked"))
     assert refused(capsys, *command, "mine.toml/deeper/out.svg").endswith(": Not a directory")
 
 
