@@ -57,7 +57,8 @@ def test_a_machine_without_a_compiler_gets_one(fresh: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("target", "added"), [("test", ["test"]), ("lint", ["lint"]), ("check-all", ["lint", "test"]), ("mutants", ["test"])]
+    ("target", "added"),
+    [("test", ["test"]), ("lint", ["lint"]), ("check-all", ["lint", "test"]), ("mutants", ["test"])],
 )
 def test_tests_and_linters_add_what_they_need(target: str, added: list[str], fresh: Path) -> None:
     assert extras(commands(fresh, target, ("cc",))) == ["plot", *added]

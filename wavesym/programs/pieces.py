@@ -222,6 +222,8 @@ class _Fits:
 
         try:
             return precise(attempt, self._bits, _MOST_BITS)
+        except OverflowError:  # of the numbers' format, which costs have nothing to do with
+            raise
         except ArithmeticError as error:
             raise CostError(f"output.until: to fit pieces, {error} (a shorter horizon helps)") from None
 
