@@ -2,8 +2,12 @@
 
 PYTHON ?= python3
 BIN := .venv/bin
+# tells every 4 s that a command is still at work, where there is no terminal for it to say what it does
+TOLD := sh -c '[ -t 2 ] || while sleep 4 >&2 && kill -0 $$$$; do echo "   ... at work"; done 2> /dev/null & "$$@"; \
+	status=$$?; kill $$! 2> /dev/null; exit $$status' told
 # modules are compiled when they are first imported: most of what is installed never is
-PIP := $(BIN)/python -m pip install --disable-pip-version-check --no-compile --progress-bar off -c constraints.txt -e
+PIP := $(TOLD) $(BIN)/python -m pip install --disable-pip-version-check --no-compile --progress-bar off \
+	-c constraints.txt -e
 # a C compiler as a package, only where this machine has none
 HAS_COMPILER := $(shell command -v cc || command -v gcc || command -v clang)
 NEEDED := $(if $(HAS_COMPILER),plot,plot compiler)
@@ -18,33 +22,34 @@ install: .venv/.installed
 
 .venv/.installed: pyproject.toml constraints.txt
 	@echo '== Python packages into .venv: what running and plotting need'
-	$(PYTHON) -m venv --clear .venv
-	$(PIP) '.[$(subst $() ,$(COMMA),$(NEEDED))]'
+	@$(TOLD) $(PYTHON) -m venv --clear .venv
+	@$(PIP) '.[$(subst $() ,$(COMMA),$(NEEDED))]'
 	@touch $@
 
 .venv/.test .venv/.lint: .venv/.%: .venv/.installed
 	@echo '== Python packages into .venv: what `make $*` needs'
-	$(PIP) '.[$*]'
+	@$(PIP) '.[$*]'
 	@touch $@
 
 # other packages as rows of `wavesym chart`
 peers: install
-	$(PIP) '.[peers]'
+	@$(PIP) '.[peers]'
 
 demo: install
 	@echo '== The three examples of the paper, against direct integration: some seconds each'
 	@set -e; for scene in $(DEMO); do \
 		echo "$(BIN)/wavesym verify $$scene"; \
-		$(BIN)/wavesym verify $$scene; \
+		$(TOLD) $(BIN)/wavesym verify $$scene; \
 		echo; \
 	done
 	@echo '== C and NumPy for each of them, into build/demo'
 	@set -e; for scene in $(DEMO); do \
 		echo "$(BIN)/wavesym generate $$scene -o build/demo/$$scene --language all"; \
-		$(BIN)/wavesym generate $$scene -o build/demo/$$scene --language all; \
+		$(TOLD) $(BIN)/wavesym generate $$scene -o build/demo/$$scene --language all; \
 	done
 	@echo '== Figs. 6, 7 and 8 of the paper, with what it says of them marked and judged: some seconds each'
-	$(BIN)/wavesym plot --published -o build/demo
+	@echo '$(BIN)/wavesym plot --published -o build/demo'
+	@$(TOLD) $(BIN)/wavesym plot --published -o build/demo
 	@echo
 	@echo '== Done. In build/demo are now'
 	@echo '   figure_6.svg, figure_7.svg, figure_8.svg (and .png)    pictures to look at first'
