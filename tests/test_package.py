@@ -1,4 +1,4 @@
-"""`import wavesym` is light, gives what `interface.md` promises, and does the same wherever it is installed."""
+"""`import wavesym` is light, gives what docs/reference.md promises, and does the same wherever it is installed."""
 
 from __future__ import annotations
 
