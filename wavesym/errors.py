@@ -64,7 +64,7 @@ class CostError(WavesymError):
     ...     wavesym.evaluator(scene)([1.0])
     ... except wavesym.CostError as error:
     ...     print(error)
-    output.until: 3 nodes times 1e+06 units of tau are 3e+06 windows of waves to keep, at most 20000 expected (a \
+    output.until: 3 nodes times 1e+06 units of tau are 3e+06 windows to keep, at most 20000 expected (a \
 shorter horizon helps)
     """
 
@@ -92,7 +92,7 @@ class ToleranceError(WavesymError):
     ...     wavesym.generate(scene, "out", evaluator="pieces")
     ... except wavesym.ToleranceError as error:
     ...     print(error)
-    output.tolerance: 1e-20 cannot be met: pieces: rounding allows 2.8e-16 at best for strain@0
+    output.tolerance: 1e-20 cannot be met: pieces: rounding leaves a bound of 2.8e-16 for strain@0
     """
 
     status: ClassVar[int] = 1

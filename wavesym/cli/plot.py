@@ -31,7 +31,7 @@ def plot(scene: Scene | None, published: bool, out: Path) -> None:
     """
     context = click.get_current_context()
     if published and scene:
-        raise click.UsageError("--published takes no SCENE", context)
+        raise click.UsageError("SCENE and --published given, one of them expected", context)
     if not find_spec("matplotlib"):
         raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
 

@@ -51,7 +51,7 @@ class Motion:
         if (kept := len(self._nodes) * until) > MOST_WINDOWS:
             raise CostError(
                 f"output.until: {len(self._nodes)} nodes times {float(until):g} units of tau are {float(kept):g} "
-                f"windows of waves to keep, at most {MOST_WINDOWS} expected (a shorter horizon helps)"
+                f"windows to keep, at most {MOST_WINDOWS} expected (a shorter horizon helps)"
             )
 
     @cached_property

@@ -120,7 +120,7 @@ class Pieces:
     def shortfall(self, tolerance: fmpq) -> str:
         """Why it does not meet a tolerance."""
         worst = max(self.outputs, key=lambda output: output.bound)
-        return f"pieces: rounding allows {worst.bound:g} at best for {worst.name}"
+        return f"pieces: rounding leaves a bound of {worst.bound:g} for {worst.name}"
 
     @cached_property
     def check_points(self) -> list[float]:
@@ -193,7 +193,7 @@ class _Fits:
         self._bits = self._motion.first_bits
         if self._bits > _MOST_BITS:
             raise CostError(
-                f"output.until: pieces would need {self._bits} bits to be known to tau = {self._tau_max:g}, at most "
+                f"output.until: {self._bits} bits would be needed for pieces to tau = {self._tau_max:g}, at most "
                 f"{_MOST_BITS} expected (a shorter horizon, or smaller kappa, helps)"
             )
 

@@ -95,8 +95,8 @@ class MarchEvaluator:
         """Why it does not meet a tolerance."""
         worst = max(self.outputs, key=lambda output: output.bound)
         if not worst.bound < 1:
-            return f"march: {worst.name} cannot be told from 0"
-        return f"march: rounding allows {worst.bound:g} to tau = {self.tau_max:g} for {worst.name}"
+            return f"march: its error may be as large as {worst.name} itself"
+        return f"march: rounding leaves a bound of {worst.bound:g} to tau = {self.tau_max:g} for {worst.name}"
 
     @cached_property
     def check_points(self) -> list[float]:
@@ -204,8 +204,8 @@ def _refuse_long(prepared: Plan, degree: int, spent: float, windows: int = 0, ma
     work *= _OVERHEAD + marches * len(prepared.junctions) * degree
     if degree > _HIGHEST_DEGREE:
         raise CostError(
-            f"{asked}: for bodies of rates up to {nearest(prepared.rate):g} a march would need polynomials of degree "
-            f"{degree} to tau = {until:g}, at most {_HIGHEST_DEGREE} expected ({shorter}, or smaller kappa, helps)"
+            f"{asked}: rates to {nearest(prepared.rate):g} need polynomials of degree {degree:g} to tau = {until:g}, "
+            f"at most {_HIGHEST_DEGREE} expected in a march ({shorter}, or smaller kappa, helps)"
         )
     spent += work + _BOUNDING * operator_count(prepared) * degree**3
     if spent > _MOST_WORK:

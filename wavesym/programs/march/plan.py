@@ -201,8 +201,8 @@ def _panels(times: Iterable[fmpq]) -> tuple[Panel, ...]:
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise CostError(
-            f"load: the times, k*spacing in a record, have {len(cuts) - 1} different fractional parts, at most "
-            f"{MOST_PANELS} expected for a march (a spacing of p/q with q up to {MOST_PANELS}, or fewer samples, helps)"
+            f"load: times (k*spacing in a record) have {len(cuts) - 1} different fractional parts, at most "
+            f"{MOST_PANELS} expected in a march (a spacing of p/q with q up to {MOST_PANELS}, or fewer samples, helps)"
         )
     return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
 
