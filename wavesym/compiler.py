@@ -158,7 +158,7 @@ def generate(
     made = {folder / name: text for name, text in files(scene, language, evaluator, precision, windows).items()}
     for path in made:
         if not force and path.is_file() and not is_ours(path):
-            raise WavesymError(f"{path}: not written by wavesym, and --force not given")
+            raise WavesymError(f"{path}: exists and was not written by wavesym; --force replaces it")
     write_whole(made)
     return tuple(made)
 
@@ -223,7 +223,9 @@ def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
     """What a user might not expect: no load, tau out of range, contacts that open early enough to matter."""
     last = horizon(scene)
     outside = sum(not 0 <= tau <= last for tau in taus)
-    lines = [f"{outside} of {len(taus)} tau are not within 0 and {scene.output.until}: nan"] * bool(outside)
+    lines = [f"{outside} of {len(taus)} tau are outside 0 to {scene.output.until}, where values are nan"] * bool(
+        outside
+    )
     return [*no_load(scene), *lines, *_contact_warnings(scene)]
 
 
@@ -235,7 +237,7 @@ def no_load(scene: Scene) -> list[str]:
 def _contact_warnings(scene: Scene) -> list[str]:
     """A line for every contact that opens early enough to matter to an output."""
     return [
-        f"contact at x = {end.x} opens at tau = {end.digits}: what it can reach after that is the formal continuation"
+        f"contact at x = {end.x} opens at tau = {end.digits}: what that can reach is computed as if it stayed closed"
         for end in contact_ends(scene)
     ]
 

@@ -53,7 +53,7 @@ class _Source(click.ParamType[Any]):
     help="How it is written.",
 )
 @click.option("--walks", is_flag=True, help="Walk polynomials instead, which say why powers are as high as they are.")
-@click.option("--intervals", type=click.IntRange(1), help="Of every function, for --walks.  [default: 4]")
+@click.option("--intervals", type=click.IntRange(1), help="With --walks: how many of every function.  [default: 4]")
 def derive(source: str | Scene, m: int | None, format: str, walks: bool, intervals: int | None) -> None:
     """Derive boundary conditions, delay equations and coefficient recurrences.
 
