@@ -75,6 +75,12 @@ def test_every_room_is_named_once() -> None:
     ], "the table of rooms has another order than the list"
 
 
+def test_the_words_of_the_house_are_defined() -> None:
+    defined = set(re.findall(r"^- \*\*(.+?)\*\*", PAGE, re.MULTILINE))
+    words = "window knot probe walk panel piece march spine node rate ball bound horizon".split()
+    assert defined >= {*words, "light cone", "unit response", "formal continuation"}
+
+
 def test_imports_keep_to_the_order() -> None:
     assert against(ORDER, uses()) == EXCEPTIONS
 
