@@ -2,8 +2,8 @@
 
 PYTHON ?= python3
 BIN := .venv/bin
-# tells every 4 s that a command is still at work, where there is no terminal for it to say what it does
-TOLD := sh -c '[ -t 2 ] || while sleep 4 >&2 && kill -0 $$$$; do echo "   ... at work"; done 2> /dev/null & "$$@"; \
+# tells every 2 s that a command is still at work, where there is no terminal for it to say what it does
+TOLD := sh -c '[ -t 2 ] || while sleep 2 >&2 && kill -0 $$$$; do echo "   ... at work"; done 2> /dev/null & "$$@"; \
 	status=$$?; kill $$! 2> /dev/null; exit $$status' told
 # modules are compiled when they are first imported: most of what is installed never is
 PIP := $(TOLD) $(BIN)/python -m pip install --disable-pip-version-check --no-compile --progress-bar off \
