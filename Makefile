@@ -2,38 +2,68 @@
 
 PYTHON ?= python3
 BIN := .venv/bin
-INSTALLED := .venv/.installed
+# tells every 2 s that a command is still at work, where there is no terminal for it to say what it does
+TOLD := sh -c '[ -t 2 ] || while sleep 2 >&2 && kill -0 $$$$; do echo "   ... at work"; done 2> /dev/null & "$$@"; \
+	status=$$?; kill $$! 2> /dev/null; exit $$status' told
+# modules are compiled when they are first imported: most of what is installed never is
+PIP := $(TOLD) $(BIN)/python -m pip install --disable-pip-version-check --no-compile --progress-bar off \
+	-c constraints.txt -e
+# a C compiler as a package, only where this machine has none
+HAS_COMPILER := $(shell command -v cc || command -v gcc || command -v clang)
+NEEDED := $(if $(HAS_COMPILER),plot,plot compiler)
+COMMA := ,
 DEMO := collision_m4 drive_m1 building_m2
 CORES := -n auto --dist loadfile
 
 .PHONY: install demo test lint generated bench mutants peers check-all
 
-install: $(INSTALLED)
+# what running and plotting need; `make test` and `make lint` add what they need
+install: .venv/.installed
 
-$(INSTALLED): pyproject.toml constraints.txt
-	$(PYTHON) -m venv --clear .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test,lint,plot]'
+.venv/.installed: pyproject.toml constraints.txt
+	@echo '== Python packages into .venv: what running and plotting need'
+	@$(TOLD) $(PYTHON) -m venv --clear .venv
+	@$(PIP) '.[$(subst $() ,$(COMMA),$(NEEDED))]'
+	@touch $@
+
+.venv/.test .venv/.lint: .venv/.%: .venv/.installed
+	@echo '== Python packages into .venv: what `make $*` needs'
+	@$(PIP) '.[$*]'
 	@touch $@
 
 # other packages as rows of `wavesym chart`
 peers: install
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[peers]'
+	@$(PIP) '.[peers]'
 
 demo: install
-	@echo '== The three examples of the paper, against direct integration'
-	$(BIN)/wavesym verify $(DEMO)
+	@echo '== The three examples of the paper, against direct integration: some seconds each'
+	@set -e; for scene in $(DEMO); do \
+		echo "$(BIN)/wavesym verify $$scene"; \
+		$(TOLD) $(BIN)/wavesym verify $$scene; \
+		echo; \
+	done
 	@echo '== C and NumPy for each of them, into build/demo'
 	@set -e; for scene in $(DEMO); do \
 		echo "$(BIN)/wavesym generate $$scene -o build/demo/$$scene --language all"; \
-		$(BIN)/wavesym generate $$scene -o build/demo/$$scene --language all; \
+		$(TOLD) $(BIN)/wavesym generate $$scene -o build/demo/$$scene --language all; \
 	done
-	@echo '== Figs. 6, 7 and 8 of the paper, with what it says of them marked and judged'
-	$(BIN)/wavesym plot --published -o build/demo
+	@echo '== Figs. 6, 7 and 8 of the paper, with what it says of them marked and judged: some seconds each'
+	@echo '$(BIN)/wavesym plot --published -o build/demo'
+	@$(TOLD) $(BIN)/wavesym plot --published -o build/demo
+	@echo
+	@echo '== Done. In build/demo are now'
+	@echo '   figure_6.svg, figure_7.svg, figure_8.svg (and .png)    pictures to look at first'
+	@echo '   a folder for each of $(DEMO)    C, NumPy, a self-test, a manifest'
+	@echo '== What to do next'
+	@echo '   $(BIN)/wavesym init > mine.toml                   a scene of your own to start from, with comments'
+	@echo '   $(BIN)/wavesym plot mine.toml -o mine.svg         its histories'
+	@echo '   $(BIN)/wavesym generate mine.toml                 its C'
+	@echo '   docs/guide.md                                     all else, step by step'
 
-test: install
+test: .venv/.test
 	$(BIN)/python -m pytest $(CORES)
 
-lint: install
+lint: .venv/.lint
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy --strict wavesym
@@ -47,7 +77,7 @@ generated: install
 	done
 	$(BIN)/wavesym verify --published --format markdown > generated/errata.md
 
-check-all: lint
+check-all: lint .venv/.test
 	$(BIN)/python -m pytest $(CORES) --run-slow
 
 # speed, as ratios within one run, and the charts of the same scenes
@@ -58,5 +88,5 @@ bench: install
 	done
 
 # which mistakes in the proofs of the bounds the tests would miss: 300 of them, within 45 minutes on 2 cores
-mutants: install
+mutants: .venv/.test
 	$(BIN)/python -m tests.mutation.run --write build/mutants.md

@@ -1,10 +1,12 @@
-"""README.md and GUIDE.md: what they tell a reader to type is run, and what they show is what comes out.
+"""README.md, CONTRIBUTING.md and docs/: what they tell a reader to type is run, and what they show is what comes out.
 
 The first word after ``` says what a block is, a second one the file that it is saved as:
 toml, c     a scene, a program in C; a later command uses the file
 python      a program, which runs
 sh          commands, line by line
 text        all that the block before it puts out, to the character
+picture     for the eye only
+others      what another test reads: those of READ_ELSEWHERE
 """
 
 from __future__ import annotations
@@ -31,14 +33,17 @@ from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene
 
 ROOT = Path(wavesym.__file__).parents[1]
-DOCUMENTS = ("README.md", "GUIDE.md")
+PAGES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.md"))
+DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES)
+READ_ELSEWHERE = {"order", "exceptions", "walls"}  # of architecture.md, by test_architecture.py
+TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated)/[\w./-]*$")
 LONG = re.compile(r"wavesym (chart|stability|plot --published|verify --published)\b")  # half a minute and more
 SHELL = set("|<>;&$`*?~=")  # what a line is for a shell with
 
 BLOCK = re.compile(r"^```(.*)\n((?:.*\n)*?)^```$\n", re.MULTILINE)
 SPAN = re.compile(r"`([^`\n]+)`")
 HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
-LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
+LINK = re.compile(r"\]\(([^)#:]*)(?:#([^)]*))?\)")
 
 
 class Block(NamedTuple):
@@ -103,6 +108,8 @@ class Reader:
                 return None if None in lines else "".join(filter(None, lines))
             case "text":
                 assert block.text == before
+            case other if other in {"picture", *READ_ELSEWHERE}:
+                return before
             case _:
                 raise AssertionError(f"no way to run {block.language or 'what has no language'}")
         return None
@@ -171,13 +178,13 @@ def assert_spelt(words: list[str]) -> None:
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_what_a_document_says_works(name: str, tmp_path: Path) -> None:
-    assert Reader(tmp_path, patience=False).read(document(name)) > 0
+    assert Reader(tmp_path, patience=False).read(document(name)) == document(name).count("```") // 2
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_all_that_a_document_says_works(name: str, tmp_path: Path) -> None:
-    assert Reader(tmp_path, patience=True).read(document(name)) > 0
+    assert Reader(tmp_path, patience=True).read(document(name)) == document(name).count("```") // 2
 
 
 @pytest.mark.slow
@@ -186,7 +193,7 @@ def test_the_example_in_the_help_of_a_command_works(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     line = shlex.join(["wavesym", *example(name, capsys)])
-    if line not in re.findall(r"^(wavesym .*?) *(?:#.*)?$", document("GUIDE.md"), re.MULTILINE):
+    if line not in re.findall(r"^(wavesym .*?) *(?:#.*)?$", document("docs/guide.md"), re.MULTILINE):
         assert Reader(tmp_path, patience=True).line(line) is not None  # what is in the guide too is run there
 
 
@@ -202,10 +209,26 @@ def test_what_a_document_names_exists(name: str) -> None:
             assert_spelt(["wavesym", *words[1:]])
         elif words[0].startswith("--"):
             assert words[0] in everything, span
-    headings = {re.sub(r"[^a-z0-9 -]", "", line.lower()).replace(" ", "-") for line in HEADING.findall(text)}
-    assert headings >= set(re.findall(r"\]\(#([^)]+)\)", text))
-    for file in LINK.findall(text):
-        assert (ROOT / file).exists(), file
+        elif TREE.match(span) and "NAME" not in span:
+            assert (ROOT / span).exists(), span
+    for file, heading in LINK.findall(text):
+        target = (ROOT / name).parent / file if file else ROOT / name
+        assert target.exists(), file
+        if heading:
+            assert heading in headings(target.read_text(encoding="utf-8")), heading
+
+
+def headings(text: str) -> set[str]:
+    """The anchors that a document has."""
+    return {
+        re.sub(r"[^a-z0-9 _-]", "", line.lower()).replace(" ", "-") for line in HEADING.findall(BLOCK.sub("", text))
+    }
+
+
+def test_every_page_can_be_found() -> None:
+    """README.md links to those of docs/, and to how to contribute."""
+    linked = {file for file, _ in LINK.findall(document("README.md"))}
+    assert linked >= {"CONTRIBUTING.md", *PAGES}
 
 
 def test_the_readme_is_one_screen() -> None:
@@ -213,8 +236,29 @@ def test_the_readme_is_one_screen() -> None:
     assert {"`make demo`", "`make test`"} <= set(re.findall(r"`make [a-z]+`", document("README.md")))
 
 
+def test_no_source_names_a_document_that_is_not_here() -> None:
+    there = {path.name for folder in (".", "docs", "bench", "generated") for path in (ROOT / folder).glob("*.md")}
+    for path in (path for room in ("wavesym", "tests", "templates") for path in (ROOT / room).rglob("*.*")):
+        if path.suffix in {".py", ".c", ".h", ".j2", ".toml"}:
+            named = re.findall(r"\b(\w+\.md)\b", path.read_text(encoding="utf-8"))
+            assert set(named) <= there, path
+
+
+def test_the_reference_has_every_option_of_every_command() -> None:
+    rows = re.findall(r"^\| (`wavesym (\w+).*)$", document("docs/reference.md"), re.MULTILINE)
+    for name in COMMANDS:
+        spans = " ".join(SPAN.findall("".join(row for row, named in rows if named == name)))
+        wanted = {option for option in options(command(name)) if option.startswith("-")} - {"--help"}
+        assert wanted <= set(spans.split()), name
+
+
+def test_the_reference_has_everything_public() -> None:
+    code = set(re.findall(r"`wavesym\.(\w+)", document("docs/reference.md")))
+    assert code >= set(wavesym.__all__) - {"__version__"}
+
+
 def test_the_guide_has_every_command() -> None:
-    code = "".join(block.text for block in blocks(document("GUIDE.md")) if block.language == "sh")
+    code = "".join(block.text for block in blocks(document("docs/guide.md")) if block.language == "sh")
     assert {name for name in COMMANDS if f"wavesym {name}" in code} == set(COMMANDS)
 
 

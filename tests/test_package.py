@@ -1,4 +1,4 @@
-"""`import wavesym` is light, gives what `interface.md` promises, and does the same wherever it is installed."""
+"""`import wavesym` is light, gives what docs/reference.md promises, and does the same wherever it is installed."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def wheel(project: Path, folder: Path) -> Path:
 
 
 def contents(project: Path) -> set[str]:
-    """What belongs into the wheel: modules, the C of one of them, built-in scenes, templates, the marker for types."""
+    """What belongs into the wheel: modules, the C of one of them, scenes, templates, the marker for types."""
     modules = {path.relative_to(project).as_posix() for path in project.glob("wavesym/**/*.py")}
     templates = {path.relative_to(project).as_posix() for path in project.glob("templates/**/*.*")}
     info = f"wavesym-{wavesym.__version__}.dist-info"
@@ -125,6 +125,7 @@ def contents(project: Path) -> set[str]:
         *modules,
         *(f"wavesym/{template}" for template in templates),
         *(f"wavesym/scene/builtin/{scene}.toml" for scene in SCENES),
+        *(f"wavesym/scene/first/{system}.toml" for system in ("building", "collision", "drive")),
         "wavesym/rivals/characteristics.c",
         "wavesym/py.typed",
         *(f"{info}/{name}" for name in ("METADATA", "RECORD", "WHEEL", "entry_points.txt", "licenses/LICENSE")),

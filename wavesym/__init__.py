@@ -1,12 +1,17 @@
 """Longitudinal and torsional waves in chains of rods and rigid bodies, from a scene to C that can be linked.
 
-From Python:
+    Scene       what is modelled, which loads act, which outputs are wanted, for how long and how exactly
+    evaluator   the outputs of a scene as a function of tau, right to the last bit
+    tables      the exact coefficients of its wave functions
+    generate    its C and NumPy programs, written to files
 
-    import wavesym
-    scene = wavesym.Scene.from_toml("building_m2.toml")   # or wavesym.Scene(...), the same fields
-    response = wavesym.evaluator(scene)                   # callable: tau array -> (outputs, *tau.shape)
-    rows = wavesym.tables(scene)                          # the table's rows, exact fractions
-    wavesym.generate(scene, "out", language="all")        # paths written
+A request that cannot be carried out raises a WavesymError: SceneError, ToleranceError, CostError or RangeError.
+
+    >>> import wavesym
+    >>> scene = wavesym.Scene.from_toml("building_m2")  # built in; or a path, or wavesym.Scene(...)
+    >>> response = wavesym.evaluator(scene)
+    >>> response([0.5, 20.0]).shape  # outputs, then the shape of tau
+    (6, 2)
 """
 
 from __future__ import annotations
@@ -16,11 +21,12 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from wavesym.compiler import evaluator, generate, tables
-    from wavesym.errors import CostError, SceneError, ToleranceError, WavesymError
+    from wavesym.errors import CostError, RangeError, SceneError, ToleranceError, WavesymError
     from wavesym.scene import Scene
 
 __all__ = [
     "CostError",
+    "RangeError",
     "Scene",
     "SceneError",
     "ToleranceError",
@@ -36,6 +42,7 @@ __version__ = "0.1.0"
 _HOMES = {
     "Scene": "wavesym.scene",
     "CostError": "wavesym.errors",
+    "RangeError": "wavesym.errors",
     "SceneError": "wavesym.errors",
     "ToleranceError": "wavesym.errors",
     "WavesymError": "wavesym.errors",

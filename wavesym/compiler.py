@@ -48,9 +48,18 @@ MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond 
 
 
 def evaluator(scene: Scene) -> Response:
-    """The reference evaluator of a scene, right to the last bit.
+    """The outputs of a scene as a function of tau, each value right to the last bit.
 
+    Called with an array of tau it gives an array of shape (outputs, *tau.shape). It has `outputs`, their names,
+    `tau_max`, the end of the horizon, and `error_bound`.
     SceneError for what is no Scene; CostError, where it is called, for what would take minutes.
+
+    >>> import wavesym
+    >>> response = wavesym.evaluator(wavesym.Scene.from_toml("drive_m1"))
+    >>> response.outputs[0], response.tau_max
+    ('strain@0', 10.0)
+    >>> response([2.0, 4.0])[0]
+    array([-1.34196715, -1.0316365 ])
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
@@ -58,7 +67,16 @@ def evaluator(scene: Scene) -> Response:
 
 
 def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
-    """The rows of the coefficient table, exact: `intervals` of every function, or those the horizon needs."""
+    """The rows of the coefficient table, exact: `intervals` of every function, or those the horizon needs.
+
+    A row is one term: in the interval that it names, the derivative of the wave function gains
+    value * exp(-rate * w) * w**power.
+
+    >>> import wavesym
+    >>> row = wavesym.tables(wavesym.Scene.from_toml("building_m2"), intervals=1)[0]
+    >>> row.function, row.rod, row.source, row.interval, row.rate, row.power, row.value
+    ('f', 1, 'a', 1, Fraction(0, 1), 0, Fraction(-4, 1))
+    """
     rows = table(scene, intervals).rows()
     return [row._replace(rate=fraction(row.rate), value=fraction(row.value)) for row in rows]
 
@@ -129,12 +147,18 @@ def generate(
     `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. Files that wavesym
     did not write are replaced only by `force`; WavesymError else, and for a language, evaluator or precision that there
     is not.
+
+    >>> import wavesym
+    >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):
+    ...     print(path.as_posix())
+    drive/drive_m1.json
+    drive/drive_m1.py
     """
     folder = Path(directory or scene.name)
     made = {folder / name: text for name, text in files(lower(scene), language, evaluator, precision, windows).items()}
     for path in made:
         if not force and path.is_file() and not is_ours(path):
-            raise WavesymError(f"{path}: not written by wavesym, and --force not given")
+            raise WavesymError(f"{path}: exists and was not written by wavesym; --force replaces it")
     write_whole(made)
     return tuple(made)
 
@@ -199,7 +223,9 @@ def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
     """What a user might not expect: no load, tau out of range, contacts that open early enough to matter."""
     last = lower(scene).horizon()
     outside = sum(not 0 <= tau <= last for tau in taus)
-    lines = [f"{outside} of {len(taus)} tau are not within 0 and {scene.output.until}: nan"] * bool(outside)
+    lines = [f"{outside} of {len(taus)} tau are outside 0 to {scene.output.until}, where values are nan"] * bool(
+        outside
+    )
     return [*no_load(scene), *lines, *_contact_warnings(scene)]
 
 
@@ -211,7 +237,7 @@ def no_load(scene: Scene) -> list[str]:
 def _contact_warnings(scene: Scene) -> list[str]:
     """A line for every contact that opens early enough to matter to an output."""
     return [
-        f"contact at x = {end.x} opens at tau = {end.digits}: what it can reach after that is the formal continuation"
+        f"contact at x = {end.x} opens at tau = {end.digits}: what that can reach is computed as if it stayed closed"
         for end in contact_ends(lower(scene))
     ]
 

@@ -15,16 +15,35 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 
 class WavesymError(ValueError):
-    """A request that cannot be carried out; `str()` is one line that says why.
+    """A request that cannot be carried out; `str()` is one line that says why. All errors of wavesym are of this kind.
 
     `status` is what the command line exits with: 2 where the request was wrong.
+
+    >>> import wavesym
+    >>> try:
+    ...     wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "out", language="fortran")
+    ... except wavesym.WavesymError as error:
+    ...     print(error)
+    language: fortran given, c, numpy or all expected
     """
 
     status: ClassVar[int] = 2
 
 
 class SceneError(WavesymError):
-    """A scene, or another file of the user's, that is not as it should be: `FILE: key.path: what is wrong`."""
+    """A scene, or another file of the user's, that is not as it should be: `FILE: key.path: what is wrong`.
+
+    The three parts are `file`, `path` and `what`.
+
+    >>> import wavesym
+    >>> try:
+    ...     wavesym.Scene.from_toml("drive_m1").with_({"system.kappa[0]": -1})
+    ... except wavesym.SceneError as error:
+    ...     print(error.path)
+    ...     print(error.what)
+    system.kappa[0]
+    -1 given, a positive number expected
+    """
 
     def __init__(self, what: str, path: str = "", file: str = "scene") -> None:
         super().__init__(what, path, file)  # all three, so that the error can be pickled
@@ -37,14 +56,43 @@ class SceneError(WavesymError):
 
 
 class CostError(WavesymError):
-    """What is asked for would cost too much; the message says how much."""
+    """What is asked for would take minutes or fill the memory; the message says how much, and what would help.
+
+    >>> import wavesym
+    >>> scene = wavesym.Scene.from_toml("building_m2").with_({"output.until": 10**6})
+    >>> try:
+    ...     wavesym.evaluator(scene)([1.0])
+    ... except wavesym.CostError as error:
+    ...     print(error)
+    output.until: 3 nodes times 1e+06 units of tau are 3e+06 windows to keep, at most 20000 expected (a \
+shorter horizon helps)
+    """
 
 
 class RangeError(WavesymError, OverflowError):
-    """A number would be beyond the largest one of its floating-point format."""
+    """A number would be beyond the largest one of its floating-point format.
+
+    >>> import wavesym
+    >>> strong = {"body": 1, "times": [0], "steps": ["1e50"]}
+    >>> scene = wavesym.Scene.from_toml("drive_m1").with_({"load": [strong]})
+    >>> try:
+    ...     wavesym.generate(scene, "out", evaluator="pieces", precision="single")
+    ... except wavesym.RangeError as error:
+    ...     print(error)
+    output: pieces needs numbers beyond the range of single precision
+    """
 
 
 class ToleranceError(WavesymError):
-    """The scene's tolerance cannot be met."""
+    """The scene's tolerance cannot be met; the message says what every evaluator could reach, or why it was refused.
+
+    >>> import wavesym
+    >>> scene = wavesym.Scene.from_toml("drive_m1").with_({"output.tolerance": "1e-20"})
+    >>> try:
+    ...     wavesym.generate(scene, "out", evaluator="pieces")
+    ... except wavesym.ToleranceError as error:
+    ...     print(error)
+    output.tolerance: 1e-20 cannot be met: pieces: rounding leaves a bound of 2.8e-16 for strain@0
+    """
 
     status: ClassVar[int] = 1

@@ -74,7 +74,7 @@ def faults(answer: Answer, left: set[str], unmet: bool = False) -> list[str]:
     if answer.status not in ((0, 1, 2) if unmet else (0, 2)):
         found.append(f"status {answer.status}")
     if answer.status != 0:
-        if len(lines) != 1 or not lines[0].isprintable() or len(lines[0]) > 500:
+        if len(lines) != 1 or not lines[0].isprintable() or len(lines[0]) > 600:
             found.append("not one line")
         elif not NAMED.match(lines[0]):
             found.append("names no file and key")
@@ -355,7 +355,7 @@ def test_a_payload_that_reached_a_template_would_be_seen() -> None:
     environment = rendering._environment()
     assert environment.from_string("{{ name }}").render(name="{{7*7}}") == "{{7*7}}"
     assert environment.from_string("{{7*7}}").render() == "49"
-    sources = "".join(path.read_text() for path in Path(rendering.__file__).parent.parent.rglob("*.py"))
+    sources = "".join(path.read_text() for path in Path(rendering.__file__).parent.rglob("*.py"))
     assert not re.search(r"from_string|\beval\(|\bexec\(|sympify|getenv|shell=True|pickle\.load", sources)
 
 

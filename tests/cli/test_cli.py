@@ -156,7 +156,10 @@ def test_scenes_lists_what_is_built_in(capsys: pytest.CaptureFixture[str]) -> No
         (["generate", "mine.toml", "--language", "ada"], "wavesym generate: Invalid value for '--language'"),
         (["plot", "mine.toml"], "wavesym plot: Missing option '-o'"),
         (["plot", "-o", "x.svg"], "wavesym plot: Missing argument 'SCENE'"),
-        (["plot", "mine.toml", "--published", "-o", "x"], "wavesym plot: --published takes no SCENE"),
+        (
+            ["plot", "mine.toml", "--published", "-o", "x"],
+            "wavesym plot: SCENE and --published given, one of them expected",
+        ),
         (["derive", "train"], "wavesym derive: Invalid value for '{collision|drive|building}'"),
         (["derive", "drive", "--m", "x"], "wavesym derive: Invalid value for '--m'"),
         (["derive", "drive", "--m", "0"], "wavesym derive: --m: 0 given, at least 1 expected"),

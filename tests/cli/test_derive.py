@@ -40,12 +40,12 @@ def test_walk_polynomials(arguments, format, capsys):
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["drive", "--walks"], "wavesym derive: --walks: --m expected"),
+        (["drive", "--walks"], "wavesym derive: --walks: --m M expected"),
         (["drive", "--walks", "--m", "0"], "wavesym derive: --m: 0 given, 1 ... 100 expected"),
         (["drive", "--walks", "--m", "60", "--intervals", "60"], "wavesym derive: --intervals: the walk polynomials"),
-        (["drive", "--intervals", "3"], "wavesym derive: --intervals: without --walks"),
+        (["drive", "--intervals", "3"], "wavesym derive: --intervals given without --walks"),
         (["train"], "wavesym derive: Invalid value for '{collision|drive|building}' or SCENE: 'train' is neither"),
-        (["mine.toml", "--m", "2"], "wavesym derive: --m and SCENE given"),
+        (["mine.toml", "--m", "2"], "wavesym derive: --m given for a scene"),
         (["drive", "--m", "0"], "wavesym derive: --m: 0 given, 1 ... 100 expected"),
         (["bad.toml"], "bad.toml: system.inertia: 1 numbers given, 2 expected (m + 1)"),
         (["."], ".: Is a directory"),

@@ -71,7 +71,7 @@ def test_files_of_others_are_replaced_by_force_only(capsys: pytest.CaptureFixtur
     Path("there", "mine.c").write_text("int main(void) { return 0; }\n")
     Path("loaded.toml").write_text(LOADED)
     line = refused(capsys, "generate", "loaded.toml", "-o", "there", "--language", "all")
-    assert line == f"loaded.toml: {Path('there/mine.c')}: not written by wavesym, and --force not given"
+    assert line == f"loaded.toml: {Path('there/mine.c')}: exists and was not written by wavesym; --force replaces it"
     assert main(["generate", "loaded.toml", "-o", "there", "--language", "all", "--force"]) == 0
     assert len(list(Path("there").iterdir())) == 5
     # all of them are now its own
@@ -82,8 +82,8 @@ def test_files_of_others_are_replaced_by_force_only(capsys: pytest.CaptureFixtur
 def test_what_takes_long_first_asks_where_it_may_write(
     command: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for work in ("measure.measure", "stability.atlas", "figures.published"):
-        monkeypatch.setattr(f"wavesym.report.{work}", lambda *_: pytest.fail("worked before it asked"))
+    for work in ("lab.measure.measure", "lab.stability.atlas", "report.figures.published"):
+        monkeypatch.setattr(f"wavesym.{work}", lambda *_: pytest.fail("worked before it asked"))
     assert refused(capsys, *command, "mine.toml/deeper/out.svg").endswith(": Not a directory")
 
 
@@ -93,7 +93,7 @@ def test_times_beyond_the_horizon_are_named(capsys: pytest.CaptureFixture[str]) 
     assert main(["run", "loaded.toml", "--at", "at.txt"]) == 0
     out, err = capsys.readouterr()
     assert out.count("nan") == 2
-    assert err == "mine: 2 of 3 tau are not within 0 and 2: nan\n"
+    assert err == "mine: 2 of 3 tau are outside 0 to 2, where values are nan\n"
 
 
 @pytest.mark.parametrize("command", ["run", "generate", "plot"])

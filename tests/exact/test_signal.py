@@ -103,5 +103,5 @@ def test_tables_that_would_be_large_are_refused_before_they_are_made(monkeypatch
         raise AssertionError("a table was begun")
 
     monkeypatch.setattr("wavesym.exact.signal.unit_response", made)
-    with pytest.raises(CostError, match=r"^output.until: the tables would hold .* at most 1e\+01 expected"):
+    with pytest.raises(CostError, match=r"^output.until: the tables would hold .* at most 1.0e\+01 expected"):
         signals(lower(scene(40, strain=["1/2"])), most=10)

@@ -241,8 +241,8 @@ def guarded(until, kappa="1/2", tolerance="1e-10"):
     ("name", "scene", "why"),
     [
         ("closed", guarded(60), "closed: loses all digits after tau = "),
-        ("pieces", guarded(20, tolerance="1e-17"), "pieces: rounding allows"),
-        ("march", guarded(500, tolerance="1e-13"), "march: rounding allows"),
+        ("pieces", guarded(20, tolerance="1e-17"), "pieces: rounding leaves"),
+        ("march", guarded(500, tolerance="1e-13"), "march: rounding leaves"),
     ],
     ids=["closed", "pieces", "march"],
 )

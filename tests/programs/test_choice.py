@@ -1,5 +1,6 @@
 """The choice among evaluators: by proved bound and by work, with the reason told; on evaluators made by hand."""
 
+import re
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 
@@ -35,7 +36,7 @@ class Made:
 
 
 def costly(*_):
-    raise CostError("output.until: dear")
+    raise CostError("output.until: 9 coins, at most 5 expected (saving helps)")
 
 
 def beyond(*_):
@@ -75,7 +76,8 @@ def test_a_bound_that_is_the_tolerance_meets_it_and_one_above_does_not(makers):
     assert choose(lower(scene())).name == "pieces"
     makers(pieces=Made("pieces", 2.0**-10 + 2.0**-60))
     with pytest.raises(
-        ToleranceError, match=r"^output.tolerance: 0.000976562 cannot be met: closed: costs too much; pie"
+        ToleranceError,
+        match=r"^output.tolerance: 0.000976562 cannot be met: closed: output.until: 9 coins, at most 5 exp",
     ):
         choose(lower(scene()))
     makers(pieces=Made("pieces", float("inf")))
@@ -96,7 +98,9 @@ def test_a_march_is_made_only_where_nothing_else_does(makers):
     made = makers(pieces=Made("pieces", 1), march=Made("march", 1e-9))
     chosen = choose(lower(scene()))
     assert chosen.name == "march"
-    assert chosen.reason == "closed: costs too much; pieces: 1 at best; march is good to 1e-09"
+    assert chosen.reason == (
+        "closed: output.until: 9 coins, at most 5 expected (saving helps); pieces: 1 at best; march is good to 1e-09"
+    )
 
 
 def test_only_the_one_asked_for_is_made(makers):
@@ -121,14 +125,38 @@ def test_windows_are_those_of_a_march(makers):
 
 def test_what_was_asked_for_says_why_it_is_refused(makers):
     makers(closed=beyond)
-    with pytest.raises(CostError, match="dear"):
+    with pytest.raises(CostError, match="9 coins"):
         choose(lower(scene()), "pieces")
     with pytest.raises(RangeError, match=r"^output: closed needs numbers beyond the range of single precision$"):
         choose(lower(scene()), "closed", "single")
     with pytest.raises(
-        ToleranceError, match=r"closed: numbers beyond the range of double precision; pieces: costs too"
+        ToleranceError,
+        match=r"closed: numbers beyond the range of double precision; pieces: output.until: 9 coins, .*; march: output",
     ):
         choose(lower(scene()))
+
+
+@pytest.mark.parametrize(("spacing", "until"), [("31.37", 1900), ("1/200", 200)])
+def test_a_record_that_nothing_can_run_is_told_all_the_causes(spacing, until):
+    samples = [(37 * k * k) % 101 for k in range(60 if spacing == "31.37" else 400)]
+    record = wavesym.Scene(
+        name="record",
+        system={"type": "building", "m": 3, "kappa": ["1/4", "3/5", "3/5", "1/5"], "base": "ground"},
+        load=[{"spacing": spacing, "samples": samples}],
+        output={"until": until, "tolerance": "1e-6", "strain": [f"{k}/20" for k in range(1, 20)]},
+    )
+    with pytest.raises(ToleranceError) as told:
+        choose(lower(record))
+    line = str(told.value)
+    parts = {"31.37": 60, "1/200": 200}[spacing]
+    assert f"march: load: times (k*spacing in a record) have {parts} different fractional parts, at most 16" in line
+    assert re.search(r"closed: load: \S+ increments would arrive at the outputs, at most 5.0e\+04 expected", line)
+    assert re.search(
+        r"pieces: output.until: (\d+ bits would be needed|pieces would take at least \S+ MiB).*, at most", line
+    )
+    assert line.count(" help") == 3
+    assert "\n" not in line
+    assert len(line) < 500
 
 
 def test_closed_forms_are_made_of_small_tables_unless_asked_for(monkeypatch):

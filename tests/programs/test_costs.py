@@ -117,10 +117,10 @@ def test_a_heavy_shaft_for_long_is_refused_by_all_but_the_tables(monkeypatch):
     """Rates of 10000 until tau = 200: millions of bits for windows, and polynomials of thousands of powers to march."""
     scene = drive([10000], [1, 1], 200)
     monkeypatch.setattr(motion, "windows", begun)
-    for name, why in (("pieces", r"pieces would need \d+ bits"), ("march", r"polynomials of degree")):
+    for name, why in (("pieces", r"\d+ bits would be needed for pieces"), ("march", r"polynomials of degree")):
         with pytest.raises(CostError, match=rf"^output.until: .*{why}"):
             choose(lower(scene), name)
-    with pytest.raises(ToleranceError, match=r"pieces: costs too much; march: costs too much"):
+    with pytest.raises(ToleranceError, match=r"pieces: .*at most 1024 expected.*; march: .* polynomials of deg"):
         choose(lower(scene))
     assert Reference(lower(scene)).signals is not None
     three = drive([10000] * 3, [1] * 4, 200)
@@ -158,7 +158,7 @@ def test_tables_beyond_the_limit_are_refused_before_a_fit(monkeypatch):
     monkeypatch.setattr(pieces._Fits, "_fit", begun)
     size = 8 * made._least(2)
     with pytest.raises(
-        pieces._TooLarge, match=r"^output.until: pieces would take at least .* a shorter horizon, fewer"
+        pieces._TooLarge, match=r"^output.until: pieces would take at least .*\(a shorter horizon, fewer"
     ):
         made.fitted(2, size - 1)
     with pytest.raises(Begun):

@@ -230,7 +230,7 @@ def test_what_is_zero_by_symmetry_is_exactly_zero():
 
 
 def test_what_cannot_be_had_is_refused():
-    with pytest.raises(ToleranceError, match=r"march: rounding allows \S+ to tau = 50 for"):
+    with pytest.raises(ToleranceError, match=r"march: rounding leaves a bound of \S+ to tau = 50 for"):
         march(lower(building(50, SHORT_PULSE, tolerance="1e-14")))
     many = [Fraction(k, 17) for k in range(17)]
     with pytest.raises(CostError, match="17 different fractional parts, at most 16 expected"):

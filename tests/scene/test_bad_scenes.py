@@ -98,7 +98,7 @@ MISTAKES = [
     (BUILDING, "m = 2", f"m = {HUGE}", "system.kappa: 3 numbers given, a number of about "),
     (COLLISION, "m = 4", f"m = {HUGE}", "system.kappa: 2 numbers given, a number of about "),
     (COLLISION, "m = 4", f"m = {HUGE}1", "system.m: a number of about "),
-    (COLLISION, "[1, -0.5]", "[1, 1.5]", "system.velocity[1]: 3/2 given, at most 1 as on its left expected"),
+    (COLLISION, "[1, -0.5]", "[1, 1.5]", "system.velocity[1]: 3/2 given, at most 1 expected, as on its left"),
     (COLLISION, "[0.1, 0.2]", "[0.1, 0]", "system.kappa[1]: 0 given, a positive number expected"),
     (COLLISION, "[0.1, 0.2]", "[-0.1, 0.2]", "system.kappa[0]: -0.1 given, a positive number expected"),
     (DRIVE, "[1, 1, 1]", "[1, 1, -0.0]", "system.inertia[2]: -0.0 given, a positive number expected"),

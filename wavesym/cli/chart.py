@@ -27,7 +27,11 @@ for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
 @click.option("-o", "out", type=PATH, metavar="FILE", required=True, help="The picture: .svg, .png or .pdf.")
 @click.option("--csv", "table", type=PATH, metavar="FILE", help="Where the numbers go.")
 @click.option(
-    "--samples", type=click.IntRange(101, 10**6), default=SAMPLES, show_default=True, help="Timed, an output."
+    "--samples",
+    type=click.IntRange(101, 10**6),
+    default=SAMPLES,
+    show_default=True,
+    help="How many values of each output are timed.",
 )
 def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
     """Draw speed against accuracy: every evaluator of a scene, and other methods.

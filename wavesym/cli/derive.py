@@ -59,7 +59,7 @@ def system_names() -> tuple[str, ...]:
     help="How it is written.",
 )
 @click.option("--walks", is_flag=True, help="Walk polynomials instead, which say why powers are as high as they are.")
-@click.option("--intervals", type=click.IntRange(1), help="Of every function, for --walks.  [default: 4]")
+@click.option("--intervals", type=click.IntRange(1), help="With --walks: how many of every function.  [default: 4]")
 def derive(source: str | Scene, m: int | None, format: str, walks: bool, intervals: int | None) -> None:
     """Derive boundary conditions, delay equations and coefficient recurrences.
 
@@ -73,11 +73,11 @@ def derive(source: str | Scene, m: int | None, format: str, walks: bool, interva
     from wavesym import compiler
 
     if m is not None and not isinstance(source, str):
-        raise click.UsageError("--m and SCENE given, which has an m of its own")
+        raise click.UsageError("--m given for a scene, which has its own m; it is for the name of a system")
     if walks and isinstance(source, str) and m is None:
-        raise click.UsageError("--walks: --m expected, since polynomials are those of one chain")
+        raise click.UsageError("--walks: --m M expected with the name of a system, since walks are those of one chain")
     if intervals is not None and not walks:
-        raise click.UsageError("--intervals: without --walks, which it is for")
+        raise click.UsageError("--intervals given without --walks; it is for --walks only")
     try:
         with progress(f"derive {source if isinstance(source, str) else source.name}"):
             if walks:

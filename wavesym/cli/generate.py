@@ -23,9 +23,15 @@ MOST_WINDOWS = 2**31 - 2
 @click.command()
 @click.argument("scene", type=SCENE)
 @click.option("-o", "directory", type=PATH, metavar="DIR", help="Where the files go.  [default: ./NAME of the scene]")
-@click.option("--language", type=click.Choice(LANGUAGES), default="c", show_default=True, help="What to write.")
-@click.option("--evaluator", type=click.Choice(EVALUATORS), default="auto", show_default=True, help="How it computes.")
-@click.option("--precision", type=click.Choice(PRECISIONS), default="double", show_default=True, help="In what type.")
+@click.option(
+    "--language", type=click.Choice(LANGUAGES), default="c", show_default=True, help="Which languages to write."
+)
+@click.option(
+    "--evaluator", type=click.Choice(EVALUATORS), default="auto", show_default=True, help="How outputs are computed."
+)
+@click.option(
+    "--precision", type=click.Choice(PRECISIONS), default="double", show_default=True, help="Type of all numbers."
+)
 @click.option(
     "--windows",
     type=click.IntRange(1, MOST_WINDOWS),

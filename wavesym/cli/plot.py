@@ -31,7 +31,7 @@ def plot(scene: Scene | None, published: bool, out: Path) -> None:
     """
     context = click.get_current_context()
     if published and scene:
-        raise click.UsageError("--published takes no SCENE", context)
+        raise click.UsageError("SCENE and --published given, one of them expected", context)
     if not find_spec("matplotlib"):
         raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
 
@@ -47,9 +47,10 @@ def plot(scene: Scene | None, published: bool, out: Path) -> None:
     elif published:
         with progress("plot --published"):
             from wavesym.report import figures
-
-            paths = figures.published(out)
-        for path in paths:
-            click.echo(path)
+        for number in figures.FIGURES:
+            with progress(f"plot --published: figure {number}"):
+                paths = figures.published(out, number)
+            for path in paths:
+                click.echo(path)
     else:
         raise click.MissingParameter(ctx=context, param_hint="'SCENE'", param_type="argument")

@@ -16,14 +16,18 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("scene", type=SCENE)
-@click.option("--intervals", type=click.IntRange(min=1), help="Of every function; by default those the horizon needs.")
+@click.option(
+    "--intervals",
+    type=click.IntRange(min=1),
+    help="How many of every function.  [default: those that the horizon needs]",
+)
 @click.option(
     "--format", type=click.Choice(["csv", "json", "latex"]), default="csv", show_default=True, help="How it is written."
 )
 @click.option(
     "--symbolic",
     is_flag=True,
-    help="Rational functions of kappa_i, r_i = J_i/J_(i+1), u_i = v_(i-1) - v_(i+1); what is equal in SCENE is one.",
+    help="Rational functions of kappa_i, r_i = J_i/J_(i+1), u_i = v_(i-1) - v_(i+1); equal parameters are one symbol.",
 )
 @click.option("-o", "out", type=PATH, metavar="FILE", help="Where the table goes.  [default: standard output]")
 def tables(scene: Scene, intervals: int | None, format: str, symbolic: bool, out: Path | None) -> None:

@@ -30,9 +30,9 @@ def verify(scenes: tuple[Scene, ...], published: bool, derived: bool, format: st
       wavesym verify collision_m4 drive_m1
     """
     if published + derived + bool(scenes) > 1:
-        raise click.UsageError("one of SCENE, --published and --derived expected")
+        raise click.UsageError("more than one of SCENE, --published and --derived given, at most one expected")
     if format and not published:
-        raise click.UsageError("--format is for --published")
+        raise click.UsageError("--format given without --published; it is for --published only")
     with progress("verify") as line:
         from wavesym import compiler
         from wavesym.scene import Scene, builtin_names

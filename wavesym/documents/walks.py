@@ -99,7 +99,10 @@ def _response(
     for tau, sent in enumerate(walks(chain, unit, names, names.symbols), 1):
         terms += sum(len(waves[-1]) for node in sent for waves in node)
         if terms > MOST_TERMS:
-            raise CostError(f"--intervals: the walk polynomials would have more than {MOST_TERMS:.0e} terms")
+            raise CostError(
+                f"--intervals: the walk polynomials of {tau} of {times} units of tau have {terms:.1e} terms, at "
+                f"most {MOST_TERMS:.1e} expected (fewer intervals help)"
+            )
         if tau == times:
             break
     polynomials = []

@@ -72,7 +72,9 @@ def contact_ends(model: Model, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
             try:
                 tau = precise(partial(_first_return, strain, reached), most=_MOST_BITS)
             except ArithmeticError as error:
-                raise CostError(f"output.until: when the contact at x = {x} opens takes minutes, as {error}") from None
+                raise CostError(
+                    f"output.until: to know when the contact at x = {x} opens, {error} (a shorter horizon helps)"
+                ) from None
         if tau.is_finite():
             ends.append(ContactEnd(x, tau))
     return tuple(ends)

@@ -34,10 +34,10 @@ class Motion:
         self._nodes = model.light_cone(until)
         self._acting = model.acting(until)
         self._marched: dict[int, Windows] = {}
-        if len(self._nodes) * until > MOST_WINDOWS:
+        if (kept := len(self._nodes) * until) > MOST_WINDOWS:
             raise CostError(
-                f"output.until: the waves of {len(self._nodes)} nodes on {float(until):.0e} windows would be kept, "
-                f"at most {MOST_WINDOWS:.0e} expected"
+                f"output.until: {len(self._nodes)} nodes times {float(until):g} units of tau are {float(kept):g} "
+                f"windows to keep, at most {MOST_WINDOWS} expected (a shorter horizon helps)"
             )
 
     @cached_property
@@ -60,7 +60,7 @@ class Motion:
         if seconds > MOST_SECONDS:
             raise CostError(
                 f"output: {taus} values of {len(self.probes)} outputs to tau = {float(self.until):g} would take about "
-                f"{seconds:.0f} s, at most {MOST_SECONDS} expected; fewer outputs, samples or load times help"
+                f"{seconds:.0f} s, at most {MOST_SECONDS} expected (fewer outputs, samples or load times help)"
             )
 
     def _lost(self, x: int) -> fmpq:

@@ -87,7 +87,9 @@ class Reference:
         except RangeError:
             raise
         except ArithmeticError as error:
-            raise CostError(f"output.until: right to the last bit would take minutes, as {error}") from None
+            raise CostError(
+                f"output.until: for values right to the last bit, {error} (a shorter horizon helps)"
+            ) from None
 
     def largest(self) -> list[arb]:
         """A lower bound of the largest absolute value of each output; 0 where it is 0 throughout."""

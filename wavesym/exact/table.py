@@ -26,7 +26,7 @@ class Function(NamedTuple):
 
 
 class Row(NamedTuple):
-    """One coefficient of a table, as in `interface.md`; all exact."""
+    """One coefficient of a table, as in docs/reference.md; all exact."""
 
     function: str
     rod: int

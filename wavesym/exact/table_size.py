@@ -87,17 +87,18 @@ def refuse_large(
 ) -> None:
     """CostError, for the key or option `asked`, where a table is beyond `LARGEST` bytes, `MOST_WORK` or `most` work."""
     size = table_size(chain, interval, wanted, sources)
+    fewer = "a shorter horizon" if asked == "output.until" else "fewer intervals"
     if size.bytes > LARGEST:
         raise CostError(
-            f"{asked}: the tables of coefficients would take about {size.bytes:.1e} bytes, "
-            f"at most {LARGEST:.0e} expected"
+            f"{asked}: the tables of coefficients would take {size.bytes:.1e} bytes, "
+            f"at most {LARGEST:.1e} expected ({fewer} or smaller m helps)"
         )
     if size.work > min(most, MOST_WORK):
         digits = size.bytes / max(size.coefficients, 1) * log10(2) * 8
         raise CostError(
             f"{asked}: the tables would hold {size.coefficients:.1e} coefficients of about {digits:.0e} digits, work "
-            f"for {size.work:.1e} short ones, at most {min(most, MOST_WORK):.0e} expected; fewer digits in the scene's "
-            "numbers, or more that are equal, help"
+            f"for {size.work:.1e} short ones, at most {min(most, MOST_WORK):.1e} expected ({fewer}, or "
+            "fewer digits in the scene's numbers, helps)"
         )
 
 

@@ -93,7 +93,7 @@ def windows(chain: Chain, nodes: range, loads: Sequence[Applied], count: int, te
     if (size := stored(2 * len(nodes) * count * len(panels), terms, bits)) > _LARGEST:
         raise CostError(
             f"output.until: the waves of {len(nodes)} nodes on {count} windows with {bits} bits would take "
-            f"{size:.1e} bytes, at most {_LARGEST:.1e} expected"
+            f"{size:.1e} bytes, at most {_LARGEST:.1e} expected (a shorter horizon or fewer load times help)"
         )
     with ctx.workprec(bits):
         return _marched(chain, nodes, panels, forces, count, terms)

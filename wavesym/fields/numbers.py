@@ -60,7 +60,7 @@ def exact(value: object) -> Fraction:
 def _fraction(value: Rational) -> Fraction:
     number = Fraction(int(value.numerator), int(value.denominator))  # of NumPy's integers too
     if max(number.numerator.bit_length(), number.denominator.bit_length()) > _MOST_BITS:
-        raise wrong(f"{shown(number)} given, at most {_MOST_BITS} bits above and below the line expected")
+        raise wrong(f"{shown(number)} given, at most {_MOST_BITS} bits in numerator and denominator expected")
     return number
 
 

@@ -80,10 +80,10 @@ def choose(model: Model, name: str = "auto", precision: str = "double", windows:
             break  # it takes as long for a value as for all windows before it
         try:
             evaluator = MAKERS[each](model, real, name != "auto", windows)
-        except CostError:
+        except CostError as refusal:
             if name != "auto":
                 raise
-            refused.append(f"{each}: costs too much")
+            refused.append(f"{each}: {refusal}")
             continue
         except OverflowError:
             if name != "auto":

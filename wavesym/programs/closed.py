@@ -131,7 +131,10 @@ def refuse_many(model: Model, most: float) -> None:
     later = [load.time for load in model.acting(model.until) if first[load.source] < load.time]
     windows = sum(nearest(model.until - time) + 1 for time in later)
     if (arrivals := 2 * len(model.probes) * windows) > most:
-        raise CostError(f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected")
+        raise CostError(
+            f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected (fewer load "
+            "times or outputs, or a shorter horizon, help)"
+        )
 
 
 def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) -> ClosedForm:

@@ -113,7 +113,7 @@ class Pieces:
     def shortfall(self, tolerance: fmpq) -> str:
         """Why it does not meet a tolerance."""
         worst = max(self.outputs, key=lambda output: output.bound)
-        return f"pieces: rounding allows {worst.bound:g} at best for {worst.name}"
+        return f"pieces: rounding leaves a bound of {worst.bound:g} for {worst.name}"
 
     @cached_property
     def check_points(self) -> list[float]:
@@ -147,8 +147,8 @@ class _TooLarge(CostError):
 
 def _too_large(size: int, most: int) -> _TooLarge:
     return _TooLarge(
-        f"output.until: pieces would take at least {size / 2**20:.2g} MiB, at most {most / 2**20:.2g} expected; a "
-        "shorter horizon, fewer outputs or load times help"
+        f"output.until: pieces would take at least {size / 2**20:.2g} MiB, at most {most / 2**20:.2g} expected "
+        "(a shorter horizon, fewer outputs or load times help)"
     )
 
 
@@ -186,8 +186,8 @@ class _Fits:
         self._bits = self._motion.first_bits
         if self._bits > _MOST_BITS:
             raise CostError(
-                f"output.until: pieces would need {self._bits} bits to be known to tau = {self._tau_max:g}, at most "
-                f"{_MOST_BITS} expected"
+                f"output.until: {self._bits} bits would be needed for pieces to tau = {self._tau_max:g}, at most "
+                f"{_MOST_BITS} expected (a shorter horizon, or smaller kappa, helps)"
             )
 
     @cached_property
@@ -207,15 +207,18 @@ class _Fits:
             self._bits = bits  # what did for one number of pieces is where the next one starts
             if self._least(per_unit) * self._bits > _MOST_WORK:
                 raise CostError(
-                    f"output.until: {self._least(per_unit):.0e} pieces would be fitted with {self._bits} bits, "
-                    f"at most {_MOST_WORK // self._bits:.0e} expected"
+                    f"output.until: {self._least(per_unit):.1e} pieces would be fitted with {self._bits} bits, "
+                    f"at most {_MOST_WORK // self._bits:.1e} expected (a shorter horizon, fewer outputs or "
+                    "load times help)"
                 )
             return self._fit(per_unit, most, bits)
 
         try:
             return precise(attempt, self._bits, _MOST_BITS)
+        except OverflowError:  # of the numbers' format, which costs have nothing to do with
+            raise
         except ArithmeticError as error:
-            raise CostError(f"output.until: pieces would take minutes to fit, as {error}") from None
+            raise CostError(f"output.until: to fit pieces, {error} (a shorter horizon helps)") from None
 
     def _least(self, per_unit: int) -> int:
         """How many pieces there are at least, of all outputs."""

@@ -36,17 +36,20 @@ FIGURES: Mapping[int, tuple[str, ...]] = {
 _INDENT = " " * 4
 
 
-def published(directory: Path) -> list[Path]:
-    """Write figure_6, figure_7 and figure_8 into `directory`, .svg and .png each; the paths written. OSError."""
-    records = {claim.id: judge(claim) for claim in section_5.claims()}
-    written = []
-    for number in FIGURES:
-        figure = redrawn(number, records)
-        for suffix in ("svg", "png"):
-            path = directory / f"figure_{number}.{suffix}"
-            save(figure, path)
-            written.append(path)
-    return written
+def published(directory: Path, number: int) -> list[Path]:
+    """Write the figure `number` into `directory`, as .svg and .png; the paths written. OSError."""
+    figure = redrawn(number, judged(number))
+    paths = [directory / f"figure_{number}.{suffix}" for suffix in ("svg", "png")]
+    for path in paths:
+        save(figure, path)
+    return paths
+
+
+def judged(number: int) -> dict[str, Record]:
+    """The verdicts on what the paper says of a figure."""
+    said = {id for id, statement in section_5.numbered().items() if statement.figure == number}
+    said |= {section_5.END} if number == 6 else set()
+    return {claim.id: judge(claim) for claim in section_5.claims() if claim.id in said}
 
 
 def redrawn(number: int, records: Mapping[str, Record]) -> Figure:

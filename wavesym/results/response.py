@@ -20,6 +20,7 @@ class Response:
     """A scene's outputs as one function: the exact tables in ball arithmetic, each value rounded once.
 
     `outputs` are their names, `tau_max` the end of the horizon; `error_bound` is relative to an output's largest value.
+    `wavesym.evaluator` makes it.
     """
 
     model: Model

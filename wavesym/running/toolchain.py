@@ -59,13 +59,13 @@ def compiler() -> Compiler:
     chosen = shlex.split(os.environ.get("CC", ""))
     if chosen:
         if not shutil.which(chosen[0]):
-            raise CompilerError(f"no C compiler: {chosen[0]} not found, which the variable CC names")
+            raise CompilerError(f"no C compiler: {chosen[0]} not found, though the environment variable CC names it")
         return Compiler(chosen[0], tuple(chosen))
     for found in at_hand(_COMMON):
         return found
     raise CompilerError(
-        f"no C compiler: {', '.join(_COMMON)} not found; install one, or name one in the variable CC, or have it as a "
-        f"Python package: pip install {_PACKAGE}"
+        f"no C compiler: {', '.join(_COMMON)} not found; install one of them, or name another in the environment "
+        f"variable CC, or install one as a Python package: pip install {_PACKAGE}"
     )
 
 

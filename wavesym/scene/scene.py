@@ -26,6 +26,16 @@ class Scene(SceneTable):
     The fields are those of a scene file. Everything is dimensionless: x in rod lengths, tau = c t / l. Numbers may be
     int, Fraction, Decimal, float (the shortest decimal that reads back to it) or text such as "1/3".
     Raises SceneError for the first thing that is wrong.
+
+    >>> import wavesym
+    >>> scene = wavesym.Scene(
+    ...     name="disc",
+    ...     system={"type": "drive", "m": 1, "kappa": [1], "inertia": [1, 2]},
+    ...     load=[{"body": 1, "times": [0], "steps": ["1/3"]}],
+    ...     output={"until": 4, "strain": ["1/2"]},
+    ... )
+    >>> scene.system.inertia
+    (Fraction(1, 1), Fraction(2, 1))
     """
 
     name: Name = Field(description="an identifier of C")
@@ -45,6 +55,10 @@ class Scene(SceneTable):
         """The scene in a file, on standard input (`-`), or built in (by name).
 
         A built-in scene goes before a file of the same name; `./NAME` is the file. Raises SceneError.
+
+        >>> import wavesym
+        >>> wavesym.Scene.from_toml("drive_m1").name
+        'drive_m1'
         """
         file, fields = read_toml(source)
         try:
@@ -56,6 +70,11 @@ class Scene(SceneTable):
         """The same scene with other values: `scene.with_({"system.kappa[1]": "1/3", "output.until": 40})`.
 
         Paths are those of messages, indices count from 0. Raises SceneError, as for a scene that is written so.
+
+        >>> import wavesym
+        >>> scene = wavesym.Scene.from_toml("drive_m1")
+        >>> scene.with_({"system.kappa[0]": "1/2", "output.until": 5}).system.kappa
+        (Fraction(1, 2),)
         """
         fields = self.model_dump()
         for path, value in changes.items():

@@ -68,5 +68,7 @@ class Collision(Preset):
         for k in range(1, len(velocity)):
             if velocity[k] > velocity[k - 1]:
                 left = shown(velocity[k - 1])
-                raise wrong(f"{shown(velocity[k])} given, at most {left} as on its left expected (or they part)", k)
+                raise wrong(
+                    f"{shown(velocity[k])} given, at most {left} expected, as on its left (or the bodies part)", k
+                )
         return velocity

@@ -90,7 +90,10 @@ def integrate(chain: Chain, loads: Sequence[Applied], until: float, steps: int) 
     panels = _panels((load.time for load in loads), steps)
     shape = windows + 1, 2, len(chain.nodes), panels[-1].points.stop
     if prod(shape) > MOST_DOUBLES:
-        raise CostError(f"the integration would hold {prod(shape):.1e} doubles, at most {MOST_DOUBLES:.0e} expected")
+        raise CostError(
+            f"output.until: direct integration would hold {float(prod(shape)):.1e} doubles, at most {MOST_DOUBLES:.1e} "
+            "expected (a shorter horizon, smaller m or fewer load times help)"
+        )
     waves = np.zeros(shape)
     for x, node in enumerate(chain.nodes):  # the window before tau = 0
         waves[0, LEFT, x] = nearest(node.left.velocity / 2) if node.left else 0.0

@@ -87,8 +87,8 @@ class MarchEvaluator:
         """Why it does not meet a tolerance."""
         worst = max(self.outputs, key=lambda output: output.bound)
         if not worst.bound < 1:
-            return f"march: {worst.name} cannot be told from 0"
-        return f"march: rounding allows {worst.bound:g} to tau = {self.tau_max:g} for {worst.name}"
+            return f"march: its error may be as large as {worst.name} itself"
+        return f"march: rounding leaves a bound of {worst.bound:g} to tau = {self.tau_max:g} for {worst.name}"
 
     @cached_property
     def check_points(self) -> list[float]:
@@ -191,23 +191,24 @@ def _refuse_extreme(prepared: Plan, real: Real) -> None:
 def _refuse_long(prepared: Plan, degree: int, spent: float, windows: int = 0, marches: int = 1) -> float:
     """What trying a degree costs, with what is `spent` already; CostError where that is too much."""
     asked, until = ("--windows", float(windows)) if windows else ("output.until", prepared.tau_max)
+    shorter = "fewer windows" if windows else "a shorter horizon"
     work = (windows or prepared.windows) * len(prepared.panels)
     work *= _OVERHEAD + marches * len(prepared.junctions) * degree
     if degree > _HIGHEST_DEGREE:
         raise CostError(
-            f"{asked}: march: bodies of rates up to {nearest(prepared.rate):g} would need polynomials of degree "
-            f"{degree:.2g} to tau = {until:g}, at most {_HIGHEST_DEGREE} expected"
+            f"{asked}: rates to {nearest(prepared.rate):g} need polynomials of degree {degree:g} to tau = {until:g}, "
+            f"at most {_HIGHEST_DEGREE} expected in a march ({shorter}, or smaller kappa, helps)"
         )
     spent += work + _BOUNDING * operator_count(prepared) * degree**3
     if spent > _MOST_WORK:
         raise CostError(
-            f"{asked}: march: degree {degree} to tau = {until:g} would cost {spent:.0e} operations, at most "
-            f"{_MOST_WORK:.0e} expected; a shorter time helps"
+            f"{asked}: a march of degree {degree} to tau = {until:g} would cost {spent:.1e} operations, at most "
+            f"{_MOST_WORK:.1e} expected ({shorter} helps)"
         )
     if 8 * _state(prepared, degree) > _LARGEST_STATE:
         raise CostError(
-            f"system.m: march: its state would have {8 * _state(prepared, degree):.0e} bytes, at most "
-            f"{_LARGEST_STATE:.0e} expected"
+            f"system.m: the state of a march would have {8 * _state(prepared, degree):.1e} bytes, at most "
+            f"{_LARGEST_STATE:.1e} expected (smaller m, or fewer fractional parts of load times, help)"
         )
     return spent
 

@@ -200,7 +200,8 @@ def _panels(times: Iterable[fmpq]) -> tuple[MarchPanel, ...]:
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise CostError(
-            f"load: march: the times have {len(cuts) - 1} different fractional parts, at most {MOST_PANELS} expected"
+            f"load: times (k*spacing in a record) have {len(cuts) - 1} different fractional parts, at most "
+            f"{MOST_PANELS} expected in a march (a spacing of p/q with q up to {MOST_PANELS}, or fewer samples, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 

@@ -1,0 +1,103 @@
+"""docs/architecture.md is true: it names every room, and imports keep to the order and the walls that it states."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import pytest
+
+import wavesym
+from tests.test_documents import blocks, document
+
+PACKAGE = Path(wavesym.__file__).parent
+PAGE = document("docs/architecture.md")
+ROOMS = {path.stem for path in PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()}
+ROOMS -= {"__init__", "__main__"}  # the doors of the house
+
+
+def lines(language: str) -> list[list[str]]:
+    """The words of each line of the page's one block of a kind."""
+    (block,) = (block for block in blocks(PAGE) if block.language == language)
+    return [line.split() for line in block.text.splitlines()]
+
+
+ORDER = {room: number for number, rooms in enumerate(lines("order")) for room in rooms}
+EXCEPTIONS = {(room, other) for room, other, *_ in lines("exceptions")}
+WALLS = {library: set(rooms) for library, *rooms in lines("walls")}
+
+
+def imported(source: str) -> Iterator[str]:
+    """The modules that a source imports, wherever in it."""
+    for node in ast.walk(ast.parse(source)):
+        match node:
+            case ast.Import(names):
+                yield from (name.name for name in names)
+            case ast.ImportFrom("wavesym", names):
+                yield from (f"wavesym.{name.name}" for name in names)
+            case ast.ImportFrom(str(module)):
+                yield module
+
+
+def uses() -> Iterator[tuple[str, str, str]]:
+    """Each import in the package: its file, its room, and the module."""
+    for path in sorted(PACKAGE.rglob("*.py")):
+        file = path.relative_to(PACKAGE)
+        for module in imported(path.read_text(encoding="utf-8")):
+            yield file.as_posix(), file.parts[0].removesuffix(".py"), module
+
+
+def against(order: Mapping[str, int], found: Iterator[tuple[str, str, str]]) -> set[tuple[str, str]]:
+    """The rooms that import from one that is not above them in the order, each with that one."""
+    arrows = {(room, module.split(".")[1]) for _, room, module in found if module.startswith("wavesym.")}
+    return {
+        (room, other)
+        for room, other in arrows
+        if room in ROOMS and other in ROOMS and room != other and order[other] >= order[room]
+    }
+
+
+def beyond(walls: Mapping[str, set[str]], found: Iterator[tuple[str, str, str]]) -> set[tuple[str, str]]:
+    """The files that import a library in a room where it does not belong, each with the library."""
+    return {
+        (file, library)
+        for file, room, module in found
+        if (library := module.split(".")[0]) in walls and room not in walls[library]
+    }
+
+
+def test_every_room_is_named_once() -> None:
+    assert sorted(room for rooms in lines("order") for room in rooms) == sorted(ROOMS)
+    assert re.findall(r"^\| `(\w+)` \|", PAGE, re.MULTILINE) == [
+        *(room for rooms in lines("order") for room in rooms)
+    ], "the table of rooms has another order than the list"
+
+
+def test_the_words_of_the_house_are_defined() -> None:
+    defined = set(re.findall(r"^- \*\*(.+?)\*\*", PAGE, re.MULTILINE))
+    words = ["window", "knot", "probe", "walk", "panel", "piece", "march", "spine", "node", "rate", "ball", "horizon"]
+    assert defined >= {*words, "light cone", "unit response", "formal continuation"}
+
+
+def test_imports_keep_to_the_order() -> None:
+    assert against(ORDER, uses()) == EXCEPTIONS
+
+
+def test_libraries_stay_behind_their_walls() -> None:
+    assert beyond(WALLS, uses()) == set()
+    assert set(WALLS) <= {module.split(".")[0] for _, _, module in uses()}
+
+
+@pytest.mark.parametrize(
+    ("room", "source"), [("model", "from wavesym.cli import main"), ("exact", "import wavesym.targets")]
+)
+def test_an_arrow_that_runs_up_is_seen(room: str, source: str) -> None:
+    (module,) = imported(source)
+    assert against(ORDER, iter([("file.py", room, module)])) == {(room, module.split(".")[1])}
+
+
+def test_a_library_beyond_its_wall_is_seen() -> None:
+    (module,) = imported("def late():\n    from sympy.core import add")
+    assert beyond(WALLS, iter([("exact/late.py", "exact", module)])) == {("exact/late.py", "sympy")}
