@@ -1,7 +1,8 @@
 """The arithmetic of programs in NumPy: run here on a program's tables, and written into generated Python as it stands.
 
 So the files of this folder import nothing but NumPy. What stands above their first class is left out in what is
-generated. Each scheme is made from the tables and single numbers that it names, tau_max, and the type of all values.
+generated. Each scheme is made from the tables and single numbers that it names, tau_max, and the type of all values:
+np.float64 or np.float32.
 """
 
 from __future__ import annotations
