@@ -10,13 +10,13 @@ from flint import fmpq
 
 import wavesym
 from tests.support.braced import Braced
+from tests.support.generated import files
 from wavesym import compiler
 from wavesym.errors import WavesymError
 from wavesym.model.loads import Applied
 from wavesym.running.compiled import compiled, imported
 from wavesym.scene import Scene, lower
 from wavesym.systems import SYSTEMS
-from wavesym.targets.files import files
 from wavesym.verification.characteristics import integrate
 
 FIELDS = {

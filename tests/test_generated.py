@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.generated import files
 from wavesym.cli import main
 from wavesym.compiler import published, tables_text
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import files
 
 KEPT = Path(__file__).parent.parent / "generated"
 EXAMPLES = ("building_m2", "collision_m4", "drive_m1")

@@ -17,12 +17,12 @@ from pathlib import Path
 import pytest
 from flint import arb, ctx, fmpq
 
+from tests.support.generated import files
 from wavesym.exact.ball import Balls, segments, values
 from wavesym.exact.motion import Motion
 from wavesym.exact.signal import signals
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import files
 
 KEPT = Path(__file__).parent.parent / "generated"
 EXAMPLES = ("building_m2", "collision_m4", "drive_m1")

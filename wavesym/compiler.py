@@ -1,17 +1,17 @@
 """wavesym in one view: each stage takes one frozen value and gives the next.
 
-    stage        takes                gives                        room
-    ----------   ------------------   --------------------------   ------------
-    read         TOML                 Scene                        scene/
-    build        Scene                Chain                        mechanics/
-    derive       System               Recurrence (symbolic m)      derivation/   SymPy, and only here
-    run          Recurrence, Chain    Table (exact)                coefficients/
-    merge        Table, outputs       Signals, then an evaluator   evaluators/
-    emit         evaluator            C, NumPy, manifest           emission/
-    verify       all of these         a verdict                    verification/
-    plot         Scene                a picture                    report/
+    stage     call                       takes             gives                             room
+    -------   ------------------------   ---------------   -------------------------------   --------------------
+    read      Scene.from_toml            TOML              Scene: what the user said         scene/, systems/
+    lower     lower                      Scene             Model: exact, nodes and loads     scene/ -> model/
+    derive    node_law, recurrence       nodes, a system   laws of coefficients              derivation/   SymPy
+    run       full_table, signals, ...   Model, laws       tables, waves, reference values   exact/
+    choose    make                       Model             Program: tables and bounds        programs/
+    write     files                      Program           C, NumPy, manifest                targets/
 
-What follows is one short function for each way through. The heavy libraries load when a way needs them.
+A way through is a short function below, which calls these in order; tables, programs and reference values ask for the
+laws they need themselves. What people read of it is written by documents/, results/ and report/, what is checked by
+verification/ and papers/, what is measured by lab/. The heavy libraries load when a way needs them.
 """
 
 from __future__ import annotations
@@ -33,9 +33,12 @@ from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
 from wavesym.model.symbolic import generic, symbolic
 from wavesym.numbers.doubles import fraction, nearest, rational
+from wavesym.programs.making import make
+from wavesym.programs.request import Request, refuse_unknown
 from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import files, is_ours
+from wavesym.targets import LANGUAGES
+from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
 
 if TYPE_CHECKING:
@@ -139,14 +142,15 @@ def generate(
     evaluator: str = "auto",
     precision: str = "double",
     windows: int | None = None,
+    optimize: str = "speed",
     *,
     force: bool = False,
 ) -> tuple[Path, ...]:
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
 
-    `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. Files that wavesym
-    did not write are replaced only by `force`; WavesymError else, and for a language, evaluator or precision that there
-    is not.
+    `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
+    "speed" or for "size". Files that wavesym did not write are replaced only by `force`; WavesymError else, and for a
+    language, evaluator, precision or aim that there is not.
 
     >>> import wavesym
     >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):
@@ -154,8 +158,7 @@ def generate(
     drive/drive_m1.json
     drive/drive_m1.py
     """
-    folder = Path(directory or scene.name)
-    made = {folder / name: text for name, text in files(lower(scene), language, evaluator, precision, windows).items()}
+    made = _written(scene, directory, language, Request(evaluator, precision, windows, optimize))
     for path in made:
         if not force and path.is_file() and not is_ours(path):
             raise WavesymError(f"{path}: exists and was not written by wavesym; --force replaces it")
@@ -170,6 +173,7 @@ def check(
     evaluator: str = "auto",
     precision: str = "double",
     windows: int | None = None,
+    optimize: str = "speed",
     source: str = "SCENE",
 ) -> str:
     """The difference between what stands in `directory` and what `generate` would write; empty where there is none.
@@ -177,14 +181,24 @@ def check(
     Each file that is changed, missing or orphaned is named, with a diff; so is what a process that was killed left. The
     last line is the command that mends them, with the scene as it is given by `source`.
     """
+    request = Request(evaluator, precision, windows, optimize)
+    made = _written(scene, directory, language, request)
     folder = Path(directory or scene.name)
-    made = {folder / name: text for name, text in files(lower(scene), language, evaluator, precision, windows).items()}
     found = [path for path in folder.glob(f"{scene.name}*") if path.is_file()]
     left = [path for path, place in traces(folder) if place.name.startswith(scene.name)]
     difference = Difference(made, [*found, *left])
-    options = ["--language", language, "--evaluator", evaluator, "--precision", precision]
-    options += [] if windows is None else ["--windows", str(windows)]
+    options = ["--language", language, *request.options.split()]
     return difference.report(["wavesym", "generate", source, "-o", str(folder), *options])
+
+
+def _written(scene: Scene, directory: str | Path | None, language: str, request: Request) -> dict[Path, str]:
+    """The text of every file of a scene, by path."""
+    folder = Path(directory or scene.name)
+    refuse_unknown("language", language, LANGUAGES)
+    request.refuse_unknown()
+    model = lower(scene)
+    program = make(model, request, tested=tested(language))
+    return {folder / name: text for name, text in files(program, language).items()}
 
 
 def run(scene: Scene, samples: int, at: Sequence[float] | None = None) -> Iterator[str]:

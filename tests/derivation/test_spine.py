@@ -6,6 +6,7 @@ import pytest
 from sympy import Symbol
 
 import wavesym
+from tests.support.generated import files
 from wavesym.derivation import node_law as derived
 from wavesym.derivation.delay import _at_node, delay_equations
 from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, node_law
@@ -14,7 +15,6 @@ from wavesym.derivation.recurrence import recurrence, stretch_law
 from wavesym.exact import node_rules
 from wavesym.model.node import Node, Rod
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import files
 
 REST = Rod(0, 0)
 SCENE = Scene(

@@ -10,14 +10,13 @@ from hypothesis import strategies as st
 
 import wavesym
 from tests.support.drawn import scenes
+from tests.support.generated import assemble, files
 from wavesym.errors import ToleranceError
 from wavesym.exact.ball import segments, values
 from wavesym.exact.signal import signals
-from wavesym.programs.assembly import assemble
 from wavesym.programs.closed import closed_form
 from wavesym.running.compiled import imported
 from wavesym.scene import lower
-from wavesym.targets.files import files
 
 
 @settings(max_examples=40, deadline=None)

@@ -7,6 +7,7 @@ import pytest
 from flint import ctx
 
 import wavesym
+from tests.support.generated import files
 from wavesym.errors import CostError, ToleranceError
 from wavesym.exact import motion, reference
 from wavesym.exact.reference import Reference
@@ -14,7 +15,6 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs import choice, pieces
 from wavesym.programs.choice import choose
 from wavesym.scene import lower
-from wavesym.targets.files import files
 
 
 class Begun(Exception):

@@ -14,16 +14,15 @@ import pytest
 from flint import arb
 
 import wavesym
+from tests.support.generated import assemble, files
 from tests.support.truth import Truth
 from wavesym.exact.signal import signals
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs import choice, pieces
-from wavesym.programs.assembly import assemble
 from wavesym.programs.closed import closed_form
 from wavesym.running.compiled import compiled, imported
 from wavesym.scene import lower
-from wavesym.targets.files import files
 
 BUILDING = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"}
 
@@ -57,7 +56,7 @@ def closed(scene, real):
 
 
 def fitted(scene, real):
-    return pieces.pieces(scene, real, rational(scene.output.tolerance))
+    return pieces.pieces(lower(scene), real, rational(scene.output.tolerance))
 
 
 MAKERS = {"closed": closed, "pieces": fitted}

@@ -9,9 +9,9 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.generated import assemble, numpy_text
 from wavesym.errors import CostError, ToleranceError
 from wavesym.numbers.reals import DOUBLE, SINGLE
-from wavesym.programs.assembly import assemble
 from wavesym.programs.march.bound import judge
 from wavesym.programs.march.evaluator import march, marched
 from wavesym.programs.march.operator import operator
@@ -20,9 +20,8 @@ from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.programs.march.zero import silent
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import numpy_text
 from wavesym.verification.characteristics import integrate
-from wavesym.verification.reference import reference
+from wavesym.verification.reference import known
 
 
 def program(scene, made):
@@ -41,7 +40,7 @@ KINKS = {"times": [0, "1/3", "5/2", "37/10"], "a": [1, 0, -1, 0], "b": [0, "1/2"
 
 def check(scene):
     """Values at every arrival and its neighbours, and between."""
-    truth = reference(lower(scene))
+    truth = known(lower(scene))
     made = marched(lower(scene))
     values = program(scene, made)(np.array(truth.taus))
     for output, row, proved in zip(truth.outputs, values, made.outputs, strict=True):
@@ -171,7 +170,7 @@ def test_a_degree_that_is_too_low_is_never_silent():
 def test_truncation_is_bounded_by_what_is_missed():
     """At a degree where truncation is most of the error, the bound still holds."""
     scene = building(12, KINKS, kappa=4)
-    truth = reference(lower(scene))
+    truth = known(lower(scene))
     exact = np.array([output.values for output in truth.outputs])
     for degree in (10, 14):
         verdict = judge(plan(lower(scene)), degree, DOUBLE)
@@ -243,7 +242,7 @@ def test_single_precision_has_a_bound_of_its_own():
     scene = building(5, KINKS, tolerance="1e-2")
     made = march(lower(scene), SINGLE)
     assert 1e-6 < made.error_bound < 1e-2
-    truth = reference(lower(scene))
+    truth = known(lower(scene))
     taus = [tau for tau in truth.taus if float(np.float32(tau)) == tau]
     values = program(scene, made)(np.array(taus, np.float32))
     assert values.dtype == np.float32

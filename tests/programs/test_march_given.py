@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from flint import fmpq
 
+from tests.support.generated import numpy_text
 from tests.support.rounded import Rounded
 from tests.support.truth import Truth
 from wavesym.errors import WavesymError
@@ -22,7 +23,6 @@ from wavesym.programs.march.sampler import OutputSampler
 from wavesym.programs.march.tail import tail_after
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import numpy_text
 
 OUTPUTS = {"strain": ["1/3"], "velocity": [1], "displacement": ["3/2"]}
 DRIVE = {"type": "drive", "m": 2, "kappa": [1, "1/3"], "inertia": [1, 2, "1/2"]}

@@ -8,6 +8,7 @@ import pytest
 from flint import fmpq
 
 from tests.programs.test_march_energy import blank
+from tests.support.generated import numpy_text
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march import run as running
 from wavesym.programs.march.bound import Alarm, Roundings, Verdict, judge, largest_wave
@@ -17,7 +18,6 @@ from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.programs.march.tail import tail
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import numpy_text
 
 PULSE = {"times": [0, "1/3", 2], "a": [1, 0, -1], "b": [0, "1/2", 0]}
 # what comes back from a wall that hardly moves is taken up: it is loud at first and then still

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from tests.programs.test_march_rounding import module
 from tests.support.rounded import Rounded
 from wavesym.programs.march.bound import reading_weights
+from wavesym.programs.schemes.march import _series
 
 # a stretch that began with the window, one of the window before, one that begins late: start, half of its panel
 STRETCHES = pytest.mark.parametrize(("start", "half"), [(0.0, 0.5), (-0.3, 0.5), (0.4, 0.15)])
@@ -36,7 +36,7 @@ def errors(read, start, half):
 def arrived(c, t, start, half):
     """As `arrived` in C; the sum is that of the program in NumPy."""
     u = Rounded.array([local(since(t, start), half)])
-    (wave,) = module("1", DEGREE)._series(c[:, np.newaxis], u)
+    (wave,) = _series(c[:, np.newaxis], u)
     return wave + wave._scaled(1e-9)  # with another wave
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from flint import fmpq
 
+from tests.support.generated import assemble
 from tests.support.rounded import Rounded
-from wavesym.programs.assembly import assemble
 from wavesym.programs.march.bound import _constants, _norm
 from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.operator import operator

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from flint import fmpq
 
+from tests.support.generated import assemble, program_files
 from tests.support.truth import Truth
 from wavesym.errors import ToleranceError
-from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import choose
 from wavesym.programs.march import run as running
 from wavesym.programs.march.evaluator import marched
@@ -20,7 +20,6 @@ from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.programs.march.sampler import OutputSampler
 from wavesym.running.compiled import compiled
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import program_files
 
 LOAD = {"times": ["1/3", "5/2"], "a": [1, "-1/2"], "b": ["-1/4", 0]}
 PLACES = [0, "1/3", "1/2", 1, "8/5", 2]

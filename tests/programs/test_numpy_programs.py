@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import wavesym
+from tests.support.generated import files
 from tests.support.truth import Truth
 from wavesym.programs.choice import choose
 from wavesym.running.compiled import imported
 from wavesym.scene import lower
-from wavesym.targets.files import files
 
 EVALUATORS = ["closed", "pieces"]
 PRECISIONS = ["double", "single"]

@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from tests.support.builds import SOURCES, scene
+from tests.support.generated import assemble, numpy_text
 from wavesym.numbers.reals import REALS
-from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import choose
 from wavesym.programs.schemes import SCHEMES
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import numpy_text
 
 COLLISION = Scene(
     name="both",
@@ -22,10 +21,9 @@ each_program = pytest.mark.parametrize(("evaluator", "precision"), SOURCES)
 
 
 def made(name, evaluator, precision):
-    chosen = choose(lower(SCENES[name]), evaluator, precision)
-    return assemble(chosen.evaluator, chosen.reason), imported(
-        numpy_text(lower(SCENES[name]), chosen.evaluator), "both"
-    )
+    model = lower(SCENES[name])
+    chosen = choose(model, evaluator, precision)
+    return assemble(chosen.evaluator), imported(numpy_text(model, chosen.evaluator), "both")
 
 
 def same(one, other):

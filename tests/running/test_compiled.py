@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from tests.support.generated import files
 from wavesym.running.compiled import compiled, imported
 from wavesym.running.toolchain import CompilerError
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import files
 
 OUTPUTS = ("strain@0", "strain@1/3", "displacement@1")
 

@@ -22,13 +22,13 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from tests.support.generated import files
 from tests.support.scenes import as_toml, scenes
 from tests.support.truth import Truth
 from wavesym.errors import CostError, RangeError, ToleranceError
 from wavesym.running.compiled import FLAGS, imported
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import files
 
 EVALUATORS = ("closed", "pieces", "march")
 PRECISIONS = {"double": np.float64, "single": np.float32}

@@ -12,12 +12,12 @@ from functools import cache
 import numpy as np
 import pytest
 
+from tests.support.generated import files
 from wavesym.exact.reference import Reference
 from wavesym.numbers.doubles import midpoint
 from wavesym.programs.choice import choose
 from wavesym.running.toolchain import Compiler
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import files
 
 needs_binutils = pytest.mark.skipif(not shutil.which("nm") or not shutil.which("size"), reason="no nm, no size here")
 

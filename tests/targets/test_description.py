@@ -7,12 +7,12 @@ import subprocess
 
 import pytest
 
+from tests.support.generated import files
 from wavesym.cli import main
 from wavesym.running.compiled import FLAGS, imported
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
 from wavesym.targets.description import constants
-from wavesym.targets.files import files
 
 
 def building(load, **output):

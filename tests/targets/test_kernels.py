@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.builds import LANGUAGES, SOURCES, STRICT, scene, source
-from wavesym.programs.assembly import assemble
+from tests.support.generated import assemble
 from wavesym.programs.choice import choose
 from wavesym.running.toolchain import CompilerError, compiler
 

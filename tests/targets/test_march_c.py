@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from tests.support.builds import STRICT, needs_binutils
+from tests.support.generated import numpy_text, program_files
+from wavesym.numbers.doubles import fraction, nearest
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march.evaluator import marched
 from wavesym.running.compiled import FLAGS, compiled, imported
 from wavesym.running.toolchain import at_hand
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import numpy_text, program_files
 
 COMPILERS = at_hand()
 
@@ -155,9 +156,9 @@ def given(scene, made):
                 x = float(low) + float(high - low) * (1 - np.cos(np.pi * np.arange(made.degree + 1) / made.degree)) / 2
                 values = np.zeros_like(x)
                 for piece in lower(scene).loads:
-                    if piece.time <= window + low and piece.source in (name, "b" if name == "a" else ""):
-                        since = window + x - float(piece.time)
-                        values += float(piece.weight) * (since if piece.source == "b" else 1)
+                    if fraction(piece.time) <= window + low and piece.source in (name, "b" if name == "a" else ""):
+                        since = window + x - nearest(piece.time)
+                        values += nearest(piece.weight) * (since if piece.source == "b" else 1)
                 rows.append(values)
     return np.array(rows)
 

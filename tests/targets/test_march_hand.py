@@ -9,11 +9,11 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 
+from tests.support.generated import program_files
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march.evaluator import marched
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import program_files
 
 SIZE = """
 #include "made.h"

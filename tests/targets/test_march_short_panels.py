@@ -7,13 +7,13 @@ from itertools import pairwise
 import numpy as np
 from flint import fmpq, fmpq_poly
 
+from tests.support.generated import numpy_text
 from tests.targets.test_march_hand import March, library
 from wavesym.programs.march.bound import reading_weights
 from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.run import LEFT, RIGHT
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import numpy_text
 
 FIRST = Fraction(1, 3)
 SHORT = Fraction(1, 10**9)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from tests.support.builds import SOURCES, scene
+from tests.support.generated import files
 from wavesym.running.compiled import imported
 from wavesym.scene import lower
-from wavesym.targets.files import files
 
 
 @pytest.mark.parametrize(("evaluator", "precision"), SOURCES)

@@ -17,12 +17,12 @@ import numpy as np
 import pytest
 
 from tests.support.builds import scene
+from tests.support.generated import files
 from tests.support.truth import Truth
 from wavesym.running.compiled import FLAGS
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
 from wavesym.targets import reference
-from wavesym.targets.files import files
 
 SAMPLES = 2001
 # no wave arrives there, so that every coefficient has time to act

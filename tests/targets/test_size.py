@@ -6,9 +6,9 @@ import pytest
 
 import wavesym
 from tests.support.builds import needs_binutils, sections
+from tests.support.generated import files
 from wavesym.running.toolchain import at_hand
 from wavesym.scene import lower
-from wavesym.targets.files import files
 
 TARGETS = {
     "clang": ("--target=thumbv7em-none-eabi", "-mcpu=cortex-m4"),

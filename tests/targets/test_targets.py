@@ -9,8 +9,11 @@ from types import SimpleNamespace
 import pytest
 
 from tests.support.builds import SOURCES, scene
+from tests.support.generated import files
 from wavesym.programs.schemes import SCHEMES
-from wavesym.targets import TARGETS, files
+from wavesym.scene import lower
+from wavesym.targets import TARGETS
+from wavesym.targets import files as written
 
 ROOT = Path(__file__).parents[2]
 
@@ -21,17 +24,16 @@ class Basic:
     tested = False
 
     def files(self, description, program):
-        return {f"{description.name}.bas": f"10 PRINT {program.kind}, {description.reference}\n"}
+        return {f"{description.name}.bas": f"10 PRINT {program.kind}, {program.reference}\n"}
 
 
 def test_another_language_is_a_name_and_a_target(monkeypatch):
     monkeypatch.setitem(sys.modules, "wavesym.targets.basic", SimpleNamespace(TARGET=Basic()))
-    monkeypatch.setattr(files, "LANGUAGES", (*files.LANGUAGES, "basic"))
-    monkeypatch.setattr(files, "TARGETS", (*files.TARGETS, "basic"))
-    made = files.files(scene("made", "1e-2"), "basic", "pieces")
+    monkeypatch.setattr(written, "TARGETS", (*written.TARGETS, "basic"))
+    made = files(lower(scene("made", "1e-2")), "basic", "pieces")
     assert made["made.bas"] == "10 PRINT pieces, None\n"  # no self-test, so that no reference values are computed
     assert made.keys() == {"made.bas", "made.json"}
-    every = files.files(scene("made", "1e-2"), "all", "pieces")
+    every = files(lower(scene("made", "1e-2")), "all", "pieces")
     assert {"made.bas", "made.c", "made.py"} < every.keys()
 
 
@@ -52,7 +54,7 @@ def imports(text):
 
 @pytest.mark.parametrize(("evaluator", "precision"), SOURCES)
 def test_generated_python_imports_nothing_but_numpy(evaluator, precision):
-    made = files.files(scene("made", "1e-2"), "numpy", evaluator, precision)["made.py"]
+    made = files(lower(scene("made", "1e-2")), "numpy", evaluator, precision)["made.py"]
     assert set(imports(made)) == {"numpy", "numpy.typing"}
 
 

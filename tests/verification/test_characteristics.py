@@ -18,13 +18,13 @@ from scipy.special import eval_laguerre
 from wavesym.errors import CostError
 from wavesym.model.chain import Chain
 from wavesym.model.loads import Applied
-from wavesym.model.node import Load, Node, Parameters, Rod, System, single
+from wavesym.model.node import Node, Parameters, Rod, System, UnitLoad, single
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks
 from wavesym.verification.characteristics import integrate
-from wavesym.verification.reference import reference
+from wavesym.verification.reference import known
 
 ORACLE = Path(__file__).parents[2].parent / "shared" / "oracles" / "rigid_mass_on_fixed_bar.json"
 
@@ -65,13 +65,13 @@ def bar(alpha):
 
     def families(m, parameters):
         rod = Rod(tau0=0, x0=0)
-        push = Load("F", None, (1,))
+        push = UnitLoad("F", None, (1,))
         return (
             single(0, lambda: Node(None, rod, inertia=1, alpha=0, beta=2 * alpha, loads=(push,))),
             single(1, lambda: Node(rod, None, inertia=0, alpha=0, beta=0, damping=1)),
         )
 
-    return Chain(System(name="bar", smallest=1, families=families), 1, Parameters(kappa={}))
+    return Chain(System("bar", families, lambda m: {}, smallest=1), 1, Parameters(kappa={}))
 
 
 def struck(alpha, until, steps):
@@ -114,7 +114,7 @@ def test_published_rebounds():
 
 @pytest.mark.parametrize("scene", [BUILDING, COLLISION, DRIVE], ids=["building", "collision", "drive"])
 def test_fourth_order_against_the_reference(scene):
-    truth = reference(lower(scene))
+    truth = known(lower(scene))
     motions = [integrate(scene.system.chain, lower(scene).loads, truth.until, steps) for steps in (32, 64, 128)]
     for output in truth.outputs:
         errors = [output.error(motion.at(output.probe, truth.taus)) for motion in motions]
@@ -209,7 +209,7 @@ def scenes(draw):
 @settings(max_examples=25)
 @given(scenes())
 def test_agreement_with_the_reference(scene):
-    for outcome in checks.integration(reference(lower(scene))):
+    for outcome in checks.integration(known(lower(scene))):
         assert outcome.passed, outcome
 
 
@@ -219,7 +219,7 @@ def mutated(scene, x, **changes):
     nodes = list(right.nodes)
     nodes[x] = replace(nodes[x], **{name: change(getattr(nodes[x], name)) for name, change in changes.items()})
     families = tuple(single(i, lambda node=node: node) for i, node in enumerate(nodes))
-    system = System(name="wrong", smallest=1, families=lambda *_: families)
+    system = System("wrong", lambda *_: families, lambda m: {}, smallest=1)
     return replace(right, system=system)
 
 
@@ -240,7 +240,7 @@ def silent(rod):
     ],
 )
 def test_a_wrong_node_is_caught(scene, x, changes, monkeypatch):
-    truth = reference(lower(scene))
+    truth = known(lower(scene))
     assert all(outcome.passed for outcome in checks.integration(truth))
     monkeypatch.setattr(checks, "chain", lambda scene: mutated(scene, x, **changes))
     assert not all(outcome.passed for outcome in checks.integration(truth))

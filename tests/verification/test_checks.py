@@ -12,15 +12,16 @@ from flint import fmpq
 from wavesym.errors import ToleranceError
 from wavesym.exact import table as tables
 from wavesym.exact.table import Function, full_table
-from wavesym.programs.choice import choose
+from wavesym.programs.making import make
+from wavesym.programs.request import Request
 from wavesym.programs.schemes import SCHEMES
 from wavesym.rendering import text_of
 from wavesym.scene import Scene, lower
+from wavesym.targets import files as written
 from wavesym.targets.c import kernel
-from wavesym.targets.files import files
 from wavesym.verification import checks
 from wavesym.verification.node_law import differences
-from wavesym.verification.reference import reference
+from wavesym.verification.reference import known
 from wavesym.verification.substitution import jumps, residuals
 
 DRIVE = Scene(
@@ -48,15 +49,15 @@ def verdicts(check, truth):
 
 @pytest.mark.parametrize("scene", [DRIVE, BUILDING, COLLISION], ids=["drive", "building", "collision"])
 def test_all_is_well(scene):
-    truth = reference(lower(scene))
+    truth = known(lower(scene))
     for check in checks.CHECKS:
         assert all(verdicts(check.run, truth)), check.title
 
 
 def made_with(monkeypatch, evaluator, change=lambda made: made):
     """Let the checks see code of one evaluator, its files changed."""
-    monkeypatch.setattr(checks, "files", lambda scene, language: change(files(lower(scene), language, evaluator)))
-    monkeypatch.setattr(checks, "choose", lambda scene: choose(lower(scene), evaluator))
+    monkeypatch.setattr(checks, "files", lambda program, language: change(written.files(program, language)))
+    monkeypatch.setattr(checks, "make", lambda model, **asked: make(model, Request(evaluator), **asked))
 
 
 @pytest.mark.parametrize(
@@ -78,7 +79,7 @@ def made_with(monkeypatch, evaluator, change=lambda made: made):
     ],
 )
 def test_a_sign_in_the_arithmetic_is_seen(file, right, wrong, monkeypatch, tmp_path):
-    truth = reference(lower(DRIVE))
+    truth = known(lower(DRIVE))
     evaluator, language = file.split(".")
     made_with(monkeypatch, evaluator)
     assert all(verdicts(checks.generated, truth) + verdicts(checks.invariants, truth))
@@ -112,13 +113,13 @@ def a_digit_changed(text, file):
 @pytest.mark.parametrize("file", ["small.c", "small.py"])
 @pytest.mark.parametrize("evaluator", ["closed", "pieces", pytest.param("march", marks=pytest.mark.slow)])
 def test_a_digit_in_a_generated_table_is_seen(evaluator, file, monkeypatch):
-    truth = reference(lower(BUILDING))
+    truth = known(lower(BUILDING))
     made_with(monkeypatch, evaluator, lambda made: {**made, file: a_digit_changed(made[file], file)})
     assert not all(verdicts(checks.generated, truth))
 
 
 def test_a_digit_in_a_program_breaks_the_balances(monkeypatch):
-    truth = reference(lower(DRIVE))
+    truth = known(lower(DRIVE))
     right = checks.assemble
 
     def changed(evaluator):
@@ -144,7 +145,7 @@ def test_a_wrong_rule_is_seen_by_all_that_is_not_derived(scene, monkeypatch):
     table = full_table(system, 4, fmpq(0))
     assert list(differences(system, table))
     assert list(jumps(system, table))
-    truth = reference(lower(scene))
+    truth = known(lower(scene))
     assert not all(verdicts(checks.integration, truth))
     assert not all(verdicts(checks.spacetime, truth))
     assert not all(verdicts(checks.invariants, truth))
@@ -162,7 +163,7 @@ def test_a_coefficient_of_a_table_is_seen(power):
 
 
 def test_a_refusal_is_no_failure(monkeypatch):
-    truth = reference(lower(DRIVE))
+    truth = known(lower(DRIVE))
 
     def refuse(scene, *_, **__):
         raise ToleranceError("small: cannot be met")

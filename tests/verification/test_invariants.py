@@ -10,13 +10,12 @@ from hypothesis import given, settings
 
 import wavesym
 from tests.support.drawn import scenes
-from wavesym.model.chain import chain
-from wavesym.programs.assembly import assemble
+from tests.support.generated import assemble
 from wavesym.programs.march.evaluator import marched
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks
 from wavesym.verification.invariants import balances, watched, weights
-from wavesym.verification.reference import reference
+from wavesym.verification.reference import known
 
 COLLISION = Scene(
     name="scene",
@@ -76,7 +75,7 @@ def test_weights_of_a_drive_are_moments_of_inertia():
     bodies, rods = weights(DRIVE.system.chain)
     assert bodies == (1, 2, 3)
     assert rods == (1, 1)
-    bodies, rods = weights(chain(again(DRIVE, {"kappa": [2, 3]})))
+    bodies, rods = weights(again(DRIVE, {"kappa": [2, 3]}).system.chain)
     assert bodies == (fmpq(1, 2), 1, fmpq(3, 2))
     assert rods == (1, 3)
 
@@ -170,10 +169,10 @@ def test_one_wrong_output_is_seen():
 
 
 def test_what_is_not_looked_at_is_said(monkeypatch):
-    (outcome,) = checks.invariants(reference(lower(again(COLLISION, until="1/2", strain=[2]))))
+    (outcome,) = checks.invariants(known(lower(again(COLLISION, until="1/2", strain=[2]))))
     assert outcome.passed
     assert "horizon is shorter than 1" in outcome.note
-    truth = reference(lower(DRIVE))
+    truth = known(lower(DRIVE))
     monkeypatch.setattr(checks, "_MOST_WINDOWS", 20)
     assert {outcome.cells["to"] for outcome in checks.invariants(truth)} == {"2"}
     monkeypatch.setattr(checks, "_MOST_VALUES", 20)

@@ -18,12 +18,11 @@ from wavesym.exact.ball import segments, values
 from wavesym.exact.motion import Motion
 from wavesym.exact.signal import signals
 from wavesym.exact.table import full_table
-from wavesym.model.chain import chain
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks
 from wavesym.verification.node_law import differences
-from wavesym.verification.reference import reference
+from wavesym.verification.reference import known
 
 UNTIL = 5
 TAUS = [k / 16 for k in range(16 * UNTIL + 1)]
@@ -73,7 +72,7 @@ def loaded(draw, kinds=("drive", "building")):
 @settings(max_examples=25)
 @given(systems())
 def test_tables_and_the_node_law_have_the_same_coefficients(system):
-    drawn = chain(Scene(name="drawn", system=system, output={"until": 1, "velocity": [0]}))
+    drawn = Scene(name="drawn", system=system, output={"until": 1, "velocity": [0]}).system.chain
     table = full_table(drawn, 5, fmpq(0))
     assert any(True for _ in table.rows())
     assert not list(differences(drawn, table))
@@ -87,7 +86,7 @@ def test_tables_and_the_node_law_have_the_same_values(scene):
 
 
 def check_generated(scene):
-    for outcome in checks.generated(reference(lower(scene))):
+    for outcome in checks.generated(known(lower(scene))):
         assert outcome.passed, outcome
 
 

@@ -14,7 +14,7 @@ from wavesym.exact.reference import Reference as Exact
 from wavesym.rivals.problem import Event, Problem, Watch
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks, spacetime
-from wavesym.verification.reference import reference
+from wavesym.verification.reference import known
 from wavesym.verification.spacetime import SpaceTimeGrid, grid
 
 
@@ -60,7 +60,7 @@ def test_the_order_is_two(scene):
 
 @FOUR
 def test_what_is_extrapolated_is_of_order_four(scene):
-    assert all(outcome.passed for outcome in checks.spacetime(reference(lower(scene))))
+    assert all(outcome.passed for outcome in checks.spacetime(known(lower(scene))))
     first = grid(scene)
     instants = first.instants(6.0)
     truth = np.array(Exact(lower(scene)).values([k / first.cells for k in instants.tolist()]))
@@ -119,7 +119,7 @@ def test_fronts_off_the_grid_are_kept_away_from_and_allowed_for():
     assert not first.aligned
     front = 517 / 1009 + 0.5
     assert min(abs(k / first.cells - front) for k in first.instants(5.0)) >= 1 / first.cells
-    for outcome in checks.spacetime(reference(lower(scene))):
+    for outcome in checks.spacetime(known(lower(scene))):
         assert outcome.passed
         assert "extrapolated" not in outcome.cells
 
@@ -128,7 +128,7 @@ def test_places_off_the_grid_are_read_off_a_polynomial():
     scene = building(
         {"times": [0], "a": [1], "b": [0]}, strain=["0.1234"], velocity=["0.4321"], displacement=["1.9877"]
     )
-    for outcome in checks.spacetime(reference(lower(scene))):
+    for outcome in checks.spacetime(known(lower(scene))):
         assert outcome.passed
         assert float(outcome.cells["extrapolated"]) < 1e-7
         assert outcome.cells["order"] == "2.0"
@@ -137,7 +137,7 @@ def test_places_off_the_grid_are_read_off_a_polynomial():
 @settings(max_examples=20)
 @given(scenes())
 def test_agreement_with_the_reference(scene):
-    for outcome in checks.spacetime(reference(lower(scene))):
+    for outcome in checks.spacetime(known(lower(scene))):
         assert outcome.passed, outcome
 
 
@@ -162,7 +162,7 @@ def changed(name, x, factor):
     ],
 )
 def test_a_wrong_problem_is_caught(scene, change, monkeypatch):
-    truth = reference(lower(scene))
+    truth = known(lower(scene))
     assert all(outcome.passed for outcome in checks.spacetime(truth))
     right = spacetime.scene_problem
     monkeypatch.setattr(spacetime, "scene_problem", lambda scene: change(right(scene)))
@@ -170,7 +170,7 @@ def test_a_wrong_problem_is_caught(scene, change, monkeypatch):
 
 
 def test_what_would_take_too_long_is_said(monkeypatch):
-    truth = reference(lower(DRIVE))
+    truth = known(lower(DRIVE))
     monkeypatch.setattr(checks, "_MOST_MOVED", 5e6)
     shorter = checks.spacetime(truth)
     assert all(outcome.passed and float(outcome.cells["to"]) < 7 for outcome in shorter)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 EVALUATORS = ["auto", "closed", "pieces", "march"]
 PRECISIONS = ["double", "single"]
+AIMS = ["speed", "size"]
 MOST_WINDOWS = 2**31 - 2
 
 
@@ -38,6 +39,13 @@ MOST_WINDOWS = 2**31 - 2
     metavar="N",
     help="For a march that will be driven by hand for N units of tau, under loads that come while it runs.",
 )
+@click.option(
+    "--optimize",
+    type=click.Choice(AIMS),
+    default="speed",
+    show_default=True,
+    help="The fastest program, or the smallest.",
+)
 @click.option("--force", is_flag=True, help="Replace files that wavesym did not write, too.")
 @click.option("--check", "only_check", is_flag=True, help="Write nothing; print a diff and exit 1 where files differ.")
 def generate(
@@ -47,6 +55,7 @@ def generate(
     evaluator: str,
     precision: str,
     windows: int | None,
+    optimize: str,
     force: bool,
     only_check: bool,
 ) -> int:
@@ -58,7 +67,7 @@ def generate(
     """
     from wavesym import compiler
 
-    asked = (scene, directory, language, evaluator, precision, windows)
+    asked = (scene, directory, language, evaluator, precision, windows, optimize)
     if only_check:
         with progress(f"check {scene.name}"):
             difference = compiler.check(*asked, scene_argument())

@@ -18,7 +18,9 @@ import numpy as np
 
 from wavesym.lab.timing import medians
 from wavesym.programs.choice import choose
+from wavesym.programs.making import make
 from wavesym.programs.pieces import Pieces
+from wavesym.programs.request import Request
 from wavesym.running.compiled import imported
 from wavesym.running.native import FAST, address, library
 from wavesym.running.toolchain import Compiler, at_hand
@@ -160,7 +162,7 @@ def _table(header: Sequence[str], rows: Iterator[Sequence[str]]) -> Iterator[str
 
 def _evaluating(three: dict[str, Scene]) -> Iterator[Sequence[str]]:
     for label, each in three.items():
-        made = files(lower(each), "all", "pieces")
+        made = files(make(lower(each), Request(evaluator="pieces")), "all")
         module = imported(made[f"{each.name}.py"], each.name)
         form = choose(lower(each), "pieces").evaluator
         assert isinstance(form, Pieces)
@@ -269,7 +271,7 @@ def _generating(three: dict[str, Scene]) -> Iterator[Sequence[str]]:
     step = {"times": [0], "a": [1], "b": [0]}
     tall = scene("tower", 20_000, tower, [step], tolerance="1e-6", strain=["1/2"], velocity=[10])
     yield _generated("building of 10 storeys to tau = 20 000", tall, "march")
-    made = files(lower(tall), "c", "march")
+    made = files(make(lower(tall), Request(evaluator="march")))
     (seconds,) = medians([_many("many", tall, made, FAST, calls=1)])
     yield "one run of its C, 10 001 samples", f"{seconds:.3f}", "", "march"
 
@@ -316,13 +318,13 @@ def _growth() -> Iterator[Sequence[str]]:
         system = {"type": "building", "m": m, "kappa": kappas, "base": "ground"}
         return scene("tower", until, system, [step], tolerance=tolerance, strain=["1/2", f"{2 * m - 1}/2"])
 
-    for name, values, make in (
+    for name, values, scene_of in (
         ("m", (4, 8, 16, 32), lambda m: tower(m, 40, "1e-10")),
         ("horizon", (10, 20, 40, 80), lambda until: tower(4, until, "1e-10")),
         ("digits", (4, 6, 9, 13), lambda digits: tower(4, 20, f"1e-{digits}")),
     ):
         times, sizes = [], []
-        for each in map(make, values):
+        for each in map(scene_of, values):
             start = perf_counter()
             sizes.append(choose(lower(each), "pieces").evaluator.bytes)
             times.append(perf_counter() - start)

@@ -16,16 +16,17 @@ from numpy.typing import NDArray
 from wavesym.errors import WavesymError
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import REALS
-from wavesym.programs.assembly import assemble
-from wavesym.programs.choice import MAKERS, choose
+from wavesym.programs.choice import MAKERS
+from wavesym.programs.making import make
 from wavesym.programs.program import Program
+from wavesym.programs.request import Request
 from wavesym.results.response import Response
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.problem import Problem, Rival
 from wavesym.rivals.problem import stated as stated_problem
 from wavesym.running.native import address, library
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import program_files
+from wavesym.targets.files import sources
 
 Values = NDArray[Any]
 
@@ -165,10 +166,10 @@ def _made(scene: Scene, evaluator: str, precision: str, tolerance: Fraction) -> 
     """A program and its C by file name, None where it cannot meet the tolerance or would cost too much."""
     asked = lower(scene).tolerating(rational(tolerance))
     try:
-        chosen = choose(asked, evaluator, precision).evaluator
+        program = make(asked, Request(evaluator=evaluator, precision=precision))
     except WavesymError:
         return None
-    return _Made(assemble(chosen), program_files(asked, chosen, "c"))
+    return _Made(program, sources(program, "c"))
 
 
 Loaded = tuple[Callable[[], Values], Callable[[Values], Values]]

@@ -17,10 +17,14 @@ from wavesym.numbers.reals import DOUBLE, Real
 
 @dataclass(frozen=True)
 class Labels:
-    """What to call a model's parts: `system` its type and what was chosen of it, `loads` a line for each load."""
+    """What to call a model's parts: `system` its type and what was chosen of it, `loads` a line for each load.
+
+    `sha256` is that of the scene, whatever way it was written.
+    """
 
     system: Mapping[str, str]
     loads: tuple[str, ...]
+    sha256: str
 
 
 @dataclass(frozen=True)

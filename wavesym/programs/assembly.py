@@ -19,24 +19,24 @@ from wavesym.programs.march.evaluator import MarchEvaluator
 from wavesym.programs.march.given import SMOOTH
 from wavesym.programs.march.plan import Plan, Stretch
 from wavesym.programs.pieces import Pieces
-from wavesym.programs.program import Program
+from wavesym.programs.program import Driven, Program, Provenance
 
 QUANTITIES = ("strain", "velocity", "displacement")
 """The numbers that stand for them in tables are their places; the next one is an output that is 0 throughout."""
 
 
-def assemble(evaluator: ClosedForm | Pieces | MarchEvaluator, reason: str = "") -> Program:
-    """The program of an evaluator, whatever its bound; `reason` says why it was taken."""
+def assemble(evaluator: ClosedForm | Pieces | MarchEvaluator, provenance: Provenance) -> Program:
+    """The program of an evaluator, whatever its bound."""
     match evaluator:
         case ClosedForm():
-            return _closed(evaluator, reason)
+            return _closed(evaluator, provenance)
         case Pieces():
-            return _pieces(evaluator, reason)
+            return _pieces(evaluator, provenance)
         case MarchEvaluator():
-            return _march(evaluator, reason)
+            return _march(evaluator, provenance)
 
 
-def _closed(form: ClosedForm, reason: str) -> Program:
+def _closed(form: ClosedForm, provenance: Provenance) -> Program:
     """Of output o the pulses first_pulse[o] ... in order of their start; of a pulse its families, of these the powers.
 
     `coefficient` has the powers of a family, lowest first.
@@ -52,10 +52,10 @@ def _closed(form: ClosedForm, reason: str) -> Program:
         "first_power": _firsts(len(family.powers) for family in families),
         "coefficient": tuple(power for family in families for power in family.powers),
     }
-    return Program("closed", form.real, form.tau_max, form.outputs, tables, {}, reason)
+    return Program("closed", form.real, form.tau_max, form.outputs, tables, {}, form.bytes, provenance)
 
 
-def _pieces(form: Pieces, reason: str) -> Program:
+def _pieces(form: Pieces, provenance: Provenance) -> Program:
     """Of grid g its outputs first_member[g] ..., its pieces, and at first_piece[g] + g their starts and the last end.
 
     Its polynomials stand piece by piece, for each of these member by member; `coefficient` has the powers of a
@@ -77,10 +77,10 @@ def _pieces(form: Pieces, reason: str) -> Program:
         "coefficient": tuple(c for powers in polynomials for c in reversed(powers)),
     }
     constants: dict[str, float] = {"steps": max(grid.steps for grid in grids)}
-    return Program("pieces", form.real, form.tau_max, form.outputs, tables, constants, reason)
+    return Program("pieces", form.real, form.tau_max, form.outputs, tables, constants, form.bytes, provenance)
 
 
-def _march(evaluator: MarchEvaluator, reason: str) -> Program:
+def _march(evaluator: MarchEvaluator, provenance: Provenance) -> Program:
     """Panels, nodes, the operators of bodies, changes of loads, loads to be given, outputs, and where waves arrive."""
     plan, real, degree = evaluator.plan, evaluator.real, evaluator.degree
     nodes, panels = plan.junctions, plan.panels
@@ -165,7 +165,20 @@ def _march(evaluator: MarchEvaluator, reason: str) -> Program:
         }
     sources = tuple(channel.name for channel in plan.channels)
     whole = math.isinf(plan.valid)
-    return Program("march", real, plan.tau_max, evaluator.outputs, tables, constants, reason, sources, whole)
+    given = evaluator.given
+    return Program(
+        "march",
+        real,
+        plan.tau_max,
+        evaluator.outputs,
+        tables,
+        constants,
+        evaluator.bytes,
+        provenance,
+        sources=sources,
+        whole=whole,
+        driven=Driven(given.windows, given.errors) if given else None,
+    )
 
 
 def _firsts(counts: Iterable[int]) -> tuple[int, ...]:

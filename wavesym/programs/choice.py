@@ -62,9 +62,16 @@ class Choice(NamedTuple):
     reason: str
 
 
-def choose(model: Model, name: str = "auto", precision: str = "double", windows: int | None = None) -> Choice:
-    """The evaluator `name` of a model, or with "auto" the cheapest that meets its tolerance.
+def choose(
+    model: Model,
+    name: str = "auto",
+    precision: str = "double",
+    windows: int | None = None,
+    optimize: str = "speed",
+) -> Choice:
+    """The evaluator `name` of a model, or with "auto" the best that meets its tolerance.
 
+    Best is what takes least work or, where it is to `optimize` "size", has the least tables.
     `windows`: for how many of them a march is driven by hand; WavesymError for another evaluator.
     ToleranceError where none does: it says what can be had. CostError, RangeError where one is asked for that would
     cost too much or need numbers beyond those of its format.
@@ -79,7 +86,7 @@ def choose(model: Model, name: str = "auto", precision: str = "double", windows:
         if each == "march" and found and name == "auto":
             break  # it takes as long for a value as for all windows before it
         try:
-            evaluator = MAKERS[each](model, real, name != "auto", windows)
+            evaluator = MAKERS[each](model, real, name != "auto", windows, optimize)
         except CostError as refusal:
             if name != "auto":
                 raise
@@ -96,24 +103,29 @@ def choose(model: Model, name: str = "auto", precision: str = "double", windows:
             refused.append(evaluator.shortfall(tolerance))
     if not found:
         raise unmet(tolerance, "; ".join(refused))
-    name, best = min(found, key=lambda one: one[1].work)
-    dearer = [f"{evaluator.summary}, takes longer" for _, evaluator in found if evaluator is not best]
+    small = optimize == "size"
+    name, best = min(found, key=lambda one: one[1].bytes if small else one[1].work)
+    dearer = [
+        f"{evaluator.summary}, {'is larger' if small else 'takes longer'}"
+        for _, evaluator in found
+        if evaluator is not best
+    ]
     return Choice(name, best, "; ".join([*refused, *dearer, best.summary]))
 
 
-def _closed(model: Model, real: Real, asked: bool, _: int | None) -> ClosedForm:
+def _closed(model: Model, real: Real, asked: bool, *_: object) -> ClosedForm:
     refuse_many(model, 1e5 if asked else _WORTH_TRYING)
     merged = signals(model, inf if asked else _WORTH_TRYING, real)
     return closed_form(merged, model.horizon(real), real)
 
 
-def _pieces(model: Model, real: Real, asked: bool, _: int | None) -> Pieces:
-    return pieces(model, real, model.tolerance)
+def _pieces(model: Model, real: Real, asked: bool, windows: int | None, optimize: str) -> Pieces:
+    return pieces(model, real, model.tolerance, optimize)
 
 
-def _march(model: Model, real: Real, asked: bool, windows: int | None) -> MarchEvaluator:
+def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator:
     return marched(model, real, windows=windows)
 
 
-Maker = Callable[[Model, Real, bool, int | None], Made]
+Maker = Callable[[Model, Real, bool, int | None, str], Made]
 MAKERS: dict[str, Maker] = {"closed": _closed, "pieces": _pieces, "march": _march}

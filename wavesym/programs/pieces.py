@@ -31,7 +31,7 @@ from wavesym.model.model import Model
 from wavesym.numbers import chebyshev
 from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import bound, middle, nearest, rational
-from wavesym.numbers.reals import SINGLE, Real
+from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.zero import silent
 from wavesym.programs.program import ProgramOutput
@@ -48,7 +48,7 @@ _SHORTER = (2, 4, 8, 16, 32)
 _MOST_BITS = 1024
 # Pieces times bits: half a minute.
 _MOST_WORK = 15_000_000
-# In double precision the fastest are taken whose tables are no larger than this; single is for small machines.
+# The fastest are taken whose tables are no larger than this.
 _FAST_BYTES = 128 << 10
 _SECOND_ORDER = arb(fmpq(1001, 1000))
 # of the largest value; far below what any tolerance asks for
@@ -125,14 +125,14 @@ class Pieces:
         return sorted(points)
 
 
-def pieces(model: Model, real: Real, tolerance: fmpq) -> Pieces:
+def pieces(model: Model, real: Real, tolerance: fmpq, optimize: str = "speed") -> Pieces:
     """The pieces of a model in `real` numbers, with degrees for `tolerance`, met or not: see `error_bound`.
 
     CostError where the tables would be larger than `MOST_BYTES`, or take long to fit.
     """
     # no finer than rounding: what is asked for beyond that is not had by more bits or more pieces
     fits = _Fits(model, real, max(tolerance, real.roundoff / 8))
-    found = _smallest(fits, tolerance) if real is SINGLE else _fastest(fits)
+    found = _smallest(fits, tolerance) if optimize == "size" else _fastest(fits)
     for shorter in _SHORTER:
         if shorter > found.per_unit and rational(found.error_bound) > tolerance > real.roundoff / 8:
             found = fits.fitted(shorter)

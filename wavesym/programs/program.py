@@ -1,4 +1,4 @@
-"""A program as a value: tables of numbers, what is proved of them, and what they compute."""
+"""A program as a value: tables of numbers, what is proved of them, what they compute, and where they come from."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from wavesym.exact.contact import ContactEnd
+from wavesym.model.model import Model
 from wavesym.numbers.reals import Real
 from wavesym.programs.schemes import SCHEMES, Scheme
 
@@ -22,13 +24,42 @@ class ProgramOutput:
 
 
 @dataclass(frozen=True)
+class Provenance:
+    """What a program was made from, and how: `options` are those of `generate` that it depends on.
+
+    `reason` says why it was taken and what was refused; `contacts` open within the horizon.
+    """
+
+    model: Model
+    reason: str
+    options: str = ""
+    contacts: tuple[ContactEnd, ...] = ()
+
+
+@dataclass(frozen=True)
+class ReferenceValues:
+    """The outputs at `taus`, correctly rounded doubles: values[output][k] is that at taus[k]."""
+
+    taus: tuple[float, ...]
+    values: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
+class Driven:
+    """What holds of a march that is driven by hand for `windows`: each output's error per unit of a load."""
+
+    windows: int
+    errors: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
     `kind` names its scheme: "closed", "pieces" or "march". `tables` are flat, by name, each number as it is written:
     indices are ints, all else floats of the format; which there are, assembly.py says. `constants` are single numbers.
-    `reason` says why it was taken. Of a march, `sources` are the names of loads that it can be given, and it is `whole`
-    where no node was left out.
+    `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march, `sources` are the names of loads
+    that it can be given, and it is `whole` where no node was left out.
     """
 
     kind: str
@@ -37,9 +68,12 @@ class Program:
     outputs: tuple[ProgramOutput, ...]
     tables: dict[str, tuple[float, ...]]
     constants: dict[str, float]
-    reason: str
+    bytes: int
+    provenance: Provenance
+    reference: ReferenceValues | None = None
     sources: tuple[str, ...] = ()
     whole: bool = True
+    driven: Driven | None = None
 
     @property
     def error_bound(self) -> float:

@@ -19,8 +19,7 @@ from wavesym.exact.contact import ContactEnd, contact_ends
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
-from wavesym.programs.assembly import assemble
-from wavesym.programs.choice import choose
+from wavesym.programs.making import make
 
 Points = NDArray[np.float64]
 
@@ -69,7 +68,7 @@ class Histories:
 
 def histories(model: Model) -> Histories:
     """The histories of all outputs. ToleranceError, CostError where nothing can be generated either."""
-    program = assemble(choose(model.tolerating(max(model.tolerance, _TOLERANCE))).evaluator)
+    program = make(model.tolerating(max(model.tolerance, _TOLERANCE)))
     contacts = contact_ends(model)
     formal = [_formal(probe, contacts) for probe in model.probes]
     dense = sum(len(_parts(model, probe)) for probe in model.probes) * model.until > MOST_FRONTS

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
+
 from flint import fmpq
 
 from wavesym.model.loads import Applied, merged
@@ -22,7 +25,16 @@ def lower(scene: Scene) -> Model:
         probes=tuple(_probe(each, scene.system.m) for each in scene.outputs),
         until=rational(output.until),
         tolerance=rational(output.tolerance),
-        labels=Labels({"type": scene.system.type, **scene.system.choices}, tuple(load.told for load in scene.load)),
+        labels=_labels(scene),
+    )
+
+
+def _labels(scene: Scene) -> Labels:
+    canonical = json.dumps(scene.model_dump(mode="json"), sort_keys=True, separators=(",", ":"))
+    return Labels(
+        system={"type": scene.system.type, **scene.system.choices},
+        loads=tuple(load.told for load in scene.load),
+        sha256=hashlib.sha256(canonical.encode()).hexdigest(),
     )
 
 

@@ -11,10 +11,9 @@ from wavesym.exact.contact import ContactEnd
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.choice import Evaluator
+from wavesym.programs.program import Program
 from wavesym.targets.literals import c_literal, literal
 from wavesym.targets.number_format import number_format
-from wavesym.targets.reference import ReferenceValues
 
 _WIDTH = 110
 
@@ -44,7 +43,6 @@ class Description:
 
     `name_size` is what the longest name of an output takes in C; `command` makes the same file again.
     `real` and `numpy_real` are the type of all values in C and in NumPy; numbers that C reads have its suffix.
-    `reference` is what a self-test compares with, None where there is to be none.
     """
 
     name: str
@@ -63,43 +61,35 @@ class Description:
     error_bound: str
     c_error_bound: str
     contacts: tuple[NamedContact, ...]
-    reference: ReferenceValues | None = None
 
 
-def describe(
-    model: Model,
-    evaluator: Evaluator,
-    reason: str,
-    contacts: Sequence[ContactEnd],
-    options: str = "",
-    reference: ReferenceValues | None = None,
-) -> Description:
-    """The description of a model and of the evaluator chosen for it; `options` are those that the files depend on."""
-    real = evaluator.real
+def describe(program: Program) -> Description:
+    """The description of a program and of what it was made from."""
+    origin, real = program.provenance, program.real
+    model = origin.model
     called = number_format(real)
-    names = [output.name for output in evaluator.outputs]
-    bound = _not_below(evaluator.error_bound, real)
+    names = [output.name for output in program.outputs]
+    bound = _not_below(program.error_bound, real)
     return Description(
         name=model.name,
         prefix=model.name.upper(),
-        command=f"wavesym generate {model.name}.toml{options}",
+        command=f"wavesym generate {model.name}.toml{origin.options}",
         model=tuple(line for part in _model(model) for line in wrap(part, _WIDTH, subsequent_indent="  ")),
         real=called.c_type,
         numpy_real=called.numpy_type,
-        reason=reason,
+        reason=origin.reason,
         tolerance=_tolerance(model),
         outputs=tuple(
             NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)))
-            for output, constant in zip(evaluator.outputs, constants(names), strict=True)
+            for output, constant in zip(program.outputs, constants(names), strict=True)
         ),
         output_count=str(len(names)),
         name_size=str(max(map(len, names)) + 1),
-        tau_max=literal(evaluator.tau_max),  # a double in Python: the shortest text of a float may lie below it
-        c_tau_max=c_literal(evaluator.tau_max, real),
+        tau_max=literal(program.tau_max),  # a double in Python: the shortest text of a float may lie below it
+        c_tau_max=c_literal(program.tau_max, real),
         error_bound=literal(bound, real),
         c_error_bound=c_literal(bound, real),
-        contacts=tuple(_contact(end, real) for end in contacts),
-        reference=reference,
+        contacts=tuple(_contact(end, real) for end in origin.contacts),
     )
 
 

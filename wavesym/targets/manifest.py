@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import json
 
-from wavesym.model.model import Model
-from wavesym.programs.choice import Evaluator
-from wavesym.programs.march.evaluator import MarchEvaluator
+from wavesym.programs.program import Program
 from wavesym.targets.description import Description
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 # What NAME.c compiles to besides its tables, with clang -Os for a Cortex-M4: no more than this; a test compiles it.
 SMALL_TARGET = "Cortex-M4, -Os"
 CODE_AT_MOST = {"closed": 1024, "pieces": 4096, "march": 8192}
 
 
-def manifest(model: Model, description: Description, evaluator: Evaluator, name: str) -> str:
+def manifest(description: Description, program: Program) -> str:
     """The manifest as JSON text. Numbers that are exact in the scene are strings, doubles are numbers."""
+    model = program.provenance.model
     system: dict[str, object] = dict(model.labels.system)
     for parameter, numbers in model.felt.items():
         system[parameter] = {str(index): str(value) for index, value in numbers.items()}
@@ -25,27 +24,27 @@ def manifest(model: Model, description: Description, evaluator: Evaluator, name:
         "generator": "wavesym",
         "name": model.name,
         "command": description.command,
+        "scene_sha256": model.labels.sha256,
         "system": system,
         "load": [{"source": p.source, "time": str(p.time), "weight": str(p.weight)} for p in model.loads],
         "until": str(model.until),
         "tolerance": str(model.tolerance),
-        "evaluator": name,
+        "evaluator": program.kind,
         "reason": description.reason,
-        "precision": evaluator.real.name,
-        "size": {"target": SMALL_TARGET, "data": evaluator.bytes, "code_at_most": CODE_AT_MOST[name]},
-        "tau_max": evaluator.tau_max,
-        "error_bound": evaluator.error_bound,
-        "outputs": [{"name": output.name, "error_bound": output.bound} for output in evaluator.outputs],
-        **_driven(evaluator),
+        "precision": program.real.name,
+        "size": {"target": SMALL_TARGET, "data": program.bytes, "code_at_most": CODE_AT_MOST[program.kind]},
+        "tau_max": program.tau_max,
+        "error_bound": program.error_bound,
+        "outputs": [{"name": output.name, "error_bound": output.bound} for output in program.outputs],
+        **_driven(program),
         "contact_end": {contact.position: contact.digits for contact in description.contacts},
     }
     return json.dumps(content, indent=2) + "\n"
 
 
-def _driven(evaluator: Evaluator) -> dict[str, object]:
+def _driven(program: Program) -> dict[str, object]:
     """What is proved for loads that are given while a march runs."""
-    given = evaluator.given if isinstance(evaluator, MarchEvaluator) else None
-    if given is None:
+    if program.driven is None:
         return {}
-    errors = zip(evaluator.outputs, given.errors, strict=True)
-    return {"windows": given.windows, "given_error": {output.name: error for output, error in errors}}
+    errors = zip(program.outputs, program.driven.errors, strict=True)
+    return {"windows": program.driven.windows, "given_error": {output.name: error for output, error in errors}}

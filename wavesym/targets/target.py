@@ -13,7 +13,7 @@ class Target(Protocol):
 
     @property
     def tested(self) -> bool:
-        """Whether its files contain a self-test, for which `Description.reference` is needed."""
+        """Whether its files contain a self-test, for which `Program.reference` is needed."""
 
     def files(self, description: Description, program: Program) -> dict[str, str]:
-        """Text by file name; without a self-test where the description has no reference values."""
+        """Text by file name; without a self-test where the program has no reference values."""

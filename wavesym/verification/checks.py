@@ -14,8 +14,7 @@ import numpy as np
 from wavesym.errors import ToleranceError
 from wavesym.exact.reference import Reference
 from wavesym.model.model import Model
-from wavesym.programs.assembly import assemble
-from wavesym.programs.choice import choose
+from wavesym.programs.making import make
 from wavesym.running.compiled import compiled, imported
 from wavesym.targets.files import files
 from wavesym.verification.characteristics import COARSEST, Integrated, integrate
@@ -68,7 +67,7 @@ def generated(known: Known) -> list[Outcome]:
     """The generated C, compiled and run, and the generated NumPy, against their proved bound."""
     model = known.model
     try:
-        made = files(model, language="all")
+        made = files(make(model, tested=True), "all")
     except ToleranceError as error:  # an evaluator that says where it ends has not failed
         cells = {"C": "refused", "NumPy": "refused", "bound": "-"}
         return [Outcome(output.probe.name, cells, True, str(error)) for output in known.outputs]
@@ -192,7 +191,7 @@ def invariants(known: Known) -> list[Outcome]:
 
 def _program(model: Model) -> tuple[Evaluate, list[float]]:
     """The program of a model, and the proved errors of its outputs, absolute."""
-    program = assemble(choose(model).evaluator)
+    program = make(model)
     return program.evaluate, [output.bound * output.largest for output in program.outputs]
 
 

@@ -18,9 +18,9 @@ from wavesym.lab.atlas.scenes import AIM
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import MAKERS
 from wavesym.programs.closed import ClosedForm
+from wavesym.programs.making import program
 from wavesym.scene import Scene, lower
 
 Array = NDArray[np.float64]
@@ -85,14 +85,14 @@ def attempt(known: Truth, name: str) -> Attempt:
     model, taus = known.model, known.taus
     nothing = np.full(len(taus), math.inf)
     try:
-        form = MAKERS[name](model.tolerating(rational(AIM)), DOUBLE, True, None)
+        form = MAKERS[name](model.tolerating(rational(AIM)), DOUBLE, True, None, "speed")
     except (CostError, OverflowError) as error:
         return Attempt(name, taus, None, nothing, str(error))
     met = rational(min(form.error_bound, 2.0)) <= model.tolerance
     refused = "" if met else form.shortfall(model.tolerance)
     bounds = _reached(form, taus) if isinstance(form, ClosedForm) else np.full(len(taus), form.error_bound)
     with np.errstate(over="ignore", invalid="ignore"):
-        found = assemble(form).evaluate(taus)
+        found = program(model, form).evaluate(taus)
     wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
     errors = np.where(np.isfinite(wrong), wrong, math.inf)
     return Attempt(name, taus, errors, bounds, refused)

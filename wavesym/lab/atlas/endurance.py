@@ -15,10 +15,11 @@ import numpy as np
 from wavesym.lab.atlas import twisted_shaft as twist
 from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
 from wavesym.model.model import Model
+from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import MarchEvaluator, marched
 from wavesym.running.native import FAST, address, library
 from wavesym.scene import lower
-from wavesym.targets.files import program_files
+from wavesym.targets.files import sources
 
 HORIZON = 10**5
 DEGREES = {
@@ -98,11 +99,11 @@ def follow(kappa: Fraction, evaluator: MarchEvaluator) -> Followed:
 
 def _run(model: Model, evaluator: MarchEvaluator, taus: twist.Array) -> tuple[twist.Array, twist.Array, bool]:
     """Outputs (outputs, n), energies and the alarm."""
-    made = program_files(model, evaluator, "c")
+    made = sources(program(model, evaluator), "c")
     header = f"{model.name}.h"
     text = made[f"{model.name}.c"] + _FOLLOW.replace("NAME", model.name)
-    program = library(text, FAST, (header, made[header]))
+    marching = library(text, FAST, (header, made[header]))
     out, energy = np.empty((len(taus), len(model.probes))), np.empty(len(taus))
     places = [ctypes.c_void_p(address(array)) for array in (taus, out, energy)]
-    low = program.follow(places[0], ctypes.c_size_t(len(taus)), *places[1:])
+    low = marching.follow(places[0], ctypes.c_size_t(len(taus)), *places[1:])
     return out.T, energy, bool(low)

@@ -16,7 +16,7 @@ import numpy as np
 from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
 from wavesym.lab.atlas.lumped import strains
 from wavesym.lab.atlas.scenes import made
-from wavesym.programs.assembly import assemble
+from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import marched
 from wavesym.rivals.problem import stated
 from wavesym.scene import Scene, lower
@@ -83,10 +83,10 @@ def difference(system: Lumped, kappa: Fraction) -> float:
     """Between the strains in the middle of the rods and those of springs, relative to the largest of the latter."""
     until = math.ceil(SLOW_TIME / math.sqrt(kappa))
     model = lower(_scene(system, kappa, until))
-    program = assemble(marched(model))
+    march = program(model, marched(model))
     taus = until / SAMPLES * np.arange(SAMPLES)
     springs = strains(stated(model), until / SAMPLES, SAMPLES - 1)[[rod - 1 for rod in system.rods]]
-    return float(np.max(np.abs(program.evaluate(taus) - springs)) / np.max(np.abs(springs)))
+    return float(np.max(np.abs(march.evaluate(taus) - springs)) / np.max(np.abs(springs)))
 
 
 def _scene(system: Lumped, kappa: Fraction, until: int) -> Scene:

@@ -24,8 +24,8 @@ class CTarget:
             f"{name}.h": header(description, streaming),
             f"{name}.c": _SOURCES[program.kind](description, program),
         }
-        if description.reference:
-            made[f"{name}_selftest.c"] = selftest(description, program, description.reference)
+        if program.reference:
+            made[f"{name}_selftest.c"] = selftest(description, program, program.reference)
         return made
 
 

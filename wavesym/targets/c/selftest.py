@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.program import Program
+from wavesym.programs.program import Program, ReferenceValues
 from wavesym.rendering import render
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_literals
-from wavesym.targets.reference import ReferenceValues
 
 
 @dataclass(frozen=True)

@@ -3,22 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from wavesym.exact.reference import Reference, beginning
 from wavesym.model.model import Model
 from wavesym.programs.choice import Evaluator
+from wavesym.programs.program import ReferenceValues
 
 _MOST_POINTS = 2000
 _MOST_VALUES = 40_000
-
-
-@dataclass(frozen=True)
-class ReferenceValues:
-    """The outputs at `taus`, correctly rounded doubles: values[output][k] is that at taus[k]."""
-
-    taus: tuple[float, ...]
-    values: tuple[tuple[float, ...], ...]
 
 
 def reference_values(model: Model, evaluator: Evaluator) -> ReferenceValues:

@@ -1,0 +1,36 @@
+"""Model -> Program: the evaluator that is asked for, or the best that will do, with all that is said of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from wavesym.exact.contact import contact_ends
+from wavesym.model.model import Model
+from wavesym.programs.assembly import assemble
+from wavesym.programs.choice import Made, choose
+from wavesym.programs.program import Program, Provenance
+from wavesym.programs.reference_values import reference_values
+from wavesym.programs.request import Request
+
+_USUAL = Request()
+
+
+def make(model: Model, request: Request = _USUAL, *, tested: bool = False) -> Program:
+    """The program of a model, as `choose` takes it; where it is to be `tested`, with reference values.
+
+    ToleranceError where no evaluator, or not the one asked for, meets the model's tolerance; CostError where the one
+    asked for would cost too much.
+    """
+    _, form, reason = choose(model, request.evaluator, request.precision, request.windows, request.optimize)
+    provenance = Provenance(model, reason, request.options, contact_ends(model, form.real))
+    return _made(model, form, provenance, tested)
+
+
+def program(model: Model, form: Made, *, tested: bool = False) -> Program:
+    """The program of an evaluator that there is already, whatever its bound."""
+    return _made(model, form, Provenance(model, form.summary), tested)
+
+
+def _made(model: Model, form: Made, provenance: Provenance, tested: bool) -> Program:
+    made = assemble(form, provenance)
+    return replace(made, reference=reference_values(model, form)) if tested else made

@@ -1,0 +1,49 @@
+"""What a program is asked to be: the options of `generate` that decide it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from wavesym.errors import WavesymError
+from wavesym.numbers.reals import REALS
+
+KINDS = ("closed", "pieces", "march")
+AIMS = ("speed", "size")
+
+
+@dataclass(frozen=True)
+class Request:
+    """`evaluator` is a kind of program or "auto"; `windows` is for a march that is driven by hand.
+
+    `optimize` says of programs that meet the tolerance which is best: the fastest, or the one with the least tables.
+    """
+
+    evaluator: str = "auto"
+    precision: str = "double"
+    windows: int | None = None
+    optimize: str = "speed"
+
+    @property
+    def options(self) -> str:
+        """Those that differ from what is usual, as they are typed."""
+        options = "" if self.evaluator == "auto" else f" --evaluator {self.evaluator}"
+        options += "" if self.precision == "double" else f" --precision {self.precision}"
+        options += "" if self.windows is None else f" --windows {self.windows}"
+        return options + ("" if self.optimize == "speed" else f" --optimize {self.optimize}")
+
+    def refuse_unknown(self) -> None:
+        """WavesymError for a word that is none of those there are."""
+        for option, word, known in (
+            ("evaluator", self.evaluator, ("auto", *KINDS)),
+            ("precision", self.precision, REALS),
+            ("optimize", self.optimize, AIMS),
+        ):
+            refuse_unknown(option, word, known)
+
+
+def refuse_unknown(option: str, word: str, known: Iterable[str]) -> None:
+    """WavesymError for a word that is none of those there are."""
+    if word not in (names := tuple(known)):
+        *others, last = names
+        raise WavesymError(f"{option}: {word} given, {', '.join(others)} or {last} expected")
