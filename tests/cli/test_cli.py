@@ -186,7 +186,10 @@ def test_a_wrong_scene_is_refused_by_every_command(command: str, capsys: pytest.
 def test_generate(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["generate", "mine.toml"]) == 0
     assert main(["generate", "mine.toml", "-o", "there", "--language", "all", "--evaluator", "closed"]) == 0
-    assert compiler.asked == [(None, "c", "auto", "double", None), (Path("there"), "all", "closed", "double", None)]
+    assert compiler.asked == [
+        (None, "c", "auto", "double", None, "speed"),
+        (Path("there"), "all", "closed", "double", None, "speed"),
+    ]
     assert capsys.readouterr().out.split() == [str(Path("out/mine.c")), str(Path("out/mine.h"))] * 2
 
 

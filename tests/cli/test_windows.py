@@ -85,7 +85,7 @@ def test_without_it_nothing_is_said(asked, tmp_path):
         (SCENE, ["--evaluator", "march", "--windows", "-3"], "-3 is not in the range"),
         (SCENE, ["--evaluator", "march", "--windows", "2147483647"], "2147483647 is not in the range"),
         (SCENE, ["--evaluator", "march", "--windows", "2147483646"], "polynomials of degree"),
-        (SCENE, ["--evaluator", "march", "--windows", "1000000"], "--windows: march: "),
+        (SCENE, ["--evaluator", "march", "--windows", "1000000"], "--windows: a march of degree "),
     ],
 )
 def test_what_makes_no_sense_or_costs_too_much_is_refused_in_one_line(asked, tmp_path, text, options, line):

@@ -118,7 +118,7 @@ def test_a_jump_at_the_last_single_is_not_left_out(monkeypatch):
     left_out = closed_form(signals(lower(scene)), form.tau_max, SINGLE)
     assert not holds(scene, left_out)
     # and so it is in what a user asks for
-    assert choice.choose(scene, "closed", "single").evaluator == form
+    assert choice.choose(lower(scene), "closed", "single").evaluator == form
 
 
 def beyond(cuts, piece, polynomial):

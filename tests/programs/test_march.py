@@ -101,9 +101,9 @@ def test_long_horizons_agree_with_direct_integration():
     made = march(lower(scene))
     taus = np.random.default_rng(1).uniform(0, 60, 200)
     coarse, fine = (integrate(scene.system.chain, lower(scene).loads, made.tau_max, steps) for steps in (64, 128))
-    for observable, row in zip(scene.outputs, program(scene, made)(taus), strict=True):
-        expected = fine.at(observable, taus.tolist())
-        error = np.abs(expected - coarse.at(observable, taus.tolist())).max() / 4  # of fourth order
+    for probe, row in zip(lower(scene).probes, program(scene, made)(taus), strict=True):
+        expected = fine.at(probe, taus.tolist())
+        error = np.abs(expected - coarse.at(probe, taus.tolist())).max() / 4  # of fourth order
         assert np.abs(row - expected).max() <= error + 1e-12 * np.abs(expected).max()
 
 

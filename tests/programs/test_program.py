@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from tests.support.builds import SOURCES, scene
-from tests.support.generated import assemble, numpy_text
+from tests.support.generated import numpy_text
 from wavesym.numbers.reals import REALS
+from wavesym.programs import making
 from wavesym.programs.choice import choose
 from wavesym.programs.schemes import SCHEMES
 from wavesym.running.compiled import imported
@@ -23,7 +24,7 @@ each_program = pytest.mark.parametrize(("evaluator", "precision"), SOURCES)
 def made(name, evaluator, precision):
     model = lower(SCENES[name])
     chosen = choose(model, evaluator, precision)
-    return assemble(chosen.evaluator), imported(numpy_text(model, chosen.evaluator), "both")
+    return making.program(model, chosen.evaluator), imported(numpy_text(model, chosen.evaluator), "both")
 
 
 def same(one, other):
@@ -53,7 +54,7 @@ def test_its_numbers_are_of_its_format(evaluator, precision):
     program, _ = made("building", evaluator, precision)
     assert program.kind == evaluator
     assert program.real is REALS[precision]
-    assert program.reason
+    assert program.provenance.reason
     assert program.error_bound == max(output.bound for output in program.outputs)
     dtype = np.float64 if precision == "double" else np.float32
     for name, table in program.tables.items():

@@ -161,7 +161,7 @@ def fabricated(count: int, still: int = 0) -> Histories:
     outputs = [
         History(Probe(f"strain@{k}", "strain", 1, fmpq(k)), (RAMP * (1, (k + 1) * (k >= still)),)) for k in range(count)
     ]
-    return Histories(THIRDS, tuple(outputs), (), dense=False)
+    return Histories(lower(THIRDS), tuple(outputs), (), dense=False)
 
 
 @pytest.mark.parametrize(("count", "sizes"), [(1, [1]), (8, [8]), (9, [4, 5]), (40, [8] * 5), (60, [8] * 6)])

@@ -148,12 +148,12 @@ def test_jitcdde_follows_its_tolerance_where_nothing_jumps():
 
 def test_exact_modes():
     """Of a free bar k pi; with equal discs at its ends, whose middle rests or stretches nothing, two equations."""
-    bar = replace(stated(lower(SCENES["drive"])), alpha=np.array([0.0, 6.0]), beta=np.array([6.0, 0.0]))
-    w = modes.modes(bar, 7).w
+    drive = replace(stated(lower(SCENES["drive"])), alpha=np.array([0.0, 6.0]), beta=np.array([6.0, 0.0]))
+    w = modes.modes(drive, 7).w
     assert w[0] == 0
     np.testing.assert_allclose(w[1::2] * np.tan(w[1::2] / 2), 3, rtol=1e-9)
     np.testing.assert_allclose(w[2::2] / np.tan(w[2::2] / 2), -3, rtol=1e-9)
-    bar = replace(stated, inertia=np.zeros(2))
+    bar = replace(drive, inertia=np.zeros(2))
     np.testing.assert_allclose(modes.modes(bar, 5).w, np.arange(5) * math.pi, atol=1e-12)
 
 

@@ -7,7 +7,7 @@ import pytest
 from tests.support import attack
 from tests.support.drawn import NEARLY
 from tests.support.scenes import as_toml
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 
 SCENE = Scene(
     name="struck",
@@ -33,7 +33,7 @@ def test_every_program_of_a_plain_scene_holds():
 @pytest.mark.parametrize("language", ["c", "numpy"])
 @pytest.mark.parametrize("wrong", ["bound", "zero"])
 def test_a_wrong_program_is_found(monkeypatch, language, wrong):
-    made = attack.files(SCENE, "all", "pieces", "double")
+    made = attack.files(lower(SCENE), "all", "pieces", "double")
     told = json.loads(made["struck.json"])
     if wrong == "bound":
         told["outputs"][3]["error_bound"] /= 1e6
@@ -41,7 +41,7 @@ def test_a_wrong_program_is_found(monkeypatch, language, wrong):
         names = [output["name"] for output in told["outputs"]]
         assert names[0] == "strain@0"
         other = Scene(**SCENE.model_dump() | {"output": SCENE.output.model_dump() | {"strain": ["1/2", 2]}})
-        made = attack.files(other, "all", "pieces", "double")
+        made = attack.files(lower(other), "all", "pieces", "double")
     made["struck.json"] = json.dumps(told)
     monkeypatch.setattr(attack, "files", lambda *_: made)
     outcomes = list(attack.attack(SCENE, "double", ("pieces",), (language,)))

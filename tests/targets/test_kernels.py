@@ -10,6 +10,7 @@ from tests.support.builds import LANGUAGES, SOURCES, STRICT, scene, source
 from tests.support.generated import assemble
 from wavesym.programs.choice import choose
 from wavesym.running.toolchain import CompilerError, compiler
+from wavesym.scene import lower
 
 C = Path(__file__).parents[2] / "templates" / "c"
 KERNELS = sorted(path.name for path in C.glob("*.c"))
@@ -53,7 +54,7 @@ def test_tables_are_declared_as_they_are_written(of):
     written = set(re.findall(r"^static const (int|real) (\w+)\[\]", text, re.MULTILINE))
     declared = re.findall(r"^extern const (int|real) (\w+)\[\];", (C / f"{of[0]}_tables.h").read_text(), re.MULTILINE)
     assert written == set(declared)
-    of_program = assemble(choose(scene(made.name, "1e-2"), *of).evaluator).tables
+    of_program = assemble(choose(lower(scene(made.name, "1e-2")), *of).evaluator).tables
     assert {name for _, name in written} == of_program.keys() - {"point"}  # which the header declares
 
 

@@ -242,5 +242,6 @@ def silent(rod):
 def test_a_wrong_node_is_caught(scene, x, changes, monkeypatch):
     truth = known(lower(scene))
     assert all(outcome.passed for outcome in checks.integration(truth))
-    monkeypatch.setattr(checks, "chain", lambda scene: mutated(scene, x, **changes))
+    wrong = mutated(scene, x, **changes)
+    monkeypatch.setattr(checks, "integrate", lambda chain, *given: integrate(wrong, *given))
     assert not all(outcome.passed for outcome in checks.integration(truth))

@@ -120,15 +120,15 @@ def test_a_digit_in_a_generated_table_is_seen(evaluator, file, monkeypatch):
 
 def test_a_digit_in_a_program_breaks_the_balances(monkeypatch):
     truth = known(lower(DRIVE))
-    right = checks.assemble
+    right = checks.make
 
-    def changed(evaluator):
-        program = right(evaluator)
+    def changed(model):
+        program = right(model)
         *_, last = (number for number in program.tables["coefficient"] if abs(number) > 0.1)
         wrong = tuple(1.0001 * number if number == last else number for number in program.tables["coefficient"])
         return replace(program, tables={**program.tables, "coefficient": wrong})
 
-    monkeypatch.setattr(checks, "assemble", changed)
+    monkeypatch.setattr(checks, "make", changed)
     assert not all(verdicts(checks.invariants, truth))
 
 
@@ -165,11 +165,10 @@ def test_a_coefficient_of_a_table_is_seen(power):
 def test_a_refusal_is_no_failure(monkeypatch):
     truth = known(lower(DRIVE))
 
-    def refuse(scene, *_, **__):
+    def refuse(model, **_):
         raise ToleranceError("small: cannot be met")
 
-    monkeypatch.setattr(checks, "files", refuse)
-    monkeypatch.setattr(checks, "choose", refuse)
+    monkeypatch.setattr(checks, "make", refuse)
     for outcome in (*checks.generated(truth), *checks.invariants(truth)):
         assert outcome.passed
         assert outcome.cells["NumPy"] == "refused"

@@ -11,7 +11,9 @@ from hypothesis import given, settings
 import wavesym
 from tests.support.drawn import scenes
 from tests.support.generated import assemble
+from wavesym.numbers.doubles import fraction, nearest
 from wavesym.programs.march.evaluator import marched
+from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks
 from wavesym.verification.invariants import balances, watched, weights
@@ -56,7 +58,7 @@ FOUR = pytest.mark.parametrize("scene", [COLLISION, DRIVE, FORCE, GROUND], ids=[
 def exactly(scene, windows):
     """A scene as it is watched, its values in balls, rounded once, and what that costs."""
     seen = watched(lower(scene), windows)
-    response = wavesym.evaluator(seen)
+    response = Response(seen)
     return seen, response, [2.0**-53 * np.abs(row).max() for row in response(np.linspace(0, windows, 401))]
 
 
@@ -98,7 +100,7 @@ def in_rods(scene, tau):
     system, m = scene.system.chain, scene.system.m
     nodes, rule = np.polynomial.legendre.leggauss(24)
     # fronts are where a load's time says, seen from either end
-    parts = {Fraction(tau) - piece.time for piece in lower(scene).loads}
+    parts = {Fraction(tau) - fraction(load.time) for load in lower(scene).loads}
     cuts = sorted({Fraction(0), Fraction(1)} | {part % 1 for part in parts} | {-part % 1 for part in parts})
     places, shares = [], []
     for low, high in pairwise(cuts):
@@ -109,7 +111,7 @@ def in_rods(scene, tau):
     values = wavesym.evaluator(wide)(np.array([float(tau)]))[:, 0]
     strain, velocity, q = np.split(values, [len(along), 2 * len(along)])
     bodies, rods = weights(system)
-    heavy = np.array([float(Fraction(str(w))) * node.inertia for w, node in zip(bodies, system.nodes, strict=True)])
+    heavy = np.array([nearest(w * node.inertia) for w, node in zip(bodies, system.nodes, strict=True)])
     shares = np.outer([float(Fraction(str(w))) for w in rods], shares).ravel()
     return heavy @ q + shares @ velocity, heavy @ q**2 / 2 + shares @ (strain**2 + velocity**2) / 2
 
@@ -158,7 +160,7 @@ def test_a_leak_is_seen(scene):
 
 def test_one_wrong_output_is_seen():
     seen, evaluate, errors = exactly(DRIVE, 4)
-    for wrong in range(len(seen.outputs)):
+    for wrong in range(len(seen.probes)):
 
         def changed(taus, wrong=wrong):
             values = evaluate(taus)
@@ -184,8 +186,7 @@ def test_what_is_not_looked_at_is_said(monkeypatch):
 @pytest.mark.slow
 @FOUR
 def test_the_march_keeps_them_for_long(scene):
-    seen = watched(lower(scene), 100)
-    seen = seen.model_copy(update={"output": seen.output.model_copy(update={"tolerance": Fraction(1, 10**4)})})
+    seen = watched(lower(scene), 100).tolerating(fmpq(1, 10**4))
     made = marched(seen)
     evaluate = assemble(made).evaluate
     for balance in balances(seen, evaluate, [output.bound * output.largest for output in made.outputs]):

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 from wavesym.verification import checks
 from wavesym.verification.checks import CHECKS
 from wavesym.verification.report import verify
@@ -31,7 +31,7 @@ def found(text):
 
 
 def test_all_is_well():
-    text, passed = verify([drive(), drive(until=2)])
+    text, passed = verify(map(lower, [drive(), drive(until=2)]))
     assert passed
     assert text.isascii()
     assert max(map(len, text.splitlines())) <= 120
@@ -59,7 +59,7 @@ def test_all_is_well():
 
 
 def test_an_output_that_is_0_throughout():
-    text, passed = verify([drive(until=2, velocity=["5/2"], displacement=[0])])
+    text, passed = verify(map(lower, [drive(until=2, velocity=["5/2"], displacement=[0])]))
     assert passed
     generated, integration, spacetime, _ = found(text)
     assert [generated[0][column] for column in ("C", "NumPy", "bound")] == ["0"] * 3
@@ -69,7 +69,7 @@ def test_an_output_that_is_0_throughout():
 
 
 def test_a_closed_form_that_refuses_is_no_failure():
-    text, passed = verify([drive(tolerance="1e-17")])
+    text, passed = verify(map(lower, [drive(tolerance="1e-17")]))
     assert passed
     assert {row["C"] for row in found(text)[0]} == {"refused"}
     assert "closed: loses" in text
@@ -83,13 +83,13 @@ def test_wrong_values_fail(monkeypatch, file):
         "small.py": ("return out.reshape", "out *= 1 + 1e-9\n        return out.reshape"),
     }[file]
 
-    def tampered(scene, language):
-        made = right(scene, language)
+    def tampered(program, language):
+        made = right(program, language)
         assert wrong[0] in made[file]
         return {**made, file: made[file].replace(*wrong)}
 
     monkeypatch.setattr(checks, "files", tampered)
-    text, passed = verify([drive()])
+    text, passed = verify(map(lower, [drive()]))
     assert not passed
     assert "FAIL" in text
     assert ("self-test" in text) == (file == "small.c")
@@ -98,13 +98,13 @@ def test_wrong_values_fail(monkeypatch, file):
 def test_values_that_are_no_numbers_fail(monkeypatch):
     right = checks.files
 
-    def tampered(scene, language):
-        made = right(scene, language)
+    def tampered(program, language):
+        made = right(program, language)
         text = made["small.py"].replace("return out.reshape", "out[0, 7] = np.nan\n        return out.reshape")
         return {**made, "small.py": text}
 
     monkeypatch.setattr(checks, "files", tampered)
-    text, passed = verify([drive()])
+    text, passed = verify(map(lower, [drive()]))
     assert not passed
     assert [[row["verdict"] for row in table] for table in found(text)] == [
         ["FAIL", "PASS", "PASS"],
@@ -117,6 +117,6 @@ def test_values_that_are_no_numbers_fail(monkeypatch):
 def test_an_integration_too_coarse_to_tell_fails(monkeypatch):
     monkeypatch.setattr(checks, "_FINE", 1e-12)
     monkeypatch.setattr(checks, "_MOST_DOUBLES", 1)
-    text, passed = verify([drive()])
+    text, passed = verify(map(lower, [drive()]))
     assert not passed
     assert "too coarse" in text

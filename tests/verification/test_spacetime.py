@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from scipy.special import eval_laguerre
 
 from tests.support.drawn import scenes
-from wavesym.exact.reference import Reference as Exact
+from wavesym.exact.reference import Reference
 from wavesym.rivals.problem import Event, Problem, Watch
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks, spacetime
@@ -43,14 +43,14 @@ FOUR = pytest.mark.parametrize("scene", [BUILDING, FORCE, COLLISION, DRIVE], ids
 def errors(first, finer, scene, until):
     """The largest error of every output on grids finer than the first."""
     instants = first.instants(until)
-    truth = np.array(Exact(lower(scene)).values([k / first.cells for k in instants.tolist()]))
+    truth = np.array(Reference(lower(scene)).values([k / first.cells for k in instants.tolist()]))
     found = [first.finer(times).integrate(times * instants).values for times in finer]
     return [np.abs(values - truth).max(axis=1) for values in found]
 
 
 @FOUR
 def test_the_order_is_two(scene):
-    first = grid(scene)
+    first = grid(lower(scene))
     assert first.aligned
     for coarse, fine in pairwise(errors(first, (1, 2, 4), scene, 6.0)):
         seen = fine > 1e-10
@@ -61,9 +61,9 @@ def test_the_order_is_two(scene):
 @FOUR
 def test_what_is_extrapolated_is_of_order_four(scene):
     assert all(outcome.passed for outcome in checks.spacetime(known(lower(scene))))
-    first = grid(scene)
+    first = grid(lower(scene))
     instants = first.instants(6.0)
-    truth = np.array(Exact(lower(scene)).values([k / first.cells for k in instants.tolist()]))
+    truth = np.array(Reference(lower(scene)).values([k / first.cells for k in instants.tolist()]))
     n, n2, n4 = (first.finer(times).integrate(times * instants).values for times in (1, 2, 4))
     coarse, fine = (np.abs(b + (b - a) / 3 - truth).max(axis=1) for a, b in ((n, n2), (n2, n4)))
     seen = fine > 1e-10
@@ -106,16 +106,16 @@ def test_a_front_is_as_sharp_as_it_is():
     for cells in (16, 64):
         half = cells // 2
         around = np.array([half - 1, half, half + 1])
-        strain, velocity = SpaceTimeGrid(grid(scene).problem, cells).integrate(around).values
+        strain, velocity = SpaceTimeGrid(grid(lower(scene)).problem, cells).integrate(around).values
         np.testing.assert_allclose(strain, [0, 2, 4], atol=1e-12)
         np.testing.assert_allclose(velocity, [0, -2, -4], atol=1e-12)
-        assert not set(around[1:2]) & set(SpaceTimeGrid(grid(scene).problem, cells).instants(1.0))
-        assert {half - 1, half + 1} <= set(SpaceTimeGrid(grid(scene).problem, cells).instants(1.0))
+        assert not set(around[1:2]) & set(SpaceTimeGrid(grid(lower(scene)).problem, cells).instants(1.0))
+        assert {half - 1, half + 1} <= set(SpaceTimeGrid(grid(lower(scene)).problem, cells).instants(1.0))
 
 
 def test_fronts_off_the_grid_are_kept_away_from_and_allowed_for():
     scene = building({"times": ["517/1009"], "a": [1], "b": [0]}, base="force", strain=["1/2"], velocity=[1], until=5)
-    first = grid(scene)
+    first = grid(lower(scene))
     assert not first.aligned
     front = 517 / 1009 + 0.5
     assert min(abs(k / first.cells - front) for k in first.instants(5.0)) >= 1 / first.cells
@@ -164,8 +164,8 @@ def changed(name, x, factor):
 def test_a_wrong_problem_is_caught(scene, change, monkeypatch):
     truth = known(lower(scene))
     assert all(outcome.passed for outcome in checks.spacetime(truth))
-    right = spacetime.scene_problem
-    monkeypatch.setattr(spacetime, "scene_problem", lambda scene: change(right(scene)))
+    right = spacetime.stated
+    monkeypatch.setattr(spacetime, "stated", lambda model: change(right(model)))
     assert not all(outcome.passed for outcome in checks.spacetime(truth))
 
 

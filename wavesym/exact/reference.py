@@ -14,13 +14,12 @@ from flint import arb, fmpq
 from wavesym.errors import CostError, RangeError
 from wavesym.exact.ball import Source, largest, segments, values
 from wavesym.exact.motion import Motion
-from wavesym.exact.signal import Signal, signals
+from wavesym.exact.signal import Signal, refuse_many, signals
 from wavesym.exact.windows import stored
 from wavesym.model.model import Model
 from wavesym.numbers.balls import FIRST_BITS
 from wavesym.numbers.doubles import not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.closed import refuse_many
 
 # bytes of waves that are known in a second or two
 _QUICK = 10**8

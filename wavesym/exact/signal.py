@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
+from wavesym.errors import CostError
 from wavesym.exact.increments import Increment, combined, integrated
 from wavesym.exact.increments import start as start_of
 from wavesym.exact.table import Function, Rules, unit_response
@@ -22,7 +23,7 @@ from wavesym.model.chain import Chain
 from wavesym.model.loads import Applied
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
-from wavesym.numbers.doubles import rational
+from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 
 
@@ -56,6 +57,21 @@ def signals(model: Model, most: float = inf, real: Real = DOUBLE) -> tuple[Signa
     CostError where the tables would have more than `most` numbers.
     """
     return observed(RuledChain(model.chain), model.probes, model.loads, rational(model.horizon(real)), most)
+
+
+def refuse_many(model: Model, most: float) -> None:
+    """CostError where loads would bring increments to the outputs more than about `most` times.
+
+    The first load of each source is not counted: what that costs is known from its table.
+    """
+    first = {load.source: load.time for load in reversed(model.loads)}
+    later = [load.time for load in model.acting(model.until) if first[load.source] < load.time]
+    windows = sum(nearest(model.until - time) + 1 for time in later)
+    if (arrivals := 2 * len(model.probes) * windows) > most:
+        raise CostError(
+            f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected (fewer load "
+            "times or outputs, or a shorter horizon, help)"
+        )
 
 
 class RuledChain:

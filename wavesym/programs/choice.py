@@ -9,11 +9,11 @@ from typing import NamedTuple, Protocol
 from flint import fmpq
 
 from wavesym.errors import CostError, RangeError, WavesymError
-from wavesym.exact.signal import signals
+from wavesym.exact.signal import refuse_many, signals
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import REALS, Real
-from wavesym.programs.closed import ClosedForm, closed_form, refuse_many
+from wavesym.programs.closed import ClosedForm, closed_form
 from wavesym.programs.march.evaluator import MarchEvaluator, marched, unmet
 from wavesym.programs.pieces import Pieces, pieces
 from wavesym.programs.program import ProgramOutput

@@ -26,12 +26,10 @@ from itertools import pairwise
 
 from flint import arb, arb_poly, fmpq
 
-from wavesym.errors import CostError
 from wavesym.exact.ball import largest, polynomials, segments, shifted
 from wavesym.exact.increments import Increment
 from wavesym.exact.signal import Signal
-from wavesym.model.model import Model
-from wavesym.numbers.doubles import bound, nearest, rational
+from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import ProgramOutput
 
@@ -120,21 +118,6 @@ class ClosedForm:
             middle = self.real.nearest(rational(start) / 2 + rational(end) / 2)
             points |= {middle, self.real.next_to(end, start)}
         return sorted(points)
-
-
-def refuse_many(model: Model, most: float) -> None:
-    """CostError where loads would bring increments to the outputs more than about `most` times.
-
-    The first load of each source is not counted: what that costs is known from its table.
-    """
-    first = {load.source: load.time for load in reversed(model.loads)}
-    later = [load.time for load in model.acting(model.until) if first[load.source] < load.time]
-    windows = sum(nearest(model.until - time) + 1 for time in later)
-    if (arrivals := 2 * len(model.probes) * windows) > most:
-        raise CostError(
-            f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected (fewer load "
-            "times or outputs, or a shorter horizon, help)"
-        )
 
 
 def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) -> ClosedForm:
