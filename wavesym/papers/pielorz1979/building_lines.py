@@ -10,8 +10,8 @@ from wavesym.papers.pielorz1979.recurrence import (
     Count,
     Family,
     PrintedLine,
+    PrintedTarget,
     PrintedTerm,
-    Target,
     down,
     first,
     minus,
@@ -29,7 +29,7 @@ from wavesym.papers.pielorz1979.recurrence import (
     zero,
 )
 
-_FIRST = (Target("f", "c", first, first), Target("f", "0", first, first))
+_FIRST = (PrintedTarget("f", "c", first, first), PrintedTarget("f", "0", first, first))
 
 
 def _constants(number: int, family: Family) -> PrintedLine:
@@ -39,7 +39,7 @@ def _constants(number: int, family: Family) -> PrintedLine:
         number,
         f"f{mark}^{{k,1,n+1}} = f{mark}^{{k,2,n}} + H(n-2) g{mark}^{{k,2,n}} - f{mark}^{{k,1,n}}",
         "n >= 1",
-        (Target("f", family, first, first, start=1),),
+        (PrintedTarget("f", family, first, first, start=1),),
         (
             PrintedTerm(f"f{mark}^{{k,2,n}}", plus, "f", family, rod(2), 1, zero),
             PrintedTerm(f"H(n-2) g{mark}^{{k,2,n}}", plus, "g", family, rod(2), 1, zero, (n_2,)),
@@ -55,7 +55,7 @@ def _left_going(number: int, family: Family) -> PrintedLine:
         number,
         f"g{mark}^{{k,j,n+1}} = H(n-1) (f{mark}^{{k,j+1,n}} - f{mark}^{{k,j,n}}) + H(n-2) g{mark}^{{k,j+1,n}}",
         "j = 2, 3, ..., m-1",
-        (Target("g", family, second, under_roof),),
+        (PrintedTarget("g", family, second, under_roof),),
         (
             PrintedTerm(f"H(n-1) f{mark}^{{k,j+1,n}}", plus, "f", family, this_rod(1), 1, zero, (n_1,)),
             PrintedTerm(f"-H(n-1) f{mark}^{{k,j,n}}", minus, "f", family, this_rod(), 1, zero, (n_1,)),
@@ -71,7 +71,7 @@ def _roof_constant(family: Family) -> PrintedLine:
         5,
         rf"g^{{k,m,n+1}} = H(n-1) (f^{{k,m,n}} - \frac{{2}}{{\kappa_m}} f{mark}^{{k,m,n}})",
         "",
-        (Target("g", "c", roof, roof),),
+        (PrintedTarget("g", "c", roof, roof),),
         (
             PrintedTerm("H(n-1) f^{k,m,n}", plus, "f", "c", top_rod(), 1, zero, (n_1,)),
             PrintedTerm(
@@ -99,7 +99,7 @@ def _right_constant(letter: str) -> PrintedLine:
         r"f^{k,j,n+1} = f^{k,j-1,n+1} - \frac{1}{2\kappa_1} "
         f"[H(n-1) {letter}_0^{{k,j,n+1}} + f_0^{{k,j-1,n+1}}]",
         "j = 2, 3, ..., m",
-        (Target("f", "c", second, roof),),
+        (PrintedTarget("f", "c", second, roof),),
         (
             PrintedTerm("f^{k,j-1,n+1}", plus, "f", "c", this_rod(-1), 0, zero),
             PrintedTerm(
@@ -128,7 +128,7 @@ def _left_power(shift: int, begun: tuple[Count, ...] = ()) -> PrintedLine:
         12,
         f"g_{{1,i}}^{{k,j,n+1}} = f_{{1,i}}^{{k,j+1,n}} + H(2n+j-4-i)(g_{{1,i}}^{{k,j+1,n}} - {returned})",
         "j = 2, 3, ..., m-2; i = 2n+j-3, 2n+j-4, ..., 0",
-        (Target("g", "1", second, lambda m: m - 2, top=lambda at: 2 * at.n + at.j - 3),),
+        (PrintedTarget("g", "1", second, lambda m: m - 2, top=lambda at: 2 * at.n + at.j - 3),),
         (
             PrintedTerm("f_{1,i}^{k,j+1,n}", plus, "f", "1", this_rod(1), 1),
             PrintedTerm("H(2n+j-4-i) g_{1,i}^{k,j+1,n}", plus, "g", "1", this_rod(1), 1, guards=(guard, *begun)),
@@ -144,7 +144,7 @@ def _next_to_roof(begun: tuple[Count, ...] = ()) -> PrintedLine:
         13,
         "g_{1,i}^{k,m-1,n+1} = f_{1,i}^{k,m,n} + H(2n+m-6-i)g_{1,i}^{k,m,n} - H(2n+m-5-i)f_{1,i}^{k,m-1,n}",
         "i = 2n+m-4, 2n+m-5, ..., 0",
-        (Target("g", "1", under_roof, under_roof, top=lambda at: 2 * at.n + at.m - 4),),
+        (PrintedTarget("g", "1", under_roof, under_roof, top=lambda at: 2 * at.n + at.m - 4),),
         (
             PrintedTerm("f_{1,i}^{k,m,n}", plus, "f", "1", top_rod(), 1),
             PrintedTerm(
@@ -184,7 +184,7 @@ def _roof_power(index: str, power: Count) -> PrintedLine:
         rf"g_{{1,i}}^{{k,m,n+1}} = \frac{{1}}{{2\kappa_1 - \kappa_m}} [(i+1)(g_{{1,{index}}}^{{k,m,n+1}} + "
         r"f_{1,i+1}^{k,m,n})H(2n+m-5-i) - (2\kappa_1 + \kappa_m)f_{1,i}^{k,m,n}]",
         "i = 2n+m-4, 2n+m-5, ..., 0",
-        (Target("g", "1", roof, roof, top=lambda at: 2 * at.n + at.m - 4),),
+        (PrintedTarget("g", "1", roof, roof, top=lambda at: 2 * at.n + at.m - 4),),
         (
             PrintedTerm(
                 rf"\frac{{i+1}}{{2\kappa_1 - \kappa_m}} H(2n+m-5-i) g_{{1,{index}}}^{{k,m,n+1}}",
@@ -226,7 +226,7 @@ def _roof_start(own: str, family: Family) -> PrintedLine:
         17,
         f"g_{{m,0}}^{{k,m,n+1}} = -{own}^{{k,m,n+1}} - g_{{1,0}}^{{k,m,n+1}}H(n-1)",
         "n >= 1, where III.16 ends",
-        (Target("g", "m", roof, roof, start=1),),
+        (PrintedTarget("g", "m", roof, roof, start=1),),
         (
             PrintedTerm(f"-{own}^{{k,m,n+1}}", minus, "g", family, top_rod(), 0, zero),
             PrintedTerm("-g_{1,0}^{k,m,n+1}H(n-1)", minus, "g", "1", top_rod(), 0, zero, (n_1,)),
@@ -241,7 +241,7 @@ def _floor_start(own: str, family: Family, shift: int) -> PrintedLine:
         22,
         f"f_{{1,0}}^{{k,j,n+1}} = -{own}^{{k,j,n+1}} - {guard}f_{{m,0}}^{{k,j,n+1}}",
         "j = 2, 3, ..., m",
-        (Target("f", "1", second, roof),),
+        (PrintedTarget("f", "1", second, roof),),
         (
             PrintedTerm(f"-{own}^{{k,j,n+1}}", minus, "f", family, this_rod(), 0, zero),
             PrintedTerm(
@@ -277,21 +277,21 @@ PRINTED: tuple[PrintedLine, ...] = (
         8,
         "g_0^{k,m,n+1} = H(n-1) f_0^{k,m,n}",
         "",
-        (Target("g", "0", roof, roof),),
+        (PrintedTarget("g", "0", roof, roof),),
         (PrintedTerm("H(n-1) f_0^{k,m,n}", plus, "f", "0", top_rod(), 1, zero, (n_1,)),),
     ),
     PrintedLine(
         9,
         "f_0^{k,j,n+1} = f_0^{k,j-1,n+1}",
         "j = 2, 3, ..., m",
-        (Target("f", "0", second, roof),),
+        (PrintedTarget("f", "0", second, roof),),
         (PrintedTerm("f_0^{k,j-1,n+1}", plus, "f", "0", this_rod(-1), 0, zero),),
     ),
     PrintedLine(
         10,
         "f_{1,i}^{k,1,n+1} = f_{1,i}^{k,2,n} + H(2n-3-i) g_{1,i}^{k,2,n} - H(2n-4-i) f_{1,i}^{k,1,n}",
         "i = 2n-2, 2n-3, ..., 0",
-        (Target("f", "1", first, first, top=lambda at: 2 * at.n - 2),),
+        (PrintedTarget("f", "1", first, first, top=lambda at: 2 * at.n - 2),),
         (
             PrintedTerm("f_{1,i}^{k,2,n}", plus, "f", "1", rod(2), 1),
             PrintedTerm(
@@ -306,7 +306,7 @@ PRINTED: tuple[PrintedLine, ...] = (
         11,
         "f_{m,i}^{k,1,n+1} = f_{m,i}^{k,2,n} + g_{m,i}^{k,2,n} - H(n-m-1-i) f_{m,i}^{k,1,n}",
         "i = n-m, n-m-1, ..., 0",
-        (Target("f", "m", first, first, top=lambda at: at.n - at.m),),
+        (PrintedTarget("f", "m", first, first, top=lambda at: at.n - at.m),),
         (
             PrintedTerm("f_{m,i}^{k,2,n}", plus, "f", "m", rod(2), 1),
             PrintedTerm("g_{m,i}^{k,2,n}", plus, "g", "m", rod(2), 1),
@@ -322,7 +322,7 @@ PRINTED: tuple[PrintedLine, ...] = (
         15,
         "g_{m,i}^{k,j,n+1} = f_{m,i}^{k,j+1,n} + g_{m,i}^{k,j+1,n} - H(n-2-m+j-i)f_{m,i}^{k,j,n}",
         "j = 2, 3, ..., m-1; i = n-m+j-1, n-m+j-2, ..., 0",
-        (Target("g", "m", second, under_roof, top=lambda at: at.n - at.m + at.j - 1),),
+        (PrintedTarget("g", "m", second, under_roof, top=lambda at: at.n - at.m + at.j - 1),),
         (
             PrintedTerm("f_{m,i}^{k,j+1,n}", plus, "f", "m", this_rod(1), 1),
             PrintedTerm("g_{m,i}^{k,j+1,n}", plus, "g", "m", this_rod(1), 1),
@@ -341,7 +341,7 @@ PRINTED: tuple[PrintedLine, ...] = (
         16,
         r"g_{m,i}^{k,m,n+1} = -H(n-2-i)f_{m,i}^{k,m,n} + \frac{2\kappa_m}{i}f_{m,i-1}^{k,m,n}",
         "i = n-1, n-2, ..., 1",
-        (Target("g", "m", roof, roof, top=lambda at: at.n - 1, bottom=1),),
+        (PrintedTarget("g", "m", roof, roof, top=lambda at: at.n - 1, bottom=1),),
         (
             PrintedTerm(
                 "-H(n-2-i)f_{m,i}^{k,m,n}", minus, "f", "m", top_rod(), 1, guards=(lambda at: at.n - 2 - at.i,)
@@ -363,7 +363,7 @@ PRINTED: tuple[PrintedLine, ...] = (
         r"f_{1,i}^{k,2,n+1} = -H(2n-1-i)g_{1,i}^{k,2,n+1} + \frac{2\kappa_1}{i}[g_{1,i-1}^{k,2,n+1} + "
         "H(2n-1-i)f_{1,i-1}^{k,1,n+1}]",
         "i = 2n, 2n-1, ..., 1",
-        (Target("f", "1", second, second, top=lambda at: 2 * at.n, bottom=1),),
+        (PrintedTarget("f", "1", second, second, top=lambda at: 2 * at.n, bottom=1),),
         (
             PrintedTerm(
                 "-H(2n-1-i)g_{1,i}^{k,2,n+1}", minus, "g", "1", rod(2), 0, guards=(lambda at: 2 * at.n - 1 - at.i,)
@@ -386,7 +386,7 @@ PRINTED: tuple[PrintedLine, ...] = (
         r"f_{1,i}^{k,j,n+1} = -H(2n+j-3-i)H(n-1)g_{1,i}^{k,j,n+1} + \frac{2\kappa_1}{i}[H(n-1)g_{1,i-1}^{k,j,n+1} + "
         "f_{1,i-1}^{k,j-1,n+1}]",
         "j = 3, 4, ..., m-1; i = 2n+j-2, 2n+j-3, ..., 1",
-        (Target("f", "1", lambda m: 3, under_roof, top=lambda at: 2 * at.n + at.j - 2, bottom=1),),
+        (PrintedTarget("f", "1", lambda m: 3, under_roof, top=lambda at: 2 * at.n + at.j - 2, bottom=1),),
         (
             PrintedTerm(
                 "-H(2n+j-3-i)H(n-1)g_{1,i}^{k,j,n+1}",
@@ -408,7 +408,7 @@ PRINTED: tuple[PrintedLine, ...] = (
         r"f_{1,i}^{k,m,n+1} = -H(2n+m-4-i)H(n-1)g_{1,i}^{k,m,n+1} + "
         r"\frac{2\kappa_1}{i}[H(2n+m-3-i)H(n-1)g_{1,i-1}^{k,m,n+1} + f_{1,i-1}^{k,m-1,n+1}]",
         "i = 2n+m-2, 2n+m-3, ..., 1",
-        (Target("f", "1", roof, roof, top=lambda at: 2 * at.n + at.m - 2, bottom=1),),
+        (PrintedTarget("f", "1", roof, roof, top=lambda at: 2 * at.n + at.m - 2, bottom=1),),
         (
             PrintedTerm(
                 "-H(2n+m-4-i)H(n-1)g_{1,i}^{k,m,n+1}",
@@ -437,7 +437,7 @@ PRINTED: tuple[PrintedLine, ...] = (
         r"f_{m,i}^{k,j,n+1} = \frac{1}{2\kappa_1 - \kappa_m} [-(i+1)H(n-m+j-2-i)(f_{m,i+1}^{k,j,n+1} + "
         r"g_{m,i+1}^{k,j,n+1}) + \kappa_m g_{m,i}^{k,j,n+1} + 2\kappa_1 H(n-m+j-2-i)f_{m,i}^{k,j-1,n+1}]",
         "j = 2, 3, ..., m; i = n-m+j-1, n-m+j-2, ..., 0",
-        (Target("f", "m", second, roof, top=lambda at: at.n - at.m + at.j - 1),),
+        (PrintedTarget("f", "m", second, roof, top=lambda at: at.n - at.m + at.j - 1),),
         (
             *(
                 PrintedTerm(

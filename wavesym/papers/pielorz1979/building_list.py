@@ -9,7 +9,7 @@ from flint import fmpq
 
 from wavesym.papers.pielorz1979.building_alone import consequence
 from wavesym.papers.pielorz1979.building_lines import CORRECTIONS, PRINTED
-from wavesym.papers.pielorz1979.recurrence import At, Count, Factor, PrintedLine, PrintedTerm, Target, with_terms
+from wavesym.papers.pielorz1979.recurrence import At, Count, Factor, PrintedLine, PrintedTarget, PrintedTerm, with_terms
 from wavesym.papers.record import Case, Claim, Slip, by_size
 from wavesym.papers.truth import Exact, building
 
@@ -44,7 +44,9 @@ def claims() -> Iterator[Claim[PrintedLine]]:
         )
 
 
-def coefficient(exact: Exact, source: str, term: PrintedTerm | Target, rod: int, interval: int, power: int) -> fmpq:
+def coefficient(
+    exact: Exact, source: str, term: PrintedTerm | PrintedTarget, rod: int, interval: int, power: int
+) -> fmpq:
     """The true value of a coefficient; 0 where there is none."""
     rate, place = _place(exact, term.family, power)
     powers = exact.increment(source, term.letter, rod, interval).get(rate, [])
@@ -74,7 +76,7 @@ def cases(line: PrintedLine) -> Iterator[Case]:
                 yield from _guards(exact, line, replace(at, i=i))
 
 
-def _places(line: PrintedLine) -> Iterator[tuple[Exact, Target, At]]:
+def _places(line: PrintedLine) -> Iterator[tuple[Exact, PrintedTarget, At]]:
     for m, n in by_size((m, n) for m in range(3, MOST_STOREYS + 1) for n in range(MOST_N + 1)):
         exact = building(m)
         for target in line.targets:
@@ -82,7 +84,7 @@ def _places(line: PrintedLine) -> Iterator[tuple[Exact, Target, At]]:
                 yield exact, target, At(m, n, j, 0, exact.chain.parameters.kappa)
 
 
-def _range(exact: Exact, target: Target, at: At) -> Case:
+def _range(exact: Exact, target: PrintedTarget, at: At) -> Case:
     rate, _ = _place(exact, target.family, 0)
     degree = exact.degree(target.letter, at.j, at.n + 1, rate)
     assert target.top
@@ -103,7 +105,7 @@ def _guards(exact: Exact, line: PrintedLine, at: At) -> Iterator[Case]:
         yield Case(where, term.on(at), exists, telling=bool(term.guards))
 
 
-def _value(exact: Exact, line: PrintedLine, target: Target, at: At, source: str) -> Case:
+def _value(exact: Exact, line: PrintedLine, target: PrintedTarget, at: At, source: str) -> Case:
     true = coefficient(exact, source, target, at.j, at.n + 1, at.i)
     printed = fmpq(0)
     for term in line.terms:
@@ -117,7 +119,7 @@ def _value(exact: Exact, line: PrintedLine, target: Target, at: At, source: str)
     return Case({**_indices(at, target), "source": source, **_numbers(at)}, printed, true, telling=true != 0)
 
 
-def _indices(at: At, target: Target) -> Mapping[str, object]:
+def _indices(at: At, target: PrintedTarget) -> Mapping[str, object]:
     return {"m": at.m, "n": at.n, "j": at.j} | ({"i": at.i} if target.family in "1m" else {})
 
 

@@ -56,7 +56,7 @@ class PrintedTerm:
 
 
 @dataclass(frozen=True)
-class Target:
+class PrintedTarget:
     """A coefficient on the left: for rods first(m) ... last(m), n >= start, powers top ... bottom.
 
     Without `top` it is a single coefficient (power 0), and no range is claimed.
@@ -85,7 +85,7 @@ class PrintedLine:
     number: int
     printed: str
     ranges: str
-    targets: tuple[Target, ...]
+    targets: tuple[PrintedTarget, ...]
     terms: tuple[PrintedTerm, ...]
     loads: Mapping[tuple[str, Family], Factor] | None = None
     strict: int = 0

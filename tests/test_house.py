@@ -1,0 +1,94 @@
+"""The house is as it is told: a scene is lowered once, a class name means one thing, no room is too large."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import wavesym
+from wavesym import compiler
+from wavesym.model import chain
+from wavesym.scene import Scene
+
+PACKAGE = Path(wavesym.__file__).parent
+TEMPLATES = PACKAGE.parent / "templates"
+LARGEST = 1 / 5
+"""Of all lines, what one room may have."""
+
+
+def sources() -> Iterator[tuple[Path, str]]:
+    for path in sorted(PACKAGE.rglob("*.py")):
+        yield path.relative_to(PACKAGE), path.read_text(encoding="utf-8")
+
+
+def classes(text: str) -> list[str]:
+    """The public classes of a module."""
+    return [node.name for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name[0] != "_"]
+
+
+def test_a_class_name_means_one_thing() -> None:
+    homes = Counter(name for _, text in sources() for name in classes(text))
+    assert [name for name, count in homes.items() if count > 1] == []
+
+
+def test_a_name_with_two_meanings_would_be_seen() -> None:
+    assert Counter(classes("class Panel: ...\n\nclass _Own: ...") + classes("class Panel: ..."))["Panel"] == 2
+
+
+def test_no_room_has_more_than_a_fifth_of_the_lines() -> None:
+    rooms: Counter[str] = Counter()
+    for path, text in sources():
+        rooms[path.parts[0]] += text.count("\n")
+    templates = (path for path in TEMPLATES.rglob("*") if path.is_file())
+    rooms["templates"] = sum(path.read_text(encoding="utf-8").count("\n") for path in templates)
+    (room, most), *_ = rooms.most_common(1)
+    assert most <= LARGEST * rooms.total(), room
+
+
+@pytest.fixture
+def built(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    """How often scenes are lowered, and nodes of chains written out."""
+    counted: Counter[str] = Counter()
+    right_lower, right_node = compiler.lower, chain._exact_node
+
+    def lower(scene):
+        counted["models"] += 1
+        return right_lower(scene)
+
+    def node(given):
+        counted["nodes"] += 1
+        return right_node(given)
+
+    monkeypatch.setattr(compiler, "lower", lower)
+    monkeypatch.setattr(chain, "_exact_node", node)
+    return counted
+
+
+@pytest.mark.parametrize("name", ["building_m2", "collision_m4", "drive_m1"])
+def test_generate_lowers_a_scene_once(built: Counter[str], name: str, tmp_path: Path) -> None:
+    scene = Scene.from_toml(name)
+    compiler.generate(scene, tmp_path, "all")
+    assert built == {"models": 1, "nodes": scene.system.m + 1}
+
+
+def test_verify_lowers_a_scene_once(built: Counter[str]) -> None:
+    scene = Scene.from_toml("drive_m1")
+    _, passed = compiler.verify([scene])
+    assert passed
+    assert built == {"models": 1, "nodes": scene.system.m + 1}
+
+
+def test_plot_lowers_a_scene_once(built: Counter[str], tmp_path: Path) -> None:
+    scene = Scene.from_toml("collision_m4")
+    compiler.plot(scene, tmp_path / "picture.svg")
+    assert built == {"models": 1, "nodes": scene.system.m + 1}
+
+
+def test_values_lower_a_scene_once(built: Counter[str]) -> None:
+    scene = Scene.from_toml("building_m2")
+    assert compiler.evaluator(scene)([1.0]).shape == (6, 1)
+    assert built == {"models": 1, "nodes": scene.system.m + 1}
