@@ -19,7 +19,6 @@ from flint import fmpq, fmpq_poly
 
 from wavesym.model.chain import Chain
 from wavesym.model.node import Node
-from wavesym.verification.exact_chain import exact, start
 
 if TYPE_CHECKING:  # tables are what is checked, not what is used
     from wavesym.exact.table import Function, Table
@@ -57,11 +56,11 @@ def unit_waves(chain: Chain, source: str, times: int) -> tuple[SentWaves, ...]:
     sent = tuple(SentWaves([], []) for _ in nodes)
     for n in range(times):
         for x, node in enumerate(nodes):
-            a = _arrived(sent[x - 1].right, start(node.left), n) if node.left else {}
-            b = _arrived(sent[x + 1].left, start(node.right), n) if node.right else {}
+            a = _arrived(sent[x - 1].right, node.left.velocity, n) if node.left else {}
+            b = _arrived(sent[x + 1].left, node.right.velocity, n) if node.right else {}
             q = _velocity(node, a, b, _load(node, source) if n == 0 else {}, n)
             for waves, arrived, rod in ((sent[x].left, a, node.left), (sent[x].right, b, node.right)):
-                before = _constant(start(rod) / 2) if n == 0 else {}
+                before = _constant(rod.velocity / 2) if n == 0 and rod else {}
                 waves.append(_sum([(1, q), (-1, arrived), (-1, before)]))
     return sent
 
@@ -95,17 +94,17 @@ def _arrived(sent: list[Change], v: fmpq, n: int) -> Change:
 
 
 def _load(node: Node, source: str) -> Change:
-    loads = [load for load in node.loads if f"{load.kind}{load.number or ''}" == source]
-    return _sum([(1, {fmpq(0): fmpq_poly([exact(c) for c in load.coefficients])}) for load in loads])
+    loads = [load for load in node.loads if load.source == source]
+    return _sum([(1, {fmpq(0): fmpq_poly(list(load.coefficients))}) for load in loads])
 
 
 def _velocity(node: Node, a: Change, b: Change, load: Change, n: int) -> Change:
-    right = _sum([(exact(node.alpha), a), (exact(node.beta), b), (1, load)])
-    gamma = exact(node.damping) + (exact(node.alpha) + exact(node.beta)) / 2
+    right = _sum([(node.alpha, a), (node.beta, b), (1, load)])
+    gamma = node.damping + (node.alpha + node.beta) / 2
     if not node.inertia:
         return _sum([(1 / gamma, right)])
     # a body moves at first with the rod that is fixed to it; afterwards what it gains starts from 0
-    jump = start(node.left or node.right) if n == 0 else fmpq(0)
+    jump = node.velocity if n == 0 else fmpq(0)
     return _solution(gamma / node.inertia, _sum([(fmpq(1, node.inertia), right)]), jump)
 
 

@@ -7,9 +7,9 @@ from functools import cache
 
 from flint import fmpq
 
+from wavesym.papers.exact_tables import Exact, building
 from wavesym.papers.pielorz1979.building_lines import CORRECTIONS, PRINTED
 from wavesym.papers.pielorz1979.recurrence import At, PrintedLine
-from wavesym.papers.truth import Exact, building
 
 Key = tuple[str, str, int, int, int]
 """Letter, family, rod, interval, power."""

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 from flint import fmpq
 
+from wavesym.papers.exact_tables import Exact, building
 from wavesym.papers.pielorz1979.building_alone import consequence
 from wavesym.papers.pielorz1979.building_lines import CORRECTIONS, PRINTED
 from wavesym.papers.pielorz1979.recurrence import At, Count, Factor, PrintedLine, PrintedTarget, PrintedTerm, with_terms
 from wavesym.papers.record import Case, Claim, Slip, by_size
-from wavesym.papers.truth import Exact, building
 
 MOST_STOREYS, MOST_N = 7, 8
 SOURCES = ("a", "b")

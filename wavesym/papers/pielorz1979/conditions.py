@@ -12,6 +12,7 @@ from sympy import Integer, Rational
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.delay_terms import Line, Wave, exact
 from wavesym.model.node import Node
+from wavesym.papers.exact_tables import grounded_building, uneven_building
 from wavesym.papers.pielorz1979.delays import II, III, Example, I, line_text
 from wavesym.papers.pielorz1979.node_motion import (
     Condition,
@@ -24,7 +25,6 @@ from wavesym.papers.pielorz1979.node_motion import (
 )
 from wavesym.papers.pielorz1979.signals import Faulty, Place, PrintedSignal, Symbols
 from wavesym.papers.record import Case, Claim, Slip
-from wavesym.papers.truth import grounded_building, uneven_building
 
 
 def _single(place: Callable[[int], int]) -> Callable[[int], Iterable[int]]:

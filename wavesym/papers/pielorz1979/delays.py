@@ -10,9 +10,9 @@ from sympy import Expr, latex
 from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equations
 from wavesym.derivation.delay_terms import Line, Operator, Wave, exact
 from wavesym.model.node import System
+from wavesym.papers.exact_tables import Exact, collision, drive, uneven_building
 from wavesym.papers.pielorz1979.signals import Formula, Numbers, Place, Symbols, Waves, faults, residual_case
 from wavesym.papers.record import Case, Claim, Slip
-from wavesym.papers.truth import Exact, collision, drive, uneven_building
 from wavesym.systems.building import BUILDING_FORCE
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE

@@ -7,11 +7,11 @@ from typing import Any
 
 from flint import fmpq
 
+from wavesym.papers.exact_tables import Exact, building, collision, drive, gammas
 from wavesym.papers.pielorz1979.powers import Index, present
 from wavesym.papers.pielorz1979.table_2_collision import ROWS, rods
 from wavesym.papers.pielorz1979.table_3_drive import HEADS
 from wavesym.papers.record import Case, Claim, Slip
-from wavesym.papers.truth import Exact, building, collision, drive, gammas
 
 Rates = Callable[[Exact], Any]
 

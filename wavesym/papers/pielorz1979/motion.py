@@ -10,11 +10,11 @@ from sympy import Symbol, latex
 
 from wavesym.exact.increments import start
 from wavesym.numbers.doubles import rational
+from wavesym.papers.exact_tables import Exact
 from wavesym.papers.pielorz1979.conditions import DIMENSIONLESS
 from wavesym.papers.pielorz1979.delays import II, III, I
 from wavesym.papers.pielorz1979.node_motion import Ansatz, case, lags
 from wavesym.papers.record import Case, Claim, Slip
-from wavesym.papers.truth import Exact
 from wavesym.scene import Scene
 
 Physical = Mapping[str, fmpq]

@@ -15,10 +15,10 @@ from sympy import Integer
 
 from wavesym.derivation.delay_terms import Line, Operator, Wave, exact
 from wavesym.model.node import Rod
+from wavesym.papers.exact_tables import Exact
 from wavesym.papers.pielorz1979.delays import Example
 from wavesym.papers.pielorz1979.signals import Formal, Numbers, Place, PrintedSignal, Waves, residual_case
 from wavesym.papers.record import Case, Slip
-from wavesym.papers.truth import Exact
 
 
 class NodeMotion(ABC):

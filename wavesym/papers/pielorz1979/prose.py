@@ -10,6 +10,7 @@ from typing import Any
 
 from flint import fmpq
 
+from wavesym.papers.exact_tables import Exact, building, collision, drive, gammas
 from wavesym.papers.pielorz1979 import table_2_collision
 from wavesym.papers.pielorz1979.building_alone import corrected
 from wavesym.papers.pielorz1979.building_list import cases as line_cases
@@ -17,7 +18,6 @@ from wavesym.papers.pielorz1979.powers import Formula, Index, half, shifted
 from wavesym.papers.pielorz1979.table_3_drive import TABLE, cell_cases
 from wavesym.papers.pielorz1979.table_4_building import ROWS
 from wavesym.papers.record import Case, Claim, Slip
-from wavesym.papers.truth import Exact, building, collision, drive, gammas
 
 
 def claims() -> Iterator[Claim[Any]]:

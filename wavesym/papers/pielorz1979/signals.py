@@ -18,8 +18,8 @@ from wavesym.derivation.delay import COUNT, SYMBOLS
 from wavesym.derivation.delay_terms import Line, Operator, Source, Wave, exact
 from wavesym.exact.increments import Increment, add, trimmed
 from wavesym.model.node import Quantity
+from wavesym.papers.exact_tables import Exact
 from wavesym.papers.record import Case
-from wavesym.papers.truth import Exact
 
 Place = Any
 """A number, or an expression in i and m."""

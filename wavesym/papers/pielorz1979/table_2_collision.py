@@ -8,9 +8,9 @@ from fractions import Fraction
 from functools import partial
 from math import floor
 
+from wavesym.papers.exact_tables import Exact, collision
 from wavesym.papers.pielorz1979.powers import Cell, Formula, Formulas, Index, cell_claim, half, present, shifted
 from wavesym.papers.record import Case, Claim, by_size
-from wavesym.papers.truth import Exact, collision
 
 _COLUMNS = ("K_1", "j_0,1", "j_1", "K_j,1", "j_0,2", "j_2", "K_j,2", "K_m-1")
 

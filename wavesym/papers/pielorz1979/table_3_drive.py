@@ -14,6 +14,7 @@ from functools import partial
 from itertools import chain
 from math import floor
 
+from wavesym.papers.exact_tables import Exact, drive, gammas
 from wavesym.papers.pielorz1979.powers import (
     Cell,
     Formula,
@@ -26,7 +27,6 @@ from wavesym.papers.pielorz1979.powers import (
     wrong,
 )
 from wavesym.papers.record import Case, Claim, by_size
-from wavesym.papers.truth import Exact, drive, gammas
 
 HALVES = {"even": "2n <= z < 2n+1", "odd": "2n+1 <= z < 2n+2"}
 MOST_SHAFTS, MOST_N = 6, 5

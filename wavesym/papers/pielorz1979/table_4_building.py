@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
+from wavesym.papers.exact_tables import building
 from wavesym.papers.pielorz1979.powers import Cell, Formula, Index, cell_claim, present, wrong
 from wavesym.papers.record import Case, Claim, by_size
-from wavesym.papers.truth import building
 
 _RESTS = "For n = 0 and {} the formula gives a power to a function that is 0; so the text says (g' = 0 at first)."
 
