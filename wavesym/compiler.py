@@ -142,15 +142,15 @@ def generate(
     evaluator: str = "auto",
     precision: str = "double",
     windows: int | None = None,
-    optimize: str = "speed",
+    optimize: str | None = None,
     *,
     force: bool = False,
 ) -> tuple[Path, ...]:
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
 
     `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
-    "speed" or for "size". Files that wavesym did not write are replaced only by `force`; WavesymError else, and for a
-    language, evaluator, precision or aim that there is not.
+    "speed" (usual in double precision) or for "size" (usual in single). Files that wavesym did not write are replaced
+    only by `force`; WavesymError else, and for a language, evaluator, precision or aim that there is not.
 
     >>> import wavesym
     >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):
@@ -173,7 +173,7 @@ def check(
     evaluator: str = "auto",
     precision: str = "double",
     windows: int | None = None,
-    optimize: str = "speed",
+    optimize: str | None = None,
     source: str = "SCENE",
 ) -> str:
     """The difference between what stands in `directory` and what `generate` would write; empty where there is none.

@@ -83,6 +83,17 @@ def test_every_term_adds_its_own():
         assert count <= float(proved(arrivals, until, DOUBLE)[n] / u) <= 1.3 * count
 
 
+def test_additions_are_counted_in_the_order_of_programs():
+    """A large family that is added first is rounded by all that come after it, however the table lists them."""
+    rates = [fmpq(k, 3) for k in range(9)]
+    sizes = [fmpq(1000)] + [fmpq(1, 10**9)] * 8
+    listed = {rate: [size] for rate, size in zip(rates, sizes, strict=True)}
+    other = dict(reversed(listed.items()))
+    (bound,), (other_bound,) = (proved([Arrival(fmpq(0), families)], 1, DOUBLE) for families in (listed, other))
+    assert str(bound) == str(other_bound)
+    assert bound > 1000 * (8 + 7) * arb(fmpq(1, 2**53))
+
+
 @pytest.mark.parametrize("rate", [fmpq(0), fmpq(1, 3), fmpq(3)], ids=str)
 def test_what_came_long_ago_is_as_wrong_as_it_is_large_by_now(rate):
     """Just where the last of three segments begins, so that no term is taken where it is larger."""

@@ -42,9 +42,7 @@ MOST_WINDOWS = 2**31 - 2
 @click.option(
     "--optimize",
     type=click.Choice(AIMS),
-    default="speed",
-    show_default=True,
-    help="The fastest program, or the smallest.",
+    help="What is best, of programs that will do.  [default: speed; for single precision size]",
 )
 @click.option("--force", is_flag=True, help="Replace files that wavesym did not write, too.")
 @click.option("--check", "only_check", is_flag=True, help="Write nothing; print a diff and exit 1 where files differ.")
@@ -55,7 +53,7 @@ def generate(
     evaluator: str,
     precision: str,
     windows: int | None,
-    optimize: str,
+    optimize: str | None,
     force: bool,
     only_check: bool,
 ) -> int:

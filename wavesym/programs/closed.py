@@ -161,7 +161,9 @@ def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]
         sizes = shifted(sizes, arrival.time - last)
         weights = shifted(weights, arrival.time - last)
         last = arrival.time
-        new = {rate: arb_poly([abs(c) for c in p.coeffs()]) for rate, p in polynomials(arrival.increment).items()}
+        # in the order in which programs add them
+        families = sorted(polynomials(arrival.increment).items())
+        new = {rate: arb_poly([abs(c) for c in p.coeffs()]) for rate, p in families}
         for rate, polynomial in new.items():
             sizes[rate] = sizes.get(rate, arb_poly()) + polynomial
             weights[rate] = weights.get(rate, arb_poly()) + _weighted(rate, polynomial)

@@ -16,13 +16,14 @@ AIMS = ("speed", "size")
 class Request:
     """`evaluator` is a kind of program or "auto"; `windows` is for a march that is driven by hand.
 
-    `optimize` says of programs that meet the tolerance which is best: the fastest, or the one with the least tables.
+    `optimize` says of programs that meet the tolerance which is best: the fastest ("speed"), or the one with the least
+    tables ("size"). Unless it is said, that is speed in double precision, size in single, which is for small machines.
     """
 
     evaluator: str = "auto"
     precision: str = "double"
     windows: int | None = None
-    optimize: str = "speed"
+    optimize: str | None = None
 
     @property
     def options(self) -> str:
@@ -30,14 +31,19 @@ class Request:
         options = "" if self.evaluator == "auto" else f" --evaluator {self.evaluator}"
         options += "" if self.precision == "double" else f" --precision {self.precision}"
         options += "" if self.windows is None else f" --windows {self.windows}"
-        return options + ("" if self.optimize == "speed" else f" --optimize {self.optimize}")
+        return options + ("" if self.optimize is None else f" --optimize {self.optimize}")
+
+    @property
+    def aim(self) -> str:
+        """ "speed" or "size"."""
+        return self.optimize or {"double": "speed", "single": "size"}[self.precision]
 
     def refuse_unknown(self) -> None:
         """WavesymError for a word that is none of those there are."""
         for option, word, known in (
             ("evaluator", self.evaluator, ("auto", *KINDS)),
             ("precision", self.precision, REALS),
-            ("optimize", self.optimize, AIMS),
+            ("optimize", self.optimize or AIMS[0], AIMS),
         ):
             refuse_unknown(option, word, known)
 
