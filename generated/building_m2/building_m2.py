@@ -6,7 +6,7 @@
     load 0: 1 a at 0, -2/3 b at 0, 3/2 a at 3, 1/3 b at 3, 1/2 a at 6, 1/3 b at 6
     until = 12, tolerance = 1e-08
 
-Evaluator: closed, 69 pulses, bound 9.7e-12, takes longer; pieces, degree 0..5, 27 KiB, bound 9.4e-09
+Evaluator: closed, 69 pulses, bound 1e-11, takes longer; pieces, degree 0..5, 27 KiB, bound 9.4e-09
 Everything is dimensionless: x in rod lengths, tau = c t / l, strain positive in tension.
 
 output           proved largest error / largest value

@@ -5,7 +5,7 @@
     velocity_1 = 1, velocity_3 = -1/2
     until = 10, tolerance = 1e-10
 
-Evaluator: closed, 65 pulses, bound 3.1e-13, takes longer; pieces, degree 0..5, 36 KiB, bound 9.3e-11
+Evaluator: closed, 65 pulses, bound 2.9e-13, takes longer; pieces, degree 0..5, 36 KiB, bound 9.3e-11
 Everything is dimensionless: x in rod lengths, tau = c t / l, strain positive in tension.
 
 output           proved largest error / largest value

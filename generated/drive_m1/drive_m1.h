@@ -7,7 +7,7 @@
  *   load 1: 1 M2 at 0, -1 M2 at 4
  *   until = 10, tolerance = 1e-06
  *
- * Evaluator: closed, 50 pulses, bound 6.5e-09, takes longer; pieces, degree 0..4, 19 KiB, bound 9.2e-07
+ * Evaluator: closed, 50 pulses, bound 6e-09, takes longer; pieces, degree 0..4, 19 KiB, bound 9.2e-07
  * Everything is dimensionless: x in rod lengths, tau = c t / l, strain positive in tension.
  *
  * output           proved largest error / largest value

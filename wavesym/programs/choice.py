@@ -20,6 +20,7 @@ from wavesym.programs.program import ProgramOutput
 
 Made = ClosedForm | Pieces | MarchEvaluator
 
+_USUAL_TABLES = {"double": "speed", "single": "size"}
 # Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
 _WORTH_TRYING = 50_000
 
@@ -67,11 +68,12 @@ def choose(
     name: str = "auto",
     precision: str = "double",
     windows: int | None = None,
-    optimize: str = "speed",
+    optimize: str | None = None,
 ) -> Choice:
     """The evaluator `name` of a model, or with "auto" the best that meets its tolerance.
 
-    Best is what takes least work or, where it is to `optimize` "size", has the least tables.
+    Best is what takes least work or, where it is to `optimize` "size", has the least tables. Pieces in single precision
+    have small tables unless "speed" is asked for.
     `windows`: for how many of them a march is driven by hand; WavesymError for another evaluator.
     ToleranceError where none does: it says what can be had. CostError, RangeError where one is asked for that would
     cost too much or need numbers beyond those of its format.
@@ -79,6 +81,7 @@ def choose(
     if windows is not None and name != "march":
         raise WavesymError(f"--windows goes with --evaluator march, {name} given")
     real = REALS[precision]
+    tables = optimize or _USUAL_TABLES[precision]
     tolerance = model.tolerance
     found: list[tuple[str, Made]] = []
     refused: list[str] = []
@@ -86,7 +89,7 @@ def choose(
         if each == "march" and found and name == "auto":
             break  # it takes as long for a value as for all windows before it
         try:
-            evaluator = MAKERS[each](model, real, name != "auto", windows, optimize)
+            evaluator = MAKERS[each](model, real, name != "auto", windows, tables)
         except CostError as refusal:
             if name != "auto":
                 raise

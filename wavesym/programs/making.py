@@ -21,7 +21,7 @@ def make(model: Model, request: Request = _USUAL, *, tested: bool = False) -> Pr
     ToleranceError where no evaluator, or not the one asked for, meets the model's tolerance; CostError where the one
     asked for would cost too much.
     """
-    _, form, reason = choose(model, request.evaluator, request.precision, request.windows, request.aim)
+    _, form, reason = choose(model, request.evaluator, request.precision, request.windows, request.optimize)
     provenance = Provenance(model, reason, request.options, contact_ends(model, form.real))
     return _made(model, form, provenance, tested)
 

@@ -17,7 +17,8 @@ class Request:
     """`evaluator` is a kind of program or "auto"; `windows` is for a march that is driven by hand.
 
     `optimize` says of programs that meet the tolerance which is best: the fastest ("speed"), or the one with the least
-    tables ("size"). Unless it is said, that is speed in double precision, size in single, which is for small machines.
+    tables ("size"). Unless it is said the fastest kind is taken, with small tables in single precision, which is for small
+    machines.
     """
 
     evaluator: str = "auto"
@@ -32,11 +33,6 @@ class Request:
         options += "" if self.precision == "double" else f" --precision {self.precision}"
         options += "" if self.windows is None else f" --windows {self.windows}"
         return options + ("" if self.optimize is None else f" --optimize {self.optimize}")
-
-    @property
-    def aim(self) -> str:
-        """ "speed" or "size"."""
-        return self.optimize or {"double": "speed", "single": "size"}[self.precision]
 
     def refuse_unknown(self) -> None:
         """WavesymError for a word that is none of those there are."""
