@@ -17,8 +17,8 @@ class Request:
     """`evaluator` is a kind of program or "auto"; `windows` is for a march that is driven by hand.
 
     `optimize` says of programs that meet the tolerance which is best: the fastest ("speed"), or the one with the least
-    tables ("size"). Unless it is said the fastest kind is taken, with small tables in single precision, which is for small
-    machines.
+    tables ("size"). Unless it is said the fastest kind is taken; in single precision, which is for small machines, with
+    small tables.
     """
 
     evaluator: str = "auto"
