@@ -267,7 +267,7 @@ def _constants(operator: PanelOperator) -> _Constants:
     begun, ended = start + first @ y, last @ y
     mean = (1 - slack) * begun
     mean_error = (1 - slack) * (first @ y_error + (first * counts) @ y + summed) + 3 * begun + spare
-    end_error = abs(1 - loss) * mean_error + last @ y_error + (last * counts) @ y + 3 * ((1 + loss) * mean + ended)
+    end_error = abs(1 - loss) * mean_error + last @ y_error + (last * counts) @ y + 3 * ((1 + abs(loss)) * mean + ended)
     end_error += summed + spare
     q_error = np.empty((degree + 1, degree + 3))
     q_error[0] = mean_error
