@@ -212,6 +212,28 @@ def series(*coefficients, error=0):
     return _Series(arb_poly(list(coefficients)), arb(error))
 
 
+@pytest.mark.parametrize(
+    ("found", "negative"),
+    [
+        (series(-1, fmpq(1, 2)), True),
+        (series(-1, 2), False),  # 1 at t = 1
+        (series(-1, -2), False),  # 1 at t = -1
+        (series(-1, 0, -2), True),
+        (series(-1, 0, 2), False),
+        (series(-1, 0, 0, -2), False),
+        (series(-1, fmpq(1, 4), fmpq(1, 4), fmpq(-1, 4), -9), True),
+        (series(-1, error=fmpq(1, 2)), True),
+        (series(-1, error=2), False),
+        (series(), False),
+    ],
+)
+def test_an_odd_power_is_positive_on_one_side(found, negative):
+    """In powers of t on [-1, 1]; half as long around 1 it is the same in other powers."""
+    assert found.negative(fmpq(-1), fmpq(1)) == negative
+    moved = _Series(found.polynomial(arb_poly([-2, 2])), found.error)
+    assert moved.negative(fmpq(1, 2), fmpq(3, 2)) == negative
+
+
 @pytest.mark.parametrize(("bits", "told"), [(86, False), (88, False), (90, True), (94, True)])
 def test_a_value_that_is_too_blurred_tells_nothing(bits, told):
     """Of -1 + u, whose size is 2, a radius of 2/2**90 is allowed: less than the width, 2**-80, moves a zero."""

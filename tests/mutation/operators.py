@@ -23,7 +23,7 @@ COST_LIMITS = re.compile(
 )
 COSTS = {"work", "bytes", "state_bytes", "least_bytes", "stored", "operator_count", "beginning", "refuse_many"}
 COSTS |= {"_bytes", "_least", "_size", "_state", "_refuse_long", "_first_degree", "degrees"}
-TEXTS = {"summary", "shortfall", "check_points"}  # and where a self-test looks
+TEXTS = {"summary", "shortfall", "options", "refuse_unknown", "check_points"}  # and where a self-test looks
 
 # what in C does not compute: comments, texts, directives, tables and sizes outside of functions
 NO_CODE = re.compile(r'/\*[\s\S]*?\*/|"[^"\n]*"|^#.*|^(static const|enum) [^;]*;', re.MULTILINE)

@@ -69,6 +69,19 @@ def test_rounding_is_what_is_counted(k, rate, after, real):
     assert count <= proved(arrivals, until, real)[-1] <= CLOSE * count + real.smallest * 100
 
 
+def test_many_additions_are_more_than_so_many_roundings():
+    """(1 + u)**n - 1, which for n u near 1/8 is 6 % more than n u."""
+    coarse = Real("coarse", 8, fmpq(1, 2**13), DOUBLE.smallest, DOUBLE.largest, DOUBLE.next_to)
+    arrivals = [NOTHING, arrival(0, 0, alone(0)), *[NOTHING] * 1000]
+    count = computed(arrivals, fmpq(1), coarse.roundoff).error(coarse.roundoff, 0)
+    assert count <= proved(arrivals, 1, coarse)[-1] <= fmpq(11, 10) * count
+
+
+def test_more_additions_than_half_of_1_over_u_are_refused():
+    coarse = Real("coarse", 8, fmpq(1, 64), DOUBLE.smallest, DOUBLE.largest, DOUBLE.next_to)
+    assert [error is None for error in proved([NOTHING] * 40, 1, coarse)] == [False] * 31 + [True] * 9
+
+
 def test_every_term_adds_its_own():
     """Several powers, rates and arrivals, whose weights grow from segment to segment."""
     arrivals = [

@@ -8,7 +8,7 @@ import pytest
 from flint import fmpq
 
 from tests.programs.test_march_energy import blank
-from tests.support.generated import numpy_text
+from tests.support.generated import assemble, numpy_text
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march import run as running
 from wavesym.programs.march.bound import Alarm, Roundings, Verdict, judge, largest_wave
@@ -16,6 +16,7 @@ from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.programs.march.tail import tail
+from wavesym.programs.schemes.march import Marching, MarchScheme
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
 
@@ -136,6 +137,37 @@ def alarmed(blocks, trusted, leak=1.0):
         alarm.watch(block, np.full(block.excess.shape[1:], leak))
         rung.append(alarm.rung)
     return rung
+
+
+@pytest.mark.parametrize(
+    ("inertia", "times", "windows", "largest"),
+    [([1, 1], [0], 1, "velocity"), ([1, 1], [0, 1], 2, "velocity"), ([1, 100], [0], 3, "wave")],
+)
+def test_a_program_compares_with_the_largest_velocity_or_wave_so_far(inertia, times, windows, largest):
+    scene = Scene(
+        name="made",
+        system={"type": "drive", "m": 1, "kappa": [1], "inertia": inertia},
+        load=[{"body": 1, "times": times, "steps": [1, -1][: len(times)]}],
+        output={"until": windows, "tolerance": "1e-2", "strain": ["1/2"]},
+    )
+    program = assemble(marched(lower(scene), degree=8))
+    scheme = MarchScheme(program.tables, program.constants, program.tau_max, np.float64)
+
+    def run(trusted):
+        scheme.trusted = trusted
+        march, sizes = Marching(scheme), {"velocity": [], "wave": []}
+        for n in range(windows):
+            waves = march.block(n, 1)
+            sizes["velocity"].append(np.max(np.abs(march._velocity)))
+            sizes["wave"].append(np.max(np.abs(waves[..., 0])))
+        return march._leak, sizes
+
+    leak, sizes = run(inf)
+    size = max(sizes[largest])
+    assert size == max(map(max, sizes.values()))
+    run(leak / size * 1.001)
+    with pytest.raises(ArithmeticError, match="degree 8 is too low"):
+        run(leak / size * 0.999)
 
 
 def watched(missed, ends=(), means=()):

@@ -8,7 +8,7 @@ from tests.support.generated import assemble
 from tests.support.rounded import Rounded
 from wavesym.programs.march.bound import _constants, _norm
 from wavesym.programs.march.evaluator import marched
-from wavesym.programs.march.operator import operator
+from wavesym.programs.march.operator import PanelOperator, operator
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.run import Run
 from wavesym.programs.schemes.march import MarchScheme, PanelBodies
@@ -30,9 +30,9 @@ def test_p_is_rounded_four_times():
     assert (np.array([number.error for number in p]) == 4 * np.eye(4, 5)).all()
 
 
-def in_c(step, degree):
+def in_c(of):
     """The function `moved` of the C."""
-    of = operator(fmpq(step), degree)
+    degree = len(of.ratio) - 1
     e, first, last, slack, loss = (Rounded.table(t) for t in (of.ratio, of.first, of.last, of.slack, of.loss))
     p, velocity = inputs(degree)
     q = [0] * (degree + 1)
@@ -88,13 +88,32 @@ def norms(q, end):
     ("step", "degree"), [("1/1000", 8), ("1/10", 21), ("1/10", 33), ("1", 8), ("1", 21), ("8", 21), ("100", 13)]
 )
 def test_constants_are_no_less_than_a_count_and_little_more(step, degree):
-    claimed = np.array(_constants(operator(fmpq(step), degree)))
-    c, numpy = norms(*in_c(step, degree)), norms(*in_numpy(step, degree))
+    of = operator(fmpq(step), degree)
+    claimed = np.array(_constants(of))
+    c, numpy = norms(*in_c(of)), norms(*in_numpy(step, degree))
     assert (claimed >= c).all()
     assert (claimed >= numpy).all()
     if fmpq(step) <= 1:  # of light bodies errors cancel, and the constants do not count with it
         assert (claimed[:, :2] <= 2.1 * np.maximum(c, numpy)[:, :2]).all()
         assert (claimed[:, 2] <= 9 * np.maximum(c, numpy)[:, 2]).all()
+
+
+@pytest.mark.parametrize(("step", "degree"), [("100", 2), ("1000", 2), ("1000", 3), ("1000000", 3), ("1000000", 4)])
+def test_constants_are_no_less_than_a_count_where_degrees_are_far_too_low(step, degree):
+    """Of odd degree `slack` is nearly 1, of even degree `loss` is below -1."""
+    claimed = np.array(_constants(operator(fmpq(step), degree)))
+    assert (claimed >= norms(*in_c(operator(fmpq(step), degree)))).all()
+    assert (claimed >= norms(*in_numpy(step, degree))).all()
+
+
+@pytest.mark.parametrize(("slack", "loss", "degree"), [(0, 0, 64), (0, 0, 100), (1, -100, 3), (1, 100, 8)])
+def test_what_sums_and_the_mean_lose_is_counted_by_itself(slack, loss, degree):
+    """With tables of nearly 0, where what the coefficients may lose does not reach the value at the end."""
+    tiny = (0.0,) + (2.0**-40,) * degree
+    of = PanelOperator(2.0**-40, tiny, tiny, tiny, slack, loss, 2.0**-40)
+    *_, claimed = _constants(of).end
+    *_, counted = norms(*in_c(of))[1]
+    assert counted <= claimed <= 25 * counted
 
 
 def test_an_upper_bound_of_a_norm_is_one_and_near():

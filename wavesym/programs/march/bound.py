@@ -267,9 +267,9 @@ def _constants(operator: PanelOperator) -> _Constants:
     begun, ended = start + first @ y, last @ y
     mean = (1 - slack) * begun
     mean_error = (1 - slack) * (first @ y_error + (first * counts) @ y + summed) + 3 * begun + spare
-    end_error = abs(1 - loss) * mean_error + last @ y_error + (last * counts) @ y + 3 * ((1 + loss) * mean + ended)
+    end_error = abs(1 - loss) * mean_error + last @ y_error + (last * counts) @ y + 3 * ((1 + abs(loss)) * mean + ended)
     end_error += summed + spare
-    q_error = np.empty((degree + 1, degree + 3))
+    q_error = np.empty_like(y_error)
     q_error[0] = mean_error
     q, error = 2 * mean, 2 * mean_error
     for k in range(1, degree + 1):
