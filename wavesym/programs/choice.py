@@ -148,9 +148,7 @@ def best(model: Model, tried: Sequence[Tried], optimize: str = "speed") -> Choic
         raise unmet(model.tolerance, "; ".join(refused))
     small = optimize == "size"
     name, chosen = min(found, key=lambda one: one[1].bytes if small else one[1].work)
-    dearer = [
-        f"{form.summary}, {'is larger' if small else 'takes longer'}" for _, form in found if form is not chosen
-    ]
+    dearer = [f"{form.summary}, {'is larger' if small else 'takes longer'}" for _, form in found if form is not chosen]
     return Choice(name, chosen, "; ".join([*refused, *dearer, chosen.summary]))
 
 
