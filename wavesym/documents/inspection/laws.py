@@ -28,10 +28,10 @@ def laws(model: Model) -> Iterator[Section]:
     functions = [Function(name, rod) for rod in nodes[1:] for name in ("f", "g")]
     yield Listing(
         "functions",
-        f"Exponentials times powers, which tables and the closed form run, in intervals n that are {rules.interval} long."
+        f"Exponentials times powers, which tables and the closed form run, in intervals n of length {rules.interval}."
         "\nf_1[n] stands for the coefficient F[g,k] of exp(-g w) w**k in rod 1, f_1'[n] for F[g,k+1]."
-        "\nWhere the left side has the factor 0, F[g,0] follows from the jumps at the start of the interval: sums of"
-        "\nF[g,0] over all g, each times the factor of F' at k = 0",
+        "\nAt a rate g where F[n] on the left has the factor 0, F[g,0] follows from the jumps: sums of F[g,0] over all"
+        "\ng, each times the factor of its F' at k = 0",
         [_of_function(rules[function]) for function in functions],
         ("own", "terms", "loads"),
     )

@@ -58,7 +58,7 @@ def _knots(model: Model) -> Iterator[dict[str, Plain]]:
         motion = Motion(model, rational(model.horizon()))
     except CostError as refusal:
         for probe in model.probes:
-            yield {"name": probe.name, "count": None, "parts": None, "refusal": str(refusal)}
+            yield {"name": probe.name, "count": None, "parts": Told(None, ""), "refusal": str(refusal)}
         return
     for probe in model.probes:
         parts = sorted(motion.breaks(probe))
