@@ -12,11 +12,13 @@ from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
 
 MOST_COUNTED = 30_000  # coefficients, which take a second or two to make
+LONGEST = 10_000  # tau; to estimate the size of longer tables takes seconds, too
 
 
 def tabled(model: Model) -> Iterator[Section]:
     """The size of the table that `tables` prints, and the knots of every output."""
     try:
+        _refuse_long(model)
         made = full_table(model.chain, None, rational(model.horizon()), most=MOST_COUNTED)
     except CostError as refusal:
         yield Facts("table", "The exact table is not made here", {"refusal": str(refusal)})
@@ -28,6 +30,14 @@ def tabled(model: Model) -> Iterator[Section]:
         list(_knots(model)),
         ("parts", "refusal"),
     )
+
+
+def _refuse_long(model: Model) -> None:
+    if model.until > LONGEST:
+        raise CostError(
+            f"output.until: a table to tau = {model.horizon():g} is not counted here, at most {LONGEST} expected "
+            "(a shorter horizon helps)"
+        )
 
 
 def _sizes(table: Table) -> Iterator[Section]:
