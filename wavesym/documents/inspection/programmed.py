@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 
-from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told, reals
+from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told, finite
 from wavesym.documents.inspection.variants import told_degrees, variants
 from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.contact import contact_ends
@@ -18,18 +19,22 @@ def programmed(model: Model) -> Iterator[Section]:
     """The program in numbers, or why there is none."""
     tried = attempts(model)
     yield chosen(model, tried)
-    made = _assembled(model, tried)
-    if made:
-        lengths = [{"name": name, "length": len(table)} for name, table in made.tables.items()]
-        yield Listing("tables", "Its tables, and how many numbers each has", lengths)
-        yield Facts("constants", "Its single numbers", made.constants)
-        yield Listing(
-            "outputs",
-            "Outputs: the proved bound of the error over the largest value, and what that value is at least",
-            [{"name": each.name, "bound": reals(each.bound), "largest": reals(each.largest)} for each in made.outputs],
-        )
+    with suppress(ToleranceError):  # which is told already
+        choice = best(model, tried)
+        yield from _numbers(assemble(choice.evaluator, Provenance(model, choice.reason)))
     yield contacts(model)
     yield variants(model, tried)
+
+
+def _numbers(made: Program) -> Iterator[Section]:
+    lengths = [{"name": name, "length": len(table)} for name, table in made.tables.items()]
+    yield Listing("tables", "Its tables, and how many numbers each has", lengths)
+    yield Facts("constants", "Its single numbers", made.constants)
+    yield Listing(
+        "outputs",
+        "Outputs: the proved bound of the error over the largest value, and what that value is at least",
+        [{"name": each.name, "bound": finite(each.bound), "largest": finite(each.largest)} for each in made.outputs],
+    )
 
 
 def chosen(model: Model, tried: Sequence[Tried]) -> Facts:
@@ -60,11 +65,3 @@ def contacts(model: Model) -> Listing:
         words = "When contacts open is not known in time, for which generate refuses the scene"
         return Listing("contacts", words, [{"x": None, "tau": None, "refusal": str(error)}], ("refusal",))
     return Listing("contacts", words, rows, ("refusal",))
-
-
-def _assembled(model: Model, tried: Sequence[Tried]) -> Program | None:
-    try:
-        choice = best(model, tried)
-    except ToleranceError:
-        return None
-    return assemble(choice.evaluator, Provenance(model, choice.reason))

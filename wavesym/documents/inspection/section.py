@@ -57,6 +57,6 @@ def _plain(values: Mapping[str, Plain | Told]) -> dict[str, Plain]:
     return {name: value.value if isinstance(value, Told) else value for name, value in values.items()}
 
 
-def reals(value: float | None) -> float | None:
+def finite(value: float | None) -> float | None:
     """A double for JSON, which has no infinity: None for what is not finite, or is not there."""
     return value if value is not None and abs(value) < float("inf") else None

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from wavesym.documents.inspection.section import Listing, Plain, Told, reals
+from wavesym.documents.inspection.section import Listing, Plain, Told, finite
 from wavesym.model.model import Model
 from wavesym.programs.choice import MAKERS, Made, Tried, attempt
 from wavesym.programs.closed import ClosedForm
+from wavesym.programs.march.evaluator import MarchEvaluator
 from wavesym.programs.pieces import Pieces
 
 # To fit pieces whose tables are so large once more, in floats or the smallest ones, takes some seconds.
@@ -61,7 +62,7 @@ def _dear(form: Made) -> str:
             f"not tried, nor the smallest tables: to fit {form.bytes} bytes once more takes long, "
             f"at most {MOST_BYTES} expected"
         )
-    if not isinstance(form, Pieces | ClosedForm) and (marched := form.work * form.tau_max) > MOST_MARCHED:
+    if isinstance(form, MarchEvaluator) and (marched := form.work * form.tau_max) > MOST_MARCHED:
         return f"not tried: a march would take {marched:.1e} operations, at most {MOST_MARCHED:.1e} expected"
     return ""
 
@@ -74,7 +75,8 @@ def told_degrees(form: Made) -> Told | None:
         case Pieces():
             low, high = form.degrees
             return Told([low, high], f"{low}..{high}")
-    return Told([form.degree, form.degree], str(form.degree))
+        case MarchEvaluator():
+            return Told([form.degree, form.degree], str(form.degree))
 
 
 def _row(one: Tried, precision: str, optimize: str) -> dict[str, Plain]:
@@ -83,7 +85,7 @@ def _row(one: Tried, precision: str, optimize: str) -> dict[str, Plain]:
         "program": one.kind,
         "precision": precision,
         "optimize": optimize,
-        "bound": reals(form.error_bound) if form else None,
+        "bound": finite(form.error_bound) if form else None,
         "work": Told(form.work, f"{form.work:.0f}") if form else None,
         "bytes": form.bytes if form else None,
         "degrees": told_degrees(form) if form else None,
