@@ -109,6 +109,16 @@ def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tu
     return merged, symbolic_lines(made, symbols, scene.name, format)
 
 
+def inspect(scene: Scene, stage: str | None = None, format: str = "text") -> str:
+    """What a stage makes of a scene, or a summary of all of them, as text or json; refusals are part of it.
+
+    `stage` is "scene", "model", "laws", "table" or "program".
+    """
+    from wavesym.documents.inspection.document import SUMMARY, inspection
+
+    return inspection(scene, stage or SUMMARY, format)
+
+
 def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
     """The derivation of "collision", "drive" or "building" (both bases), or of a scene, as text, latex or json.
 

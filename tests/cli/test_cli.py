@@ -64,6 +64,10 @@ class Compiler(SimpleNamespace):
         self.asked.append(options)
         return [], iter(["symbols\n"])
 
+    def inspect(self, scene: object, *options: object) -> str:
+        self.asked.append(options)
+        return "nodes"
+
     def derive(self, system: str, m: int | None, format: str) -> str:
         if m == 0:
             raise ValueError("--m: 0 given, at least 1 expected")
@@ -173,7 +177,7 @@ def test_wrong_usage(
     assert line.endswith(" --help)")
 
 
-@pytest.mark.parametrize("command", ["tables", "generate", "run", "verify", "plot"])
+@pytest.mark.parametrize("command", ["inspect", "tables", "generate", "run", "verify", "plot"])
 def test_a_wrong_scene_is_refused_by_every_command(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     Path("bad.toml").write_text(SCENE.replace("[1, 2]", "[1]"))
     more = ["-o", "mine.svg"] if command == "plot" else []

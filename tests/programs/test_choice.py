@@ -10,7 +10,7 @@ import wavesym
 from wavesym.errors import CostError, RangeError, ToleranceError, WavesymError
 from wavesym.numbers.reals import REALS
 from wavesym.programs import choice
-from wavesym.programs.choice import choose
+from wavesym.programs.choice import Tried, attempts, choose
 from wavesym.scene import lower
 
 
@@ -157,6 +157,20 @@ def test_a_record_that_nothing_can_run_is_told_all_the_causes(spacing, until):
     assert line.count(" help") == 3
     assert "\n" not in line
     assert len(line) < 500
+
+
+def test_what_was_tried(makers):
+    """The form, or the sentence of its refusal, or both; no march where another will do."""
+    made = makers(pieces=Made("pieces", 1e-8), march=Made("march", 1))
+    closed, pieces = attempts(lower(scene()))
+    assert (closed.form, closed.refusal) == (None, "output.until: 9 coins, at most 5 expected (saving helps)")
+    assert isinstance(closed.error, CostError)
+    assert pieces == Tried("pieces", made.pieces)
+    assert made.march.asked == []
+    makers(closed=beyond, march=Made("march", 1))
+    closed, _, march = attempts(lower(scene()), "single", "size")
+    assert closed.refusal == "numbers beyond the range of single precision"
+    assert (march.refusal, march.why, march.error) == ("1 at best", "march: 1 at best", None)
 
 
 def test_closed_forms_are_made_of_small_tables_unless_asked_for(monkeypatch):

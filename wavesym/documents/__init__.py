@@ -1,1 +1,1 @@
-"""What was derived and computed as text, LaTeX, JSON and CSV."""
+"""What was derived, computed and compiled as text, LaTeX, JSON and CSV."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from math import inf
 from typing import NamedTuple, Protocol
 
@@ -55,6 +56,24 @@ class Evaluator(Protocol):
     def shortfall(self, tolerance: fmpq) -> str: ...
 
 
+@dataclass(frozen=True)
+class Tried:
+    """What came of trying one kind of program: its `form`, where it could be made, and the `refusal`, a sentence.
+
+    The sentence is empty where the form meets the tolerance. `error` is for whoever asked for this kind by its name.
+    """
+
+    kind: str
+    form: Made | None
+    refusal: str = ""
+    error: WavesymError | None = None
+
+    @property
+    def why(self) -> str:
+        """The refusal, with the kind that it is of."""
+        return f"{self.kind}: {self.refusal}"
+
+
 class Choice(NamedTuple):
     """The name of the evaluator chosen, itself, and the reason in one line."""
 
@@ -80,40 +99,59 @@ def choose(
     """
     if windows is not None and name != "march":
         raise WavesymError(f"--windows goes with --evaluator march, {name} given")
-    real = REALS[precision]
-    tables = optimize or _USUAL_TABLES[precision]
-    tolerance = model.tolerance
-    found: list[tuple[str, Made]] = []
-    refused: list[str] = []
-    for each in MAKERS if name == "auto" else (name,):
-        if each == "march" and found and name == "auto":
-            break  # it takes as long for a value as for all windows before it
-        try:
-            evaluator = MAKERS[each](model, real, name != "auto", windows, tables)
-        except CostError as refusal:
-            if name != "auto":
-                raise
-            refused.append(f"{each}: {refusal}")
-            continue
-        except OverflowError:
-            if name != "auto":
-                raise RangeError(f"output: {each} needs numbers beyond the range of {precision} precision") from None
-            refused.append(f"{each}: numbers beyond the range of {precision} precision")
-            continue
-        if rational(min(evaluator.error_bound, 2.0)) <= tolerance:
-            found.append((each, evaluator))
-        else:
-            refused.append(evaluator.shortfall(tolerance))
+    if name == "auto":
+        return best(model, attempts(model, precision, optimize), optimize)
+    only = attempt(model, name, precision, windows, optimize, asked=True)
+    if only.error:
+        raise only.error
+    return best(model, (only,), optimize)
+
+
+def attempts(model: Model, precision: str = "double", optimize: str | None = None) -> tuple[Tried, ...]:
+    """All kinds of programs tried for a model; a march only where no other kind does.
+
+    (A single value of a march takes as long as all windows before it, and so does trying one.)
+    """
+    tried: list[Tried] = []
+    for kind in MAKERS:
+        if kind == "march" and any(not one.refusal for one in tried):
+            break
+        tried.append(attempt(model, kind, precision, optimize=optimize))
+    return tuple(tried)
+
+
+def attempt(
+    model: Model,
+    kind: str,
+    precision: str = "double",
+    windows: int | None = None,
+    optimize: str | None = None,
+    *,
+    asked: bool = False,
+) -> Tried:
+    """One kind of program tried; more may be spent on one that is `asked` for by its name."""
+    try:
+        form = MAKERS[kind](model, REALS[precision], asked, windows, optimize or _USUAL_TABLES[precision])
+    except CostError as refusal:
+        return Tried(kind, None, str(refusal), refusal)
+    except OverflowError:
+        beyond = f"numbers beyond the range of {precision} precision"
+        return Tried(kind, None, beyond, RangeError(f"output: {kind} needs {beyond}"))
+    if rational(min(form.error_bound, 2.0)) <= model.tolerance:
+        return Tried(kind, form)
+    return Tried(kind, form, form.shortfall(model.tolerance).removeprefix(f"{kind}: "))
+
+
+def best(model: Model, tried: Sequence[Tried], optimize: str | None = None) -> Choice:
+    """The best of what was tried and meets the tolerance, and why. ToleranceError where nothing does."""
+    found = [(one.kind, one.form) for one in tried if one.form and not one.refusal]
+    refused = [one.why for one in tried if one.refusal]
     if not found:
-        raise unmet(tolerance, "; ".join(refused))
+        raise unmet(model.tolerance, "; ".join(refused))
     small = optimize == "size"
-    name, best = min(found, key=lambda one: one[1].bytes if small else one[1].work)
-    dearer = [
-        f"{evaluator.summary}, {'is larger' if small else 'takes longer'}"
-        for _, evaluator in found
-        if evaluator is not best
-    ]
-    return Choice(name, best, "; ".join([*refused, *dearer, best.summary]))
+    name, chosen = min(found, key=lambda one: one[1].bytes if small else one[1].work)
+    dearer = [f"{form.summary}, {'is larger' if small else 'takes longer'}" for _, form in found if form is not chosen]
+    return Choice(name, chosen, "; ".join([*refused, *dearer, chosen.summary]))
 
 
 def _closed(model: Model, real: Real, asked: bool, *_: object) -> ClosedForm:

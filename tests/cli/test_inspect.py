@@ -1,0 +1,416 @@
+"""`wavesym inspect`: what it says is what the stages have, a refused scene is shown, and a wrong one is refused."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import pytest
+from flint import fmpq
+
+import wavesym
+from wavesym.cli import inspect as command
+from wavesym.cli import main
+from wavesym.derivation.exact_rule import Linear
+from wavesym.documents.inspection import document, laws, modelled
+from wavesym.documents.inspection.document import inspection
+from wavesym.documents.inspection.section import Facts, Listing, Told
+from wavesym.documents.inspection.text import MOST_ROWS, section_lines
+from wavesym.errors import CostError, ToleranceError, WavesymError
+from wavesym.exact.contact import contact_ends
+from wavesym.exact.motion import Motion
+from wavesym.programs import choice
+from wavesym.programs.choice import choose
+from wavesym.programs.making import make
+from wavesym.programs.request import Request
+from wavesym.scene import Scene, builtin_names, lower
+
+STAGES = ("summary", "scene", "model", "laws", "table", "program")
+
+
+def scene(name: str = "building_m2", **changes: object) -> Scene:
+    return Scene.from_toml(name).with_({f"output.{key}": value for key, value in changes.items()})
+
+
+def told(given: Scene, stage: str = "summary") -> dict[str, Any]:
+    read: dict[str, Any] = json.loads(inspection(given, stage, "json"))
+    assert (read["name"], read["stage"]) == (given.name, stage)
+    return read
+
+
+@cache
+def builtin(name: str, stage: str = "summary") -> dict[str, Any]:
+    return told(Scene.from_toml(name), stage)
+
+
+def by(rows: list[dict[str, Any]], *keys: str) -> dict[object, dict[str, Any]]:
+    return {tuple(row[key] for key in keys) if keys[1:] else row[keys[0]]: row for row in rows}
+
+
+TRIED = ("program", "precision", "optimize")
+
+
+@pytest.mark.parametrize("name", builtin_names())
+@pytest.mark.parametrize("stage", STAGES)
+def test_every_stage_of_every_scene(name: str, stage: str) -> None:
+    """In JSON and text, the same sections with the same values in lines that are not long."""
+    given = Scene.from_toml(name)
+    text = inspection(given, stage)
+    assert text.startswith(f"{name}: {stage}\n\n")
+    assert max(map(len, text.splitlines())) <= 120
+    assert not re.search(r" $", text, re.MULTILINE)
+    read = builtin(name, stage)
+    assert text.count("\n\n") == len(read) - 2, "sections"
+    for section in read.values():
+        for row in section if isinstance(section, list) else ():
+            words = [str(value) for value in row.values() if isinstance(value, str) and " " not in value]
+            assert all(word in text for word in words[:MOST_ROWS] if len(section) <= MOST_ROWS)
+
+
+def test_the_scene_is_what_the_user_said() -> None:
+    for name in builtin_names():
+        given = Scene.from_toml(name)
+        read = told(given, "scene")
+        fields = {key: read[key] for key in ("name", "system", "load", "output")}
+        assert Scene(**fields) == given
+
+
+def test_the_rates_are_those_of_the_paper() -> None:
+    """2 kappa at a floor, kappa at the roof; kappa_1 and kappa_1 J_1/J_2 at the discs of a drive."""
+    nodes = by(builtin("building_m2")["nodes"], "x")
+    assert [nodes[x]["rate"] for x in range(3)] == [None, "6/5", "1/5"]
+    assert [nodes[x]["kind"] for x in range(3)] == ["prescribed force", "body", "body"]
+    discs = by(builtin("drive_m1")["nodes"], "x")
+    assert [discs[x]["rate"] for x in range(2)] == ["1", "1/2"]
+    bodies = builtin("collision_m4")["nodes"]
+    assert [node["rate"] for node in bodies] == [None, "1/5", None, "2/5", None]
+    assert [node["kind"] for node in bodies] == ["free end", "body", "contact", "body", "free end"]
+    assert builtin("building_half_roof")["nodes"][0]["kind"] == "prescribed velocity"
+
+
+@pytest.mark.parametrize("name", builtin_names())
+def test_the_model_is_told_as_it_is(name: str) -> None:
+    model, read = lower(Scene.from_toml(name)), builtin(name, "model")
+    assert read["model"]["sha256"] == model.labels.sha256
+    assert Fraction(read["model"]["until"]) == Fraction(str(model.until))
+    assert read["model"]["tolerance"] == str(model.tolerance)
+    assert len(read["nodes"]) == len(read["rods"]) + 1 == model.chain.m + 1
+    for row, node in zip(read["nodes"], model.chain.nodes, strict=True):
+        for key in ("inertia", "alpha", "beta", "damping"):
+            assert row[key] == str(getattr(node, key))
+        assert row["contact"] == node.contact
+        assert row["loads"] == {load.source: [str(c) for c in load.coefficients] for load in node.loads}
+    assert read["loads"] == [{"source": p.source, "time": str(p.time), "weight": str(p.weight)} for p in model.loads]
+    for row, probe in zip(read["outputs"], model.probes, strict=True):
+        assert (row["name"], row["quantity"], row["rod"]) == (probe.name, probe.quantity, probe.rod)
+        assert row["place"] == str(probe.place)
+
+
+def test_horizons_are_numbers_of_their_formats() -> None:
+    read = told(scene(until="1/10"), "model")["model"]
+    assert read["until"] == "1/10"
+    assert read["horizon_double"] == 0.1
+    assert read["horizon_single"] == 0.10000000149011612
+
+
+def test_what_cannot_be_felt_is_left_out() -> None:
+    near = scene("drive_equal", until="1/4", strain=["1/2"])
+    read = told(near)
+    assert read["light_cone"] == {"first": 0, "last": 1, "left_out": 2}
+    assert [node["x"] for node in read["nodes"]] == [0, 1]
+    assert {row["rod"] for row in told(near, "laws")["functions"]} == {1}
+    assert "left_out  2 of 4 nodes" in inspection(near)
+
+
+def test_the_law_of_a_node_by_hand() -> None:
+    """Floor 1: U_tt + 2 kappa U_t = 2 kappa (a + b); roof: U_tt + kappa U_t = 2 kappa a."""
+    nodes = by(told(scene(), "laws")["nodes"], "x")
+    body = {"kind": "body", "raised": {"constant": "1", "slope": "1"}, "load": "1"}
+    assert nodes[1] == body | {"x": 1, "same": "6/5", "left": "6/5", "right": "6/5"}
+    assert nodes[2] == body | {"x": 2, "same": "1/5", "left": "2/5", "right": "0"}
+    assert nodes[0]["raised"] == {"constant": "0", "slope": "0"}
+
+
+def value(linear: dict[str, str], at: Fraction | int) -> Fraction:
+    return Fraction(linear["constant"]) + Fraction(linear["slope"]) * at
+
+
+@pytest.mark.parametrize("name", builtin_names())
+def test_the_recurrences_hold_for_the_table(name: str) -> None:
+    """Every coefficient that `tables` prints fits the recurrences in numbers, and so do the jumps."""
+    given = Scene.from_toml(name)
+    rows = wavesym.tables(given, intervals=4)
+    table = {(r.source, r.function, r.rod, r.interval, r.rate, r.power): r.value for r in rows}
+    rates, powers = {r.rate for r in rows}, range(max(r.power for r in rows) + 1)
+
+    def left(of: dict[str, Any], *at: object, g: Fraction, k: int) -> Fraction:
+        here, following = (table.get((*at, g, power), Fraction(0)) for power in (k, k + 1))
+        return value(of["same"], g) * here + value(of["raised"], k) * following
+
+    def jump(of: dict[str, Any], *at: object) -> Fraction:
+        return Fraction(of["jump"]) * sum((table.get((*at, g, 0), Fraction(0)) for g in rates), Fraction(0))
+
+    for law, source, n in product(builtin(name, "laws")["functions"], {r.source for r in rows}, range(1, 5)):
+        own = law["own"], source, law["function"], law["rod"], n
+        terms = [(term, source, term["function"], term["rod"], n - term["back"]) for term in law["terms"]]
+        for g, k in product(rates, powers):
+            loads = [Fraction(load["value"]) for load in law["loads"] if begins(load, source, n, k) and g == 0]
+            assert left(*own, g=g, k=k) == sum(loads) + sum(left(*term, g=g, k=k) for term in terms)
+        if law["own"]["jump"] != "0":
+            assert jump(*own) == sum(jump(*term) for term in terms)
+
+
+def begins(load: dict[str, Any], source: str, n: int, k: int) -> bool:
+    return (load["source"], load["back"] + 1, load["power"]) == (source, n, k)
+
+
+@pytest.mark.parametrize("name", builtin_names())
+def test_the_size_of_the_table(name: str) -> None:
+    rows = wavesym.tables(Scene.from_toml(name))
+    read = builtin(name, "table")
+    assert read["table"]["coefficients"] == len(rows)
+    for function in read["functions"]:
+        mine = [row for row in rows if all(getattr(row, key) == function[key] for key in ("function", "rod", "source"))]
+        assert function["coefficients"] == len(mine)
+        assert function["rates"] == [str(rate) for rate in sorted({row.rate for row in mine})]
+        assert function["intervals"] >= max((row.interval for row in mine), default=0)
+
+
+@pytest.mark.parametrize("changes", [{}, {"strain": ["1/3"]}, {"until": "7/3", "strain": [0, "1/3"]}])
+def test_the_knots_are_where_segments_start(changes: dict[str, object]) -> None:
+    model = lower(scene("drive_m1", **changes))
+    motion = Motion(model, model.until)
+    for probe, row in zip(model.probes, told(scene("drive_m1", **changes), "table")["knots"], strict=True):
+        starts = [Fraction(str(start)) for start in motion.starts(probe)]
+        assert row["count"] == len(starts)
+        assert set(row["parts"]) == {str(start % 1) for start in starts if start} | ({"0"} & set(row["parts"]))
+
+
+def tables_in(source: str) -> dict[str, tuple[str, int]]:
+    """The type and the length of every table in a generated C file."""
+    found = re.findall(r"^static const (\w+) (\w+)\[\] = \{(.*?)^\};", source, re.MULTILINE | re.DOTALL)
+    return {name: (kind, len(re.findall(r"[^\s,]+", body))) for kind, name, body in found}
+
+
+@pytest.mark.parametrize("name", ["building_m2", "collision_m4", "drive_m1"])
+def test_tables_are_as_long_as_those_in_c(name: str, tmp_path: Path) -> None:
+    given = Scene.from_toml(name)
+    for path in wavesym.generate(given, tmp_path):
+        if path.suffix == ".c" and "selftest" not in path.name:
+            tables = tables_in(path.read_text())
+    read = builtin(name, "program")
+    assert {row["name"]: row["length"] for row in read["tables"]} == {
+        name: count for name, (_, count) in tables.items()
+    }
+    size = sum(count * (4 if kind == "int" else 8) for kind, count in tables.values())
+    assert size == pytest.approx(read["program"]["bytes"], rel=0.04), "but for what finds the place, and a block"
+
+
+@pytest.mark.parametrize("name", builtin_names())
+def test_the_program_is_the_one_that_is_generated(name: str) -> None:
+    model, read = lower(Scene.from_toml(name)), builtin(name, "program")
+    made = make(model)
+    program = read["program"]
+    assert (program["kind"], program["bytes"], program["reason"]) == (made.kind, made.bytes, made.provenance.reason)
+    assert program["bound"] == made.error_bound <= float(Fraction(str(model.tolerance)))
+    assert read["constants"] == made.constants
+    assert read["outputs"] == [{"name": o.name, "bound": o.bound, "largest": o.largest} for o in made.outputs]
+    assert read["contacts"] == [{"x": e.x, "tau": e.digits, "refusal": None} for e in contact_ends(model)]
+    rows = by(read["tried"], *TRIED)
+    assert rows == by(builtin(name)["tried"], *TRIED)
+    small = make(model, Request(optimize="size"))
+    row = rows.get((small.kind, "double", "size")) or rows[small.kind, "double", "speed"]
+    assert row["bytes"] == small.bytes < made.bytes
+    assert rows["march", "double", "speed"]["refusal"].startswith("not tried: another program meets the tolerance")
+
+
+def test_single_precision() -> None:
+    given = scene("drive_m1", tolerance="1e-4")
+    rows = by(told(given)["tried"], *TRIED)
+    for optimize in ("speed", "size"):
+        made = make(lower(given), Request("pieces", "single", optimize=optimize))
+        row = rows["pieces", "single", optimize]
+        assert (row["bytes"], row["bound"], row["refusal"]) == (made.bytes, made.error_bound, None)
+    missed = by(builtin("drive_m1")["tried"], *TRIED)["closed", "single", "speed"]
+    with pytest.raises(ToleranceError) as error:
+        choose(lower(scene("drive_m1")), "closed", "single")
+    assert str(error.value).endswith(f"closed: {missed['refusal']}")
+
+
+def test_a_scene_that_is_refused(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Its refusals are those of the errors, numbers included; the exit status is 0."""
+    given = scene(until=10**6)
+    rows = by(told(given, "program")["tried"], *TRIED)
+    for kind in ("closed", "pieces", "march"):
+        with pytest.raises(CostError) as error:
+            choose(lower(given), kind)
+        if kind != "closed":  # on which more is spent where it is asked for
+            assert rows[kind, "double", "speed"]["refusal"] == str(error.value)
+    with pytest.raises(WavesymError) as error:
+        make(lower(given))
+    assert told(given)["program"] == {"refusal": str(error.value)}
+    assert "at most 10000 expected" in told(given, "table")["table"]["refusal"]
+    assert "coefficients of about" in told(scene(until=300), "table")["table"]["refusal"]
+    assert all(row["count"] is None and "at most" in row["refusal"] for row in told(given, "table")["knots"])
+    file = tmp_path / "far.toml"
+    file.write_text(_toml("building_m2").replace("until = 12", "until = 1e6"))
+    for stage in STAGES[1:]:
+        assert main(["inspect", str(file), "--stage", stage]) == 0
+        out, err = capsys.readouterr()
+        assert out.startswith(f"building_m2: {stage}\n")
+        assert err == ""
+    assert main(["inspect", str(file)]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "generate would refuse this scene" in said
+    assert " ".join(rows["pieces", "double", "speed"]["refusal"].split()) in said
+
+
+def test_contacts_that_are_not_known_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    def costly(_: object) -> None:
+        raise CostError("output.until: 9 coins, at most 5 expected (a shorter horizon helps)")
+
+    monkeypatch.setattr("wavesym.documents.inspection.programmed.contact_ends", costly)
+    (row,) = told(scene("collision_m4"))["contacts"]
+    assert row["refusal"].startswith("output.until: 9 coins")
+    assert "for which generate refuses the scene" in inspection(scene("collision_m4"))
+
+
+def test_what_takes_long_is_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = []
+    attempt: Callable[..., choice.Tried] = choice.attempt
+
+    def counted(model: object, kind: str, precision: str = "double", **more: Any) -> choice.Tried:
+        tried.append((kind, precision))
+        return attempt(model, kind, precision, **more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr("wavesym.documents.inspection.variants.attempt", counted)
+    monkeypatch.setattr("wavesym.documents.inspection.variants.MOST_BYTES", 10_000)
+    rows = by(told(scene())["tried"], *TRIED)
+    assert tried == [("closed", "single")]
+    assert rows["pieces", "single", "speed"]["refusal"].startswith(
+        "not tried, nor the smallest tables: to fit 26936 by"
+    )
+    assert ("pieces", "double", "size") not in rows
+    monkeypatch.setattr("wavesym.documents.inspection.variants.MOST_MARCHED", 1e3)
+    monkeypatch.setattr("wavesym.documents.inspection.programmed.best", choice.best)
+    far = told(scene(until=1000))
+    row = by(far["tried"], *TRIED)["march", "single", "speed"]
+    assert re.match(r"not tried: a march would take \S+ operations, at most 1.0e\+03 expected", row["refusal"])
+
+
+def test_a_changed_model_is_seen() -> None:
+    """One node's inertia, one weight, one place: each changes what is said of it, and nothing else does."""
+    model = lower(scene())
+    first = list(modelled.modelled(model))
+    heavier = replace(model.chain.nodes[1], inertia=fmpq(2))
+    chain = replace(model.chain)
+    chain.__dict__["nodes"] = (model.chain.nodes[0], heavier, model.chain.nodes[2])
+    changed = {section.key: section for section in modelled.modelled(replace(model, chain=chain))}
+    assert [section.key for section in first if section != changed[section.key]] == ["nodes"]
+    assert _rows(changed["nodes"])[1]["rate"] == "3/5"
+    assert {s.key for s, t in zip(laws.laws(model), laws.laws(replace(model, chain=chain)), strict=True) if s != t} == {
+        "nodes"
+    }
+    load = replace(model.loads[0], weight=fmpq(7))
+    heavy = {s.key: s for s in modelled.modelled(replace(model, loads=(load, *model.loads[1:])))}
+    assert [section.key for section in first if section != heavy[section.key]] == ["loads"]
+    probe = replace(model.probes[0], place=fmpq(1, 4))
+    moved = {s.key: s for s in modelled.modelled(model.watching([probe, *model.probes[1:]]))}
+    assert [section.key for section in first if section != moved[section.key]] == ["outputs"]
+
+
+def _rows(section: Facts | Listing) -> list[Any]:
+    assert isinstance(section, Listing)
+    return list(section.rows)
+
+
+def test_a_program_with_another_bound_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    pieces = choice.MAKERS["pieces"]
+
+    def coarse(*asked: Any) -> Any:
+        form = pieces(*asked)
+        return replace(form, outputs=tuple(replace(output, bound=0.5) for output in form.outputs))  # type: ignore[type-var]
+
+    monkeypatch.setitem(choice.MAKERS, "pieces", coarse)
+    read = told(scene())
+    assert read["program"]["kind"] == "closed"
+    row = by(read["tried"], *TRIED)["pieces", "double", "speed"]
+    assert (row["bound"], row["refusal"]) == (0.5, "rounding leaves a bound of 0.5 for strain@0.5")
+
+
+def test_long_lists_are_cut_in_text_and_whole_in_json() -> None:
+    samples = [str(k % 7) for k in range(3000)]
+    record = Scene(
+        name="record",
+        system={"type": "building", "m": 60, "kappa": [1] * 61, "base": "ground"},
+        load=[{"spacing": "1/5", "samples": samples}],
+        output={"until": 1e7, "tolerance": "1e-6", "strain": ["1/2"]},
+    )
+    assert told(record, "scene")["load"][0]["samples"] == samples
+    assert "  samples = 0, 1, 2, 3, 4, 5, 6, 0, ... and 2992 more\n" in inspection(record, "scene")
+    loads = told(record, "model")["loads"]
+    assert len(loads) == len(lower(record).loads) > 800
+    text = inspection(record, "model")
+    assert f"  ... and {len(loads) - MOST_ROWS} more\n" in text
+    assert f"  ... and {61 - MOST_ROWS} more\n" in text
+    assert len(told(record, "laws")["functions"]) == 120
+    assert len(text.splitlines()) < 100
+
+
+def test_layout() -> None:
+    listing = Listing("k", "Rows", [{"a": "1/2", "bc": None, "why": "said"}, {"a": 10, "bc": True}], ("why",))
+    assert list(section_lines(listing)) == ["", "Rows:", "  a    bc", "  1/2  -", "      said", "  10   yes"]
+    assert list(section_lines(Listing("k", "Rows", []))) == ["", "Rows:", "  none"]
+    facts = Facts("k", "Values", {"one": Told([0, 5], "0..5"), "other": {"1": "2/3"}})
+    assert list(section_lines(facts)) == ["", "Values:", "  one    0..5", "  other  1: 2/3"]
+
+
+@pytest.mark.parametrize(
+    ("linear", "expected"),
+    [((0, 0), "0"), ((0, 1), "g"), ((0, -1), "-g"), ((2, -1), "2 - g"), ((1, fmpq(3, 2)), "1 + 3/2 g")],
+)
+def test_a_linear_factor_as_one_writes_it(linear: tuple[int, int], expected: str) -> None:
+    constant, slope = map(fmpq, linear)
+    assert laws._in(Linear(constant, slope), "g") == expected
+
+
+def test_the_options_are_the_stages() -> None:
+    assert ["summary", *command.STAGES] == list(document._STAGES)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        ([], "wavesym inspect: Missing argument 'SCENE'"),
+        (["bad.toml"], "bad.toml: system.inertia: 1 numbers given, 2 expected (m + 1)"),
+        (["bad.toml", "--stage", "laws"], "bad.toml: system.inertia: 1 numbers given, 2 expected (m + 1)"),
+        (["nothing.toml"], "nothing.toml: No such file"),
+        (["drive_m1", "--stage", "tables"], "wavesym inspect: Invalid value for '--stage': 'tables' is not one of"),
+        (["drive_m1", "--format", "latex"], "wavesym inspect: Invalid value for '--format': 'latex' is not one of"),
+    ],
+)
+def test_bad_input_is_one_line(
+    arguments: list[str],
+    expected: str,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("bad.toml").write_text(_toml("drive_m1").replace("inertia = [1, 2]", "inertia = [1]"))
+    assert main(["inspect", *arguments]) == 2
+    out, line = capsys.readouterr()
+    assert out == ""
+    assert line.startswith(expected)
+    assert line.count("\n") == 1
+
+
+def _toml(name: str) -> str:
+    return (Path(wavesym.__file__).parent / "scene" / "builtin" / f"{name}.toml").read_text(encoding="utf-8")

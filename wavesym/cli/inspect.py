@@ -1,0 +1,35 @@
+"""`wavesym inspect`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from wavesym.cli.parameters import SCENE, put
+from wavesym.cli.progress import progress
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+STAGES = ["scene", "model", "laws", "table", "program"]
+
+
+@click.command()
+@click.argument("scene", type=SCENE)
+@click.option("--stage", type=click.Choice(STAGES), help="What this stage makes of it.  [default: a summary of all]")
+@click.option(
+    "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
+)
+def inspect(scene: Scene, stage: str | None, format: str) -> None:
+    """Show what the compiler makes of a scene, stage by stage; what would be refused too, and why.
+
+    \b
+    Example:
+      wavesym inspect building_m2 --stage model
+    """
+    from wavesym import compiler
+
+    with progress(f"inspect {scene.name}"):
+        text = compiler.inspect(scene, stage, format)
+    put(text)

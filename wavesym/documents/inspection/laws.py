@@ -1,0 +1,110 @@
+"""The laws that are run, in the chain's own numbers: of its nodes on powers, of its wave functions on clocks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from wavesym.derivation.exact_rule import Linear, LoadTerm, NodeRule, Rule, Term, Weights
+from wavesym.documents.inspection.modelled import cone, kind
+from wavesym.documents.inspection.section import Listing, Plain, Section, Told
+from wavesym.exact.node_rules import node_rule
+from wavesym.exact.table import Function, Rules
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import rational
+
+
+def laws(model: Model) -> Iterator[Section]:
+    """Both ansaetze for what is in the light cone."""
+    nodes = model.light_cone(rational(model.horizon()))
+    yield cone(model)
+    yield Listing(
+        "nodes",
+        "Powers alone, which pieces and march run: "
+        "same q[k] + raised q[k+1] = left a[k] + right b[k] + load s[k]\n"
+        "of a node's velocity q, of what arrives from the left (a) and right (b), and of what acts (s)",
+        [_of_node(x, model) for x in nodes],
+    )
+    rules = Rules(model.chain)
+    functions = [Function(name, rod) for rod in nodes[1:] for name in ("f", "g")]
+    yield Listing(
+        "functions",
+        f"Exponentials times powers, which tables and the closed form run, in intervals n of length {rules.interval}."
+        "\nf_1[n] stands for the coefficient F[g,k] of exp(-g w) w**k in rod 1, f_1'[n] for F[g,k+1]."
+        "\nAt a rate g where F[n] on the left has the factor 0, F[g,0] follows from the jumps: sums of F[g,0] over all"
+        "\ng, each times the factor of its F' at k = 0",
+        [_of_function(rules[function]) for function in functions],
+        ("own", "terms", "loads"),
+    )
+
+
+def _of_node(x: int, model: Model) -> dict[str, Plain]:
+    node = model.chain.nodes[x]
+    rule: NodeRule = node_rule(node)
+    return {
+        "x": x,
+        "kind": kind(node),
+        "same": str(rule.same),
+        "raised": _linear(rule.raised, "k"),
+        "left": str(rule.left),
+        "right": str(rule.right),
+        "load": str(rule.load),
+    }
+
+
+def _of_function(rule: Rule) -> dict[str, Plain]:
+    terms, loads = list(map(_right, rule.terms)), list(map(_added, rule.loads))
+    return {
+        "function": rule.function,
+        "rod": rule.rod,
+        "own": Told(_weights(rule.own), f"{_product(rule.own, f'{rule.function}_{rule.rod}', 0)} ="),
+        "terms": Told(list(map(_term, rule.terms)), "\n".join(terms) or ("" if loads else "0")),
+        "loads": Told(list(map(_load, rule.loads)), "\n".join(loads)),
+    }
+
+
+def _linear(linear: Linear, variable: str) -> Told:
+    return Told({"constant": str(linear.constant), "slope": str(linear.slope)}, _in(linear, variable))
+
+
+def _in(linear: Linear, variable: str) -> str:
+    """constant + slope variable, as one writes it."""
+    if not linear.slope:
+        return str(linear.constant)
+    sign, size = ("-", -linear.slope) if linear.slope < 0 else ("+", linear.slope)
+    factor = variable if size == 1 else f"{size} {variable}"
+    if not linear.constant:
+        return factor if sign == "+" else f"-{factor}"
+    return f"{linear.constant} {sign} {factor}"
+
+
+def _product(weights: Weights, name: str, back: int) -> str:
+    interval = f"n-{back}" if back else "n"
+    return " + ".join(
+        f"({_in(linear, variable)}) {name}{prime}[{interval}]"
+        for linear, variable, prime in ((weights.same, "g", ""), (weights.raised, "k", "'"))
+        if linear.constant or linear.slope
+    )
+
+
+def _right(term: Term) -> str:
+    return f"+ {_product(term.weights, f'{term.function}_{term.rod}', term.back)}"
+
+
+def _added(load: LoadTerm) -> str:
+    return f"+ ({load.value}) {load.source}, at g = 0, k = {load.power}, n = {1 + load.back}"
+
+
+def _weights(weights: Weights) -> dict[str, Plain]:
+    return {
+        "same": _linear(weights.same, "g").value,
+        "raised": _linear(weights.raised, "k").value,
+        "jump": str(weights.jump),
+    }
+
+
+def _term(term: Term) -> dict[str, Plain]:
+    return {"function": term.function, "rod": term.rod, "back": term.back, **_weights(term.weights)}
+
+
+def _load(load: LoadTerm) -> dict[str, Plain]:
+    return {"source": load.source, "back": load.back, "power": load.power, "value": str(load.value)}

@@ -1,0 +1,108 @@
+"""The model: what engines take, every number exact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
+from wavesym.model.model import Model
+from wavesym.model.node import Node, UnitLoad
+from wavesym.numbers.doubles import rational
+from wavesym.numbers.reals import DOUBLE, SINGLE
+
+
+def modelled(model: Model) -> Iterator[Section]:
+    """The parts of a model."""
+    yield Facts(
+        "model",
+        "What is computed",
+        {
+            **model.labels.system,
+            "m": model.chain.m,
+            "until": str(model.until),
+            "tolerance": str(model.tolerance),
+            "horizon_double": model.horizon(DOUBLE),
+            "horizon_single": model.horizon(SINGLE),
+            "sha256": model.labels.sha256,
+        },
+    )
+    yield cone(model)
+    yield Listing("nodes", "Nodes: the conditions between two rods, and at the ends", list(map(_node, _nodes(model))))
+    yield Listing(
+        "rods",
+        "Rods: where the clocks of their waves begin, and how fast they move at tau = 0",
+        [
+            {"rod": i, "tau0": str(rod.tau0), "x0": str(rod.x0), "velocity": str(rod.velocity)}
+            for i in range(1, model.chain.m + 1)
+            for rod in (model.chain.rod(i),)
+        ],
+    )
+    yield Listing(
+        "loads",
+        "Loads: unit responses, each from its time on and times its weight",
+        [{"source": load.source, "time": str(load.time), "weight": str(load.weight)} for load in model.loads],
+    )
+    yield probes(model)
+
+
+def cone(model: Model) -> Facts:
+    """The nodes that are modelled, and how many are not."""
+    modelled_nodes = model.light_cone(rational(model.horizon()))
+    out = model.chain.m + 1 - len(modelled_nodes)
+    left_out = Told(out, f"{out} of {model.chain.m + 1} nodes")
+    values = {"first": modelled_nodes[0], "last": modelled_nodes[-1], "left_out": left_out}
+    return Facts("light_cone", "Light cone: the nodes from which something can reach an output in time", values)
+
+
+def probes(model: Model) -> Listing:
+    """The outputs, as they are computed."""
+    rows = [
+        {"name": probe.name, "quantity": probe.quantity, "rod": probe.rod, "place": str(probe.place)}
+        for probe in model.probes
+    ]
+    return Listing("outputs", "Outputs: a quantity at a place on a rod, from its left end", rows)
+
+
+def kind(node: Node) -> str:
+    """What a node is, in a word or two."""
+    if node.contact:
+        return "contact"
+    if node.inertia:
+        return "body"
+    if not node.alpha and not node.beta:
+        return "prescribed velocity"
+    if node.loads:
+        return "prescribed force"
+    return "joint" if node.left and node.right else "free end"
+
+
+def rate(node: Node) -> str | None:
+    """The rate of a body; a node without inertia has none."""
+    return str(node.rate) if node.inertia else None
+
+
+def _nodes(model: Model) -> Iterator[tuple[int, Node]]:
+    yield from enumerate(model.chain.nodes)
+
+
+def _node(placed: tuple[int, Node]) -> dict[str, Plain]:
+    x, node = placed
+    return {
+        "x": x,
+        "kind": kind(node),
+        "inertia": str(node.inertia),
+        "alpha": str(node.alpha),
+        "beta": str(node.beta),
+        "damping": str(node.damping),
+        "rate": rate(node),
+        "loads": Told(
+            {load.source: list(map(str, load.coefficients)) for load in node.loads},
+            ", ".join(map(_acting, node.loads)) or "-",
+        ),
+        "contact": node.contact,
+    }
+
+
+def _acting(load: UnitLoad) -> str:
+    powers = [f"{c} tau**{k}" if k else str(c) for k, c in enumerate(load.coefficients) if c]
+    return f"{load.source}: {' + '.join(powers)}"

@@ -1,0 +1,20 @@
+"""The scene as the user said it, every number exact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from wavesym.documents.inspection.section import Facts, Listing, Section, Told
+from wavesym.documents.inspection.text import shown
+from wavesym.scene import Scene
+
+
+def said(scene: Scene) -> Iterator[Section]:
+    """The tables of a scene, under its own keys."""
+    fields = scene.model_dump(mode="json")
+    yield Facts("system", "The chain, as it was said", fields["system"])
+    loads = fields["load"]
+    names = tuple(dict.fromkeys(name for load in loads for name in load))
+    rows = [{name: Told(value, f"{name} = {shown(value)}") for name, value in load.items()} for load in loads]
+    yield Listing("load", "Its loads", rows, names)
+    yield Facts("output", "What is wanted", fields["output"])

@@ -1,0 +1,78 @@
+"""The exact table: how large it is, and where in time the outputs may jump or bend."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
+from wavesym.errors import CostError
+from wavesym.exact.motion import Motion
+from wavesym.exact.table import Table, full_table
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import rational
+
+MOST_COUNTED = 30_000  # coefficients, which take a second or two to make
+LONGEST = 10_000  # tau; to estimate the size of longer tables takes seconds, too
+
+
+def tabled(model: Model) -> Iterator[Section]:
+    """The size of the table that `tables` prints, and the knots of every output."""
+    try:
+        _refuse_long(model)
+        made = full_table(model.chain, None, rational(model.horizon()), most=MOST_COUNTED)
+    except CostError as refusal:
+        yield Facts("table", "The exact table is not made here", {"refusal": str(refusal)})
+    else:
+        yield from _sizes(made)
+    yield Listing(
+        "knots",
+        "Knots: an output may jump or bend at 0 and at n + part, for each n = 0, 1, ... and each part of a unit of tau",
+        list(_knots(model)),
+        ("parts", "refusal"),
+    )
+
+
+def _refuse_long(model: Model) -> None:
+    if model.until > LONGEST:
+        raise CostError(
+            f"output.until: a table to tau = {model.horizon():g} is not counted here, at most {LONGEST} expected "
+            "(a shorter horizon helps)"
+        )
+
+
+def _sizes(table: Table) -> Iterator[Section]:
+    counts: dict[tuple[str, int, str], list[Plain]] = {}
+    for row in table.rows():
+        count = counts.setdefault((row.function, row.rod, row.source), [0, set()])
+        count[0] += 1
+        count[1].add(row.rate)
+    rows = [
+        {
+            "function": function.function,
+            "rod": function.rod,
+            "source": source,
+            "intervals": len(increments),
+            "coefficients": counts.get((*function, source), [0, ()])[0],
+            "rates": [str(rate) for rate in sorted(counts.get((*function, source), [0, ()])[1])],
+        }
+        for source, response in table.responses.items()
+        for function, increments in sorted(response.items())
+    ]
+    total = {"interval": table.interval, "coefficients": sum(row["coefficients"] for row in rows)}
+    yield Facts("table", "The exact table: how long an interval is, and how many coefficients are not 0", total)
+    yield Listing("functions", "Its wave functions, for each source", rows)
+
+
+def _knots(model: Model) -> Iterator[dict[str, Plain]]:
+    try:
+        motion = Motion(model, rational(model.horizon()))
+    except CostError as refusal:
+        for probe in model.probes:
+            yield {"name": probe.name, "count": None, "parts": Told(None, ""), "refusal": str(refusal)}
+        return
+    for probe in model.probes:
+        parts = sorted(motion.breaks(probe))
+        whole = int(motion.until.floor())
+        count = whole * len(parts) + sum(whole + part <= motion.until for part in parts) + (parts[0] != 0)
+        listed = list(map(str, parts))
+        yield {"name": probe.name, "count": count, "parts": listed, "refusal": Told(None, "")}
