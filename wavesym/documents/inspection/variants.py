@@ -42,7 +42,7 @@ def _rows(model: Model, tried: Sequence[Tried]) -> Iterator[dict[str, Plain]]:
             yield _row(Tried(kind, None, dear), "single", "speed")
             continue
         yield from _smaller(model, first, "double")
-        single = attempt(model, kind, "single")
+        single = attempt(model, kind, "single", optimize="speed")
         yield _row(single, "single", "speed")
         yield from _smaller(model, single, "single")
 
