@@ -5,6 +5,7 @@ from flint import fmpq
 
 import wavesym
 from wavesym.errors import CostError
+from wavesym.exact import table_size as room
 from wavesym.exact.table import full_table
 from wavesym.exact.table_size import LARGEST, table_size
 
@@ -82,3 +83,12 @@ def test_more_sources_and_larger_numbers_make_more():
     one, all_ = table_size(many, 1, wanted, ["M1"]), table_size(many, 1, wanted, many.sources)
     assert one.bytes < all_.bytes
     assert table_size(few, 1, wanted, few.sources).bytes < all_.bytes
+
+
+def test_detours_counted_at_once_are_those_counted_one_by_one(monkeypatch):
+    """A horizon of a million has as many detours: one by one they would take half a minute only to be refused."""
+    made = system("building", 5, UNEQUAL)
+    wanted = {("f", 1): 400, ("g", 3): 150, ("f", 5): 7}
+    at_once = table_size(made, 2, wanted, made.sources)
+    monkeypatch.setattr(room, "_AT_ONCE", 1)
+    assert table_size(made, 2, wanted, made.sources) == pytest.approx(at_once, rel=1e-12)

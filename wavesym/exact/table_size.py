@@ -25,6 +25,7 @@ LARGEST = 400_000_000  # bytes; made and written in half a minute
 MOST_WORK = 1e6  # half a minute
 _ENTRY = 80  # bytes of an increment, if it is empty too
 _COEFFICIENT = 120  # bytes of one without digits
+_AT_ONCE = 100_000  # detours times rods
 _DIGITS, _LONG = 4000, 1.6  # from so many bits on coefficients take longer, and by which power
 
 K = TypeVar("K", bound=tuple[str, int])
@@ -68,9 +69,12 @@ def table_size(chain: Chain, interval: int, wanted: Mapping[K, int], sources: It
             np.where(right > 0, rods - 1 - near[np.maximum(right - 1, 0)], inf),
         )
         detours = np.maximum((last - far) // 2 + 1, 0)
-        for e in range(int(np.max(detours, initial=0))):
-            met = far[detours > e] + 1 + e
+        most = int(np.max(detours, initial=0))
+        for first in range(0, most, step := 1 + _AT_ONCE // len(rods)):
+            e = np.arange(first, min(first + step, most))[:, np.newaxis]
+            met = far + 1 + e
             powers = np.minimum((e + 1) * np.minimum(bodies, met), len(rates) * dense * (met + e))
+            powers = np.where(detours > e, powers, 0.0)
             coefficients += 2 * float(np.sum(powers))
             bits += 2 * float(np.sum(powers**2)) * height
             work += 2 * float(np.sum(powers * (1 + (powers * height / _DIGITS) ** _LONG)))
