@@ -42,6 +42,7 @@ from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
 
 if TYPE_CHECKING:
+    from wavesym.model.model import Model
     from wavesym.model.node import System
     from wavesym.papers.record import Claim
 
@@ -216,8 +217,9 @@ def run(scene: Scene, samples: int, at: Sequence[float] | None = None) -> Iterat
 
     CostError where right to the last bit would cost too much, before there is a line.
     """
-    response = evaluator(scene)
-    taus = iter(at) if at is not None else grid(scene, samples)
+    model = lower(scene)
+    response = Response(model)
+    taus = iter(at) if at is not None else grid(model, samples)
     blocks = iter(partial(_rows, response, taus), [])
     return _csv(("tau", *response.outputs), next(blocks, []), blocks)  # what goes wrong does so before the header
 
@@ -236,33 +238,37 @@ def _rows(response: Response, taus: Iterator[float]) -> list[str]:
     return [",".join(map(repr, row)) + "\n" for row in values.tolist()]
 
 
-def grid(scene: Scene, samples: int) -> Iterator[float]:
+def grid(model: Model, samples: int) -> Iterator[float]:
     """`samples` equally spaced tau, each rounded once; the last one is the end of the horizon."""
-    until = rational(scene.output.until)
-    yield from (nearest(until * k / (samples - 1)) for k in range(samples - 1))
-    yield lower(scene).horizon() if samples > 1 else 0.0
+    yield from (nearest(model.until * k / (samples - 1)) for k in range(samples - 1))
+    yield model.horizon() if samples > 1 else 0.0
 
 
 def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
     """What a user might not expect: no load, tau out of range, contacts that open early enough to matter."""
-    last = lower(scene).horizon()
+    model = lower(scene)
+    last = model.horizon()
     outside = sum(not 0 <= tau <= last for tau in taus)
     lines = [f"{outside} of {len(taus)} tau are outside 0 to {scene.output.until}, where values are nan"] * bool(
         outside
     )
-    return [*no_load(scene), *lines, *_contact_warnings(scene)]
+    return [*_no_load(model), *lines, *_contact_warnings(model)]
 
 
 def no_load(scene: Scene) -> list[str]:
     """A line for a scene in which nothing happens."""
-    return [] if lower(scene).loads else ["no load, so that all outputs are 0"]
+    return _no_load(lower(scene))
 
 
-def _contact_warnings(scene: Scene) -> list[str]:
+def _no_load(model: Model) -> list[str]:
+    return [] if model.loads else ["no load, so that all outputs are 0"]
+
+
+def _contact_warnings(model: Model) -> list[str]:
     """A line for every contact that opens early enough to matter to an output."""
     return [
         f"contact at x = {end.x} opens at tau = {end.digits}: what that can reach is computed as if it stayed closed"
-        for end in contact_ends(lower(scene))
+        for end in contact_ends(model)
     ]
 
 

@@ -12,7 +12,7 @@ import wavesym
 from tests.cli.test_cli import SCENE, folder, refused
 from wavesym import compiler
 from wavesym.cli import main
-from wavesym.scene import builtin_names
+from wavesym.scene import builtin_names, lower
 
 __all__ = ["folder"]
 
@@ -49,7 +49,7 @@ def test_many_samples_come_while_they_are_computed(monkeypatch: pytest.MonkeyPat
     whole = list(compiler.run(scene, 2 * compiler._AT_ONCE + 3))
     assert len(whole) == 2 * compiler._AT_ONCE + 4
     assert whole[-1].startswith("10.0,")
-    assert list(compiler.run(scene, 101)) == list(compiler.run(scene, 101, list(compiler.grid(scene, 101))))
+    assert list(compiler.run(scene, 101)) == list(compiler.run(scene, 101, list(compiler.grid(lower(scene), 101))))
 
 
 def test_a_byte_order_mark_is_no_part_of_a_scene() -> None:

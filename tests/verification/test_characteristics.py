@@ -233,7 +233,7 @@ def silent(rod):
         (DRIVE, 1, {"beta": lambda beta: -beta / 10}),
         (DRIVE, 1, {"alpha": lambda alpha: alpha * fmpq(1001, 1000)}),
         (DRIVE, 2, {"loads": lambda loads: [replace(load, coefficients=(-load.coefficients[0],)) for load in loads]}),
-        (BUILDING, 0, {"damping": lambda damping: -damping}),
+        (BUILDING, 0, {"damping": lambda damping: 2 * damping}),
         (BUILDING, 2, {"damping": lambda damping: fmpq(1, 1000)}),
         (COLLISION, 2, {"inertia": lambda inertia: 1}),
         (COLLISION, 4, {"left": silent}),

@@ -159,8 +159,13 @@ def _family_equations(family: Family) -> list[DelayEquation]:
 
 
 def _without_echoes(equations: list[DelayEquation]) -> list[DelayEquation]:
-    """A free end only sends back what arrives: put that into the other equations, as the paper does."""
+    """A free end only sends back what arrives: put that into the other equations, as the paper does.
+
+    Of an equation that stands for several, the functions would have to be told apart by their numbers.
+    """
     for echo in equations:
+        if echo.rod.has(INDEX):
+            continue
         (end,) = echo.right.waves.values() if len(echo.right.waves) == 1 else (None,)
         if end is not None and end.a == 0 and echo.own.a == 0 and not echo.right.loads:
             equations = [

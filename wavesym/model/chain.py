@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
+from flint import fmpq
+
+from wavesym.errors import WavesymError
 from wavesym.model.node import Node, Parameters, Quantity, Rod, System, UnitLoad
 from wavesym.numbers.doubles import rational
+
+_POWERS = 3  # of tau in a unit load: a ramp of acceleration is a parabola of velocity
 
 
 @dataclass(frozen=True)
@@ -23,13 +29,15 @@ class Chain:
 
     @cached_property
     def nodes(self) -> tuple[Node, ...]:
-        """The nodes at x = 0, 1, ... m."""
+        """The nodes at x = 0, 1, ... m. WavesymError for those that no method here serves."""
         placed = {
             x: _exact_node(family.at(x))
             for family in self.system.families(self.m, self.parameters)
             for x in range(family.first, family.last + 1, family.step)
         }
-        return tuple(placed[x] for x in range(self.m + 1))
+        nodes = tuple(placed[x] for x in range(self.m + 1))
+        _refuse(nodes)
+        return nodes
 
     def rod(self, i: int) -> Rod:
         """Rod i = 1 ... m."""
@@ -51,6 +59,24 @@ class Chain:
     def sources(self) -> tuple[str, ...]:
         """The unit loads of the system; one without any has its impact instead."""
         return tuple(self.loaded) or ("impact",)
+
+
+def _refuse(nodes: Sequence[Node]) -> None:
+    """What tables and programs would get wrong. Symbols are taken to be positive."""
+    sources: set[str] = set()
+    for x, node in enumerate(nodes):
+        if isinstance(node.radiation, fmpq) and node.radiation <= 0:
+            raise WavesymError(
+                f"system: damping + (alpha + beta)/2 is {node.radiation} at x = {x}, more than 0 expected"
+            )
+        for load in node.loads:
+            if len(load.coefficients) > _POWERS:
+                raise WavesymError(f"system: {load.source} has powers of tau above {_POWERS - 1}, none expected")
+            if load.source in sources:
+                raise WavesymError(f"system: {load.source} acts on two nodes, one expected")
+            sources.add(load.source)
+    if sources and any(rod and rod.velocity != 0 for node in nodes for rod in (node.left, node.right)):
+        raise WavesymError("system: rods that move at tau = 0 and loads are given, one of them expected")
 
 
 def _exact_node(node: Node) -> Node:

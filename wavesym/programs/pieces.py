@@ -147,7 +147,7 @@ class _TooLarge(CostError):
 
 def _too_large(size: int, most: int) -> _TooLarge:
     return _TooLarge(
-        f"output.until: pieces would take at least {size / 2**20:.2g} MiB, at most {most / 2**20:.2g} expected "
+        f"output.until: pieces would take at least {size} bytes, at most {most} expected "
         "(a shorter horizon, fewer outputs or load times help)"
     )
 

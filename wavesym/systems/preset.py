@@ -76,5 +76,8 @@ class Preset(SceneTable):
         return Chain(self.system, self.m, Parameters(**numbers))
 
     def divided_at(self, x: Fraction) -> bool:
-        """Whether a rigid body lies at x (in rod lengths), strictly inside the chain."""
-        return 0 < x < self.m and x.denominator == 1 and bool(self.chain.nodes[int(x)].inertia)
+        """Whether the strain has two sides at x (in rod lengths), strictly inside the chain: mostly at rigid bodies."""
+        if not (0 < x < self.m and x.denominator == 1):
+            return False
+        node = self.chain.nodes[int(x)]
+        return bool(node.inertia or node.damping or node.loads) or node.alpha != node.beta
