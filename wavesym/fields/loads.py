@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
@@ -24,14 +25,14 @@ class Load(SceneTable):
         """What is wrong with it on a system of m elements, and under which key; None where nothing is."""
         return None
 
+    @abstractmethod
     def units(self) -> Iterator[Applied]:
         """The load as unit responses."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def told(self) -> str:
         """In a line, and a long one by its size; empty where it is nothing."""
-        raise NotImplementedError
 
 
 LoadKinds = tuple[type[Load], ...]
