@@ -2,6 +2,8 @@
 
 PYTHON ?= python3
 BIN := .venv/bin
+# the commands that tests and the demo start are compiled once, whatever the environment says
+export PYTHONDONTWRITEBYTECODE :=
 # tells every 2 s that a command is still at work, where there is no terminal for it to say what it does
 TOLD := sh -c '[ -t 2 ] || while sleep 2 >&2 && kill -0 $$$$; do echo "   ... at work"; done 2> /dev/null & "$$@"; \
 	status=$$?; kill $$! 2> /dev/null; exit $$status' told
