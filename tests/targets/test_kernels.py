@@ -17,14 +17,19 @@ KERNELS = sorted(path.name for path in C.glob("*.c"))
 FORMATS = {"double": (), "single": ("-DSINGLE",)}
 
 
-def read(file, folder, *flags):
-    compiler().run([*LANGUAGES["c99"], *STRICT, *flags, "-fsyntax-only", file], folder)
+def complaint(file, folder, *flags):
+    """What the compiler says of a file as it stands; empty where it takes it."""
+    try:
+        compiler().run([*LANGUAGES["c99"], *STRICT, *flags, "-fsyntax-only", file], folder)
+    except CompilerError as error:
+        return str(error)
+    return ""
 
 
 @pytest.mark.parametrize("precision", FORMATS)
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_a_kernel_is_c_as_it_stands(kernel, precision):
-    read(kernel, C, *FORMATS[precision])
+    assert complaint(kernel, C, *FORMATS[precision]) == ""
 
 
 @pytest.mark.parametrize(
@@ -42,8 +47,7 @@ def test_a_broken_kernel_is_seen(kernel, right, wrong, tmp_path):
     text = (tmp_path / kernel).read_text()
     assert right in text
     (tmp_path / kernel).write_text(text.replace(right, wrong))
-    with pytest.raises(CompilerError):
-        read(kernel, tmp_path)
+    assert complaint(kernel, tmp_path)
 
 
 @pytest.mark.parametrize("of", SOURCES, ids="-".join)

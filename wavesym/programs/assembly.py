@@ -81,6 +81,24 @@ def _pieces(form: Pieces, provenance: Provenance) -> Program:
 
 
 def _march(evaluator: MarchEvaluator, provenance: Provenance) -> Program:
+    """A march remembers waves; what it is made of are tables of a window, and constants."""
+    plan, given = evaluator.plan, evaluator.given
+    return Program(
+        "march",
+        evaluator.real,
+        plan.tau_max,
+        evaluator.outputs,
+        _march_tables(evaluator),
+        _march_constants(evaluator),
+        evaluator.bytes,
+        provenance,
+        sources=tuple(channel.name for channel in plan.channels),
+        whole=math.isinf(plan.valid),
+        driven=Driven(given.windows, given.errors) if given else None,
+    )
+
+
+def _march_tables(evaluator: MarchEvaluator) -> dict[str, tuple[float, ...]]:
     """Panels, nodes, the operators of bodies, changes of loads, loads to be given, outputs, and where waves arrive."""
     plan, real, degree = evaluator.plan, evaluator.real, evaluator.degree
     nodes, panels = plan.junctions, plan.panels
@@ -97,7 +115,7 @@ def _march(evaluator: MarchEvaluator, provenance: Provenance) -> Program:
     def rounded(values: Iterable[float]) -> tuple[float, ...]:
         return reals(map(rational, values))
 
-    tables: dict[str, tuple[float, ...]] = {
+    return {
         "point": reals(p.start + p.length * (1 - c) / 2 for p in panels for c in _cosines(degree)),
         "cosine": reals(_cosines(degree)),
         "half_length": reals(panel.length / 2 for panel in panels),
@@ -140,14 +158,19 @@ def _march(evaluator: MarchEvaluator, provenance: Provenance) -> Program:
         "back": tuple(stretch.back for stretch in flat),
         "panel_of": tuple(stretch.panel for stretch in flat),
     }
+
+
+def _march_constants(evaluator: MarchEvaluator) -> dict[str, float]:
+    """Sizes, and what the program holds the loads and its own polynomials against."""
+    plan, real, degree = evaluator.plan, evaluator.real, evaluator.degree
     constants: dict[str, float] = {
         "degree": degree,
-        "panels": len(panels),
-        "nodes": len(nodes),
+        "panels": len(plan.panels),
+        "nodes": len(plan.junctions),
         "first_node": plan.first,
         "forces": len(plan.loaded),
         "sources": len(plan.channels),
-        "points": len(panels) * (degree + 1),
+        "points": len(plan.panels) * (degree + 1),
         "events": len(plan.events),
         "last_window": _last_window(plan, real),
         "last_tau": real.nearest(rational(min(plan.valid, float(real.reach)))),
@@ -163,22 +186,7 @@ def _march(evaluator: MarchEvaluator, provenance: Provenance) -> Program:
             "given_degree": SMOOTH,
             "given_error": real.not_below(rational(max(evaluator.given.errors))),
         }
-    sources = tuple(channel.name for channel in plan.channels)
-    whole = math.isinf(plan.valid)
-    given = evaluator.given
-    return Program(
-        "march",
-        real,
-        plan.tau_max,
-        evaluator.outputs,
-        tables,
-        constants,
-        evaluator.bytes,
-        provenance,
-        sources=sources,
-        whole=whole,
-        driven=Driven(given.windows, given.errors) if given else None,
-    )
+    return constants
 
 
 def _firsts(counts: Iterable[int]) -> tuple[int, ...]:
