@@ -1,7 +1,6 @@
-"""A claim and how it is judged: tried as printed, tried as corrected, and tried with faults put in.
+"""How a verdict comes about: a record tried as printed, tried as corrected, and tried with faults put in.
 
-What a formula means as transcribed, what it should mean, and what it becomes with a fault in it are *readings*: values
-of one type R, which the claim's `cases` turns into comparisons of a printed value with a true one.
+What is printed is what is judged: a reading is made from the strings of the record, and in no other way.
 """
 
 from __future__ import annotations
@@ -9,164 +8,246 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Generic, Literal, TypeVar
+from typing import Any, Literal, Union
 
 from flint import fmpq
 
-R = TypeVar("R")
+from wavesym.papers.entries import Entry
+from wavesym.papers.evaluation import MeaninglessError
+from wavesym.papers.exponentials import Exponentials
+from wavesym.papers.mutations import ends, mutations
+from wavesym.papers.reader import UnreadableError, read_formula, read_range
+from wavesym.papers.tree import Tree
 
-Slipped = Literal["misprint", "unreadable", "convention", "model"]
-Verdict = Literal["holds", "misprint", "unreadable", "convention", "model", "untested"]
+Verdict = Literal["holds", "misprint", "unreadable", "convention", "model", "depends", "incomplete", "untested"]
 
 VERDICTS: dict[Verdict, str] = {
-    "holds": "right as transcribed",
-    "misprint": "has a meaning as transcribed, which is wrong; the correction holds in every case tried",
-    "unreadable": "has no meaning as transcribed, or not the one meant beyond doubt: the scan is garbled at the spot; "
-    "the reading given holds in every case tried",
+    "holds": "right as printed",
+    "misprint": "has a meaning as printed, which is wrong; the correction holds in every case tried",
+    "unreadable": "has no meaning as printed, or not the one meant: the reading given holds in every case tried",
     "convention": "holds under the convention given, and only under that",
     "model": "holds as mathematics, but does not say what the text says it does",
+    "depends": "depends on data that the text does not give: true for some of what was tried, false for others",
+    "incomplete": "true only under a hypothesis that is not printed",
     "untested": "no case could have turned it, or no correction that holds is known",
 }
+
+
+@dataclass(frozen=True)
+class Example:
+    """Where a case can be seen: a scene, the command that shows it, and what to look at."""
+
+    scene: str
+    command: str
+    look: str
 
 
 @dataclass(frozen=True)
 class Case:
     """One comparison: where (parameters and indices), the value as printed, the true value.
 
-    `telling`: whether it says anything (0 = 0 does not).
+    `telling`: whether it says anything (0 = 0 does not). `example` makes the scene that shows it.
     """
 
     at: Mapping[str, object]
     printed: object
     true: object
     telling: bool = True
+    example: Callable[[], Example] | None = field(default=None, compare=False)
 
     @property
     def agrees(self) -> bool:
-        return self.printed == self.true
+        return bool(self.printed == self.true)
 
     def __str__(self) -> str:
         where = ", ".join(f"{name} = {shown(value)}" for name, value in self.at.items())
-        return f"{where}: printed {shown(self.printed)}, true {shown(self.true)}"
+        said = f"printed {shown(self.printed)}, true {shown(self.true)}"
+        return f"{where}: {said}" if where else said
 
 
 @dataclass(frozen=True)
-class Slip(Generic[R]):
-    """What is wrong as transcribed: the right formula, its reading, and how sure that is (or which convention)."""
+class Nothing:
+    """What a formula gives where it means nothing: the reason. Equal to no value."""
 
-    kind: Slipped
-    corrected: str
-    reading: R
-    note: str
+    why: str
+
+    def __str__(self) -> str:
+        return f"no value ({self.why})"
+
+
+def case(
+    at: Mapping[str, object],
+    printed: Callable[[], object],
+    true: object,
+    telling: bool = True,
+    example: Callable[[], Example] | None = None,
+) -> Case:
+    """A case whose printed value may have no meaning."""
+    try:
+        value = printed()
+    except MeaninglessError as error:
+        value = Nothing(str(error))
+    return Case(at, value, true, telling, example)
 
 
 @dataclass(frozen=True)
-class Claim(Generic[R]):
-    """A formula or statement of the paper.
+class Sentence:
+    """A sentence of the controlled English that prose is judged in: its pattern, and the words in its places."""
 
-    `printed` is the literal transcription, `scan` what the scanned text has where that reads otherwise; `ranges` are
-    its variables. `cases` come in order of size, the smallest first.
-    `mutations` are faults in the reading that holds, by what was changed. `difference`, where it can be written, is
-    printed minus derived. `mathematics` are the cases in which a `model` holds nevertheless.
+    pattern: str
+    words: Mapping[str, str]
+
+    def __hash__(self) -> int:
+        return hash((self.pattern, tuple(self.words.items())))
+
+
+Formula = Union[Tree, Sentence]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a record says: its formula and its ranges (those printed, then those inferred), as read from its strings."""
+
+    formula: Any
+    ranges: tuple[Tree, ...] = ()
+
+
+def reading(printed: str, ranges: Iterable[str]) -> Reading:
+    """The reading of a formula; UnreadableError."""
+    return Reading(read_formula(printed), tuple(map(read_range, ranges)))
+
+
+def faults(right: Reading) -> Iterator[tuple[str, Reading]]:
+    """Every fault in the formula, and both ends of every range."""
+    for change, formula in mutations(right.formula):
+        yield change, Reading(formula, right.ranges)
+    for place, range_ in enumerate(right.ranges):
+        for change, wrong in ends(range_):
+            yield change, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
+
+
+@dataclass(frozen=True)
+class Test:
+    """How records of a kind are tried. `cases` come in order of size, the smallest first.
+
+    `against` is what they are compared with. `read` makes a reading of strings, `faults` puts faults into one.
+    `difference`, where it can be written, is printed less derived. `mathematics` are the cases in which a `model` holds
+    nevertheless; `observed` is what was measured, in a sentence.
     """
 
-    id: str
-    where: str
-    printed: str
-    ranges: str
+    __test__ = False  # not pytest's
+
     against: str
-    cases: Callable[[R], Iterable[Case]]
-    reading: R
-    mutations: Mapping[str, R]
-    slip: Slip[R] | None = None
-    difference: Callable[[R], str] | None = None
-    mathematics: Callable[[R], Iterable[Case]] | None = None
-    note: str = ""
+    cases: Callable[[Reading], Iterable[Case]]
+    read: Callable[[str, Iterable[str]], Reading] = reading
+    faults: Callable[[Reading], Iterable[tuple[str, Reading]]] = faults
+    difference: Callable[[Reading], str] | None = None
+    mathematics: Callable[[Reading], Iterable[Case]] | None = None
     observed: Callable[[], str] | None = None
-    scan: str | None = None
+
+
+Adapter = Callable[[Entry], Test]
+
+
+@dataclass(frozen=True)
+class Mutations:
+    """Faults tried and turned, and those that no case turned, each with the reason."""
+
+    tried: int = 0
+    turned: int = 0
+    survived: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
 class Record:
-    """A claim with its verdict; `cases` counts those that told something, `problems` is empty where all is well."""
+    """An entry with its verdict; `cases` counts those that told something, `problems` is empty where all is well."""
 
-    id: str
-    where: str
-    printed: str
-    ranges: str
+    entry: Entry
     against: str
     verdict: Verdict
-    corrected: str | None
-    evidence: str
+    evidence: tuple[str, ...]
     cases: int
-    mutations: Mapping[str, bool]
+    mutations: Mutations
     counterexample: Case | None = None
     difference: str | None = None
-    problems: tuple[str, ...] = field(default=())
-    scan: str | None = None
+    problems: tuple[str, ...] = ()
+
+    @property
+    def id(self) -> str:
+        return self.entry.id
+
+    @property
+    def corrected(self) -> str | None:
+        """The whole formula or sentence as it should be, where what is printed does not hold."""
+        return self.entry.slip.corrected if self.entry.slip else None
 
 
-def judge(claim: Claim[R]) -> Record:
-    """The verdict on a claim, with its evidence."""
-    tried = _Trial(claim.cases(claim.reading))
-    slip = claim.slip
-    problems: list[str] = []
-    right = claim.reading
+def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
+    """The verdict on an entry, with its evidence. `problems` are those of its transcription."""
+    found = list(problems)
+    slip = entry.slip
+    printed = _Trial.of(test, entry.printed, (*entry.ranges, *entry.inferred))
+    settled, text, ranges = printed, entry.printed, (*entry.ranges, *entry.inferred)
     evidence: list[str] = []
-    verdict: Verdict = "holds"
-    settled = tried
     if slip:
-        right, verdict = slip.reading, slip.kind
-        settled = _Trial(claim.cases(right))
-        if tried.wrong is None:
-            problems.append("called wrong, yet no case shows it")
+        text = slip.corrected
+        ranges = (*(entry.ranges if slip.ranges is None else slip.ranges), *entry.inferred)
+        settled = _Trial.of(test, text, ranges)
+        if printed.wrong is None:
+            found.append("called wrong, yet no case shows it")
+        else:
+            evidence.append(f"As printed it fails: {printed.wrong}.")
         if settled.wrong:
-            problems.append(f"the correction fails at {settled.wrong}")
-        if tried.wrong:
-            evidence.append(f"fails at {tried.wrong}.")
+            found.append(f"the correction fails: {settled.wrong}")
         evidence.append(f"As corrected it holds in {settled.telling} cases. {slip.note}".strip())
-        if claim.mathematics:
-            proved = _Trial(claim.mathematics(claim.reading))
+        if test.mathematics:
+            proved = _Trial(test.mathematics(test.read(entry.printed, (*entry.ranges, *entry.inferred))))
             if proved.wrong or not proved.telling:
-                problems.append(f"does not hold as mathematics either: {proved.wrong}")
+                found.append(f"does not hold as mathematics either: {proved.wrong}")
             evidence.append(f"As mathematics it holds in {proved.telling} cases.")
-    elif tried.wrong:
-        problems.append(f"fails at {tried.wrong}, no correction known")
+    elif printed.wrong:
+        found.append(f"fails, and no correction is known: {printed.wrong}")
     else:
-        evidence.append(f"holds in {tried.telling} cases.")
-    turned = {
-        change: _Trial(claim.cases(reading), stop=True).wrong is not None for change, reading in claim.mutations.items()
-    }
-    problems += [f"not turned by a fault: {change}" for change, seen in turned.items() if not seen]
+        evidence.append(f"Holds in {printed.telling} cases.")
     if not settled.telling:
-        problems.append("no case tells anything")
-    if not turned:
-        problems.append("no fault was tried")
+        found.append("no case tells anything")
+    turned, unturned = _faulty(entry, test, text, ranges) if settled.wrong is None else (Mutations(), ())
+    found += unturned
     difference = None
-    if claim.difference:
-        difference = claim.difference(claim.reading)
-        if claim.difference(right) != "0":
-            problems.append(f"printed minus derived is {claim.difference(right)} where it is said to hold")
-    if claim.observed:
-        evidence.append(claim.observed())
-    if claim.note:
-        evidence.append(claim.note)
+    if test.difference and not settled.wrong:
+        difference = test.difference(test.read(entry.printed, (*entry.ranges, *entry.inferred)))
+        left = test.difference(test.read(text, ranges))
+        if left != "0":
+            found.append(f"printed less derived is {left} where it is said to hold")
+    if test.observed:
+        evidence.append(test.observed())
+    if entry.note:
+        evidence.append(entry.note)
+    verdict: Verdict = "untested" if found else slip.verdict if slip else "holds"
     return Record(
-        claim.id,
-        claim.where,
-        claim.printed,
-        claim.ranges,
-        claim.against,
-        "untested" if problems else verdict,
-        slip.corrected if slip else None,
-        " ".join(evidence + problems),
-        settled.telling,
-        turned,
-        tried.wrong,
-        difference,
-        tuple(problems),
-        claim.scan,
+        entry, test.against, verdict, tuple(evidence), settled.telling, turned, printed.wrong, difference, tuple(found)
     )
+
+
+def _faulty(entry: Entry, test: Test, text: str, ranges: Iterable[str]) -> tuple[Mutations, tuple[str, ...]]:
+    """The faults tried in what holds; and what is wrong with them."""
+    reasons = dict(entry.equivalent)
+    tried, problems, survived = 0, [], []
+    for change, wrong in test.faults(test.read(text, ranges)):
+        tried += 1
+        turned = _Trial.turned(test, wrong)
+        if turned and change in reasons:
+            problems.append(f"called equivalent, yet a case turns it: {change}")
+        elif not turned and change not in reasons:
+            problems.append(f"not turned by a fault: {change}")
+        if not turned:
+            survived.append((change, reasons.pop(change, "")))
+        else:
+            reasons.pop(change, None)
+    problems += [f"called equivalent, yet no such fault: {change}" for change in reasons]
+    if not tried:
+        problems.append("no fault was tried")
+    return Mutations(tried, tried - len(survived), tuple(survived)), tuple(problems)
 
 
 class _Trial:
@@ -175,12 +256,29 @@ class _Trial:
     def __init__(self, cases: Iterable[Case], stop: bool = False) -> None:
         self.telling = 0
         self.wrong: Case | None = None
-        for case in cases:
-            self.telling += case.telling
-            if not case.agrees and self.wrong is None:
-                self.wrong = case
-                if stop:
-                    break
+        try:
+            for tried in cases:
+                self.telling += tried.telling
+                if not tried.agrees and self.wrong is None:
+                    self.wrong = tried
+                    if stop:
+                        break
+        except MeaninglessError as error:
+            self.wrong = self.wrong or Case({}, Nothing(str(error)), "a value")
+
+    @classmethod
+    def of(cls, test: Test, text: str, ranges: Iterable[str]) -> _Trial:
+        """A string tried; one that cannot be read fails."""
+        try:
+            read = test.read(text, ranges)
+        except UnreadableError as error:
+            return cls(iter([Case({}, Nothing(str(error)), "a formula")]))
+        return cls(test.cases(read))
+
+    @classmethod
+    def turned(cls, test: Test, read: Reading) -> bool:
+        """Whether a faulty reading is seen."""
+        return cls(test.cases(read), stop=True).wrong is not None
 
 
 def shown(value: object) -> str:
@@ -192,7 +290,7 @@ def shown(value: object) -> str:
             return "nothing"
         case float():
             return f"{value:.4g}"
-        case Fraction() | fmpq() | int() | str():
+        case Fraction() | fmpq() | int() | str() | Exponentials():
             return str(value)
         case dict():
             return "(" + ", ".join(f"{key} = {shown(part)}" for key, part in value.items()) + ")"

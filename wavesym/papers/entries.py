@@ -1,0 +1,205 @@
+"""A paper as data: passages of its text in their order, each cut into records, or set aside with a reason.
+
+A passage is some whole lines of the source. Its records say what is printed there; what of it is no record is set aside
+with a reason, so that nothing can be left out unseen. Every line of the source has a committed hash: a transcription
+that is changed afterwards no longer fits it (`problems`).
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict
+
+Slipped = Literal["misprint", "unreadable", "convention", "model", "depends", "incomplete"]
+Origin = Literal["print", "scan", "unknown"]
+
+
+class _Data(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Slip(_Data):
+    """What is wrong as printed, and what is right: the whole formula, or the whole sentence.
+
+    `origin`: "print" only where the text itself proves it, "scan" where the scan is garbled beyond doubt.
+    """
+
+    verdict: Slipped
+    origin: Origin = "unknown"
+    corrected: str
+    ranges: tuple[str, ...] | None = None
+    note: str
+
+
+class Entry(_Data):
+    """One printed formula, cell or sentence.
+
+    `scan` is the text of the source, verbatim; `printed` what it says, on one line, without words: it differs by
+    `edits` alone (from, to, why). `ranges` are printed too, `inferred` ones are not. `equivalent` are the faults that
+    no case can turn (name, why). `about` is what the adapter of this `kind` needs to know.
+    """
+
+    id: str
+    kind: str
+    printed: str
+    scan: str = ""
+    ranges: tuple[str, ...] = ()
+    inferred: tuple[str, ...] = ()
+    edits: tuple[tuple[str, str, str], ...] = ()
+    equivalent: tuple[tuple[str, str], ...] = ()
+    slip: Slip | None = None
+    note: str = ""
+    about: Mapping[str, Any] = {}
+    where: str = ""
+    lines: tuple[int, int] = (0, 0)
+    translated: bool = False
+
+
+class Aside(_Data):
+    """A part of a passage that is not judged: a definition, an announcement, a reference."""
+
+    scan: str
+    why: str
+
+
+class Passage(_Data):
+    """Lines of the source, first to last, with their text where anything of it is judged."""
+
+    lines: tuple[int, int]
+    where: str = ""
+    text: str = ""
+    why: str = ""
+    record: tuple[Entry, ...] = ()
+    aside: tuple[Aside, ...] = ()
+
+    def entries(self) -> Iterator[Entry]:
+        """The records, each with its place and its scan."""
+        for entry in self.record:
+            yield entry.model_copy(
+                update={
+                    "scan": entry.scan or self.text.strip("\n"),
+                    "where": entry.where or self.where,
+                    "lines": self.lines,
+                }
+            )
+
+
+@dataclass(frozen=True)
+class Paper:
+    """All passages in the order of the source, and the hashes of its lines and of the translations."""
+
+    passages: tuple[Passage, ...]
+    hashes: Mapping[str, str]
+
+    def entries(self) -> tuple[Entry, ...]:
+        """All records."""
+        return tuple(entry for passage in self.passages for entry in passage.entries())
+
+
+def read_paper(files: Iterable[Path], hashes: Path) -> Paper:
+    """The passages of some TOML files, in the order of the source."""
+    passages = [
+        Passage(**passage) for file in files for passage in tomllib.loads(file.read_text(encoding="utf-8"))["passage"]
+    ]
+    known = dict(line.split() for line in hashes.read_text(encoding="utf-8").splitlines())
+    return Paper(tuple(sorted(passages, key=lambda passage: passage.lines)), known)
+
+
+def digest(text: str) -> str:
+    """The hash of a line, spaces told apart from nothing else."""
+    return sha256(" ".join(text.split()).encode()).hexdigest()[:16]
+
+
+def problems(paper: Paper) -> Iterator[tuple[str, str]]:
+    """What does not fit: the id of a record or the lines of a passage, and what is wrong."""
+    yield from _uncovered(paper)
+    for passage in paper.passages:
+        name = f"lines {passage.lines[0]}-{passage.lines[1]}"
+        if passage.text:
+            for number, line in zip(_span(passage), passage.text.strip("\n").split("\n"), strict=False):
+                if paper.hashes.get(str(number), digest("")) != digest(line):
+                    yield name, f"line {number} is not the source's"
+            if len(passage.text.strip("\n").split("\n")) != len(_span(passage)):
+                yield name, "has not as many lines as it says"
+            if left := _left_over(passage):
+                yield name, f"neither judged nor set aside: {left}"
+        elif not passage.why:
+            yield name, "is neither judged nor set aside"
+        for entry in passage.entries():
+            yield from ((entry.id, problem) for problem in _unlike(entry, passage, paper.hashes))
+
+
+def _span(passage: Passage) -> range:
+    return range(passage.lines[0], passage.lines[1] + 1)
+
+
+def _uncovered(paper: Paper) -> Iterator[tuple[str, str]]:
+    numbers = sorted(number for passage in paper.passages for number in _span(passage))
+    lines = sorted(int(name) for name in paper.hashes if name.isdigit())
+    if twice := sorted({n for n in numbers if numbers.count(n) > 1}):
+        yield "paper", f"lines in two passages: {twice}"
+    if missing := sorted(set(lines) - set(numbers)):
+        yield "paper", f"lines in no passage: {missing}"
+
+
+def _left_over(passage: Passage) -> str:
+    """Formulas and long stretches of words that are in no record and not set aside."""
+    text = passage.text
+    for scan in sorted([e.scan for e in passage.record if e.scan] + [a.scan for a in passage.aside], key=len)[::-1]:
+        text = text.replace(scan, "\0")
+    if any(not entry.scan for entry in passage.record):
+        return ""
+    for rest in text.split("\0"):
+        words = plain(_TAGS.sub("", rest))
+        if len(words) > LONGEST_REST or re.search(r"[\d\\]", words):
+            return rest.strip()
+    return ""
+
+
+LONGEST_REST = 25
+"""Letters that may stand between records without a reason: "and", "where", "for"."""
+_TAGS = re.compile(r"\(\d\.\d+\)(_\d)?|\[cd\.\]")
+
+
+def _unlike(entry: Entry, passage: Passage, hashes: Mapping[str, str]) -> Iterator[str]:
+    if entry.scan not in passage.text:
+        yield "its scan is not in the text of its passage"
+    if entry.translated:
+        if hashes.get(entry.id) != digest(entry.printed):
+            yield "is not the translation that was checked"
+        return
+    text = plain(entry.scan)
+    for before, after, _ in entry.edits:
+        if plain(before) not in text:
+            yield f"nothing to edit: {before}"
+        text = text.replace(plain(before), plain(after))
+    said = plain(",".join((entry.printed, *entry.ranges)))
+    if text != said:
+        yield f"is not what its edits make of the scan: {text} there, {said} printed"
+
+
+def plain(text: str) -> str:
+    """A formula without what only lays it out: spaces, alignment, sizes of brackets, "dla" (for) for a comma."""
+    for pattern, instead in _LAYOUT:
+        text = pattern.sub(instead, text)
+    return text.strip(",.;")
+
+
+_LAYOUT: Sequence[tuple[re.Pattern[str], str]] = tuple(
+    (re.compile(pattern), instead)
+    for pattern, instead in (
+        (r"\\begin\{aligned\}|\\end\{aligned\}|\\left\.|\\right\.|\$|&|\\\\|\\quad|\\times", " "),
+        (r"\\left(?=[\W_])|\\right(?=[\W_])", " "),
+        (r"\\text\{([^}]*)\}", r"\1"),
+        (r"(^|\s)dla(\s|$)", " , "),
+        (r"\s+", ""),
+        (r",+", ","),
+    )
+)

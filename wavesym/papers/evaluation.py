@@ -1,0 +1,279 @@
+"""What a formula is worth at a place: trees evaluated in a scope, which says what their letters mean there.
+
+A scope is the whole meaning of a formula: an adapter writes one, and there is no other way to state a reading.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+from flint import fmpq
+
+from wavesym.papers.exponentials import exponential
+from wavesym.papers.tree import (
+    Addition,
+    AtValue,
+    Blank,
+    Call,
+    Cases,
+    Derivative,
+    Fraction,
+    Group,
+    Interval,
+    Listed,
+    Minus,
+    Number,
+    Power,
+    Product,
+    Progression,
+    Relation,
+    Series,
+    Symbol,
+    Tree,
+    latex,
+)
+
+MOST_TERMS = 1000
+"""A sum with more terms than any formula has: its limits are wrong."""
+
+
+class MeaninglessError(Exception):
+    """A symbol, an index or a limit means nothing at a place: the reason, in a few words."""
+
+
+class Scope:
+    """What letters mean; `bound` are the plain ones by name: indices, sizes, variables of sums.
+
+    Subclasses give `symbol`, `call` and `derivative`. Values are what Python's operators can combine: integers, fmpq,
+    `Exponentials`.
+    """
+
+    heaviside_at_0 = 1
+    """H(0), which the paper does not give."""
+
+    def __init__(self, bound: Mapping[str, Any] | None = None) -> None:
+        self.bound: dict[str, Any] = dict(bound or {})
+
+    # what an adapter says
+
+    def symbol(self, symbol: Symbol) -> Any:
+        """The value of a letter that is not in `bound`, or has marks."""
+        raise MeaninglessError(f"{latex(symbol)} is not defined")
+
+    def call(self, call: Call) -> Any:
+        """The value of a function other than H and E."""
+        raise MeaninglessError(f"{latex(call.function)} is not defined")
+
+    def derivative(self, derivative: Derivative) -> Any:
+        """The value of a partial derivative."""
+        raise MeaninglessError(f"{latex(derivative)} is not defined")
+
+    def at_value(self, tree: AtValue) -> Any:
+        """What something is where a variable has a value."""
+        (name,), (side,) = _equation(tree.where)
+        with self.binding({name: self.value(side)}):
+            return self.value(tree.of)
+
+    # what all formulas share
+
+    def value(self, tree: Tree) -> Any:
+        """The value of a tree; MeaninglessError."""
+        return _RULES[type(tree)](self, tree)
+
+    def whole(self, tree: Tree) -> int:
+        """The value of an index or a limit."""
+        value = self.value(tree)
+        if isinstance(value, int):
+            return value
+        if isinstance(value, fmpq) and value.denom() == 1:
+            return int(value.numer())
+        raise MeaninglessError(f"{latex(tree)} = {value} is no whole number")
+
+    def indices(self, symbol: Symbol) -> tuple[int, ...]:
+        """The lower indices."""
+        return tuple(self.whole(index) for index in symbol.below)
+
+    def upper(self, symbol: Symbol) -> tuple[int, ...]:
+        """The upper indices."""
+        return tuple(self.whole(index) for index in symbol.above)
+
+    @contextmanager
+    def binding(self, names: Mapping[str, Any]) -> Iterator[None]:
+        """The same scope with other values of plain letters."""
+        before = self.bound
+        self.bound = {**before, **names}
+        try:
+            yield
+        finally:
+            self.bound = before
+
+    def _symbol(self, symbol: Symbol) -> Any:
+        if not (symbol.below or symbol.above or symbol.primes or symbol.accent) and symbol.name in self.bound:
+            return self.bound[symbol.name]
+        return self.symbol(symbol)
+
+    def _call(self, call: Call) -> Any:
+        function = call.function
+        if function in (Symbol("H"), Symbol("E")) and len(call.arguments) == 1:
+            value = self.value(call.arguments[0])
+            return self.step(value) if function.name == "H" else fmpq(value).floor()
+        return self.call(call)
+
+    def step(self, value: Any) -> Any:
+        """H."""
+        return self.heaviside_at_0 if value == 0 else int(value > 0)
+
+    def _series(self, series: Series) -> Any:
+        first, last = self.whole(series.first), self.whole(series.last)
+        if last - first > MOST_TERMS:
+            raise MeaninglessError(f"a sum from {first} to {last}")
+        total: Any = 0
+        for number in range(first, last + 1):
+            with self.binding({series.variable.name: number}):
+                total = total + self.value(series.body)
+        return total
+
+    def _power(self, power: Power) -> Any:
+        exponent = self.value(power.exponent)
+        if power.base == Symbol("e"):
+            return exponential(exponent)
+        base = self.value(power.base)
+        whole = self.whole(power.exponent)
+        if whole < 0 and base == 0:
+            raise MeaninglessError(f"{latex(power)} divides by 0")
+        return fmpq(base) ** whole if not isinstance(base, int) or whole < 0 else base**whole
+
+    def _fraction(self, fraction: Fraction) -> Any:
+        over, under = self.value(fraction.over), self.value(fraction.under)
+        if under == 0:
+            raise MeaninglessError(f"{latex(fraction)} divides by 0")
+        return fmpq(over) / under if isinstance(over, int) else over / under
+
+    def _product(self, product: Product) -> Any:
+        """A factor 0 in front (H, mostly) leaves the rest unread: what it switches off need not exist."""
+        total: Any = 1
+        for factor in sorted(product.factors, key=_switches):
+            total = total * self.value(factor)
+            if isinstance(total, int) and total == 0:
+                return 0
+        return total
+
+    def _cases(self, cases: Cases) -> Any:
+        found = [value for value, where in cases.branches if holds(where, self)]
+        if len(found) != 1:
+            raise MeaninglessError(f"{'no' if not found else 'more than one'} case for {self.bound}")
+        return self.value(found[0])
+
+    def _nothing(self, tree: Tree) -> Any:
+        raise MeaninglessError(f"{latex(tree)} is no value")
+
+
+def sides(tree: Tree) -> tuple[Tree, ...]:
+    """The two sides of an equation; UnreadableError where it is none."""
+    if not isinstance(tree, Relation) or set(tree.signs) != {"="}:
+        raise MeaninglessError(f"{latex(tree)} is no equation")
+    return tree.sides
+
+
+def items(tree: Tree) -> tuple[Tree, ...]:
+    """The formulas of a list; one alone is a list of one."""
+    return tree.items if isinstance(tree, Listed) else (tree,)
+
+
+def ungrouped(tree: Tree) -> Tree:
+    """What stands within brackets."""
+    return ungrouped(tree.inner) if isinstance(tree, Group) else tree
+
+
+_COMPARED: dict[str, Callable[[Any, Any], bool]] = {
+    "=": lambda a, b: bool(a == b),
+    "<": lambda a, b: bool(a < b),
+    ">": lambda a, b: bool(a > b),
+    r"\leq": lambda a, b: bool(a <= b),
+    r"\le": lambda a, b: bool(a <= b),
+    r"\geq": lambda a, b: bool(a >= b),
+    r"\ge": lambda a, b: bool(a >= b),
+}
+
+
+def holds(where: Tree, scope: Scope) -> bool:
+    """Whether a range holds at a place."""
+    match where:
+        case Relation(sides, signs):
+            values = [scope.value(side) for side in sides]
+            return all(_COMPARED[sign](a, b) for sign, a, b in zip(signs, values, values[1:], strict=False))
+        case Progression(variable):
+            return scope.value(variable) in span(where, scope)
+        case Interval(variable, (opening, closing), low, high):
+            value, first, last = scope.value(variable), scope.value(low), scope.value(high)
+            after = first <= value if opening == r"\langle" else first < value
+            return bool(after and (value <= last if closing == r"\rangle" else value < last))
+    raise MeaninglessError(f"{latex(where)} is no range")
+
+
+def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
+    """The values of a range in its order; one that does not end has those up to `most`, its first ones at least.
+
+    The step is that of the values shown. Where the last value comes before the first, there are none, unless all
+    values are shown.
+    """
+    if not isinstance(progression, Progression):
+        raise MeaninglessError(f"{latex(progression)} is no range of values")
+    shown = [scope.whole(value) for value in progression.shown]
+    if not progression.dots:
+        return tuple(shown)
+    if len(shown) < 2:
+        step = 1
+    else:
+        steps = {b - a for a, b in itertools.pairwise(shown)}
+        if len(steps) != 1 or 0 in steps:
+            raise MeaninglessError(f"{latex(progression)} has no one step")
+        (step,) = steps
+    last = most if progression.last is None else scope.whole(progression.last)
+    if (last - shown[0]) % step:
+        raise MeaninglessError(f"{latex(progression)}: {last} is not reached from {shown[0]} in steps of {step}")
+    return tuple(range(shown[0], last + (1 if step > 0 else -1), step))
+
+
+def _switches(factor: Tree) -> bool:
+    """Not H; for sorting, H first."""
+    return not (isinstance(factor, Call) and factor.function.name == "H")
+
+
+def _equation(where: Tree) -> tuple[tuple[str, ...], tuple[Tree, ...]]:
+    variable, value = sides(where)
+    if not isinstance(variable, Symbol):
+        raise MeaninglessError(f"{latex(where)} gives no value")
+    return (variable.name,), (value,)
+
+
+def _number(scope: Scope, tree: Number) -> Any:
+    if "." not in tree.digits:
+        return int(tree.digits)
+    before, after = tree.digits.split(".")
+    return fmpq(int(before + after), 10 ** len(after))
+
+
+_RULES: dict[type, Callable[[Any, Any], Any]] = {
+    Number: _number,
+    Symbol: Scope._symbol,
+    Blank: Scope._nothing,
+    Minus: lambda scope, tree: -scope.value(tree.of),
+    Addition: lambda scope, tree: sum((scope.value(term) for term in tree.terms[1:]), scope.value(tree.terms[0])),
+    Product: Scope._product,
+    Fraction: Scope._fraction,
+    Power: Scope._power,
+    Group: lambda scope, tree: scope.value(tree.inner),
+    Call: Scope._call,
+    Series: Scope._series,
+    Derivative: lambda scope, tree: scope.derivative(tree),
+    AtValue: lambda scope, tree: scope.at_value(tree),
+    Cases: Scope._cases,
+    Relation: Scope._nothing,
+    Listed: Scope._nothing,
+    Progression: Scope._nothing,
+    Interval: Scope._nothing,
+}

@@ -1,0 +1,31 @@
+"""The paper's data and its adapters: every record judged, in the order of print."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+
+from wavesym.papers.entries import Entry, Paper, problems, read_paper
+from wavesym.papers.record import Adapter, Record, judge
+
+_DATA = Path(__file__).with_name("data")
+ADAPTERS: Mapping[str, Adapter] = {}
+
+
+@cache
+def paper() -> Paper:
+    """The data."""
+    return read_paper(sorted(_DATA.glob("*.toml")), _DATA / "hashes.txt")
+
+
+def records(
+    wanted: Sequence[Entry] | None = None, watch: Callable[[Sequence[Entry]], Iterable[Entry]] = iter
+) -> tuple[Record, ...]:
+    """The verdict on the `wanted` records, or all; `watch` goes through them as they are judged."""
+    unlike = defaultdict(list)
+    for id, problem in problems(paper()):
+        unlike[id].append(problem)
+    entries = paper().entries() if wanted is None else wanted
+    return tuple(judge(entry, ADAPTERS[entry.kind](entry), unlike[entry.id]) for entry in watch(entries))

@@ -1,0 +1,157 @@
+"""What formulas of this paper are compared with: named functions of the derived laws on a chain, nothing read off them.
+
+The exact tables (exact_tables.py) are the derived laws run; a `Driven` chain is their response to loads with several
+steps, at rational instants, in numbers that are equal only if they are the same (exponentials.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+from flint import fmpq
+
+from wavesym.exact.increments import Increment, integrated
+from wavesym.exact.table import Function
+from wavesym.model.node import System
+from wavesym.papers.evaluation import MeaninglessError
+from wavesym.papers.exact_tables import Exact, collision, drive, uneven_building
+from wavesym.papers.exponentials import Exponentials
+from wavesym.systems.building import BUILDING_FORCE
+from wavesym.systems.collision import COLLISION
+from wavesym.systems.drive import DRIVE
+
+
+@dataclass(frozen=True)
+class Example:
+    """An example: its name, its derivation, its tables, and the m that they are tried with."""
+
+    name: str
+    system: System
+    tables: Callable[[int], Exact]
+    sizes: range
+
+
+EXAMPLES: Mapping[str, Example] = {
+    "I": Example("I", COLLISION, collision, range(4, 11, 2)),
+    "II": Example("II", DRIVE, drive, range(1, 6)),
+    "III": Example("III", BUILDING_FORCE, uneven_building, range(2, 7)),
+}
+
+
+@dataclass(frozen=True)
+class Step:
+    """A piece of a load: when it begins, and how much of its unit it is."""
+
+    time: fmpq
+    weight: fmpq
+
+
+Loads = Mapping[str, Sequence[Step]]
+"""The pieces of every source of a chain, number k of each from 0 on."""
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A chain under loads: the motion that the derived laws give it."""
+
+    exact: Exact
+    loads: Loads
+
+    @cached_property
+    def _known(self) -> dict[tuple[str, int, fmpq, int], Exponentials]:
+        return {}
+
+    def wave(self, letter: str, rod: int, z: fmpq, order: int = 1) -> Exponentials:
+        """f or g of a rod at z, just after any jump there: itself (order 0), its derivative (1), the next (2).
+
+        MeaninglessError where there is no such rod, or z is beyond the tables.
+        """
+        key = letter, rod, fmpq(z), order
+        if key not in self._known:
+            self._known[key] = self._computed(*key)
+        return self._known[key]
+
+    def _computed(self, letter: str, rod: int, z: fmpq, order: int) -> Exponentials:
+        if not 1 <= rod <= self.exact.m:
+            raise MeaninglessError(f"there is no rod {rod}")
+        parts: dict[fmpq, fmpq] = {}
+        step = self.exact.interval
+        for source, pieces in self.loads.items():
+            increments = self.exact.responses[source][Function(letter, rod)]
+            for piece in pieces:
+                since = z - piece.time
+                if since >= step * len(increments):
+                    raise MeaninglessError(f"z = {z} is beyond the tables")
+                for number in range(int(since / step) + 1 if since >= 0 else 0):
+                    w = since - step * number
+                    for rate, powers in _ordered(source, self.exact, letter, rod, number, order).items():
+                        value = fmpq(0)
+                        for power in reversed(powers):
+                            value = value * w + power
+                        if value != 0:
+                            parts[-rate * w] = parts.get(-rate * w, fmpq(0)) + piece.weight * value
+        return Exponentials(parts)
+
+    def load(self, source: str, z: fmpq, power: int = 0) -> fmpq:
+        """The sum of the source's pieces that have begun, each times the time since then to a power."""
+        return sum((p.weight * (z - p.time) ** power for p in self.loads.get(source, ()) if z >= p.time), fmpq(0))
+
+
+def _ordered(source: str, exact: Exact, letter: str, rod: int, number: int, order: int) -> Increment:
+    return _derived(exact.responses[source][Function(letter, rod)], number, order)
+
+
+def _derived(increments: list[Increment], number: int, order: int) -> Increment:
+    increment = increments[number]
+    if order == 1:
+        return increment
+    if order == 0:
+        return integrated(increment)
+    return {
+        rate: [
+            (k + 1) * above - rate * this
+            for k, (this, above) in enumerate(zip(powers, [*powers[1:], fmpq(0)], strict=True))
+        ]
+        for rate, powers in increment.items()
+    }
+
+
+@cache
+def driven(example: str, m: int) -> Driven:
+    """An example under loads in which nothing coincides: every source has pieces of its own, at times of its own."""
+    exact = EXAMPLES[example].tables(m)
+    return Driven(exact, loads(exact))
+
+
+def loads(exact: Exact) -> Loads:
+    """Pieces for every source of a chain: number s has 1 + s mod 3 of them; an impact is one, at 0."""
+    if exact.chain.system is COLLISION:
+        return {source: (Step(fmpq(0), fmpq(1)),) for source in exact.responses}
+    if exact.chain.system is DRIVE:
+        return {
+            f"M{s}": tuple(Step(fmpq(k * (s + 2), 3), fmpq(2 * s + 1, k + 2) * (-1) ** k) for k in range(1 + s % 3))
+            for s in range(1, exact.m + 2)
+        }
+    times = (fmpq(0), fmpq(3, 4), fmpq(7, 3))
+    a, b = (fmpq(1), fmpq(-2, 3), fmpq(5, 7)), (fmpq(1, 3), fmpq(-3, 5), fmpq(2, 9))
+    return {
+        "a": tuple(map(Step, times, a)),
+        "b": tuple(map(Step, times, b)),
+    }
+
+
+def instants(until: fmpq | int, start: fmpq | int = 0) -> tuple[fmpq, ...]:
+    """Rational instants at which formulas are compared: starts of intervals, and between, none a multiple of another."""
+    found = []
+    z = fmpq(start)
+    while z < until:
+        found += [z, z + fmpq(2, 7), z + fmpq(5, 6)]
+        z += 1
+    return tuple(t for t in found if t < until)
+
+
+def positions(exact: Exact) -> Sequence[fmpq]:
+    """Places inside every rod."""
+    return [fmpq(i) - fmpq(p, q) for i in range(1, exact.m + 1) for p, q in ((1, 2), (1, 7))]
