@@ -61,6 +61,14 @@ class Entry(_Data):
     lines: tuple[int, int] = (0, 0)
     translated: bool = False
 
+    @property
+    def settled(self) -> tuple[str, tuple[str, ...]]:
+        """What is right, as printed or as corrected: the formula, and its ranges."""
+        if self.slip is None:
+            return self.printed, (*self.ranges, *self.inferred)
+        ranges = self.ranges if self.slip.ranges is None else self.slip.ranges
+        return self.slip.corrected, (*ranges, *self.inferred)
+
 
 class Aside(_Data):
     """A part of a passage that is not judged: a definition, an announcement, a reference."""
