@@ -215,8 +215,8 @@ def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
     found += unturned
     difference = None
     if test.difference and not settled.wrong:
-        difference = test.difference(test.read(entry.printed, (*entry.ranges, *entry.inferred)))
-        left = test.difference(test.read(text, ranges))
+        difference = _less_derived(test, entry.printed, (*entry.ranges, *entry.inferred))
+        left = _less_derived(test, text, ranges)
         if left != "0":
             found.append(f"printed less derived is {left} where it is said to hold")
     if test.observed:
@@ -227,6 +227,14 @@ def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
     return Record(
         entry, test.against, verdict, tuple(evidence), settled.telling, turned, printed.wrong, difference, tuple(found)
     )
+
+
+def _less_derived(test: Test, text: str, ranges: Iterable[str]) -> str | None:
+    """Printed less derived, where what is printed can be read."""
+    try:
+        return test.difference(test.read(text, ranges)) if test.difference else None
+    except (MeaninglessError, UnreadableError):
+        return None
 
 
 def _faulty(entry: Entry, test: Test, text: str, ranges: Iterable[str]) -> tuple[Mutations, tuple[str, ...]]:
