@@ -6,10 +6,15 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from wavesym.papers.entries import Entry, problems
+from wavesym.papers.pielorz1979 import conditions, delays, systems
 from wavesym.papers.pielorz1979.transcript import paper
 from wavesym.papers.record import Adapter, Record, judge
 
-ADAPTERS: Mapping[str, Adapter] = {}
+ADAPTERS: Mapping[str, Adapter] = {
+    "condition": conditions.test,
+    "delay": delays.test,
+    "systems": systems.test,
+}
 
 
 def records(
