@@ -6,7 +6,7 @@ A scope is the whole meaning of a formula: an adapter writes one, and there is n
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -212,6 +212,11 @@ def holds(where: Tree, scope: Scope) -> bool:
             after = first <= value if opening == r"\langle" else first < value
             return bool(after and (value <= last if closing == r"\rangle" else value < last))
     raise MeaninglessError(f"{latex(where)} is no range")
+
+
+def given(ranges: Iterable[Tree]) -> dict[Tree, Tree]:
+    """The constants that ranges say the value of, such as "v_0 = c_f U_0 / l"."""
+    return {r.variable: r.shown[0] for r in ranges if isinstance(r, Progression) and len(r.shown) == 1 and not r.dots}
 
 
 def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
