@@ -218,7 +218,9 @@ def _number(letter: Tree, name: str, accent: str, scope: Scope) -> int:
 def _loaded(reading: Reading) -> Iterator[tuple[dict[str, object], Material, Physical, int]]:
     """Every body of some drives, where the range has it."""
     constants = given(reading.ranges)
-    (numbers,) = (r for r in reading.ranges if isinstance(r, Progression) and r.variable not in constants)
+    numbers = next((r for r in reading.ranges if isinstance(r, Progression) and r.variable == Symbol("i")), None)
+    if numbers is None:
+        raise MeaninglessError("no range of i")
     for m in SIZES["II"]:
         physical = Physical("II", m)
         scope = Material(physical, constants)

@@ -10,12 +10,15 @@ from flint import fmpq, fmpq_poly
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
 from wavesym.papers.pielorz1979.truth import Step
+from wavesym.papers.reader import read_range
 from wavesym.papers.record import Case, Reading, Test, case
-from wavesym.papers.tree import Call, Number, Progression, Symbol, latex
+from wavesym.papers.tree import Call, Number, Symbol, Tree, latex
 from wavesym.scene import Scene
 
 Pieces = Mapping[str, tuple[Step, ...]]
 """The pieces of every source of a scene, by its name."""
+RODS = read_range(r"i = 1, 2, \dots, m")
+"""What the rows of Table 1 are of, where nothing else is said."""
 
 
 def drive(m: int) -> Scene:
@@ -147,11 +150,11 @@ def bodies(entry: Entry) -> Test:
     example = entry.about["example"]
 
     def cases(reading: Reading) -> Iterator[Case]:
-        (named,) = (r for r in reading.ranges if isinstance(r, Progression))
+        named = reading.ranges[0] if reading.ranges else RODS
         for m in {"I": (4, 6), "II": (1, 2, 3), "III": (2, 3)}[example]:
             yield from _named(reading, named, m)
 
-    def _named(reading: Reading, named: Progression, m: int) -> Iterator[Case]:
+    def _named(reading: Reading, named: Tree, m: int) -> Iterator[Case]:
         scope = _Loaded(SCENES[example](m))
         nodes = scope.scene.system.chain.nodes
         rigid = {x: node.loads for x, node in enumerate(nodes) if node.inertia}

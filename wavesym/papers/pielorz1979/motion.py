@@ -161,7 +161,9 @@ def _scopes(constants: Mapping[Tree, Tree] | None = None) -> Iterator[tuple[dict
 
 def _rods(reading: Reading, scope: Moving, at: Mapping[str, object]) -> tuple[Case, Sequence[int]]:
     """Whether every rod is named once, and those that are."""
-    (named,) = (r for r in reading.ranges if isinstance(r, Progression) and r.variable == Symbol("i"))
+    named = next((r for r in reading.ranges if isinstance(r, Progression) and r.variable == Symbol("i")), None)
+    if named is None:
+        raise MeaninglessError("no range of i")
     rods = span(named, scope)
     return Case({**at, "rods": latex(named)}, rods, tuple(range(1, scope.motion.exact.m + 1)), telling=False), rods
 
