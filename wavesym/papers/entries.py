@@ -186,7 +186,10 @@ def _unlike(entry: Entry, passage: Passage, hashes: Mapping[str, str]) -> Iterat
 
 
 def plain(text: str) -> str:
-    """A formula without what only lays it out: spaces, alignment, braces of cases, sizes of brackets, "dla" (for) for a comma."""
+    """A formula without what only lays it out: spaces, alignment, braces of cases, sizes of brackets.
+
+    "dla" (for), and what stands for it in cases, is a comma.
+    """
     for pattern, instead in _LAYOUT:
         text = pattern.sub(instead, text)
     return text.strip(",.;")

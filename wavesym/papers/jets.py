@@ -33,14 +33,15 @@ class Jet:
         return self + -Jet.of(other)
 
     def __rsub__(self, other: Any) -> Jet:
-        return -self + other
+        return Jet.of(other) + -self
 
     def __mul__(self, other: Any) -> Jet:
-        that = Jet.of(other)
+        if not isinstance(other, Jet):
+            return Jet(self.value * other, self.first * other, self.second * other)
         return Jet(
-            self.value * that.value,
-            self.first * that.value + self.value * that.first,
-            self.second * that.value + 2 * (self.first * that.first) + self.value * that.second,
+            self.value * other.value,
+            self.first * other.value + self.value * other.first,
+            self.second * other.value + 2 * (self.first * other.first) + self.value * other.second,
         )
 
     __rmul__ = __mul__

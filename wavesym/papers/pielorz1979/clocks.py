@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
 from wavesym.model.chain import Chain
@@ -61,13 +62,18 @@ def cell(entry: Entry) -> Test:
                 scope.bound["i"] = rod
                 at = {"m": m, "i": rod}
                 time, ends = arrival(chain, rod)
-                yield case(at, lambda: scope.value(reading.formula), _TRUE[column](chain, rod))
+                value = partial(scope.value, reading.formula)
+                yield case(at, value, _TRUE[column](chain, rod))
                 if column == "tau_0":
-                    yield case({**at, "front": "time"}, lambda: scope.value(reading.formula), time)
+                    yield case({**at, "front": "time"}, value, time)
                 if column == "x_0":
-                    yield case({**at, "front": "end"}, lambda: scope.value(reading.formula) in ends, True)
+                    yield case({**at, "front": "end"}, partial(_among, value, ends), True)
 
     return Test(_AGAINST[column], cases)
+
+
+def _among(value: Callable[[], Any], ends: set[int]) -> bool:
+    return value() in ends
 
 
 _TRUE: Mapping[str, Callable[[Chain, int], Any]] = {

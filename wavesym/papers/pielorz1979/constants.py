@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from flint import fmpq
@@ -54,7 +55,9 @@ class Physical:
         q = _PLAIN[self.example]
         if self.example == "I":
             return q["E"] * q["F"]
-        return q["G"] * self.section(rod) if self.example == "II" else q["n"] * q["k'"] * q["G"] * q["A"]
+        if self.example == "II":
+            return q["G"] * self.section(rod)
+        return q["n"] * q["k'"] * q["G"] * q["A"]
 
     def density(self, rod: int) -> fmpq:
         """Inertia of a rod for a unit of length."""
@@ -126,8 +129,8 @@ def speed(entry: Entry) -> Test:
         scope = Material(physical)
         value, name = sides(reading.formula)
         for rod in range(1, physical.m + 1):
-            yield case({"i": rod}, lambda: scope.value(value), physical.speed_squared(rod))
-            yield case({"named": latex(name)}, lambda: scope.value(name), physical.speed_squared(rod), telling=False)
+            yield case({"i": rod}, partial(scope.value, value), physical.speed_squared(rod))
+            yield case({"named": latex(name)}, partial(scope.value, name), physical.speed_squared(rod), telling=False)
 
     return Test("stiffness of a rod over its inertia per length", cases)
 
@@ -140,7 +143,8 @@ def kappa(entry: Entry) -> Test:
         letter, value = sides(reading.formula)
         (numbers,) = reading.ranges
         for m in SIZES[example]:
-            for physical in (Physical(example, m), Physical(example, m, equal=True)):
+            for equal in (False, True) if example == "II" else (False,):
+                physical = Physical(example, m, equal)
                 yield from _chain_cases(physical, letter, value, numbers)
 
     return Test("the laws of bodies in physical units: stiffness, inertia, length; their derived rates", cases)
@@ -159,7 +163,7 @@ def _chain_cases(physical: Physical, letter: Tree, value: Tree, numbers: Tree) -
     if tuple(found) != wanted:
         return
     inertia = {body: physical.inertia(body) for body in range(1, m + 2)}
-    printed = Chain(system, m, Parameters(found, inertia, {i: 0 for i in range(1, m, 2)}))
+    printed = Chain(system, m, Parameters(found, inertia, dict.fromkeys(range(1, m, 2), 0)))
     for x, node in enumerate(printed.nodes):
         true = physical.node(x)
         if node.inertia:
@@ -181,7 +185,7 @@ def moment_factor(entry: Entry) -> Test:
         for at, scope, physical, body in _loaded(reading):
             yield Case({**at, "of": latex(letter)}, _number(letter, "A", r"\bar", scope), body, telling=False)
             unit = scope.value(Symbol("S", below=(Number("0"),)))
-            yield case(at, lambda: scope.value(value), physical.acceleration(body, unit))
+            yield case(at, partial(scope.value, value), physical.acceleration(body, unit))
 
     return Test("the acceleration that the unit of moment gives a body", cases)
 
@@ -202,7 +206,7 @@ def load(entry: Entry) -> Test:
             _, unit = chain.loaded[f"M{body}"]
             scope.bound["t"] = t = fmpq(5, 4)
             acceleration = physical.acceleration(body, moment(body, t))
-            yield case({**at, "t": t}, lambda: scope.value(value), acceleration / abs(unit.coefficients[0]))
+            yield case({**at, "t": t}, partial(scope.value, value), acceleration / abs(unit.coefficients[0]))
 
     return Test("the acceleration that a moment gives a disc, in that of the unit load of a drive", cases)
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
 from flint import fmpq, fmpq_poly
 
+from wavesym.papers import exact_tables as tables
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
+from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.truth import Step
 from wavesym.papers.reader import read_range
-from wavesym.papers.record import Case, Reading, Test, case
+from wavesym.papers.record import Case, Example, Reading, Test, case
 from wavesym.papers.tree import Call, Number, Symbol, Tree, latex
 from wavesym.scene import Scene
 
@@ -81,7 +84,8 @@ class _Loaded(Scope):
             case Symbol("t", "", 0, (body, k)):
                 return self._piece(f"M{self.whole(body)}", self.whole(k)).time
             case Symbol("m", "", 0, (body,)):
-                return len(self._of("a" if self._on_base else f"M{self.whole(body)}")) - 1
+                number = self.whole(body)
+                return len(self._of("a" if self._on_base and number == 1 else f"M{number}")) - 1
             case Symbol("a" | "b", "", 0, (k,)):
                 return self._piece(symbol.name, self.whole(k)).weight
             case Symbol("t", "", 0, (k,)):
@@ -141,21 +145,21 @@ def _sides(reading: Reading, scope: _Loaded, at: Mapping[str, object], sources: 
     for quarter in range(13):
         scope.bound["t"] = t = fmpq(quarter, 4)
         true = acting(scope.scene, sources, t)
-        yield case({**at, "t": t, "side": latex(left)}, lambda: scope.value(left), true, telling=False)
-        yield case({**at, "t": t}, lambda: scope.value(right), true)
+        yield case({**at, "t": t, "side": latex(left)}, partial(scope.value, left), true, telling=False)
+        yield case({**at, "t": t}, partial(scope.value, right), true)
 
 
 def bodies(entry: Entry) -> Test:
     """The loads S_i of Table 1, of the body at the left end of rod i: (4.4) counts bodies so."""
-    example = entry.about["example"]
+    name = entry.about["example"]
 
     def cases(reading: Reading) -> Iterator[Case]:
         named = reading.ranges[0] if reading.ranges else RODS
-        for m in {"I": (4, 6), "II": (1, 2, 3), "III": (2, 3)}[example]:
+        for m in {"I": (4, 6), "II": (1, 2, 3), "III": (2, 3)}[name]:
             yield from _named(reading, named, m)
 
     def _named(reading: Reading, named: Tree, m: int) -> Iterator[Case]:
-        scope = _Loaded(SCENES[example](m))
+        scope = _Loaded(SCENES[name](m))
         nodes = scope.scene.system.chain.nodes
         rigid = {x: node.loads for x, node in enumerate(nodes) if node.inertia}
         numbers = span(named, scope)
@@ -163,12 +167,23 @@ def bodies(entry: Entry) -> Test:
             scope.bound |= {"i": i, "t": fmpq(quarter, 4)}
             sources = tuple(load.source for load in rigid.get(i - 1, ()))
             true = acting(scope.scene, sources, scope.bound["t"]) if sources else fmpq(0)
-            yield case({"m": m, "i": i, "t": scope.bound["t"]}, lambda: scope.value(reading.formula), true)
+            yield case({"m": m, "i": i, "t": scope.bound["t"]}, partial(scope.value, reading.formula), true)
         loaded = {x + 1 for x, loads in rigid.items() if loads}
         true_numbers = tuple(sorted({*range(1, m + 1), *loaded}))
-        yield Case({"m": m, "rods and loaded bodies": latex(named)}, numbers, true_numbers)
+        yield Case({"m": m, "rods and loaded bodies": latex(named)}, numbers, true_numbers, example=_last_moment(m))
 
     return Test("the loads of the rigid bodies of a chain", cases)
+
+
+def _last_moment(m: int) -> Callable[[], Example]:
+    return example(
+        tables.drive(m),
+        {f"M{m + 1}": (Step(fmpq(0), fmpq(1)),)},
+        3,
+        {"velocity": [str(m)]},
+        "wavesym run SCENE --samples 7",
+        f"velocity@{m} is not 0: M_{m + 1} moves the drive, and no cell has it for i = 1, ..., {m}",
+    )
 
 
 def collision(m: int) -> Scene:

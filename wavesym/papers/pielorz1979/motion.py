@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -46,8 +47,9 @@ def displacement(motion: Driven, rod: int, x: Jet, tau: Jet) -> Jet:
     if tau.value < 0:
         raise MeaninglessError("the motion begins at t = 0")
     clock = motion.exact.chain.rod(rod)
-    f = wave(motion, "f", rod, tau - clock.tau0 - x + clock.x0)
-    return f + wave(motion, "g", rod, tau - clock.tau0 + x - clock.x0) + tau * clock.velocity
+    f = wave(motion, "f", rod, tau - x + (clock.x0 - clock.tau0))
+    g = wave(motion, "g", rod, tau + x - (clock.x0 + clock.tau0))
+    return f + g + tau * clock.velocity
 
 
 def wave(motion: Driven, letter: str, rod: int, z: Jet) -> Jet:
@@ -117,7 +119,7 @@ class Moving(Scope):
                 return self._displacement(self.whole(index), x / self.units.l, t)
             case Symbol("U", r"\bar", 0, (index,)), (x, tau):
                 return displacement(self.motion, self.whole(index), x, tau)
-            case (Symbol("F" | "G", r"\mathcal", 0, (_,)) | Symbol("f" | "g", "", 0, (_,))), (z,):
+            case ((Symbol("F" | "G", r"\mathcal", 0, (_,)) | Symbol("f" | "g", "", 0, (_,))), (z,)):
                 return self._wave(function, z)
         return super().call(call)
 
@@ -185,13 +187,14 @@ def _inside_cases(reading: Reading) -> Iterator[Case]:
             said = holds(where, scope)
             yield Case({**here, "within": latex(where)}, said, rod - 1 < x < rod, telling=False)
             if said and sixth % 6 in (1, 4):
-                for equation in items(reading.formula):
-                    left, right = sides(equation)
-                    yield case(
-                        {**here, "left less right side of": latex(equation)},
-                        lambda left=left, right=right: Jet.of(scope.value(left) - scope.value(right)).value,  # type: ignore[misc]
-                        0,
-                    )
+                for number, equation in enumerate(items(reading.formula), 1):
+                    value = f"left less right side, equation {number}"
+                    yield case({**here, "value": value}, partial(_difference, scope, equation), 0)
+
+
+def _difference(scope: Moving, equation: Tree) -> Any:
+    left, right = sides(equation)
+    return Jet.of(scope.value(left) - scope.value(right)).value
 
 
 def solution(entry: Entry) -> Test:
@@ -209,11 +212,8 @@ def _solution_cases(
         whole, rods = _rods(reading, scope, at)
         yield whole
         for tau, x in product(INSTANTS, range(scope.motion.exact.m + 1)):
-            yield case(
-                {**at, "t": scope.at(0, tau)["t"], "node": x, "left over": "velocities, forces"},
-                lambda x=x, tau=tau: _left_over(scope, formula, x, tau, rods),  # type: ignore[misc]
-                (0, 0),
-            )
+            here = {**at, "t": scope.at(0, tau)["t"], "node": x, "value": "step of velocity, force left over"}
+            yield case(here, partial(_left_over, scope, formula, x, tau, rods), (0, 0))
 
 
 def _left_over(scope: Moving, formula: Tree, x: int, tau: fmpq, rods: Sequence[int]) -> tuple[Any, Any]:
