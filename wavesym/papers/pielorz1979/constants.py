@@ -81,7 +81,7 @@ class Physical:
 
     def acceleration(self, body: int, load: fmpq) -> fmpq:
         """What a load alone gives a body, in units of U_0."""
-        return load / self.U_0 / self.node(body - 1).inertia
+        return fmpq(load / self.U_0 / self.node(body - 1).inertia)
 
 
 class Material(Scope):

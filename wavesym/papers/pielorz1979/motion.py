@@ -15,6 +15,7 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.model.chain import Chain
+from wavesym.model.node import Node
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, given, holds, items, sides, span
 from wavesym.papers.jets import Jet
@@ -49,12 +50,35 @@ def displacement(motion: Driven, rod: int, x: Jet, tau: Jet) -> Jet:
     clock = motion.exact.chain.rod(rod)
     f = wave(motion, "f", rod, tau - x + (clock.x0 - clock.tau0))
     g = wave(motion, "g", rod, tau + x - (clock.x0 + clock.tau0))
-    return f + g + tau * clock.velocity
+    moved: Jet = f + g + tau * clock.velocity
+    return moved
 
 
 def wave(motion: Driven, letter: str, rod: int, z: Jet) -> Jet:
     """f or g of a rod."""
     return z.of_function(lambda order: motion.wave(letter, rod, z.value, order))
+
+
+def force(node: Node, left: tuple[Jet, Jet] | None, right: tuple[Jet, Jet] | None) -> Any:
+    """What has to act on a node, where its rods move so: displacements there, along time and along place."""
+    moving, _ = left or right or (Jet(0), Jet(0))
+    total = node.inertia * moving.second + node.damping * moving.first
+    if left:
+        total = total + node.alpha / 2 * left[1].first
+    if right:
+        total = total - node.beta / 2 * right[1].first
+    return total
+
+
+def acting(motion: Driven, x: int, tau: fmpq) -> Any:
+    """What acts on the node at x, by the exact motion."""
+    place, time = Jet(fmpq(x), 1), Jet(tau, 1)
+
+    def end(rod: int) -> tuple[Jet, Jet]:
+        return displacement(motion, rod, Jet(place.value), time), displacement(motion, rod, place, Jet(tau))
+
+    m = motion.exact.m
+    return force(motion.exact.chain.nodes[x], end(x) if x > 0 else None, end(x + 1) if x < m else None)
 
 
 def body_velocity(chain: Chain, rod: int) -> fmpq:
@@ -227,17 +251,11 @@ def _left_over(scope: Moving, formula: Tree, x: int, tau: fmpq, rods: Sequence[i
         for rod in (x, x + 1)
         if rod in rods
     ]
-    left, right = (ends[0] if node.left else None), (ends[-1] if node.right else None)
-    moving, _ = ends[0]
-    force = node.inertia * moving.second + node.damping * moving.first
-    if left:
-        force = force + node.alpha / 2 * left[1].first
-    if right:
-        force = force - node.beta / 2 * right[1].first
+    left_over = force(node, ends[0] if node.left else None, ends[-1] if node.right else None)
     for load in node.loads:
         for power, coefficient in enumerate(load.coefficients):
-            force = force - coefficient * scope.motion.load(load.source, tau, power)
-    return ends[-1][0].first - moving.first, force
+            left_over = left_over - coefficient * scope.motion.load(load.source, tau, power)
+    return ends[-1][0].first - ends[0][0].first, left_over
 
 
 def _printed(scope: Moving, formula: Tree, rod: int, at: Mapping[str, Any]) -> Jet:
@@ -247,7 +265,8 @@ def _printed(scope: Moving, formula: Tree, rod: int, at: Mapping[str, Any]) -> J
         match left:
             case Call(Symbol("U", accent, 0, (index,)), (x, t)) if scope.whole(index) == rod:
                 if (latex(x), latex(t)) == ((r"\bar{x}", r"\tau") if accent else ("x", "t")):
-                    return Jet.of(scope.value(right)) / scope.unit(left.function)
+                    moved: Jet = Jet.of(scope.value(right)) / scope.unit(left.function)
+                    return moved
     raise MeaninglessError(f"{latex(left)} is not the displacement of rod {rod}")
 
 
