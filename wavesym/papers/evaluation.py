@@ -172,8 +172,8 @@ class Scope:
 
 
 def sides(tree: Tree) -> tuple[Tree, ...]:
-    """The two sides of an equation; UnreadableError where it is none."""
-    if not isinstance(tree, Relation) or set(tree.signs) != {"="}:
+    """The two sides of an equation; MeaninglessError where it is none."""
+    if not isinstance(tree, Relation) or tree.signs != ("=",):
         raise MeaninglessError(f"{latex(tree)} is no equation")
     return tree.sides
 
@@ -212,6 +212,14 @@ def holds(where: Tree, scope: Scope) -> bool:
             after = first <= value if opening == r"\langle" else first < value
             return bool(after and (value <= last if closing == r"\rangle" else value < last))
     raise MeaninglessError(f"{latex(where)} is no range")
+
+
+def range_of(name: str, ranges: Iterable[Tree]) -> Progression:
+    """The range of a variable; MeaninglessError where it has none."""
+    for r in ranges:
+        if isinstance(r, Progression) and r.variable == Symbol(name):
+            return r
+    raise MeaninglessError(f"{name} has no range")
 
 
 def given(ranges: Iterable[Tree]) -> dict[Tree, Tree]:

@@ -16,10 +16,10 @@ from flint import fmpq
 from wavesym.model.chain import Chain
 from wavesym.model.node import Node, Parameters
 from wavesym.papers.entries import Entry
-from wavesym.papers.evaluation import MeaninglessError, Scope, given, sides, span
+from wavesym.papers.evaluation import MeaninglessError, Scope, given, range_of, sides, span
 from wavesym.papers.pielorz1979.truth import EXAMPLES
 from wavesym.papers.record import Case, Reading, Test, case
-from wavesym.papers.tree import Call, Number, Progression, Symbol, Tree, latex
+from wavesym.papers.tree import Call, Number, Symbol, Tree, latex
 
 SIZES: Mapping[str, Sequence[int]] = {"I": (4, 6), "II": (1, 2, 3), "III": (2, 3, 4)}
 _SPEED = fmpq(3, 2)
@@ -141,7 +141,7 @@ def kappa(entry: Entry) -> Test:
 
     def cases(reading: Reading) -> Iterator[Case]:
         letter, value = sides(reading.formula)
-        (numbers,) = reading.ranges
+        numbers = range_of("i", reading.ranges)
         for m in SIZES[example]:
             for equal in (False, True) if example == "II" else (False,):
                 physical = Physical(example, m, equal)
@@ -160,8 +160,8 @@ def _chain_cases(physical: Physical, letter: Tree, value: Tree, numbers: Tree) -
         found[_number(letter, r"\kappa", "", scope)] = scope.value(value)
     wanted = tuple(system.indices(m)["kappa"])
     yield Case({**at, "kappa": latex(numbers)}, tuple(found), wanted, telling=False)
-    if tuple(found) != wanted:
-        return
+    if tuple(found) != wanted or any(number <= 0 for number in found.values()):
+        raise MeaninglessError("no system has these constants")
     inertia = {body: physical.inertia(body) for body in range(1, m + 2)}
     printed = Chain(system, m, Parameters(found, inertia, dict.fromkeys(range(1, m, 2), 0)))
     for x, node in enumerate(printed.nodes):
@@ -222,9 +222,7 @@ def _number(letter: Tree, name: str, accent: str, scope: Scope) -> int:
 def _loaded(reading: Reading) -> Iterator[tuple[dict[str, object], Material, Physical, int]]:
     """Every body of some drives, where the range has it."""
     constants = given(reading.ranges)
-    numbers = next((r for r in reading.ranges if isinstance(r, Progression) and r.variable == Symbol("i")), None)
-    if numbers is None:
-        raise MeaninglessError("no range of i")
+    numbers = range_of("i", reading.ranges)
     for m in SIZES["II"]:
         physical = Physical("II", m)
         scope = Material(physical, constants)

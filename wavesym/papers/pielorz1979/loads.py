@@ -9,8 +9,8 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.papers.entries import Entry
-from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
-from wavesym.papers.pielorz1979.motion import acting
+from wavesym.papers.evaluation import MeaninglessError, Scope, range_of, sides, span
+from wavesym.papers.pielorz1979.displacements import acting
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.truth import Driven, Step, driven
 from wavesym.papers.reader import read_range
@@ -74,7 +74,7 @@ def moments(entry: Entry) -> Test:
     """(3.1)."""
 
     def cases(reading: Reading) -> Iterator[Case]:
-        (bodies,) = reading.ranges
+        bodies = range_of("i", reading.ranges)
         for m in (1, 2, 3):
             scope = _Loaded(driven("II", m))
             named = span(bodies, scope)

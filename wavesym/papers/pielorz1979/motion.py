@@ -1,4 +1,4 @@
-"""(2.1), (2.2), (2.5), (4.1), (4.2) and the quantities without dimensions, on the motion of chains.
+"""(2.1), (2.2), (2.5), (4.1), (4.2), on the motion of chains in physical units and without dimensions.
 
 What is said of the motion inside the rods is evaluated on the exact motion. What is said to be the motion is put into
 the laws of the nodes.
@@ -15,14 +15,13 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.model.chain import Chain
-from wavesym.model.node import Node
 from wavesym.papers.entries import Entry
-from wavesym.papers.evaluation import MeaninglessError, Scope, given, holds, items, sides, span
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, range_of, sides, span
 from wavesym.papers.jets import Jet
+from wavesym.papers.pielorz1979.displacements import displacement, force, wave
 from wavesym.papers.pielorz1979.truth import Driven, driven
-from wavesym.papers.reader import read_formula
 from wavesym.papers.record import Case, Reading, Test, case
-from wavesym.papers.tree import Call, Derivative, Number, Progression, Symbol, Tree, latex
+from wavesym.papers.tree import Call, Derivative, Number, Relation, Symbol, Tree, latex
 
 INSTANTS = (fmpq(2, 3), fmpq(9, 5), fmpq(31, 9))
 
@@ -39,46 +38,6 @@ class Units:
 _SLOW, _FAST = Units(fmpq(2), fmpq(3), fmpq(5, 7)), Units(fmpq(5, 2), fmpq(1, 7), fmpq(3))
 CHAINS = (("II", 1, _SLOW), ("II", 2, _FAST), ("III", 2, _SLOW), ("III", 3, _FAST), ("I", 4, _SLOW), ("I", 6, _FAST))
 _ANY_V_0 = fmpq(7, 5)
-
-
-def displacement(motion: Driven, rod: int, x: Jet, tau: Jet) -> Jet:
-    """The exact motion of a rod, without dimensions; MeaninglessError outside the rod and before the start."""
-    if not rod - 1 <= x.value <= rod or not 1 <= rod <= motion.exact.m:
-        raise MeaninglessError(f"rod {rod} does not reach to {x.value} l")
-    if tau.value < 0:
-        raise MeaninglessError("the motion begins at t = 0")
-    clock = motion.exact.chain.rod(rod)
-    f = wave(motion, "f", rod, tau - x + (clock.x0 - clock.tau0))
-    g = wave(motion, "g", rod, tau + x - (clock.x0 + clock.tau0))
-    moved: Jet = f + g + tau * clock.velocity
-    return moved
-
-
-def wave(motion: Driven, letter: str, rod: int, z: Jet) -> Jet:
-    """f or g of a rod."""
-    return z.of_function(lambda order: motion.wave(letter, rod, z.value, order))
-
-
-def force(node: Node, left: tuple[Jet, Jet] | None, right: tuple[Jet, Jet] | None) -> Any:
-    """What has to act on a node, where its rods move so: displacements there, along time and along place."""
-    moving, _ = left or right or (Jet(0), Jet(0))
-    total = node.inertia * moving.second + node.damping * moving.first
-    if left:
-        total = total + node.alpha / 2 * left[1].first
-    if right:
-        total = total - node.beta / 2 * right[1].first
-    return total
-
-
-def acting(motion: Driven, x: int, tau: fmpq) -> Any:
-    """What acts on the node at x, by the exact motion."""
-    place, time = Jet(fmpq(x), 1), Jet(tau, 1)
-
-    def end(rod: int) -> tuple[Jet, Jet]:
-        return displacement(motion, rod, Jet(place.value), time), displacement(motion, rod, place, Jet(tau))
-
-    m = motion.exact.m
-    return force(motion.exact.chain.nodes[x], end(x) if x > 0 else None, end(x + 1) if x < m else None)
 
 
 def body_velocity(chain: Chain, rod: int) -> fmpq:
@@ -179,7 +138,8 @@ class Moving(Scope):
         return self.motion.exact.chain.rod(rod)
 
 
-def _scopes(constants: Mapping[Tree, Tree] | None = None) -> Iterator[tuple[dict[str, object], Moving]]:
+def scopes(constants: Mapping[Tree, Tree] | None = None) -> Iterator[tuple[dict[str, object], Moving]]:
+    """Chains under loads, the smallest first, with what to call them."""
     for example, m, units in CHAINS:
         at = {"example": example, "m": m, "c_f": units.c_f, "l": units.l}
         yield at, Moving(driven(example, m), units, constants)
@@ -187,9 +147,7 @@ def _scopes(constants: Mapping[Tree, Tree] | None = None) -> Iterator[tuple[dict
 
 def _rods(reading: Reading, scope: Moving, at: Mapping[str, object]) -> tuple[Case, Sequence[int]]:
     """Whether every rod is named once, and those that are."""
-    named = next((r for r in reading.ranges if isinstance(r, Progression) and r.variable == Symbol("i")), None)
-    if named is None:
-        raise MeaninglessError("no range of i")
+    named = range_of("i", reading.ranges)
     rods = span(named, scope)
     return Case({**at, "rods": latex(named)}, rods, tuple(range(1, scope.motion.exact.m + 1)), telling=False), rods
 
@@ -200,8 +158,10 @@ def inside(entry: Entry) -> Test:
 
 
 def _inside_cases(reading: Reading) -> Iterator[Case]:
-    (where,) = (r for r in reading.ranges if not isinstance(r, Progression))
-    for at, scope in _scopes():
+    where = next((r for r in reading.ranges if isinstance(r, Relation)), None)
+    if where is None:
+        raise MeaninglessError("x has no range")
+    for at, scope in scopes():
         whole, rods = _rods(reading, scope, at)
         yield whole
         for rod, sixth in product(rods, range(6 * scope.motion.exact.m + 1)):
@@ -223,18 +183,21 @@ def _difference(scope: Moving, equation: Tree) -> Any:
 
 def solution(entry: Entry) -> Test:
     """A displacement in f and g, (2.5) or (4.2)."""
-    return Test(_NODES, lambda reading: _solution_cases(reading, reading.formula, _scopes()))
+    return Test(NODES, lambda reading: solution_cases(reading, reading.formula, scopes()))
 
 
-_NODES = "continuity and the balance of forces at every node, as derived, on exact f and g; c_f and l are varied"
+NODES = "continuity and the balance of forces at every node, as derived, on exact f and g; c_f and l are varied"
 
 
-def _solution_cases(
-    reading: Reading, formula: Tree, scopes: Iterator[tuple[dict[str, object], Moving]]
+def solution_cases(
+    reading: Reading, formula: Tree, moving: Iterator[tuple[dict[str, object], Moving]]
 ) -> Iterator[Case]:
-    for at, scope in scopes:
+    """A displacement in the laws of all nodes; `reading` has the range of its rods."""
+    for at, scope in moving:
         whole, rods = _rods(reading, scope, at)
         yield whole
+        if not whole.agrees:
+            return
         for tau, x in product(INSTANTS, range(scope.motion.exact.m + 1)):
             here = {**at, "t": scope.at(0, tau)["t"], "node": x, "value": "step of velocity, force left over"}
             yield case(here, partial(_left_over, scope, formula, x, tau, rods), (0, 0))
@@ -249,7 +212,7 @@ def _left_over(scope: Moving, formula: Tree, x: int, tau: fmpq, rods: Sequence[i
             _printed(scope, formula, rod, scope.at(Jet(fmpq(x), 1), tau)),
         )
         for rod in (x, x + 1)
-        if rod in rods
+        if rod in rods  # the first and the last node have one
     ]
     left_over = force(node, ends[0] if node.left else None, ends[-1] if node.right else None)
     for load in node.loads:
@@ -268,61 +231,3 @@ def _printed(scope: Moving, formula: Tree, rod: int, at: Mapping[str, Any]) -> J
                     moved: Jet = Jet.of(scope.value(right)) / scope.unit(left.function)
                     return moved
     raise MeaninglessError(f"{latex(left)} is not the displacement of rod {rod}")
-
-
-def definition(entry: Entry) -> Test:
-    """A quantity without dimensions: put into (4.2), which no other of its name then has a place in."""
-
-    def cases(reading: Reading) -> Iterator[Case]:
-        letter, means = sides(reading.formula)
-        scopes = ((at, _Defining(scope, letter, means)) for at, scope in _scopes(given(reading.ranges)))
-        yield from _solution_cases(reading, _printed_formula("(4.2)"), scopes)
-
-    return Test(f"(4.2) with it: {_NODES}", cases)
-
-
-class _Defining(Moving):
-    """(4.2) where one letter is what its definition makes of the motion in physical units."""
-
-    def __init__(self, scope: Moving, letter: Tree, means: Tree) -> None:
-        super().__init__(scope.motion, scope.units, scope.constants)
-        if not isinstance(letter, Symbol):
-            raise MeaninglessError(f"{latex(letter)} is no letter to define")
-        self.letter, self.means = letter, means
-
-    def at(self, x: Any, tau: Any) -> Mapping[str, Any]:
-        known = super().at(x, tau)
-        return {name: known[name] for name in known if name != latex(self.letter)}
-
-    def symbol(self, symbol: Symbol) -> Any:
-        return self._meaning() if self._defined(symbol) else super().symbol(symbol)
-
-    def call(self, call: Call) -> Any:
-        if not self._defined(call.function):
-            return super().call(call)
-        (z,) = call.arguments
-        return self._meaning(z=self.value(z))
-
-    def unit(self, function: Symbol) -> Any:
-        if not self._defined(function):
-            return super().unit(function)
-        return self._meaning(U=self.units.U_0)
-
-    def _defined(self, symbol: Symbol) -> bool:
-        """Whether it is the letter; MeaninglessError where it is one of its name that stays undefined."""
-        if symbol.name == self.letter.name and len(symbol.below) == len(self.letter.below) and symbol != self.letter:
-            raise MeaninglessError(f"(4.2) has {latex(symbol)}, and {latex(self.letter)} is defined")
-        return symbol == self.letter
-
-    def _meaning(self, **more: Any) -> Any:
-        physical = Moving(self.motion, self.units, self.constants)
-        physical.bound = {**self.bound, **more}
-        return physical.value(self.means)
-
-
-def _printed_formula(id: str) -> Tree:
-    """What another record has as printed."""
-    from wavesym.papers.pielorz1979.paper import paper  # which has the adapters
-
-    (found,) = (entry for entry in paper().entries() if entry.id == id)
-    return read_formula(found.printed)

@@ -8,14 +8,14 @@ from functools import cache
 from pathlib import Path
 
 from wavesym.papers.entries import Entry, Paper, problems, read_paper
-from wavesym.papers.pielorz1979 import clocks, constants, loads, makeup, motion
+from wavesym.papers.pielorz1979 import clocks, constants, definitions, loads, makeup, motion
 from wavesym.papers.record import Adapter, Record, judge
 
 _DATA = Path(__file__).with_name("data")
 ADAPTERS: Mapping[str, Adapter] = {
     "inside": motion.inside,
     "solution": motion.solution,
-    "definition": motion.definition,
+    "definition": definitions.definition,
     "load without dimensions": constants.load,
     "moments": loads.moments,
     "base acceleration": loads.base,
