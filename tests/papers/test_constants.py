@@ -39,6 +39,7 @@ def test_a_wrong_string_is_a_verdict(id, changes):
 
 
 def test_equal_sections_give_twice_kappa():
-    equal, unequal = Physical("II", 3, equal=True), Physical("II", 3)
-    assert equal.node(1).rate == 2 * equal.node(1).beta / equal.node(1).inertia / 2
-    assert unequal.node(1).rate != unequal.node(1).beta / unequal.node(1).inertia
+    for equal in (True, False):
+        node = Physical("II", 3, equal).node(1)
+        kappa = node.beta / node.inertia / 2
+        assert (node.rate == 2 * kappa) is equal

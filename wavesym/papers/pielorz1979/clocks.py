@@ -9,9 +9,11 @@ from typing import Any
 from wavesym.model.chain import Chain
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, span
+from wavesym.papers.exact_tables import Exact
 from wavesym.papers.pielorz1979.motion import body_velocity
+from wavesym.papers.pielorz1979.scenes import example as scene
 from wavesym.papers.pielorz1979.truth import EXAMPLES
-from wavesym.papers.record import Case, Reading, Test, case
+from wavesym.papers.record import Case, Example, Reading, Test, case
 from wavesym.papers.tree import Cases, Symbol, latex
 
 _MOST_SIZES = 3
@@ -63,13 +65,21 @@ def cell(entry: Entry) -> Test:
                 at = {"m": m, "i": rod}
                 time, ends = arrival(chain, rod)
                 value = partial(scope.value, reading.formula)
-                yield case(at, value, _TRUE[column](chain, rod))
+                shown = partial(_seen, example.tables(m), rod) if column == "v" else None
+                yield case(at, value, _TRUE[column](chain, rod), example=shown)
                 if column == "tau_0":
                     yield case({**at, "front": "time"}, value, time)
                 if column == "x_0":
                     yield case({**at, "front": "end"}, partial(_among, value, ends), True)
 
     return Test(_AGAINST[column], cases)
+
+
+def _seen(exact: Exact, rod: int) -> Example:
+    """How a rod of a collision moves before anything reaches it."""
+    middle = f"{2 * rod - 1}/2"
+    look = f"velocity@{middle} at tau = 0 is how fast rod {rod} moves at first: as the body to which it is fixed"
+    return scene(exact, {}, 2, {"velocity": [middle]}, "wavesym run SCENE --samples 9", look)()
 
 
 def _among(value: Callable[[], Any], ends: set[int]) -> bool:

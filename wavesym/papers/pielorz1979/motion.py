@@ -6,7 +6,7 @@ the laws of the nodes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
@@ -19,8 +19,9 @@ from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, range_of, sides, span
 from wavesym.papers.jets import Jet
 from wavesym.papers.pielorz1979.displacements import displacement, force, wave
-from wavesym.papers.pielorz1979.truth import Driven, driven
-from wavesym.papers.record import Case, Reading, Test, case
+from wavesym.papers.pielorz1979.scenes import example
+from wavesym.papers.pielorz1979.truth import Driven, Step, driven
+from wavesym.papers.record import Case, Example, Reading, Test, case
 from wavesym.papers.tree import Call, Derivative, Number, Relation, Symbol, Tree, latex
 
 INSTANTS = (fmpq(2, 3), fmpq(9, 5), fmpq(31, 9))
@@ -140,9 +141,9 @@ class Moving(Scope):
 
 def scopes(constants: Mapping[Tree, Tree] | None = None) -> Iterator[tuple[dict[str, object], Moving]]:
     """Chains under loads, the smallest first, with what to call them."""
-    for example, m, units in CHAINS:
-        at = {"example": example, "m": m, "c_f": units.c_f, "l": units.l}
-        yield at, Moving(driven(example, m), units, constants)
+    for name, m, units in CHAINS:
+        at = {"example": name, "m": m, "c_f": units.c_f, "l": units.l}
+        yield at, Moving(driven(name, m), units, constants)
 
 
 def _rods(reading: Reading, scope: Moving, at: Mapping[str, object]) -> tuple[Case, Sequence[int]]:
@@ -173,7 +174,7 @@ def _inside_cases(reading: Reading) -> Iterator[Case]:
             if said and sixth % 6 in (1, 4):
                 for number, equation in enumerate(items(reading.formula), 1):
                     value = f"left less right side, equation {number}"
-                    yield case({**here, "value": value}, partial(_difference, scope, equation), 0)
+                    yield case({**here, "value": value}, partial(_difference, scope, equation), 0, example=_front)
 
 
 def _difference(scope: Moving, equation: Tree) -> Any:
@@ -181,16 +182,31 @@ def _difference(scope: Moving, equation: Tree) -> Any:
     return Jet.of(scope.value(left) - scope.value(right)).value
 
 
+def _front() -> Example:
+    look = "velocity@1 stays 0 until tau = 1: a front crosses a rod in t = l / c_f, its speed is c_f"
+    step = {"M1": (Step(fmpq(0), fmpq(1)),)}
+    return example(driven("II", 1).exact, step, 2, {"velocity": ["1"]}, "wavesym run SCENE --samples 9", look)()
+
+
 def solution(entry: Entry) -> Test:
     """A displacement in f and g, (2.5) or (4.2)."""
-    return Test(NODES, lambda reading: solution_cases(reading, reading.formula, scopes()))
+    return Test(NODES, lambda reading: solution_cases(reading, reading.formula, scopes(), _clocks))
+
+
+def _clocks() -> Example:
+    look = "velocity@3/2 changes from tau = 1/2 on, velocity@1/2 from tau = 3/2: every rod has a t_0 of its own"
+    places = {"velocity": ["1/2", "3/2"]}
+    return example(driven("I", 4).exact, {}, 2, places, "wavesym run SCENE --samples 9", look)()
 
 
 NODES = "continuity and the balance of forces at every node, as derived, on exact f and g; c_f and l are varied"
 
 
 def solution_cases(
-    reading: Reading, formula: Tree, moving: Iterator[tuple[dict[str, object], Moving]]
+    reading: Reading,
+    formula: Tree,
+    moving: Iterator[tuple[dict[str, object], Moving]],
+    shown: Callable[[], Example] | None = None,
 ) -> Iterator[Case]:
     """A displacement in the laws of all nodes; `reading` has the range of its rods."""
     for at, scope in moving:
@@ -200,7 +216,7 @@ def solution_cases(
             return
         for tau, x in product(INSTANTS, range(scope.motion.exact.m + 1)):
             here = {**at, "t": scope.at(0, tau)["t"], "node": x, "value": "step of velocity, force left over"}
-            yield case(here, partial(_left_over, scope, formula, x, tau, rods), (0, 0))
+            yield case(here, partial(_left_over, scope, formula, x, tau, rods), (0, 0), example=shown)
 
 
 def _left_over(scope: Moving, formula: Tree, x: int, tau: fmpq, rods: Sequence[int]) -> tuple[Any, Any]:
