@@ -47,6 +47,8 @@ class MeaninglessError(Exception):
 class Scope:
     """What letters mean; `bound` are the plain ones by name: indices, sizes, variables of sums.
 
+    `constants` are those that the ranges of a formula say the value of (`given`).
+
     Subclasses give `symbol`, `call` and `derivative`. Values are what Python's operators can combine: integers, fmpq,
     `Exponentials`.
     """
@@ -54,8 +56,9 @@ class Scope:
     heaviside_at_0 = 1
     """H(0), which the paper does not give."""
 
-    def __init__(self, bound: Mapping[str, Any] | None = None) -> None:
+    def __init__(self, bound: Mapping[str, Any] | None = None, constants: Mapping[Tree, Tree] | None = None) -> None:
         self.bound: dict[str, Any] = dict(bound or {})
+        self.constants: Mapping[Tree, Tree] = dict(constants or {})
 
     # what an adapter says
 
@@ -113,7 +116,15 @@ class Scope:
     def _symbol(self, symbol: Symbol) -> Any:
         if not (symbol.below or symbol.above or symbol.primes or symbol.accent) and symbol.name in self.bound:
             return self.bound[symbol.name]
-        return self.symbol(symbol)
+        return self._constant(symbol) if symbol in self.constants else self.symbol(symbol)
+
+    def _constant(self, symbol: Symbol) -> Any:
+        """Its value, in letters that are no constants themselves."""
+        constants, self.constants = self.constants, {}
+        try:
+            return self.value(constants[symbol])
+        finally:
+            self.constants = constants
 
     def _call(self, call: Call) -> Any:
         function = call.function

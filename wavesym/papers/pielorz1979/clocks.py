@@ -45,9 +45,10 @@ class _Clocks(Scope):
         match symbol:
             case Symbol("v", r"\bar", 0, (index,)):
                 body = self.whole(index)
-                if body not in self._chain.parameters.velocity:
-                    raise MeaninglessError(f"there is no body {body}")
-                return self._chain.parameters.velocity[body]
+                given = self._chain.parameters.velocity or {}
+                if body not in given:
+                    raise MeaninglessError(f"no velocity is given of a body {body}")
+                return given[body]
         return super().symbol(symbol)
 
 

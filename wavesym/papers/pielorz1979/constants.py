@@ -85,17 +85,15 @@ class Physical:
 
 
 class Material(Scope):
-    """The letters of a physical system. `constants` are those whose value the formula's ranges say."""
+    """The letters of a physical system."""
 
     def __init__(self, physical: Physical, constants: Mapping[Tree, Tree] | None = None) -> None:
         c = _SPEED
         plain = {**_PLAIN[physical.example], r"\rho": physical.rho, "l": physical.l, "m": physical.m, "a": c, "C": c}
-        super().__init__(plain)
-        self.physical, self.constants = physical, constants or {}
+        super().__init__(plain, constants)
+        self.physical = physical
 
     def symbol(self, symbol: Symbol) -> Any:
-        if symbol in self.constants:
-            return self.value(self.constants[symbol])
         match symbol:
             case Symbol("k", "", 1, ()) if "k'" in self.bound:
                 return self.bound["k'"]

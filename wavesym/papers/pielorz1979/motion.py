@@ -48,14 +48,11 @@ def body_velocity(chain: Chain, rod: int) -> fmpq:
 
 
 class Moving(Scope):
-    """The letters of section 2, and of section 4 with bars, on the motion of a chain.
-
-    `constants` are those whose value the formula's ranges say.
-    """
+    """The letters of section 2, and of section 4 with bars, on the motion of a chain."""
 
     def __init__(self, motion: Driven, units: Units, constants: Mapping[Tree, Tree] | None = None) -> None:
-        super().__init__({"m": motion.exact.m, "l": units.l})
-        self.motion, self.units, self.constants = motion, units, constants or {}
+        super().__init__({"m": motion.exact.m, "l": units.l}, constants)
+        self.motion, self.units = motion, units
 
     def at(self, x: Any, tau: Any) -> Mapping[str, Any]:
         """A place and an instant, in both units."""
@@ -64,8 +61,6 @@ class Moving(Scope):
 
     def symbol(self, symbol: Symbol) -> Any:
         units = self.units
-        if symbol in self.constants:
-            return self.value(self.constants[symbol])
         match symbol:
             case Symbol("x", r"\bar", 0, ()) if r"\bar{x}" in self.bound:
                 return self.bound[r"\bar{x}"]
@@ -174,7 +169,8 @@ def _inside_cases(reading: Reading) -> Iterator[Case]:
             if said and sixth % 6 in (1, 4):
                 for number, equation in enumerate(items(reading.formula), 1):
                     value = f"left less right side, equation {number}"
-                    yield case({**here, "value": value}, partial(_difference, scope, equation), 0, example=_front)
+                    difference = partial(_difference, scope, equation)
+                    yield case({**here, "value": value}, difference, 0, "U" in latex(equation), example=_front)
 
 
 def _difference(scope: Moving, equation: Tree) -> Any:
