@@ -101,8 +101,8 @@ def _sides(
 ) -> Iterator[Case]:
     """It is called what the left side says, and is the right one."""
     left, right = sides(reading.formula)
-    for third in range(10):
-        scope.bound["t"] = t = fmpq(third, 3)
+    for half in range(6):
+        scope.bound["t"] = t = fmpq(half, 2)
         yield case({**at, "t": t, "side": latex(left)}, partial(scope.value, left), true(t), telling=False)
         yield case({**at, "t": t}, partial(scope.value, right), true(t))
 
