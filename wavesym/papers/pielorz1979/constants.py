@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from math import prod
 from typing import Any
 
 from flint import fmpq
@@ -29,6 +30,8 @@ _PLAIN: Mapping[str, Mapping[str, fmpq]] = {
     "III": {"G": fmpq(99, 20), "k'": fmpq(5, 6), "A": fmpq(2, 9), "n": fmpq(4)},
 }
 """Numbers for what the text gives an example's rods, but for their density and length."""
+_AREA = {"I": ("F",), "III": ("n", "A")}
+_MODULUS = {"I": ("E",), "II": ("G",), "III": ("k'", "G")}
 
 
 @dataclass(frozen=True)
@@ -50,20 +53,20 @@ class Physical:
         """J_0 of a shaft."""
         return fmpq(4, 15) if self.equal else fmpq(4 + rod, 15)
 
+    def area(self, rod: int) -> fmpq:
+        """What of a rod's section resists, and is inert: F, J_0, or all columns of a storey."""
+        return self.section(rod) if self.example == "II" else self._product(*_AREA[self.example])
+
     def stiffness(self, rod: int) -> fmpq:
         """Force in a rod for a unit of strain."""
-        q = _PLAIN[self.example]
-        if self.example == "I":
-            return q["E"] * q["F"]
-        if self.example == "II":
-            return q["G"] * self.section(rod)
-        return q["n"] * q["k'"] * q["G"] * q["A"]
+        return self._product(*_MODULUS[self.example]) * self.area(rod)
+
+    def _product(self, *names: str) -> fmpq:
+        return prod((_PLAIN[self.example][name] for name in names), start=fmpq(1))
 
     def density(self, rod: int) -> fmpq:
         """Inertia of a rod for a unit of length."""
-        q = _PLAIN[self.example]
-        area = {"I": lambda: q["F"], "II": lambda: self.section(rod), "III": lambda: q["n"] * q["A"]}[self.example]()
-        return self.rho * area
+        return self.rho * self.area(rod)
 
     def speed_squared(self, rod: int) -> fmpq:
         """Of waves: stiffness U_xx = density U_tt."""
@@ -204,6 +207,7 @@ def load(entry: Entry) -> Test:
             _, unit = chain.loaded[f"M{body}"]
             scope.bound["t"] = t = fmpq(5, 4)
             acceleration = physical.acceleration(body, moment(body, t))
+            # the last moment counts against positive rotation, here and there
             yield case({**at, "t": t}, partial(scope.value, value), acceleration / abs(unit.coefficients[0]))
 
     return Test("the acceleration that a moment gives a disc, in that of the unit load of a drive", cases)
