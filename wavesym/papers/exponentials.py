@@ -48,6 +48,9 @@ class Exponentials:
         return -self + other
 
     def __mul__(self, other: Number) -> Exponentials:
+        if not isinstance(other, Exponentials):  # most often
+            factor = fmpq(other)
+            return Exponentials({q: c * factor for q, c in self.parts.items()})
         total: dict[fmpq, fmpq] = {}
         for p, b in self.parts.items():
             for q, c in Exponentials.of(other).parts.items():

@@ -8,10 +8,25 @@ from functools import cache
 from pathlib import Path
 
 from wavesym.papers.entries import Entry, Paper, problems, read_paper
+from wavesym.papers.pielorz1979 import clocks, constants, definitions, loads, makeup, motion
 from wavesym.papers.record import Adapter, Record, judge
 
 _DATA = Path(__file__).with_name("data")
-ADAPTERS: Mapping[str, Adapter] = {}
+ADAPTERS: Mapping[str, Adapter] = {
+    "inside": motion.inside,
+    "solution": motion.solution,
+    "definition": definitions.definition,
+    "load without dimensions": constants.load,
+    "moments": loads.moments,
+    "base acceleration": loads.base,
+    "loads of bodies": loads.bodies,
+    "clock": clocks.cell,
+    "speed": constants.speed,
+    "kappa": constants.kappa,
+    "unit of moment": constants.moment_factor,
+    "makeup": makeup.makeup,
+    "waves": makeup.waves,
+}
 
 
 @cache
