@@ -8,10 +8,17 @@ from functools import cache
 from pathlib import Path
 
 from wavesym.papers.entries import Entry, Paper, problems, read_paper
+from wavesym.papers.pielorz1979.bodies import number_of_bodies
+from wavesym.papers.pielorz1979.figures import caption_of_figure, end_of_contact, said_of_figure
 from wavesym.papers.record import Adapter, Record, judge
 
 _DATA = Path(__file__).with_name("data")
-ADAPTERS: Mapping[str, Adapter] = {}
+ADAPTERS: Mapping[str, Adapter] = {
+    "bodies": number_of_bodies,
+    "figure": said_of_figure,
+    "caption": caption_of_figure,
+    "contact": end_of_contact,
+}
 
 
 @cache
