@@ -112,6 +112,20 @@ def true(scene: Described, load: Load, statement: Statement) -> bool:
     return kind_of(statement).true(statement.sentence.words, finding(scene, load, statement).value)
 
 
+def statements(number: int) -> dict[str, Statement]:
+    """What is printed of a figure, by id."""
+    return {entry.id: read(number, entry.printed) for entry in _of(number) if entry.kind == "figure"}
+
+
+def findings(number: int, statement: Statement) -> list[tuple[Load, Finding]]:
+    """What is measured under each load."""
+    return [(load, finding(figure(number), load, statement)) for load in tried(number, statement)]
+
+
+def _of(number: int) -> list[Entry]:
+    return [entry for entry in section().entries() if entry.about.get("figure") == number]
+
+
 # The adapters
 
 
@@ -185,9 +199,7 @@ def caption_of_figure(entry: Entry) -> Test:
 def _described_cases(number: int, formula: Tree) -> Iterator[Case]:
     """Each sentence, as printed, under some load at least: the load curves are not in the text."""
     scene = described(number, formula)
-    for entry in section().entries():
-        if entry.about.get("figure") != number:
-            continue
+    for entry in _of(number):
         if entry.kind == "contact":
             at = {"said": entry.printed, "allowed": f"{NEAR:.0%}"}
             yield case(at, partial(_near, scene, entry), True)
