@@ -82,6 +82,13 @@ def test_a_false_correction_is_seen(id: str, text: str) -> None:
     assert corrected(id, text).verdict == "untested"
 
 
+@pytest.mark.parametrize(
+    ("id", "range_"), [("summary.en.4", "m = 6"), ("Fig.7.bodies", "m = 0"), ("Fig.8.floors", "m = 3")]
+)
+def test_a_false_range_is_seen(id: str, range_: str) -> None:
+    assert judged(id, ranges=(range_,)).verdict == "untested"
+
+
 @pytest.mark.parametrize("id", ["text.22", "text.24", "text.25", "text.26", "text.27", "text.28"])
 def test_every_load_is_told_with_its_outcome(id: str) -> None:
     told = judged(id).evidence[2]

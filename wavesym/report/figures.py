@@ -18,9 +18,17 @@ from matplotlib.figure import Figure
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest
-from wavesym.papers.pielorz1979.figure_scenes import Load, contact_end, figure, loads, section
+from wavesym.papers.pielorz1979.figure_scenes import TriedLoad, contact_end, figure, loads, section
 from wavesym.papers.pielorz1979.figure_sentences import Finding
-from wavesym.papers.pielorz1979.figures import Statement, finding, findings, meaning, printed_end, statements, true
+from wavesym.papers.pielorz1979.figures import (
+    FigureStatement,
+    finding,
+    findings,
+    meaning,
+    printed_end,
+    statements,
+    true,
+)
 from wavesym.papers.pielorz1979.paper import records
 from wavesym.papers.record import Record, shown
 from wavesym.report.histories import Histories, History, histories
@@ -70,13 +78,13 @@ def redrawn(number: int, verdicts: Mapping[str, Record]) -> Figure:
     )
 
 
-def drawn(number: int) -> Load:
+def drawn(number: int) -> TriedLoad:
     """The load that a figure is drawn with: the first of those under which most of its statements are true."""
     said = statements(number).values()
     return max(loads(number), key=lambda load: sum(true(figure(number), load, statement) for statement in said))
 
 
-def marks(number: int, found: Finding, text: str, load: Load) -> Iterator[Mark]:
+def marks(number: int, found: Finding, text: str, load: TriedLoad) -> Iterator[Mark]:
     """The spots of a finding, each with the number of its statement."""
     scene = figure(number)
     for spot in found.spots:
@@ -84,7 +92,7 @@ def marks(number: int, found: Finding, text: str, load: Load) -> Iterator[Mark]:
         yield Mark(text, np.array(list(points)))
 
 
-def _panel(made: Histories, number: int, quantity: str, load: Load) -> PlotPanel:
+def _panel(made: Histories, number: int, quantity: str, load: TriedLoad) -> PlotPanel:
     own = tuple(history for history in made.outputs if history.output.quantity == quantity)
     noted: list[Mark] = []
     for id, statement in statements(number).items():
@@ -123,7 +131,7 @@ def _load(model: Model) -> PlotPanel:
     return PlotPanel(unit, (History(Probe(name, "load", 1, fmpq(0)), stretches),), height=1.2)
 
 
-def _title(number: int, model: Model, load: Load) -> Iterator[str]:
+def _title(number: int, model: Model, load: TriedLoad) -> Iterator[str]:
     values = ", ".join(
         f"{name}_{index} = {value}" for name, numbers in model.felt.items() for index, value in numbers.items()
     )
@@ -136,14 +144,14 @@ def _title(number: int, model: Model, load: Load) -> Iterator[str]:
     yield "Numbers stand where a statement of section 5 was measured; jumps are thin and upright."
 
 
-def _list(number: int, load: Load, verdicts: Mapping[str, Record]) -> Iterator[str]:
+def _list(number: int, load: TriedLoad, verdicts: Mapping[str, Record]) -> Iterator[str]:
     """The statements, what each was taken to mean, and for which loads it is true."""
     for id, statement in statements(number).items():
         yield f"{id.removeprefix('text.')}  {verdicts[id].entry.printed}: {verdicts[id].verdict}"
         yield from _indented("; ".join(_measured(number, load, statement)))
 
 
-def _measured(number: int, load: Load, statement: Statement) -> Iterator[str]:
+def _measured(number: int, load: TriedLoad, statement: FigureStatement) -> Iterator[str]:
     found = findings(number, statement)
     yield f"{meaning(statement)}; measured: {shown(finding(figure(number), load, statement).value)}"
     if len(found) > 1:

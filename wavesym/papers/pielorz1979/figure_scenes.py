@@ -44,7 +44,7 @@ PLOTTED: Mapping[int, Mapping[str, Sequence[str]]] = {
 """The curves of each figure."""
 
 
-class Load(NamedTuple):
+class TriedLoad(NamedTuple):
     """A shape of load: what each source does, piece by piece."""
 
     name: str
@@ -84,14 +84,14 @@ SENSES: Mapping[str, int] = {"M_1 = M_2": 1, "M_1 = -M_2": -1}
 """Equal moments are opposed, as (4.4) counts the last one against positive rotation."""
 
 
-def loads(figure: int, sense: int = 1) -> tuple[Load, ...]:
+def loads(figure: int, sense: int = 1) -> tuple[TriedLoad, ...]:
     """The loads that a figure is tried with."""
     if figure == 6:
-        return (Load("impact", {"impact": _STEP}),)
+        return (TriedLoad("impact", {"impact": _STEP}),)
     if figure == 8:
-        return tuple(Load(name, pieces) for name, pieces in _QUAKES.items())
+        return tuple(TriedLoad(name, pieces) for name, pieces in _QUAKES.items())
     return tuple(
-        Load(name, {"M1": steps, "M2": [Step(step.time, sense * step.weight) for step in steps]})
+        TriedLoad(name, {"M1": steps, "M2": [Step(step.time, sense * step.weight) for step in steps]})
         for name, steps in _MOMENTS.items()
     )
 
@@ -107,7 +107,7 @@ class Described:
     figure: int
     quantities: Quantities
 
-    def curve(self, load: Load, quantity: str, place: str) -> Array:
+    def curve(self, load: TriedLoad, quantity: str, place: str) -> Array:
         """An output under a load at the instants. MeaninglessError where there is none."""
         total = np.zeros(SAMPLES)
         for source, steps in load.pieces.items():
@@ -122,7 +122,9 @@ class Described:
         """The tau of a curve."""
         return np.linspace(0, float(contact_end(self)) if self.figure == 6 else UNTIL, SAMPLES)
 
-    def scene(self, load: Load, plotted: Mapping[str, Sequence[str]] | None = None, until: str | None = None) -> Scene:
+    def scene(
+        self, load: TriedLoad, plotted: Mapping[str, Sequence[str]] | None = None, until: str | None = None
+    ) -> Scene:
         """The scene under a load, with the curves of its figure or others. MeaninglessError where it is none."""
         end = until or (contact_end(self) if self.figure == 6 else str(UNTIL))
         acting: list[Mapping[str, object]] = []
@@ -159,7 +161,7 @@ def _units(described: Described, source: str, other: tuple[str, str] | None) -> 
     """
     outputs = None if other is None else {other[0]: (other[1],)}
     try:
-        reference = Reference(lower(described.scene(Load("unit", {source: _STEP}), outputs)))
+        reference = Reference(lower(described.scene(TriedLoad("unit", {source: _STEP}), outputs)))
     except SceneError as error:
         raise MeaninglessError(str(error)) from None
     values = reference.values(np.linspace(0, reference.tau_max, SAMPLES).tolist())

@@ -22,7 +22,7 @@ from wavesym.papers.pielorz1979.figure_scenes import (
     SAMPLES,
     SENSES,
     Described,
-    Load,
+    TriedLoad,
     contact_end,
     described,
     figure,
@@ -42,7 +42,7 @@ NEAR = 0.01
 
 
 @dataclass(frozen=True)
-class Statement:
+class FigureStatement:
     """A sentence, and the loads that it is said of; None: of all."""
 
     sentence: Sentence
@@ -52,31 +52,31 @@ class Statement:
 ONLY = ", under these loads only: "
 
 
-def read(number: int, printed: str) -> Statement:
+def read(number: int, printed: str) -> FigureStatement:
     """The statement of a sentence about a figure; UnreadableError."""
     said, only, names = printed.partition(ONLY)
     sentence = sentence_reader(kind.pattern for kind in KINDS[number]).read(said, ()).formula
     chosen = tuple(names.split("; ")) if only else None
     if unknown := set(chosen or ()) - {load.name for load in loads(number)}:
         raise UnreadableError(f"no load is called {', '.join(sorted(unknown))}")
-    return Statement(sentence, chosen)
+    return FigureStatement(sentence, chosen)
 
 
 def _faults(number: int, right: Reading) -> Iterator[tuple[str, Reading]]:
     """Every other word in every place, and every load in or out of those named."""
-    said: Statement = right.formula
+    said: FigureStatement = right.formula
     for change, wrong in sentence_reader(kind.pattern for kind in KINDS[number]).faults(Reading(said.sentence)):
-        yield change, Reading(Statement(wrong.formula, said.only))
+        yield change, Reading(FigureStatement(wrong.formula, said.only))
     if said.only is not None:
         for load in loads(number):
             others = tuple(name for name in said.only if name != load.name)
             if len(others) < len(said.only):
-                yield f"not under {load.name}", Reading(Statement(said.sentence, others))
+                yield f"not under {load.name}", Reading(FigureStatement(said.sentence, others))
             else:
-                yield f"under {load.name} too", Reading(Statement(said.sentence, (*others, load.name)))
+                yield f"under {load.name} too", Reading(FigureStatement(said.sentence, (*others, load.name)))
 
 
-def kind_of(statement: Statement) -> Kind:
+def kind_of(statement: FigureStatement) -> Kind:
     """What its sentence means."""
     return _kinds()[statement.sentence.pattern]
 
@@ -86,38 +86,38 @@ def _kinds() -> Mapping[str, Kind]:
     return {kind.pattern.name: kind for kinds in KINDS.values() for kind in kinds}
 
 
-def meaning(statement: Statement) -> str:
+def meaning(statement: FigureStatement) -> str:
     """The same in words."""
     return kind_of(statement).meaning(statement.sentence.words)
 
 
-def tried(number: int, statement: Statement) -> tuple[Load, ...]:
+def tried(number: int, statement: FigureStatement) -> tuple[TriedLoad, ...]:
     """The loads that a statement is tried under."""
     return loads(number, SENSES[statement.sentence.words.get("sense", "M_1 = M_2")])
 
 
-def finding(scene: Described, load: Load, statement: Statement) -> Finding:
+def finding(scene: Described, load: TriedLoad, statement: FigureStatement) -> Finding:
     """What is measured under a load. MeaninglessError where there is nothing to measure."""
     return _measured(scene, load.name, statement.sentence)
 
 
 @cache
 def _measured(scene: Described, name: str, sentence: Sentence) -> Finding:
-    (load,) = (load for load in tried(scene.figure, Statement(sentence)) if load.name == name)
+    (load,) = (load for load in tried(scene.figure, FigureStatement(sentence)) if load.name == name)
     return _kinds()[sentence.pattern].measured(sentence.words, partial(scene.curve, load))
 
 
-def true(scene: Described, load: Load, statement: Statement) -> bool:
+def true(scene: Described, load: TriedLoad, statement: FigureStatement) -> bool:
     """Whether what a sentence says is so under a load. MeaninglessError."""
     return kind_of(statement).true(statement.sentence.words, finding(scene, load, statement).value)
 
 
-def statements(number: int) -> dict[str, Statement]:
+def statements(number: int) -> dict[str, FigureStatement]:
     """What is printed of a figure, by id."""
     return {entry.id: read(number, entry.printed) for entry in _of(number) if entry.kind == "figure"}
 
 
-def findings(number: int, statement: Statement) -> list[tuple[Load, Finding]]:
+def findings(number: int, statement: FigureStatement) -> list[tuple[TriedLoad, Finding]]:
     """What is measured under each load."""
     return [(load, finding(figure(number), load, statement)) for load in tried(number, statement)]
 
@@ -142,7 +142,7 @@ def said_of_figure(entry: Entry) -> Test:
     )
 
 
-def _cases(scene: Described, said: Statement) -> Iterator[Case]:
+def _cases(scene: Described, said: FigureStatement) -> Iterator[Case]:
     for load in tried(scene.figure, said):
         claimed = said.only is None or load.name in said.only
         try:
@@ -167,7 +167,7 @@ def _observed(scene: Described, entry: Entry) -> str:
     return f"Measured ({meaning(said)}): {'; '.join(told)}."
 
 
-def _example(scene: Described, load: Load, found: Finding) -> Example:
+def _example(scene: Described, load: TriedLoad, found: Finding) -> Example:
     """The scene of a case, and where to look: the values of its curves at the spots."""
     points = dict.fromkeys(point for spot in found.spots for point in spot)
     outputs: dict[str, list[str]] = {}
@@ -181,7 +181,7 @@ def _example(scene: Described, load: Load, found: Finding) -> Example:
     return _shown(scene, load, outputs or PLOTTED[scene.figure], look or "fewer than three swings")
 
 
-def _shown(scene: Described, load: Load, outputs: Mapping[str, Sequence[str]], look: str) -> Example:
+def _shown(scene: Described, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Example:
     model = lower(scene.scene(load))
     text = written(model.chain, load.pieces, model.until, outputs)
     return Example(text, f"wavesym run SCENE --samples {SAMPLES}", look)
