@@ -160,11 +160,20 @@ def _observed(scene: Described, entry: Entry) -> str:
         said = read(scene.figure, entry.printed)
     except UnreadableError as error:
         return f"Nothing was measured: {error}."
+    told = [f"Measured ({meaning(said)}): {_outcomes(scene, said)}."]
+    words = said.sentence.words
+    for sense in SENSES if "sense" in words else ():
+        if sense != words["sense"]:
+            other = FigureStatement(Sentence(said.sentence.pattern, {**words, "sense": sense}))
+            told.append(f"With {sense}: {_outcomes(scene, other)}.")
+    return " ".join(told)
+
+
+def _outcomes(scene: Described, said: FigureStatement) -> str:
     outcomes: dict[bool, list[str]] = {True: [], False: []}
     for load in tried(scene.figure, said):
         outcomes[true(scene, load, said)].append(f"{load.name} ({shown(finding(scene, load, said).value)})")
-    told = (f"{'true' if so else 'false'} under {', '.join(names)}" for so, names in outcomes.items() if names)
-    return f"Measured ({meaning(said)}): {'; '.join(told)}."
+    return "; ".join(f"{'true' if so else 'false'} under {', '.join(names)}" for so, names in outcomes.items() if names)
 
 
 def _example(scene: Described, load: TriedLoad, found: Finding) -> Example:
