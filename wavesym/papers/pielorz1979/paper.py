@@ -9,6 +9,8 @@ from pathlib import Path
 
 from wavesym.papers.entries import Entry, Paper, problems, read_paper
 from wavesym.papers.pielorz1979 import clocks, constants, definitions, loads, makeup, motion
+from wavesym.papers.pielorz1979.bodies import number_of_bodies
+from wavesym.papers.pielorz1979.figures import caption_of_figure, end_of_contact, said_of_figure
 from wavesym.papers.record import Adapter, Record, judge
 
 _DATA = Path(__file__).with_name("data")
@@ -26,6 +28,10 @@ ADAPTERS: Mapping[str, Adapter] = {
     "unit of moment": constants.moment_factor,
     "makeup": makeup.makeup,
     "waves": makeup.waves,
+    "bodies": number_of_bodies,
+    "figure": said_of_figure,
+    "caption": caption_of_figure,
+    "contact": end_of_contact,
 }
 
 
