@@ -295,7 +295,7 @@ def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
 
 
 def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:
-    """The proofs of the derivation and other routes to its tables, a line each, and whether all of them hold.
+    """The proofs of the derivation and other routes to its tables, with their arguments, and whether all of them hold.
 
     `watch` goes through the systems as they are proved.
     """

@@ -194,7 +194,10 @@ def _unlike(entry: Entry, passage: Passage, hashes: Mapping[str, str]) -> Iterat
 
 
 def plain(text: str) -> str:
-    """A formula without what only lays it out: spaces, alignment, sizes of brackets, "dla" (for) for a comma."""
+    """A formula without what only lays it out: spaces, alignment, braces of cases, sizes of brackets.
+
+    "dla" (for), and what stands for it in cases, is a comma.
+    """
     for pattern, instead in _LAYOUT:
         text = pattern.sub(instead, text)
     return text.strip(",.;")
@@ -203,6 +206,8 @@ def plain(text: str) -> str:
 _LAYOUT: Sequence[tuple[re.Pattern[str], str]] = tuple(
     (re.compile(pattern), instead)
     for pattern, instead in (
+        (r"(?s)&(?=(?:(?!\\begin\{).)*\\end\{cases\})", " , "),
+        (r"\\(?:begin|end)\{cases\}", " "),
         (r"\\begin\{aligned\}|\\end\{aligned\}|\\left\.|\\right\.|\$|&|\\\\|\\quad|\\times", " "),
         (r"\\left(?=[\W_])|\\right(?=[\W_])", " "),
         (r"\\text\{([^}]*)\}", r"\1"),

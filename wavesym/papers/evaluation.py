@@ -6,7 +6,7 @@ A scope is the whole meaning of a formula: an adapter writes one, and there is n
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -47,6 +47,8 @@ class MeaninglessError(Exception):
 class Scope:
     """What letters mean; `bound` are the plain ones by name: indices, sizes, variables of sums.
 
+    `constants` are those that the ranges of a formula say the value of (`given`).
+
     Subclasses give `symbol`, `call` and `derivative`. Values are what Python's operators can combine: integers, fmpq,
     `Exponentials`.
     """
@@ -54,8 +56,9 @@ class Scope:
     heaviside_at_0 = 1
     """H(0), which the paper does not give."""
 
-    def __init__(self, bound: Mapping[str, Any] | None = None) -> None:
+    def __init__(self, bound: Mapping[str, Any] | None = None, constants: Mapping[Tree, Tree] | None = None) -> None:
         self.bound: dict[str, Any] = dict(bound or {})
+        self.constants: Mapping[Tree, Tree] = dict(constants or {})
 
     # what an adapter says
 
@@ -113,7 +116,15 @@ class Scope:
     def _symbol(self, symbol: Symbol) -> Any:
         if not (symbol.below or symbol.above or symbol.primes or symbol.accent) and symbol.name in self.bound:
             return self.bound[symbol.name]
-        return self.symbol(symbol)
+        return self._constant(symbol) if symbol in self.constants else self.symbol(symbol)
+
+    def _constant(self, symbol: Symbol) -> Any:
+        """Its value, in letters that are no constants themselves."""
+        constants, self.constants = self.constants, {}
+        try:
+            return self.value(constants[symbol])
+        finally:
+            self.constants = constants
 
     def _call(self, call: Call) -> Any:
         function = call.function
@@ -172,8 +183,8 @@ class Scope:
 
 
 def sides(tree: Tree) -> tuple[Tree, ...]:
-    """The two sides of an equation; UnreadableError where it is none."""
-    if not isinstance(tree, Relation) or set(tree.signs) != {"="}:
+    """The two sides of an equation; MeaninglessError where it is none."""
+    if not isinstance(tree, Relation) or tree.signs != ("=",):
         raise MeaninglessError(f"{latex(tree)} is no equation")
     return tree.sides
 
@@ -212,6 +223,19 @@ def holds(where: Tree, scope: Scope) -> bool:
             after = first <= value if opening == r"\langle" else first < value
             return bool(after and (value <= last if closing == r"\rangle" else value < last))
     raise MeaninglessError(f"{latex(where)} is no range")
+
+
+def range_of(name: str, ranges: Iterable[Tree]) -> Progression:
+    """The range of a variable; MeaninglessError where it has none."""
+    for r in ranges:
+        if isinstance(r, Progression) and r.variable == Symbol(name):
+            return r
+    raise MeaninglessError(f"{name} has no range")
+
+
+def given(ranges: Iterable[Tree]) -> dict[Tree, Tree]:
+    """The constants that ranges say the value of, such as "v_0 = c_f U_0 / l"."""
+    return {r.variable: r.shown[0] for r in ranges if isinstance(r, Progression) and len(r.shown) == 1 and not r.dots}
 
 
 def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:

@@ -2,8 +2,11 @@
 
 claims.py           all of them, in the order of the paper
 signals.py          formulas about waves: read once, tested in numbers and in symbols
-motion.py           (2.1)-(2.5), (3.1), (3.2), (4.1), (4.2), and the constants that go with them
-table_1_clocks.py   Table 1
+displacements.py    the exact motion at any place and time, and what acts on nodes
+motion.py           (2.1), (2.2), (2.5), (4.1), (4.2); definitions.py has the quantities without dimensions
+loads.py            (3.1), (3.2) and the loads of Table 1; clocks.py has the rest of it, but for c_f^2
+constants.py        c_f^2, kappa and A in terms of materials
+makeup.py           what the examples are made of, and where waves run
 node_motion.py      what conditions are written in; conditions.py has (2.3), (2.4), (4.3)-(4.5)
 delays.py           (4.6)-(4.8)
 forms.py            (4.9)-(4.12)

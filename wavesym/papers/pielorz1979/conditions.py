@@ -15,7 +15,7 @@ from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.delay_terms import exact
 from wavesym.model.node import Family, Node, Parameters
 from wavesym.papers.entries import Entry
-from wavesym.papers.evaluation import MeaninglessError, Scope, span
+from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
 from wavesym.papers.exact_tables import UNEQUAL_COLLISION, grounded_building, unequal_collision
 from wavesym.papers.pielorz1979.at_node import (
     ACCELERATION,
@@ -28,7 +28,7 @@ from wavesym.papers.pielorz1979.at_node import (
     moment_on,
     strain,
 )
-from wavesym.papers.pielorz1979.letters import Symbols, left_over, ranges_of, told, two_sides, within
+from wavesym.papers.pielorz1979.letters import Symbols, left_over, ranges_of, told, within
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcript import others
 from wavesym.papers.pielorz1979.truth import EXAMPLES, Driven, driven, instants, loads
@@ -237,7 +237,7 @@ def _left_over(name: str, letters: Parameters, node: Node, place: Expr, read: Re
     indices = [INDEX] if "i" in ranges else [place, expand(place + 1)]
     scopes = [SymbolsAtNode(name, letters, index, ranges.get("x_{i}")) for index in indices]
     scope = next((s for s in scopes if _mentioned(read.formula, s) == {expand(rod) for rod in rods}), scopes[0])
-    left, right = two_sides(read.formula)
+    left, right = sides(read.formula)
     unit = strain(expand(max(rods, key=lambda rod: expand(rod - place))))
     printed, derived = expand(scope.value(left) - scope.value(right)), expand(_balance(node, place))
     scaled = [expand(side / side.coeff(unit)) for side in (printed, derived) if side.coeff(unit) != 0]

@@ -14,7 +14,7 @@ from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equation
 from wavesym.derivation.delay_terms import Line, Operator, Wave, exact
 from wavesym.model.node import System
 from wavesym.papers.entries import Entry
-from wavesym.papers.evaluation import MeaninglessError, Scope, items, span
+from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, span
 from wavesym.papers.pielorz1979.letters import (
     Numbers,
     Symbols,
@@ -23,7 +23,6 @@ from wavesym.papers.pielorz1979.letters import (
     left_over,
     ranges_of,
     told,
-    two_sides,
     wave,
     within,
 )
@@ -95,7 +94,7 @@ def _balanced(driven: Driven, equation: Tree, bound: Mapping[str, int]) -> Itera
 
 def _unknown(equation: Tree, scope: Scope) -> Unknown:
     """What an equation gives: the one function on its left."""
-    calls = [part for part in within(two_sides(equation)[0]) if isinstance(part, Call)]
+    calls = [part for part in within(sides(equation)[0]) if isinstance(part, Call)]
     found = {(call.function.name, scope.indices(call.function)) for call in calls}
     if len(found) != 1:
         raise MeaninglessError("its left side has not one function")
@@ -149,7 +148,7 @@ def difference(system: System, read: Reading) -> str:
     """Printed less derived, both as left less right side, for symbolic i and m."""
     lines = []
     for equation in items(read.formula):
-        left, right = two_sides(equation)
+        left, right = sides(equation)
         scope = _Formal()
         unknown = _unknown(equation, scope)
         numbers = {_unknown(e, Scope(bound)) for e, bound in _stated(read, _SIZE) if e == equation}

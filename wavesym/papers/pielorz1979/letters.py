@@ -206,14 +206,6 @@ def ranges_of(reading: Reading, letters: Container[str]) -> Mapping[str, Progres
     return found
 
 
-def two_sides(equation: Tree) -> tuple[Tree, Tree]:
-    """Both sides of an equation; MeaninglessError."""
-    both = sides(equation)
-    if len(both) != 2:
-        raise MeaninglessError(f"{len(both)} sides")
-    return both[0], both[1]
-
-
 def left_over(
     equation: Tree,
     at: Mapping[str, object],
@@ -222,7 +214,7 @@ def left_over(
     seen: Callable[[fmpq, str], Callable[[], Example] | None],
 ) -> Iterator[Case]:
     """An equation at instants: what is left of it, and where that is `seen`."""
-    left, right = two_sides(equation)
+    left, right = sides(equation)
     for instant, scope in scopes:
         tried = partial(_less, scope, left, right)
         found = case({**at, f"left less right side at {clock}": instant}, tried, 0)

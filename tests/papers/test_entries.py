@@ -1,0 +1,76 @@
+"""The binding of what is printed to the source: a changed transcription no longer fits."""
+
+from __future__ import annotations
+
+import pytest
+
+from wavesym.papers.entries import Aside, Entry, Paper, Passage, digest, plain, problems
+
+TEXT = r"$$(1.1) \quad a_i + \\ + b = 0 \quad \text{dla} \quad i=1, 2, \dots, m$$"
+ENTRY = Entry(
+    id="(1.1)",
+    kind="test",
+    scan=r"a_i + \\ + b = 0 \quad \text{dla} \quad i=1, 2, \dots, m",
+    printed="a_i + b = 0",
+    ranges=(r"i = 1, 2, \dots, m",),
+    edits=(("+ +", "+", "the sign stands twice where the line breaks"),),
+)
+HASHES = {"3": digest(TEXT), "5": digest("and so on")}
+LATER = Passage(lines=(5, 5), why="announces")
+
+
+def _paper(entry=ENTRY, text=TEXT, hashes=HASHES, later=LATER, **passage):
+    return Paper((Passage(lines=(3, 3), text=text, record=(entry,), **passage), later), hashes)
+
+
+def _changed(**changes):
+    return ENTRY.model_copy(update=changes)
+
+
+def test_what_fits():
+    assert not list(problems(_paper()))
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        _changed(printed="a_i - b = 0"),
+        _changed(printed="a_j + b = 0"),
+        _changed(ranges=(r"i = 1, 2, \dots, m-1",)),
+        _changed(edits=()),
+        _changed(edits=(*ENTRY.edits, ("c", "d", "nothing"))),
+        _changed(scan="a_i - b = 0"),
+    ],
+)
+def test_a_string_that_is_changed_does_not(entry):
+    assert "(1.1)" in {id for id, _ in problems(_paper(entry))}
+
+
+def test_a_changed_line_is_seen():
+    wrong = TEXT.replace("b", "c")
+    entry = _changed(scan=ENTRY.scan.replace("b", "c"), printed="a_i + c = 0")
+    assert list(problems(_paper(entry, wrong))) == [("lines 3-3", "line 3 is not the source's")]
+
+
+def test_a_changed_translation_is_seen():
+    said = Entry(id="text.1", kind="sentence", scan="a_i rośnie", printed="a rises", translated=True)
+    hashes = {"3": digest("a_i rośnie"), "text.1": digest("a rises"), "5": HASHES["5"]}
+    assert not list(problems(_paper(said, "a_i rośnie", hashes)))
+    falls = said.model_copy(update={"printed": "a falls"})
+    assert [id for id, _ in problems(_paper(falls, "a_i rośnie", hashes))] == ["text.1"]
+
+
+def test_nothing_is_left_out():
+    longer = TEXT + r" oraz $c = 1$"
+    hashes = {**HASHES, "3": digest(longer)}
+    assert "neither judged nor set aside" in dict(problems(_paper(text=longer, hashes=hashes)))["lines 3-3"]
+    aside = (Aside(scan="$c = 1$", why="a definition"),)
+    assert not list(problems(_paper(text=longer, hashes=hashes, aside=aside)))
+    assert dict(problems(_paper(hashes={**HASHES, "7": digest("more")})))["paper"] == "lines in no passage: [7]"
+    assert dict(problems(_paper(later=Passage(lines=(3, 5), why="announces"))))["paper"] == "lines in two passages: [3]"
+    assert dict(problems(_paper(later=Passage(lines=(5, 5)))))["lines 5-5"] == "is neither judged nor set aside"
+
+
+def test_layout_is_no_difference():
+    assert plain(r"\left( a & = \left\{ b \right. \right) \times c \quad \text{dla} d,") == plain(r"(a = \{ b ) c, d")
+    assert plain("a + b") != plain("a - b")
