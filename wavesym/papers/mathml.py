@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable, Sequence
-from xml.etree.ElementTree import Element, SubElement, tostring
+from itertools import chain
+from xml.etree.ElementTree import Element, tostring
 
 from wavesym.papers.tree import (
     Addition,
@@ -46,9 +47,8 @@ def mathml(tree: Tree) -> str:
 
 
 def _math(parts: Sequence[Element]) -> str:
-    top = Element("math")
-    style = SubElement(top, "mrow", displaystyle="true")
-    style.extend(parts)
+    top = Element("math", displaystyle="true")
+    top.extend(parts)
     return tostring(top, encoding="unicode")
 
 
@@ -63,22 +63,27 @@ def _pieces(tree: Tree) -> list[list[Element]]:
             pieces = [_pieces(item) for item in items]
             for piece in pieces[:-1]:
                 piece[-1].append(_operator(","))
-            return [part for piece in pieces for part in piece]
+            return list(chain.from_iterable(pieces))
         case Addition(terms):
-            pieces = [[[_element(terms[0])]] if _length(terms[0]) <= LONGEST else _pieces(terms[0])]
+            pieces = [_pieces(terms[0])]
             for term in terms[1:]:
                 sign, body = _signed(term)
-                pieces.append(_after(sign, _pieces(body)))
-            return [part for piece in pieces for part in piece]
+                if isinstance(term, Marked) and not term.sign_only:
+                    pieces.append([[_mark(_row(sign, _element(body)))]])
+                else:
+                    pieces.append(_after(sign, _pieces(body)))
+            return list(chain.from_iterable(pieces))
         case Product((*before, last)):
             return _after(_element(Product(tuple(before))), _pieces(last))
+        case Minus(of):
+            return _after(_operator(_MINUS, form="prefix"), _pieces(of))
         case Series(body=body):
             return _after(_sum(tree), _pieces(body))
         case Group(bracket, inner):
             opening, closing = _BRACKETS[bracket]
-            pieces = _after(_operator(opening, stretchy="false"), _pieces(inner))
-            pieces[-1].append(_operator(closing, stretchy="false"))
-            return pieces
+            within = _after(_operator(opening, stretchy="false"), _pieces(inner))
+            within[-1].append(_operator(closing, stretchy="false"))
+            return within
     return [[_element(tree)]]
 
 
@@ -244,7 +249,7 @@ def _sign(sign: str) -> str:
 
 
 def _mark(element: Element) -> Element:
-    row = _row(element)
+    row = _made("mrow", element)
     row.set("class", "marked")
     return row
 
@@ -261,7 +266,7 @@ def _between(separator: Element, elements: Iterable[Element]) -> list[Element]:
 
 
 def _row(*parts: Element) -> Element:
-    return parts[0] if len(parts) == 1 and parts[0].tag == "mrow" else _made("mrow", *parts)
+    return parts[0] if len(parts) == 1 else _made("mrow", *parts)
 
 
 def _made(tag: str, *parts: Element) -> Element:

@@ -61,8 +61,8 @@ class Case:
 
     def __str__(self) -> str:
         where = ", ".join(f"{name} = {shown(value)}" for name, value in self.at.items())
-        said = f"printed {shown(self.printed)}, true {shown(self.true)}"
-        return f"{where}: {said}" if where else said
+        said = f"what is printed gives {shown(self.printed)}; it should be {shown(self.true)}"
+        return f"With {where} {said}" if where else said[0].upper() + said[1:]
 
 
 @dataclass(frozen=True)
@@ -196,19 +196,19 @@ def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
         if printed.wrong is None:
             found.append("called wrong, yet no case shows it")
         else:
-            evidence.append(f"As printed it fails: {printed.wrong}.")
+            evidence.append(f"{printed.wrong}.")
         if settled.wrong:
             found.append(f"the correction fails: {settled.wrong}")
-        evidence.append(f"As corrected it holds in {settled.telling} cases. {slip.note}".strip())
+        evidence.append(f"As corrected it holds in all {settled.telling} cases. {slip.note}".strip())
         if test.mathematics:
             proved = _Trial(test.mathematics(test.read(entry.printed, (*entry.ranges, *entry.inferred))))
             if proved.wrong or not proved.telling:
                 found.append(f"does not hold as mathematics either: {proved.wrong}")
-            evidence.append(f"As mathematics it holds in {proved.telling} cases.")
+            evidence.append(f"As mathematics it holds in all {proved.telling} cases.")
     elif printed.wrong:
         found.append(f"fails, and no correction is known: {printed.wrong}")
     else:
-        evidence.append(f"Holds in {printed.telling} cases.")
+        evidence.append(f"It holds in all {printed.telling} cases.")
     if not settled.telling:
         found.append("no case tells anything")
     turned, unturned = _faulty(entry, test, text, ranges) if settled.wrong is None else (Mutations(), ())

@@ -1,0 +1,174 @@
+"""The verdicts as a document to read and cite, before its markup: what the templates of HTML and LaTeX go through."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from wavesym import __version__
+from wavesym.papers.about import About, Heading, PrintedTable
+from wavesym.papers.pages.findings import Findings, Survivor, Unjudged, by_place, lines, origin, tested, titles
+from wavesym.papers.pages.reproduction import Reproduction, reproduction
+from wavesym.papers.pages.shown import Shown, Side, compared, formula, inferred, printed
+from wavesym.papers.record import VERDICTS, Record
+
+SIGNS = {
+    "holds": "✓",
+    "misprint": "✗",
+    "unreadable": "?",
+    "convention": "≈",
+    "model": "≠",
+    "depends": "±",
+    "incomplete": "…",
+    "untested": "!",
+}
+"""Of verdicts, beside their colours: nothing is said by colour alone."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A record as it is shown; `right` where what is printed does not hold."""
+
+    id: str
+    anchor: str
+    verdict: str
+    sign: str
+    where: str
+    lines: str
+    printed: Side
+    right: Side | None
+    inferred: tuple[Shown, ...]
+    scan: str
+    edits: tuple[tuple[str, str, str], ...]
+    failure: str
+    note: str
+    evidence: str
+    origin: str
+    tested: str
+    problems: tuple[str, ...]
+    reproduction: Reproduction | None
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """One error, in all places where it is printed."""
+
+    number: int
+    title: str
+    verdict: str
+    sign: str
+    note: str
+    records: tuple[Judged, ...]
+
+
+@dataclass(frozen=True)
+class Head:
+    """The head of a row or column: a formula, or words, or both."""
+
+    formula: Shown | None
+    words: str
+
+
+@dataclass(frozen=True)
+class Laid:
+    """A table as the paper prints it; a cell that is no record is None."""
+
+    name: str
+    caption: str
+    columns: tuple[Head, ...]
+    rows: tuple[tuple[Head, tuple[Judged | None, ...]], ...]
+
+
+@dataclass(frozen=True)
+class Document:
+    """All of it, in the order in which it is read."""
+
+    about: About
+    version: str
+    command: str
+    records: int
+    counts: Sequence[tuple[str, str, int, str]]
+    statistics: Sequence[tuple[str, Sequence[int]]]
+    tried: int
+    turned: int
+    mistakes: Sequence[Mistake]
+    tables: Sequence[Laid]
+    holding: Mapping[str, Sequence[Judged]]
+    unjudged: Sequence[tuple[str, Unjudged]]
+    survivors: Sequence[Survivor]
+
+
+def document(findings: Findings, format: str) -> Document:
+    """The document of some findings."""
+    judged = {record.id: _judged(record, findings.reproduce) for record in findings.records}
+    mistakes = [
+        Mistake(
+            number,
+            titles(group),
+            group[0].verdict,
+            SIGNS[group[0].verdict],
+            _note(group),
+            tuple(judged[record.id] for record in group),
+        )
+        for number, group in enumerate(findings.errors, 1)
+    ]
+    tried, turned = findings.faults
+    used = [verdict for verdict, _ in findings.counts]
+    return Document(
+        findings.about,
+        __version__,
+        f"wavesym verify --published --format {format}",
+        len(findings.records),
+        [(verdict, SIGNS[verdict], count, VERDICTS[verdict]) for verdict, count in findings.counts],
+        [(name, [counts[verdict] for verdict in used]) for name, counts in findings.statistics],
+        tried,
+        turned,
+        mistakes,
+        [_laid(table, judged) for table in findings.about.table if table.ids() & judged.keys()],
+        {name: [judged[record.id] for record in group] for name, group in by_place(findings.holding).items()},
+        [(lines(part.lines), part) for part in findings.unjudged],
+        findings.survivors,
+    )
+
+
+def _judged(record: Record, reproduce: bool) -> Judged:
+    entry = record.entry
+    one, other = compared(record) or (printed(record), None)
+    return Judged(
+        record.id,
+        re.sub(r"[^\w.-]+", "_", record.id.strip("(")),
+        record.verdict,
+        SIGNS[record.verdict],
+        entry.where,
+        lines(entry.lines),
+        one,
+        other,
+        inferred(record),
+        entry.scan if entry.scan != entry.printed else "",
+        entry.edits,
+        f"{record.counterexample}." if record.counterexample else "",
+        entry.slip.note if entry.slip else entry.note,
+        " ".join(record.evidence),
+        origin(record),
+        tested(record),
+        record.problems,
+        reproduction(record) if reproduce else None,
+    )
+
+
+def _note(group: Sequence[Record]) -> str:
+    """The note that an error's records share, if they do."""
+    notes = {record.entry.slip.note if record.entry.slip else "" for record in group}
+    return notes.pop() if len(notes) == 1 else ""
+
+
+def _laid(table: PrintedTable, judged: Mapping[str, Judged]) -> Laid:
+    rows = tuple(
+        (_head(row), tuple(judged.get(table.id(row, column)) for column in table.columns)) for row in table.rows
+    )
+    return Laid(table.name, table.caption, tuple(map(_head, table.columns)), rows)
+
+
+def _head(heading: Heading) -> Head:
+    return Head(formula(heading.formula) if heading.formula else None, heading.words)

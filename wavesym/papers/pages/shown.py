@@ -1,0 +1,95 @@
+"""How a printed string is shown: as a formula where the reader can read it, else as it stands; beside its correction."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+
+from wavesym.papers.difference import marked, marked_ranges
+from wavesym.papers.pages.findings import ranges_as_corrected
+from wavesym.papers.reader import UnreadableError, read_formula, read_range
+from wavesym.papers.record import Record
+from wavesym.papers.tree import Tree
+
+
+@dataclass(frozen=True)
+class Words:
+    """A sentence, or `code`, which is a string that the reader cannot read; each part with whether it is marked."""
+
+    parts: tuple[tuple[str, bool], ...]
+    code: bool = False
+
+
+Shown = Tree | Words
+
+
+@dataclass(frozen=True)
+class Side:
+    """One side of a comparison: the formula or sentence, and its ranges."""
+
+    formula: Shown
+    ranges: tuple[Shown, ...]
+
+
+def printed(record: Record) -> Side:
+    """What is printed, alone."""
+    entry = record.entry
+    return Side(_said(entry.printed, entry.translated), tuple(map(_range, entry.ranges)))
+
+
+def inferred(record: Record) -> tuple[Shown, ...]:
+    """The ranges that are not printed."""
+    return tuple(map(_range, record.entry.inferred))
+
+
+def compared(record: Record) -> tuple[Side, Side] | None:
+    """What is printed beside what is right, differences marked; None where it holds."""
+    entry, before = record.entry, printed(record)
+    if entry.slip is None:
+        return None
+    said: tuple[Shown, Shown] = before.formula, _said(entry.slip.corrected, entry.translated)
+    ranges: tuple[tuple[Shown, ...], tuple[Shown, ...]]
+    ranges = before.ranges, tuple(map(_range, ranges_as_corrected(entry.slip, entry)))
+    match said:
+        case (Words() as one, Words() as other):
+            said = _marked_words(one, other)
+        case (one, other) if not isinstance(one, Words) and not isinstance(other, Words):
+            said = marked(one, other)
+    if not any(isinstance(range_, Words) for side in ranges for range_ in side):
+        ranges = marked_ranges(*ranges)
+    return Side(said[0], ranges[0]), Side(said[1], ranges[1])
+
+
+def _said(text: str, translated: bool) -> Shown:
+    return Words(((text, False),)) if translated else formula(text)
+
+
+def formula(text: str) -> Shown:
+    """A string that is not prose."""
+    try:
+        return read_formula(text)
+    except UnreadableError:
+        return _range(text)
+
+
+def _range(text: str) -> Shown:
+    try:
+        return read_range(text)
+    except UnreadableError:
+        return Words(((text, False),), code=True)
+
+
+def _marked_words(one: Words, other: Words) -> tuple[Words, Words]:
+    """Word by word."""
+    before, after = (re.split(r"(\s+)", "".join(text for text, _ in words.parts)) for words in (one, other))
+    blocks = SequenceMatcher(a=before, b=after, autojunk=False).get_opcodes()
+    return (
+        Words(_joined((before[start:end], tag != "equal") for tag, start, end, _, _ in blocks), one.code),
+        Words(_joined((after[start:end], tag != "equal") for tag, _, _, start, end in blocks), other.code),
+    )
+
+
+def _joined(parts: Iterable[tuple[list[str], bool]]) -> tuple[tuple[str, bool], ...]:
+    return tuple(("".join(words), differs) for words, differs in parts if words)
