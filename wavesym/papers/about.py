@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict
@@ -13,7 +14,7 @@ class _Said(BaseModel):
 
 
 class Heading(_Said):
-    """The head of a row or column: its part of the ids of its cells, and how it is printed, as a formula or in words."""
+    """The head of a row or column: its part of the ids of its cells, and how it is printed, as formula or words."""
 
     key: str
     formula: str = ""
@@ -21,13 +22,17 @@ class Heading(_Said):
 
 
 class PrintedTable(_Said):
-    """A table as the paper lays it out. `cell` makes the id of a cell of its {row} and {column}."""
+    """A table as the paper lays it out. `cell` makes the id of a cell of its {row} and {column}.
+
+    `names` are formulas in cells that name something and are not judged, by the id that the cell would have.
+    """
 
     name: str
     caption: str = ""
     cell: str
     columns: tuple[Heading, ...]
     rows: tuple[Heading, ...]
+    names: Mapping[str, str] = {}
 
     def id(self, row: Heading, column: Heading) -> str:
         """The id of a cell."""

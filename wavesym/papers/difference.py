@@ -16,9 +16,9 @@ from wavesym.papers.tree import Addition, Group, Marked, Minus, Number, Power, P
 
 
 def marked(before: Tree, after: Tree) -> tuple[Tree, Tree]:
-    """Both formulas, with `Marked` around what differs."""
+    """Both formulas, with `Marked` around what differs; around nothing where they share nothing."""
     _, one, other = _compared(before, after)
-    return one, other
+    return (before, after) if isinstance(one, Marked) and isinstance(other, Marked) else (one, other)
 
 
 def marked_ranges(before: Sequence[Tree], after: Sequence[Tree]) -> tuple[tuple[Tree, ...], tuple[Tree, ...]]:

@@ -30,13 +30,13 @@ from wavesym.papers.tree import (
     Tree,
 )
 
-LONGEST = 40
+LONGEST = 26
 """Elements of a formula that is not broken: about what a line of a phone holds."""
-_MINUS, _PLUS, _PRIME, _APPLIED, _TIMES = "−", "+", "′", "\u2061", "\u2062"
+_MINUS, _PLUS, _PRIME, _APPLIED, _TIMES = "\N{MINUS SIGN}", "+", "\N{PRIME}", "\u2061", "\u2062"
 _DOTS = "…"
 _SIGNS = {r"\leq": "≤", r"\le": "≤", r"\geq": "≥", r"\ge": "≥", r"\approx": "≈", r"\neq": "≠"}
 _ACCENTS = {r"\bar": "¯", r"\dot": "˙", r"\ddot": "¨"}
-_BRACKETS = {"(": "()", "[": "[]", "{": "{}"}
+_BRACKETS = {"(": ("(", ")"), "[": ("[", "]"), "{": ("{", "}")}
 _ANGLES = {r"\langle": "⟨", r"\rangle": "⟩"}
 _BLANKS = {r"\cdot": "·"}
 
@@ -68,10 +68,8 @@ def _pieces(tree: Tree) -> list[list[Element]]:
             pieces = [_pieces(terms[0])]
             for term in terms[1:]:
                 sign, body = _signed(term)
-                if isinstance(term, Marked) and not term.sign_only:
-                    pieces.append([[_mark(_row(sign, _element(body)))]])
-                else:
-                    pieces.append(_after(sign, _pieces(body)))
+                whole = isinstance(term, Marked) and not term.sign_only
+                pieces.append([_later_term(term)] if whole else _after(sign, _pieces(body)))
             return list(chain.from_iterable(pieces))
         case Product((*before, last)):
             return _after(_element(Product(tuple(before))), _pieces(last))
@@ -113,14 +111,7 @@ def _element(tree: Tree) -> Element:
         case Minus(of):
             return _row(_operator(_MINUS, form="prefix"), _element(of))
         case Addition(terms):
-            parts = [_element(terms[0])]
-            for term in terms[1:]:
-                sign, body = _signed(term)
-                if isinstance(term, Marked) and not term.sign_only:
-                    parts.append(_mark(_row(sign, _element(body))))
-                else:
-                    parts += [sign, _element(body)]
-            return _row(*parts)
+            return _row(_element(terms[0]), *chain.from_iterable(map(_later_term, terms[1:])))
         case Product(factors):
             return _row(*_between(_operator(_TIMES), map(_element, factors)))
         case Fraction(over, under, True):
@@ -150,15 +141,16 @@ def _element(tree: Tree) -> Element:
             rows = [_made("mtr", _cell(_element(value)), _cell(_element(where))) for value, where in branches]
             return _row(_operator("{", stretchy="true", form="prefix"), _made("mtable", *rows))
         case Relation(sides, signs):
-            parts = [_element(sides[0])]
-            for sign, side in zip(signs, sides[1:], strict=True):
-                parts += [_operator(_sign(sign)), _element(side)]
-            return _row(*parts)
+            pairs = ((_operator(_sign(sign)), _element(side)) for sign, side in zip(signs, sides[1:], strict=True))
+            return _row(_element(sides[0]), *chain.from_iterable(pairs))
         case Listed(items):
             return _row(*_between(_operator(",", rspace="1em"), map(_element, items)))
         case Progression(variable, shown, dots, last):
-            values = [_element(value) for value in shown]
-            values += [_leaf("mo", _DOTS)] * dots + ([_element(last)] if last else [])
+            values = [
+                *map(_element, shown),
+                *([_leaf("mo", _DOTS)] if dots else []),
+                *([_element(last)] if last else []),
+            ]
             return _row(_element(variable), _operator("="), *_between(_operator(","), values))
         case Interval(variable, (opening, closing), low, high):
             return _row(
@@ -173,6 +165,13 @@ def _element(tree: Tree) -> Element:
         case Marked(of):
             return _mark(_element(of))
     raise TypeError(tree)
+
+
+def _later_term(term: Tree) -> list[Element]:
+    """A term that is not the first, with its sign."""
+    sign, body = _signed(term)
+    parts = [sign, _element(body)]
+    return [_mark(_row(*parts))] if isinstance(term, Marked) and not term.sign_only else parts
 
 
 def _symbol(symbol: Symbol) -> Element:

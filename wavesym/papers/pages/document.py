@@ -25,10 +25,13 @@ SIGNS = {
 }
 """Of verdicts, beside their colours: nothing is said by colour alone."""
 
+LONGEST = 140
+"""Characters of a formula that may stand beside another one."""
+
 
 @dataclass(frozen=True)
 class Judged:
-    """A record as it is shown; `right` where what is printed does not hold."""
+    """A record as it is shown; `right` where what is printed does not hold, below it where both are `wide`."""
 
     id: str
     anchor: str
@@ -38,6 +41,7 @@ class Judged:
     lines: str
     printed: Side
     right: Side | None
+    wide: bool
     inferred: tuple[Shown, ...]
     scan: str
     edits: tuple[tuple[str, str, str], ...]
@@ -72,12 +76,12 @@ class Head:
 
 @dataclass(frozen=True)
 class Laid:
-    """A table as the paper prints it; a cell that is no record is None."""
+    """A table as the paper prints it; a cell that is no record is what it names, or None."""
 
     name: str
     caption: str
     columns: tuple[Head, ...]
-    rows: tuple[tuple[Head, tuple[Judged | None, ...]], ...]
+    rows: tuple[tuple[Head, tuple[Judged | Head | None, ...]], ...]
 
 
 @dataclass(frozen=True)
@@ -140,10 +144,11 @@ def _judged(record: Record, reproduce: bool) -> Judged:
         re.sub(r"[^\w.-]+", "_", record.id.strip("(")),
         record.verdict,
         SIGNS[record.verdict],
-        entry.where,
+        entry.where.removesuffix(f", {record.id}"),
         lines(entry.lines),
         one,
         other,
+        max(len(entry.printed), len(record.corrected or "")) > LONGEST,
         inferred(record),
         entry.scan if entry.scan != entry.printed else "",
         entry.edits,
@@ -164,9 +169,9 @@ def _note(group: Sequence[Record]) -> str:
 
 
 def _laid(table: PrintedTable, judged: Mapping[str, Judged]) -> Laid:
-    rows = tuple(
-        (_head(row), tuple(judged.get(table.id(row, column)) for column in table.columns)) for row in table.rows
-    )
+    ids = {row.key: [table.id(row, column) for column in table.columns] for row in table.rows}
+    named = {id: _head(Heading(key=id, formula=name)) for id, name in table.names.items()}
+    rows = tuple((_head(row), tuple(judged.get(id) or named.get(id) for id in ids[row.key])) for row in table.rows)
     return Laid(table.name, table.caption, tuple(map(_head, table.columns)), rows)
 
 

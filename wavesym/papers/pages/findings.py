@@ -1,4 +1,4 @@
-"""What all pages say of a paper, whatever their markup: counts, errors in groups, what was not judged, what survived."""
+"""What all pages say of a paper, whatever their markup: counts, errors in groups, what was not judged or survived."""
 
 from __future__ import annotations
 
@@ -158,8 +158,8 @@ def origin(record: Record) -> str:
 def tested(record: Record) -> str:
     """What a verdict rests on, in a sentence."""
     tried, turned = record.mutations.tried, record.mutations.turned
-    faults = f"each of {tried} faults put in shows" if tried == turned else f"{turned} of {tried} faults put in show"
-    return f"Compared with {record.against} in {record.cases} cases; {faults}."
+    faults = f"{counted(tried, 'fault')} put in, {turned} of them seen"
+    return f"Compared with {record.against} in {counted(record.cases, 'case')}; {faults}."
 
 
 def counted(number: int, what: str) -> str:

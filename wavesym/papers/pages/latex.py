@@ -25,11 +25,11 @@ _CHARACTERS = {
     **{character: f"\\{character}" for character in "#$%&_{}"},
     "ł": r"\l{}",
     "Ł": r"\L{}",
-    "–": "--",
-    "—": "---",
+    "\N{EN DASH}": r"\textendash{}",
+    "—": r"\textemdash{}",
     "…": r"\ldots{}",
-    "’": "'",
-    "‘": "`",
+    "\N{RIGHT SINGLE QUOTATION MARK}": "'",
+    "\N{LEFT SINGLE QUOTATION MARK}": "`",
     "“": "``",
     "”": "''",
     "„": r"\quotedblbase{}",
@@ -40,9 +40,9 @@ _CHARACTERS = {
     "≈": r"\ensuremath{\approx}",
     "≠": r"\ensuremath{\neq}",
     "±": r"\ensuremath{\pm}",
-    "×": r"\ensuremath{\times}",
+    "\N{MULTIPLICATION SIGN}": r"\ensuremath{\times}",
     "·": r"\ensuremath{\cdot}",
-    "−": r"\ensuremath{-}",
+    "\N{MINUS SIGN}": r"\ensuremath{-}",
     "✓": r"\ensuremath{\surd}",
     "✗": r"\ensuremath{\times}",
 }
@@ -63,7 +63,7 @@ def page(findings: Findings) -> str:
 
 def tex(text: str) -> str:
     """Text as LaTeX sets it: what it would read as commands is written out, and so is what is no ASCII."""
-    return "".join(map(_character, unicodedata.normalize("NFC", text)))
+    return "".join(map(_character, unicodedata.normalize("NFC", text))).replace("--", "-{}-")
 
 
 def _character(character: str) -> str:
@@ -71,9 +71,9 @@ def _character(character: str) -> str:
         return _CHARACTERS[character]
     if character.isascii():
         return character
-    base, *marks = unicodedata.normalize("NFD", character)
-    if len(marks) == 1 and marks[0] in _ACCENTS and base.isascii():
-        return f"\\{_ACCENTS[marks[0]]}{{{base}}}"
+    parts = unicodedata.normalize("NFD", character)
+    if len(parts) == 2 and parts[0].isascii() and parts[1] in _ACCENTS:
+        return f"\\{_ACCENTS[parts[1]]}{{{parts[0]}}}"
     name = unicodedata.name(character, f"U+{ord(character):04X}")
     greek = name.removeprefix("GREEK SMALL LETTER ").lower()
     return rf"\ensuremath{{\{greek}}}" if name.startswith("GREEK SMALL LETTER ") else f"[{name.lower()}]"

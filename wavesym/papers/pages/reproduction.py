@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from wavesym.papers.record import Record
@@ -11,9 +10,9 @@ from wavesym.papers.record import Record
 
 @dataclass(frozen=True)
 class Reproduction:
-    """What to type: a scene to save as `file`, a command, and what to look at. `said` alone where there is no scene."""
+    """What to type: a scene to save as `file`, a command, and what to look at; where there is no chain behind a
+    counterexample, it is all in what is `said`."""
 
-    id: str
     said: str
     file: str = ""
     scene: str = ""
@@ -26,16 +25,10 @@ def reproduction(record: Record) -> Reproduction | None:
     wrong = record.counterexample
     if wrong is None:
         return None
-    said = f"{wrong}."
     if wrong.example is None:
-        return Reproduction(record.id, f"{said} There is no chain behind it to run: these are all its numbers.")
+        return Reproduction(f"{wrong}. There is no chain behind it to run: these are all its numbers.")
     example, file = wrong.example(), _file(record.id)
-    return Reproduction(record.id, said, file, example.scene, example.command.replace("SCENE", file), example.look)
-
-
-def reproductions(records: Iterable[Record]) -> list[Reproduction]:
-    """Those of all records that have a counterexample."""
-    return [found for record in records if (found := reproduction(record))]
+    return Reproduction(f"{wrong}.", file, example.scene, example.command.replace("SCENE", file), example.look)
 
 
 def _file(id: str) -> str:

@@ -1,4 +1,4 @@
-"""How a printed string is shown: as a formula where the reader can read it, else as it stands; beside its correction."""
+"""How a printed string is shown: as a formula where the reader can read it, else as it stands; and what differs."""
 
 from __future__ import annotations
 
@@ -57,8 +57,9 @@ def compared(record: Record) -> tuple[Side, Side] | None:
             said = _marked_words(one, other)
         case (one, other) if not isinstance(one, Words) and not isinstance(other, Words):
             said = marked(one, other)
-    if not any(isinstance(range_, Words) for side in ranges for range_ in side):
-        ranges = marked_ranges(*ranges)
+    readable = [[range_ for range_ in side if not isinstance(range_, Words)] for side in ranges]
+    if list(map(len, readable)) == list(map(len, ranges)):
+        ranges = marked_ranges(*readable)
     return Side(said[0], ranges[0]), Side(said[1], ranges[1])
 
 

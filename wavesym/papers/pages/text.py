@@ -22,7 +22,9 @@ def page(findings: Findings) -> str:
     full = [record for record in records if record.verdict != "holds" or not findings.whole]
     parts += ["\n".join(_record(record, findings.reproduce)) for record in full]
     if findings.whole:
-        parts += ["\n".join(part) for part in (_statistics(findings), _unjudged(findings), _survivors(findings)) if part]
+        parts += [
+            "\n".join(part) for part in (_statistics(findings), _unjudged(findings), _survivors(findings)) if part
+        ]
     if len(records) > 1:
         parts.append("\n".join(_counts(findings)))
     return "\n\n".join(parts) + "\n"
@@ -93,7 +95,12 @@ def _unjudged(findings: Findings) -> Iterator[str]:
         yield "Not judged, and why:"
         width = max(len(lines(part.lines)) for part in findings.unjudged)
         for part in findings.unjudged:
-            yield fill(f"{lines(part.lines):{width}}  {part.why}", WIDTH, initial_indent="    ", subsequent_indent=" " * (width + 6))
+            yield fill(
+                f"{lines(part.lines):{width}}  {part.why}",
+                WIDTH,
+                initial_indent="    ",
+                subsequent_indent=" " * (width + 6),
+            )
 
 
 def _survivors(findings: Findings) -> Iterator[str]:
