@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
 
-from wavesym.errors import WavesymError, did_you_mean
+from wavesym.errors import WavesymError
 from wavesym.papers.entries import Entry
+
+MOST_MEANT = 3
+"""Names that an unknown one is answered with."""
 
 
 def asked(entries: Sequence[Entry], names: Iterable[str]) -> tuple[Entry, ...]:
@@ -19,8 +23,9 @@ def asked(entries: Sequence[Entry], names: Iterable[str]) -> tuple[Entry, ...]:
     for name in names:
         found = {entry.id for entry in entries if _means(name, entry)}
         if not found:
-            near = did_you_mean(_bare(name), _known(entries))
-            raise WavesymError(f"{name}: no such record, formula or group in the paper. {near}".rstrip())
+            near = get_close_matches(_bare(name), sorted(_known(entries)), n=MOST_MEANT)
+            meant = f". Did you mean {' or '.join(near)}?" if near else ""
+            raise WavesymError(f"{name}: no such record, formula or group in the paper{meant}")
         wanted |= found
     return tuple(entry for entry in entries if entry.id in wanted)
 

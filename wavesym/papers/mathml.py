@@ -126,9 +126,9 @@ def _element(tree: Tree) -> Element:
             opening, closing = _BRACKETS[bracket]
             return _row(_operator(opening), _element(inner), _operator(closing))
         case Call(function, arguments):
-            inner = _between(_operator(","), map(_element, arguments))
+            given = _between(_operator(","), map(_element, arguments))
             return _row(
-                _element(function), _operator(_APPLIED), _operator("(", stretchy="false"), *inner,
+                _element(function), _operator(_APPLIED), _operator("(", stretchy="false"), *given,
                 _operator(")", stretchy="false"),
             )  # fmt: skip
         case Series(body=body):

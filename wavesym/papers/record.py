@@ -199,16 +199,16 @@ def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
             evidence.append(f"{printed.wrong}.")
         if settled.wrong:
             found.append(f"the correction fails: {settled.wrong}")
-        evidence.append(f"As corrected it holds in all {settled.telling} cases. {slip.note}".strip())
+        evidence.append(f"As corrected it holds in {_all(settled.telling)}. {slip.note}".strip())
         if test.mathematics:
             proved = _Trial(test.mathematics(test.read(entry.printed, (*entry.ranges, *entry.inferred))))
             if proved.wrong or not proved.telling:
                 found.append(f"does not hold as mathematics either: {proved.wrong}")
-            evidence.append(f"As mathematics it holds in all {proved.telling} cases.")
+            evidence.append(f"As mathematics it holds in {_all(proved.telling)}.")
     elif printed.wrong:
         found.append(f"fails, and no correction is known: {printed.wrong}")
     else:
-        evidence.append(f"It holds in all {printed.telling} cases.")
+        evidence.append(f"It holds in {_all(printed.telling)}.")
     if not settled.telling:
         found.append("no case tells anything")
     turned, unturned = _faulty(entry, test, text, ranges) if settled.wrong is None else (Mutations(), ())
@@ -299,6 +299,10 @@ def shown(value: object) -> str:
         case set() | frozenset():
             return "{" + ", ".join(sorted(map(shown, value))) + "}"
     return str(value)
+
+
+def _all(cases: int) -> str:
+    return "the one case" if cases == 1 else f"all {cases} cases"
 
 
 def by_size(sizes: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
