@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from wavesym.papers.about import About, Heading, PrintedTable
 from wavesym.papers.entries import Aside, Entry, Passage, Slip
+from wavesym.papers.entries import Paper as EntriesPaper
 from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.mutations import mutations
 from wavesym.papers.pages.findings import Findings
@@ -79,6 +80,24 @@ PASSAGES = (
     Passage(lines=(1, 2), where="section 1", text="x", aside=(Aside(scan="żółć Резюме $a_1$", why="names <a> & b"),)),
     Passage(lines=(4, 4), where="section 1", why="a title"),
 )
+
+
+class Paper:
+    """Stands in for a paper's module: what `verify --published` asks of one."""
+
+    @staticmethod
+    def about() -> About:
+        return ABOUT
+
+    @staticmethod
+    def paper() -> EntriesPaper:
+        return EntriesPaper((PASSAGES[0].model_copy(update={"record": ENTRIES}), PASSAGES[1]), {})
+
+    @staticmethod
+    def records(
+        wanted: Sequence[Entry] | None = None, watch: Callable[[Sequence[Entry]], Iterable[Entry]] = iter
+    ) -> tuple[Record, ...]:
+        return tuple(judge(each, adding(each)) for each in watch(ENTRIES if wanted is None else wanted))
 
 
 def findings(reproduce: bool = False) -> Findings:
