@@ -28,6 +28,7 @@ def judged(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
             return made
 
     monkeypatch.setattr(published, "paper", Watched)
+    monkeypatch.setattr(published, "particulars", Watched)
     monkeypatch.chdir(tmp_path)
     return found
 

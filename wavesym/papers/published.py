@@ -8,7 +8,7 @@ from wavesym.papers.asked import asked
 from wavesym.papers.entries import Entry
 from wavesym.papers.pages import as_json, html, latex, markdown, text
 from wavesym.papers.pages.findings import Findings
-from wavesym.papers.pielorz1979 import paper
+from wavesym.papers.pielorz1979 import paper, particulars
 
 _PAGES: Mapping[str, Callable[[Findings], str]] = {
     "text": text.page,
@@ -33,5 +33,5 @@ def published(
     """
     wanted = asked(paper.paper().entries(), names) if names else None
     passages = () if names else paper.paper().passages
-    findings = Findings(paper.about(), paper.records(wanted, watch), passages, reproduce)
+    findings = Findings(particulars.about(), paper.records(wanted, watch), passages, reproduce)
     return _PAGES[format](findings), findings.passed

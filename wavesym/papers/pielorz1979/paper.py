@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
-from wavesym.papers.about import About, read_about
 from wavesym.papers.entries import Entry, Paper, problems, read_paper
 from wavesym.papers.record import Adapter, Record, judge
 
@@ -19,12 +18,6 @@ ADAPTERS: Mapping[str, Adapter] = {}
 def paper() -> Paper:
     """The data."""
     return read_paper(sorted(_DATA.glob("*.toml")), _DATA / "hashes.txt")
-
-
-@cache
-def about() -> About:
-    """Who wrote it, and how its tables are laid out."""
-    return read_about(_DATA / "paper.toml")
 
 
 def records(
