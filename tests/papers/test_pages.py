@@ -72,7 +72,7 @@ def test_json_says_it_all_to_programs() -> None:
     wrong = made["(1.2).1"]
     assert wrong["printed"] == "n + n = 3n"
     assert (wrong["corrected"], wrong["origin"], wrong["note"]) == ("n + n = 2n", "print", "A factor.")
-    assert wrong["counterexample"] == "With n = 1 what is printed gives 2; it should be 3."
+    assert wrong["counterexample"] == "With n = 1, what is printed gives 2; it should be 3."
     assert wrong["evidence"].startswith(wrong["counterexample"])
     assert wrong["reproduce"]["file"] == "1.2.1.toml"
     right = made["T1.b.x"]

@@ -61,8 +61,9 @@ class Case:
 
     def __str__(self) -> str:
         where = ", ".join(f"{name} = {shown(value)}" for name, value in self.at.items())
-        said = f"what is printed gives {shown(self.printed)}; it should be {shown(self.true)}"
-        return f"With {where} {said}" if where else said[0].upper() + said[1:]
+        verb = "has" if isinstance(self.printed, Nothing) else "gives"
+        said = f"what is printed {verb} {shown(self.printed)}; it should be {shown(self.true)}"
+        return f"With {where}, {said}" if where else said[0].upper() + said[1:]
 
 
 @dataclass(frozen=True)
@@ -199,7 +200,7 @@ def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
             evidence.append(f"{printed.wrong}.")
         if settled.wrong:
             found.append(f"the correction fails: {settled.wrong}")
-        evidence.append(f"As corrected it holds in {_all(settled.telling)}. {slip.note}".strip())
+        evidence += [f"As corrected it holds in {_all(settled.telling)}.", *([slip.note] if slip.note else [])]
         if test.mathematics:
             proved = _Trial(test.mathematics(test.read(entry.printed, (*entry.ranges, *entry.inferred))))
             if proved.wrong or not proved.telling:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from operator import attrgetter
 
 from wavesym import __version__
 from wavesym.papers.about import About, Heading, PrintedTable
-from wavesym.papers.pages.findings import Findings, Survivor, Unjudged, by_place, lines, origin, tested, titles
+from wavesym.papers.pages.findings import Findings, Survivor, Unjudged, by_place, faults, lines, origin, titles
 from wavesym.papers.pages.reproduction import Reproduction, reproduction
 from wavesym.papers.pages.shown import Shown, Side, compared, formula, inferred, printed
 from wavesym.papers.record import VERDICTS, Record
@@ -45,11 +47,11 @@ class Judged:
     inferred: tuple[Shown, ...]
     scan: str
     edits: tuple[tuple[str, str, str], ...]
-    failure: str
     note: str
     evidence: str
     origin: str
-    tested: str
+    against: str
+    faults: str
     problems: tuple[str, ...]
     reproduction: Reproduction | None
 
@@ -98,7 +100,7 @@ class Document:
     turned: int
     mistakes: Sequence[Mistake]
     tables: Sequence[Laid]
-    holding: Mapping[str, Sequence[Judged]]
+    holding: Mapping[str, Sequence[tuple[str, Sequence[Judged]]]]
     unjudged: Sequence[tuple[str, Unjudged]]
     survivors: Sequence[Survivor]
 
@@ -130,7 +132,7 @@ def document(findings: Findings, format: str) -> Document:
         turned,
         mistakes,
         [_laid(table, judged) for table in findings.about.table if table.ids() & judged.keys()],
-        {name: [judged[record.id] for record in group] for name, group in by_place(findings.holding).items()},
+        {name: _by_test([judged[record.id] for record in group]) for name, group in by_place(findings.holding).items()},
         [(lines(part.lines), part) for part in findings.unjudged],
         findings.survivors,
     )
@@ -139,6 +141,7 @@ def document(findings: Findings, format: str) -> Document:
 def _judged(record: Record, reproduce: bool) -> Judged:
     entry = record.entry
     one, other = compared(record) or (printed(record), None)
+    note = entry.slip.note if entry.slip else entry.note
     return Judged(
         record.id,
         re.sub(r"[^\w.-]+", "_", record.id.strip("(")),
@@ -152,14 +155,19 @@ def _judged(record: Record, reproduce: bool) -> Judged:
         inferred(record),
         entry.scan if entry.scan != entry.printed else "",
         entry.edits,
-        f"{record.counterexample}." if record.counterexample else "",
-        entry.slip.note if entry.slip else entry.note,
-        " ".join(record.evidence),
+        note,
+        " ".join(sentence for sentence in record.evidence if sentence != note),
         origin(record),
-        tested(record),
+        record.against,
+        faults(record),
         record.problems,
         reproduction(record) if reproduce else None,
     )
+
+
+def _by_test(records: Sequence[Judged]) -> list[tuple[str, list[Judged]]]:
+    """Records one after another, put together where they are compared with the same."""
+    return [(against, list(group)) for against, group in groupby(records, attrgetter("against"))]
 
 
 def _note(group: Sequence[Record]) -> str:

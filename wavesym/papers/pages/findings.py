@@ -155,11 +155,14 @@ def origin(record: Record) -> str:
     return ORIGINS[record.entry.slip.origin] if record.entry.slip else ""
 
 
+def faults(record: Record) -> str:
+    """How many faults were tried, in words."""
+    return f"{counted(record.mutations.tried, 'fault')} put in, {record.mutations.turned} of them seen"
+
+
 def tested(record: Record) -> str:
     """What a verdict rests on, in a sentence."""
-    tried, turned = record.mutations.tried, record.mutations.turned
-    faults = f"{counted(tried, 'fault')} put in, {turned} of them seen"
-    return f"Compared with {record.against} in {counted(record.cases, 'case')}; {faults}."
+    return f"Compared with {record.against}; {faults(record)}."
 
 
 def counted(number: int, what: str) -> str:

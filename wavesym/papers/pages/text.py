@@ -44,7 +44,7 @@ def _record(record: Record, reproduce: bool) -> Iterator[str]:
     yield _said("printed", entry.printed)
     yield from (_said("range", range_) for range_ in entry.ranges)
     yield from (_said("inferred", f"{range_} (not printed)") for range_ in entry.inferred)
-    if entry.scan != entry.printed:
+    if entry.edits or entry.translated:
         yield _said("scan", " ".join(entry.scan.split()))
     yield from (_said("read", f"{before} as {after}: {why}") for before, after, why in entry.edits)
     if entry.slip:
