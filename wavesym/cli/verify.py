@@ -45,7 +45,6 @@ def verify(
     \b
     Example:
       wavesym verify collision_m4 drive_m1
-      wavesym verify --published 4.8 --reproduce
     """
     if published + derived + (bool(asked) and not published) > 1:
         raise click.UsageError("more than one of SCENE, --published and --derived given, at most one expected")

@@ -10,9 +10,9 @@ from operator import attrgetter
 
 from wavesym import __version__
 from wavesym.papers.about import About, Heading, PrintedTable
-from wavesym.papers.pages.findings import Findings, Survivor, Unjudged, by_place, faults, lines, origin, titles
+from wavesym.papers.pages.findings import Findings, Survivor, Unjudged, by_place, faults_tried, lines, origin, titles
 from wavesym.papers.pages.reproduction import Reproduction, reproduction
-from wavesym.papers.pages.shown import Shown, Side, compared, formula, inferred, printed
+from wavesym.papers.pages.shown import Shown, Stated, compared, formula, inferred, printed
 from wavesym.papers.record import VERDICTS, Record
 
 SIGNS = {
@@ -41,8 +41,8 @@ class Judged:
     sign: str
     where: str
     lines: str
-    printed: Side
-    right: Side | None
+    printed: Stated
+    right: Stated | None
     wide: bool
     inferred: tuple[Shown, ...]
     scan: str
@@ -159,7 +159,7 @@ def _judged(record: Record, reproduce: bool) -> Judged:
         " ".join(sentence for sentence in record.evidence if sentence != note),
         origin(record),
         record.against,
-        faults(record),
+        faults_tried(record),
         record.problems,
         reproduction(record) if reproduce else None,
     )

@@ -155,14 +155,14 @@ def origin(record: Record) -> str:
     return ORIGINS[record.entry.slip.origin] if record.entry.slip else ""
 
 
-def faults(record: Record) -> str:
+def faults_tried(record: Record) -> str:
     """How many faults were tried, in words."""
     return f"{counted(record.mutations.tried, 'fault')} put in, {record.mutations.turned} of them seen"
 
 
 def tested(record: Record) -> str:
     """What a verdict rests on, in a sentence."""
-    return f"Compared with {record.against}; {faults(record)}."
+    return f"Compared with {record.against}; {faults_tried(record)}."
 
 
 def counted(number: int, what: str) -> str:

@@ -26,17 +26,17 @@ Shown = Tree | Words
 
 
 @dataclass(frozen=True)
-class Side:
-    """One side of a comparison: the formula or sentence, and its ranges."""
+class Stated:
+    """What is stated, as printed or as corrected: the formula or sentence, and its ranges."""
 
     formula: Shown
     ranges: tuple[Shown, ...]
 
 
-def printed(record: Record) -> Side:
+def printed(record: Record) -> Stated:
     """What is printed, alone."""
     entry = record.entry
-    return Side(_said(entry.printed, entry.translated), tuple(map(_range, entry.ranges)))
+    return Stated(_said(entry.printed, entry.translated), tuple(map(_range, entry.ranges)))
 
 
 def inferred(record: Record) -> tuple[Shown, ...]:
@@ -44,7 +44,7 @@ def inferred(record: Record) -> tuple[Shown, ...]:
     return tuple(map(_range, record.entry.inferred))
 
 
-def compared(record: Record) -> tuple[Side, Side] | None:
+def compared(record: Record) -> tuple[Stated, Stated] | None:
     """What is printed beside what is right, differences marked; None where it holds."""
     entry, before = record.entry, printed(record)
     if entry.slip is None:
@@ -60,7 +60,7 @@ def compared(record: Record) -> tuple[Side, Side] | None:
     readable = [[range_ for range_ in side if not isinstance(range_, Words)] for side in ranges]
     if list(map(len, readable)) == list(map(len, ranges)):
         ranges = marked_ranges(*readable)
-    return Side(said[0], ranges[0]), Side(said[1], ranges[1])
+    return Stated(said[0], ranges[0]), Stated(said[1], ranges[1])
 
 
 def _said(text: str, translated: bool) -> Shown:
