@@ -58,7 +58,7 @@ def test_the_whole_paper_in_every_format(format: str, capsys: pytest.CaptureFixt
     [
         (["--published", "1.2"], ["(1.2).1"]),
         (["T1.a", "--published", "(1.1)"], ["(1.1)", "T1.a.x", "T1.a.y"]),
-        (["--published", "Table 1", "--format", "json"], ["T1.a.x", "T1.a.y", "T1.b.x"]),
+        (["--published", "Table 1", "--format", "json"], ["T1.a.x", "T1.a.y", "T1.b.x", "T1.b"]),
     ],
 )
 def test_only_what_is_asked_for_is_judged(

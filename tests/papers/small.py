@@ -17,6 +17,7 @@ SCENE = 'name = "counterexample"\n\n[system]\ntype = "drive"\n'
 TABLE = PrintedTable(
     name="Table 1",
     cell="T1.{row}.{column}",
+    row_head="T1.{row}",
     columns=(Heading(key="x", formula=r"\bar{x}_{0,i}"), Heading(key="y", words="who & what")),
     rows=(Heading(key="a", formula="a"), Heading(key="b", words="b_1")),
     names={"T1.b.y": "U(x, t)"},
@@ -69,6 +70,7 @@ ENTRIES = (
     entry("T1.a.y", "n + 1 + 1 = n + 1", "Table 1, row a", _slip("n + 1 = n + 1", note="One less.")),
     entry("T1.b.x", "0n + n = n", "Table 1, row b", ranges=("n = 1, 2",), equivalent=EQUIVALENT),
     entry("text.1", "n + n = [2", "section 1, after (1.2)", _slip("n + n = 2n", verdict="unreadable", note="#1_%")),
+    entry("T1.b", "n + 1 = 1 + n", "Table 1, row b"),
 )
 
 

@@ -103,7 +103,7 @@ def test_counts_add_up() -> None:
     assert sum(count for _, count in made.counts) == len(ENTRIES)
     assert [(name, dict(counts)) for name, counts in made.statistics] == [
         ("Section 1", {"holds": 1, "misprint": 1, "unreadable": 1}),
-        ("Table 1", {"misprint": 2, "holds": 1}),
+        ("Table 1", {"misprint": 2, "holds": 2}),
     ]
     assert made.faults[0] - made.faults[1] == len(made.survivors) == 2
 
@@ -175,6 +175,7 @@ def test_html_marks_what_differs_and_lays_tables_out() -> None:
     assert 'class="misprint"' in table
     assert "✗ misprint" in table
     assert "<mi>U</mi>" in table
+    assert '<th class="holds"> b_1<span class="label">✓ holds</span></th>' in table
     assert 'href="#T1.a.x"' in table
 
 

@@ -24,12 +24,16 @@ class Heading(_Said):
 class PrintedTable(_Said):
     """A table as the paper lays it out. `cell` makes the id of a cell of its {row} and {column}.
 
+    `row_head` and `column_head` make that of a head in the same way, where heads are records too.
+
     `names` are formulas in cells that name something and are not judged, by the id that the cell would have.
     """
 
     name: str
     caption: str = ""
     cell: str
+    row_head: str = ""
+    column_head: str = ""
     columns: tuple[Heading, ...]
     rows: tuple[Heading, ...]
     names: Mapping[str, str] = {}

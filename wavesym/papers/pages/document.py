@@ -70,10 +70,11 @@ class Mistake:
 
 @dataclass(frozen=True)
 class Head:
-    """The head of a row or column: a formula, or words, or both."""
+    """The head of a row or column: a formula, or words, or both; `judged` where it is a record."""
 
     formula: Shown | None
     words: str
+    judged: Judged | None = None
 
 
 @dataclass(frozen=True)
@@ -177,11 +178,15 @@ def _note(group: Sequence[Record]) -> str:
 
 
 def _laid(table: PrintedTable, judged: Mapping[str, Judged]) -> Laid:
-    ids = {row.key: [table.id(row, column) for column in table.columns] for row in table.rows}
+    columns = tuple(_head(column, judged.get(table.column_head.format(column=column.key))) for column in table.columns)
     named = {id: _head(Heading(key=id, formula=name)) for id, name in table.names.items()}
-    rows = tuple((_head(row), tuple(judged.get(id) or named.get(id) for id in ids[row.key])) for row in table.rows)
-    return Laid(table.name, table.caption, tuple(map(_head, table.columns)), rows)
+    rows = []
+    for row in table.rows:
+        ids = [table.id(row, column) for column in table.columns]
+        head = _head(row, judged.get(table.row_head.format(row=row.key)))
+        rows.append((head, tuple(judged.get(id) or named.get(id) for id in ids)))
+    return Laid(table.name, table.caption, columns, tuple(rows))
 
 
-def _head(heading: Heading) -> Head:
-    return Head(formula(heading.formula) if heading.formula else None, heading.words)
+def _head(heading: Heading, judged: Judged | None = None) -> Head:
+    return Head(formula(heading.formula) if heading.formula else None, heading.words, judged)
