@@ -19,6 +19,7 @@ from wavesym.papers.pages import as_json, html, latex, markdown, text
 from wavesym.papers.pages.document import SIGNS
 from wavesym.papers.pages.findings import Findings
 from wavesym.papers.pages.reproduction import reproduction
+from wavesym.papers.pages.shown import readable
 from wavesym.papers.record import VERDICTS
 
 PAGES = {"text": text.page, "json": as_json.page, "markdown": markdown.page, "html": html.page, "latex": latex.page}
@@ -270,6 +271,19 @@ def test_markdown_keeps_its_tables_whole() -> None:
             assert len(set(widths)) <= 1
             widths = []
     assert page.count("```") % 2 == 0
+
+
+@pytest.mark.parametrize(
+    ("said", "read"),
+    [
+        (r"floors equal, \kappa_i = \kappa_1", "floors equal, κ_i = κ_1"),
+        (r"i = 1, 2, \dots, m", "i = 1, 2, ..., m"),
+        (r"z \in \langle 2n, m)", r"z \in ⟨ 2n, m)"),
+        (r"m \geq 3, and \tau is 0", "m ≥ 3, and τ is 0"),
+    ],
+)
+def test_letters_within_a_sentence_are_written_out(said: str, read: str) -> None:
+    assert readable(said) == read
 
 
 def test_passages_without_text_are_told_by_their_lines() -> None:

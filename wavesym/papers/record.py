@@ -61,8 +61,12 @@ class Case:
 
     def __str__(self) -> str:
         where = ", ".join(f"{name} = {shown(value)}" for name, value in self.at.items())
-        verb = "has" if isinstance(self.printed, Nothing) else "gives"
-        said = f"what is printed {verb} {shown(self.printed)}; it should be {shown(self.true)}"
+        match self.printed, self.true:
+            case bool(), bool():
+                said = f"what is printed is {'' if self.agrees else 'not '}so"
+            case printed, true:
+                verb = "has" if isinstance(printed, Nothing) else "gives"
+                said = f"what is printed {verb} {shown(printed)}; it should be {shown(true)}"
         return f"With {where}, {said}" if where else said[0].upper() + said[1:]
 
 

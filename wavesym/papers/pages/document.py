@@ -6,13 +6,14 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from math import sqrt
 from operator import attrgetter
 
 from wavesym import __version__
 from wavesym.papers.about import About, Heading, PrintedTable
 from wavesym.papers.pages.findings import Findings, Survivor, Unjudged, by_place, faults_tried, lines, origin, titles
 from wavesym.papers.pages.reproduction import Reproduction, reproduction
-from wavesym.papers.pages.shown import Shown, Stated, compared, formula, inferred, printed
+from wavesym.papers.pages.shown import Shown, Stated, compared, formula, inferred, printed, readable
 from wavesym.papers.record import VERDICTS, Record
 
 SIGNS = {
@@ -27,8 +28,10 @@ SIGNS = {
 }
 """Of verdicts, beside their colours: nothing is said by colour alone."""
 
-LONGEST = 140
+LONGEST = 90
 """Characters of a formula that may stand beside another one."""
+SHORTEST = 16
+"""Characters that every column of a table has room for."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,7 @@ class Judged:
     printed: Stated
     right: Stated | None
     wide: bool
+    size: int
     inferred: tuple[Shown, ...]
     scan: str
     edits: tuple[tuple[str, str, str], ...]
@@ -79,12 +83,16 @@ class Head:
 
 @dataclass(frozen=True)
 class Laid:
-    """A table as the paper prints it; a cell that is no record is what it names, or None."""
+    """A table as the paper prints it; a cell that is no record is what it names, or None.
+
+    `widths` are parts of the whole, of the heads of rows and of each column.
+    """
 
     name: str
     caption: str
     columns: tuple[Head, ...]
     rows: tuple[tuple[Head, tuple[Judged | Head | None, ...]], ...]
+    widths: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -153,11 +161,12 @@ def _judged(record: Record, reproduce: bool) -> Judged:
         one,
         other,
         max(len(entry.printed), len(record.corrected or "")) > LONGEST,
+        len(entry.printed),
         inferred(record),
         entry.scan if entry.scan != entry.printed else "",
         entry.edits,
-        note,
-        " ".join(sentence for sentence in record.evidence if sentence != note),
+        readable(note),
+        readable(" ".join(sentence for sentence in record.evidence if sentence != note)),
         origin(record),
         record.against,
         faults_tried(record),
@@ -174,7 +183,7 @@ def _by_test(records: Sequence[Judged]) -> list[tuple[str, list[Judged]]]:
 def _note(group: Sequence[Record]) -> str:
     """The note that an error's records share, if they do."""
     notes = {record.entry.slip.note if record.entry.slip else "" for record in group}
-    return notes.pop() if len(notes) == 1 else ""
+    return readable(notes.pop()) if len(notes) == 1 else ""
 
 
 def _laid(table: PrintedTable, judged: Mapping[str, Judged]) -> Laid:
@@ -185,7 +194,15 @@ def _laid(table: PrintedTable, judged: Mapping[str, Judged]) -> Laid:
         ids = [table.id(row, column) for column in table.columns]
         head = _head(row, judged.get(table.row_head.format(row=row.key)))
         rows.append((head, tuple(judged.get(id) or named.get(id) for id in ids)))
-    return Laid(table.name, table.caption, columns, tuple(rows))
+    return Laid(table.name, table.caption, columns, tuple(rows), _widths(table, judged))
+
+
+def _widths(table: PrintedTable, judged: Mapping[str, Judged]) -> tuple[float, ...]:
+    """By the longest cell of a column; a cell twice as long takes two lines of a column that is not twice as wide."""
+    columns = [[table.id(row, column) for row in table.rows] for column in table.columns]
+    longest = [max(judged[id].size if id in judged else 0 for id in ids) for ids in columns]
+    sizes = [sqrt(max(SHORTEST, size)) for size in (max(len(row.words) for row in table.rows), *longest)]
+    return tuple(round(size / sum(sizes), 3) for size in sizes)
 
 
 def _head(heading: Heading, judged: Judged | None = None) -> Head:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import SequenceMatcher
@@ -23,6 +24,7 @@ class Words:
 
 
 Shown = Tree | Words
+_SIGNS = {"dots": "...", "leq": "≤", "geq": "≥", "langle": "⟨", "rangle": "⟩"}
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,20 @@ def compared(record: Record) -> tuple[Stated, Stated] | None:
     if list(map(len, readable)) == list(map(len, ranges)):
         ranges = marked_ranges(*readable)
     return Stated(said[0], ranges[0]), Stated(said[1], ranges[1])
+
+
+def readable(text: str) -> str:
+    """A sentence with the letters and signs that it has as LaTeX written out."""
+    return re.sub(r"\\([a-z]+)(?![A-Za-z])", _sign, text)
+
+
+def _sign(command: re.Match[str]) -> str:
+    if command[1] in _SIGNS:
+        return _SIGNS[command[1]]
+    try:
+        return unicodedata.lookup(f"GREEK SMALL LETTER {command[1].upper()}")
+    except KeyError:
+        return command[0]
 
 
 def _said(text: str, translated: bool) -> Shown:
