@@ -19,7 +19,8 @@ from wavesym.papers.pages import as_json, html, latex, markdown, text
 from wavesym.papers.pages.document import SIGNS
 from wavesym.papers.pages.findings import Findings
 from wavesym.papers.pages.reproduction import reproduction
-from wavesym.papers.pages.shown import readable
+from wavesym.papers.pages.shown import compared, readable
+from wavesym.papers.reader import read_formula
 from wavesym.papers.record import VERDICTS
 
 PAGES = {"text": text.page, "json": as_json.page, "markdown": markdown.page, "html": html.page, "latex": latex.page}
@@ -284,6 +285,20 @@ def test_markdown_keeps_its_tables_whole() -> None:
 )
 def test_letters_within_a_sentence_are_written_out(said: str, read: str) -> None:
     assert readable(said) == read
+
+
+def test_sentences_are_compared_word_by_word_and_their_formulas_are_read() -> None:
+    said = "There are $m + 1$ bars, four in all."
+    slip = ENTRIES[1].slip.model_copy(update={"corrected": "There are $m - 1$ bars, in all."})
+    wrong = entry("text.2", said, "section 1", slip, translated=True)
+    one, other = compared(records(wrong)[0]) or (None, None)
+    assert one is not None
+    assert other is not None
+    assert [part for part, differs in one.formula.parts if differs] == [read_formula("m + 1"), "four"]
+    assert [part for part, differs in other.formula.parts if differs] == [read_formula("m - 1")]
+    found = Findings(findings().about, records(wrong))
+    assert '<mark><math displaystyle="true">' in html.page(found)
+    assert r"\markedtext{$m + 1$}" in latex.page(found)
 
 
 def test_passages_without_text_are_told_by_their_lines() -> None:

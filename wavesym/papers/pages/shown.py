@@ -17,13 +17,17 @@ from wavesym.papers.tree import Tree
 
 @dataclass(frozen=True)
 class Words:
-    """A sentence, or `code`, which is a string that the reader cannot read; each part with whether it is marked."""
+    """A sentence, or `code`, which is a string that the reader cannot read.
 
-    parts: tuple[tuple[str, bool], ...]
+    Its parts are words and formulas, which stand between dollar signs, each with whether it is marked.
+    """
+
+    parts: tuple[tuple[str | Tree, bool], ...]
     code: bool = False
 
 
 Shown = Tree | Words
+_TOKENS = re.compile(r"(\$[^$]*\$|\s+)")
 _SIGNS = {"dots": "...", "leq": "≤", "geq": "≥", "langle": "⟨", "rangle": "⟩"}
 
 
@@ -55,13 +59,13 @@ def compared(record: Record) -> tuple[Stated, Stated] | None:
     ranges: tuple[tuple[Shown, ...], tuple[Shown, ...]]
     ranges = before.ranges, tuple(map(_range, ranges_as_corrected(entry.slip, entry)))
     match said:
-        case (Words() as one, Words() as other):
-            said = _marked_words(one, other)
+        case _ if entry.translated:
+            said = _marked_words(entry.printed, entry.slip.corrected)
         case (one, other) if not isinstance(one, Words) and not isinstance(other, Words):
             said = marked(one, other)
-    readable = [[range_ for range_ in side if not isinstance(range_, Words)] for side in ranges]
-    if list(map(len, readable)) == list(map(len, ranges)):
-        ranges = marked_ranges(*readable)
+    trees = [[range_ for range_ in side if not isinstance(range_, Words)] for side in ranges]
+    if list(map(len, trees)) == list(map(len, ranges)):
+        ranges = marked_ranges(*trees)
     return Stated(said[0], ranges[0]), Stated(said[1], ranges[1])
 
 
@@ -80,7 +84,7 @@ def _sign(command: re.Match[str]) -> str:
 
 
 def _said(text: str, translated: bool) -> Shown:
-    return Words(((text, False),)) if translated else formula(text)
+    return Words(_parts((token, False) for token in _TOKENS.split(text))) if translated else formula(text)
 
 
 def formula(text: str) -> Shown:
@@ -98,15 +102,21 @@ def _range(text: str) -> Shown:
         return Words(((text, False),), code=True)
 
 
-def _marked_words(one: Words, other: Words) -> tuple[Words, Words]:
-    """Word by word."""
-    before, after = (re.split(r"(\s+)", "".join(text for text, _ in words.parts)) for words in (one, other))
-    blocks = SequenceMatcher(a=before, b=after, autojunk=False).get_opcodes()
+def _marked_words(before: str, after: str) -> tuple[Words, Words]:
+    """Two sentences, word by word."""
+    one, other = _TOKENS.split(before), _TOKENS.split(after)
+    blocks = SequenceMatcher(a=one, b=other, autojunk=False).get_opcodes()
     return (
-        Words(_joined((before[start:end], tag != "equal") for tag, start, end, _, _ in blocks), one.code),
-        Words(_joined((after[start:end], tag != "equal") for tag, _, _, start, end in blocks), other.code),
+        Words(_parts((token, tag != "equal") for tag, start, end, _, _ in blocks for token in one[start:end])),
+        Words(_parts((token, tag != "equal") for tag, _, _, start, end in blocks for token in other[start:end])),
     )
 
 
-def _joined(parts: Iterable[tuple[list[str], bool]]) -> tuple[tuple[str, bool], ...]:
-    return tuple(("".join(words), differs) for words, differs in parts if words)
+def _parts(tokens: Iterable[tuple[str, bool]]) -> tuple[tuple[str | Tree, bool], ...]:
+    """Formulas read, and blanks never marked: a line may be broken there."""
+    return tuple((_part(token), differs and not token.isspace()) for token, differs in tokens if token)
+
+
+def _part(token: str) -> str | Tree:
+    said = formula(token.strip("$")) if token.startswith("$") else token
+    return token if isinstance(said, Words) else said
