@@ -18,8 +18,8 @@ LONG = (
     ("text", "part"),
     [
         (r"\frac{a}{2}", "<mfrac><mi>a</mi><mn>2</mn></mfrac>"),
-        (r"\bar{x}", '<mover accent="true"><mi>x</mi><mo stretchy="false">¯</mo></mover>'),
-        (r"\ddot{y}_0", '<msub><mover accent="true"><mi>y</mi><mo stretchy="false">¨</mo></mover><mn>0</mn></msub>'),
+        (r"\bar{x}", '<mover><mi>x</mi><mo stretchy="false">¯</mo></mover>'),
+        (r"\ddot{y}_0", '<msub><mover><mi>y</mi><mo stretchy="false">¨</mo></mover><mn>0</mn></msub>'),
         (r"\mathcal{F}_i", "<msub><mi>\N{SCRIPT CAPITAL F}</mi><mi>i</mi></msub>"),
         (r"\mathcal{G}_i", "<msub><mi>\N{MATHEMATICAL SCRIPT CAPITAL G}</mi><mi>i</mi></msub>"),
         ("f_i''", "\N{PRIME}\N{PRIME}</mo></msubsup>"),
@@ -27,8 +27,10 @@ LONG = (
         (r"\frac{\partial^2 U}{\partial t^2}", "<msup><mo>∂</mo><mn>2</mn></msup><mi>U</mi>"),
         (r"\sum_{k=0}^{m} a_k", "<munderover><mo>∑</mo>"),
         (r"\begin{cases} 1 & i = 2 \\ 0 & i = 3 \end{cases}", "<mtable><mtr><mtd><mn>1</mn></mtd>"),
-        (r"\left. u \right|_{t=0}", "<msub><mo"),
+        (r"\left. u \right|_{t=0}", "<msub><mrow><mi>u</mi><mo"),
         ("a - b", '<mo form="infix">\N{MINUS SIGN}</mo>'),
+        (r"(a + b)^2", '<msup><mrow><mo stretchy="false">(</mo>'),
+        (r"(\frac{a}{b})^2", '<msup><mrow><mo stretchy="true">(</mo>'),
         (r"a \leq b", "<mo>≤</mo>"),
     ],
 )

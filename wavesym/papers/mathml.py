@@ -34,6 +34,7 @@ LONGEST = 26
 """Elements of a formula that is not broken: about what a line of a phone holds."""
 _MINUS, _PLUS, _PRIME, _APPLIED, _TIMES = "\N{MINUS SIGN}", "+", "\N{PRIME}", "\u2061", "\u2062"
 _DOTS = "…"
+_TALL = frozenset({"mfrac", "munderover", "mtable"})
 _SIGNS = {r"\leq": "≤", r"\le": "≤", r"\geq": "≥", r"\ge": "≥", r"\approx": "≈", r"\neq": "≠"}
 _ACCENTS = {r"\bar": "¯", r"\dot": "˙", r"\ddot": "¨"}
 _BRACKETS = {"(": ("(", ")"), "[": ("[", "]"), "{": ("{", "}")}
@@ -123,8 +124,7 @@ def _element(tree: Tree) -> Element:
         case Power(base, exponent):
             return _made("msup", _element(base), _element(exponent))
         case Group(bracket, inner):
-            opening, closing = _BRACKETS[bracket]
-            return _row(_operator(opening), _element(inner), _operator(closing))
+            return _within(*_BRACKETS[bracket], _element(inner))
         case Call(function, arguments):
             given = _between(_operator(","), map(_element, arguments))
             return _row(
@@ -136,7 +136,8 @@ def _element(tree: Tree) -> Element:
         case Derivative(order, of, by):
             return _made("mfrac", _row(_partial(order), _element(of)), _row(_partial(1), _raised(_element(by), order)))
         case AtValue(of, where):
-            return _row(_element(of), _made("msub", _operator("|", stretchy="true", form="postfix"), _element(where)))
+            bar = _operator("|", stretchy="true", form="postfix")
+            return _made("msub", _made("mrow", _element(of), bar), _element(where))
         case Cases(branches):
             rows = [_made("mtr", _cell(_element(value)), _cell(_element(where))) for value, where in branches]
             return _row(_operator("{", stretchy="true", form="prefix"), _made("mtable", *rows))
@@ -167,6 +168,12 @@ def _element(tree: Tree) -> Element:
     raise TypeError(tree)
 
 
+def _within(opening: str, closing: str, inner: Element) -> Element:
+    """In brackets, which are as tall as need be."""
+    stretchy = "true" if any(part.tag in _TALL for part in inner.iter()) else "false"
+    return _row(_operator(opening, stretchy=stretchy), inner, _operator(closing, stretchy=stretchy))
+
+
 def _later_term(term: Tree) -> list[Element]:
     """A term that is not the first, with its sign."""
     sign, body = _signed(term)
@@ -193,8 +200,8 @@ def _letter(symbol: Symbol) -> Element:
     base = _leaf("mi", _script(symbol.name) if r"\mathcal" in accents else _named(symbol.name))
     for accent in reversed(accents):
         if accent in _ACCENTS:
+            # not as an accent: browsers put those onto the tops of capitals
             base = _made("mover", base, _operator(_ACCENTS[accent], stretchy="false"))
-            base.set("accent", "true")
     return base
 
 
