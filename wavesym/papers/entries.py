@@ -114,7 +114,9 @@ class Paper:
 def read_paper(files: Iterable[Path], hashes: Path) -> Paper:
     """The passages of some TOML files, in the order of the source."""
     passages = [
-        Passage(**passage) for file in files for passage in tomllib.loads(file.read_text(encoding="utf-8"))["passage"]
+        Passage(**passage)
+        for file in files
+        for passage in tomllib.loads(file.read_text(encoding="utf-8")).get("passage", ())
     ]
     known = dict(line.split() for line in hashes.read_text(encoding="utf-8").splitlines())
     return Paper(tuple(sorted(passages, key=lambda passage: passage.lines)), known)

@@ -61,8 +61,13 @@ class Case:
 
     def __str__(self) -> str:
         where = ", ".join(f"{name} = {shown(value)}" for name, value in self.at.items())
-        said = f"printed {shown(self.printed)}, true {shown(self.true)}"
-        return f"{where}: {said}" if where else said
+        match self.printed, self.true:
+            case bool(), bool():
+                said = f"what is printed is {'' if self.agrees else 'not '}so"
+            case printed, true:
+                verb = "has" if isinstance(printed, Nothing) else "gives"
+                said = f"what is printed {verb} {shown(printed)}; it should be {shown(true)}"
+        return f"With {where}, {said}" if where else said[0].upper() + said[1:]
 
 
 @dataclass(frozen=True)
@@ -196,19 +201,19 @@ def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
         if printed.wrong is None:
             found.append("called wrong, yet no case shows it")
         else:
-            evidence.append(f"As printed it fails: {printed.wrong}.")
+            evidence.append(f"{printed.wrong}.")
         if settled.wrong:
             found.append(f"the correction fails: {settled.wrong}")
-        evidence.append(f"As corrected it holds in {settled.telling} cases. {slip.note}".strip())
+        evidence += [f"As corrected it holds in {_all(settled.telling)}.", *([slip.note] if slip.note else [])]
         if test.mathematics:
             proved = _Trial(test.mathematics(test.read(entry.printed, (*entry.ranges, *entry.inferred))))
             if proved.wrong or not proved.telling:
                 found.append(f"does not hold as mathematics either: {proved.wrong}")
-            evidence.append(f"As mathematics it holds in {proved.telling} cases.")
+            evidence.append(f"As mathematics it holds in {_all(proved.telling)}.")
     elif printed.wrong:
         found.append(f"fails, and no correction is known: {printed.wrong}")
     else:
-        evidence.append(f"Holds in {printed.telling} cases.")
+        evidence.append(f"It holds in {_all(printed.telling)}.")
     if not settled.telling:
         found.append("no case tells anything")
     turned, unturned = _faulty(entry, test, text, ranges) if settled.wrong is None else (Mutations(), ())
@@ -307,6 +312,10 @@ def shown(value: object) -> str:
         case set() | frozenset():
             return "{" + ", ".join(sorted(map(shown, value))) + "}"
     return str(value)
+
+
+def _all(cases: int) -> str:
+    return "the one case" if cases == 1 else f"all {cases} cases"
 
 
 def by_size(sizes: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
