@@ -128,7 +128,7 @@ class Scope:
 
     def entier(self, value: Any) -> Any:
         """E."""
-        return fmpq(value).floor()
+        return int(fmpq(value).floor())
 
     def _series(self, series: Series) -> Any:
         first, last = self.whole(series.first), self.whole(series.last)

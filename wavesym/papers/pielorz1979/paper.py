@@ -8,10 +8,16 @@ from functools import cache
 from pathlib import Path
 
 from wavesym.papers.entries import Entry, Paper, problems, read_paper
+from wavesym.papers.pielorz1979 import forms
 from wavesym.papers.record import Adapter, Record, judge
 
 _DATA = Path(__file__).with_name("data")
-ADAPTERS: Mapping[str, Adapter] = {}
+ADAPTERS: Mapping[str, Adapter] = {
+    "definition": forms.definition,
+    "form": forms.form,
+    "interval": forms.interval,
+    "rate": forms.rate,
+}
 
 
 @cache
