@@ -119,7 +119,7 @@ class Scope:
         function = call.function
         if function in (Symbol("H"), Symbol("E")) and len(call.arguments) == 1:
             value = self.value(call.arguments[0])
-            return self.step(value) if function.name == "H" else fmpq(value).floor()
+            return self.step(value) if function.name == "H" else int(fmpq(value).floor())
         return self.call(call)
 
     def step(self, value: Any) -> Any:
