@@ -21,12 +21,14 @@ from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sid
 from wavesym.papers.exact_tables import INTERVALS as TABULATED
 from wavesym.papers.exact_tables import Exact, building, collision, drive
 from wavesym.papers.mutations import ends
-from wavesym.papers.pielorz1979 import cells
+from wavesym.papers.pielorz1979 import limits
 from wavesym.papers.pielorz1979.scenes import example
+from wavesym.papers.pielorz1979.transcription import entry as transcribed
+from wavesym.papers.pielorz1979.transcription import paper
 from wavesym.papers.pielorz1979.truth import Driven, loads
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, Example, Reading, Test, by_size, case
-from wavesym.papers.tree import Blank, Call, Symbol, Tree, latex
+from wavesym.papers.tree import Call, Symbol, Tree, latex
 
 INTERVALS = {"I": 4, "II": 2, "III": 4}
 """The numbers n = 0, 1, ... that are tried; for each, example II has two intervals."""
@@ -36,6 +38,7 @@ _WITHIN = (fmpq(0), fmpq(5, 7))
 """Where formulas are compared, as parts of an interval: at its start and inside."""
 
 
+_LIMITING = ("n", "half", "i", limits.ALPHA, "j", "r", "l")
 Definitions = Mapping[tuple[str, tuple[int, ...]], Tree]
 """L_0, r_0 and r_1, by letter and index."""
 
@@ -118,7 +121,7 @@ class FormScope(Scope):
     def _for(self, rod: int) -> Iterator[tuple[Tree, dict[str, Any], tuple[int, ...]]]:
         """The equations for a rod, each with its place and the indices of what it gives."""
         numbers = span(self._form.numbers, self, most=INTERVALS[self._form.name])
-        halves = cells.HALVES if self._form.name == "II" else (None,)
+        halves = limits.HALVES if self._form.name == "II" else (None,)
         places = [{"i": rod, "n": n, "half": half} for n in numbers for half in halves]
         for equation, place in ((self._form.start, {"i": rod}), *((self._form.step, place) for place in places)):
             with self.binding(place):
@@ -147,15 +150,19 @@ class FormScope(Scope):
             return self._piece(*((f"M{indices[0]}", indices[1]) if len(indices) == 2 else ("a", indices[0]))).time
         if name == "m" and len(indices) == 1:
             return self._last(indices[0])
-        if (name, indices) in self._definitions:
-            return self._defined(name, indices)
-        return self._cell(symbol)
+        return self.value(self._cell(symbol, indices)) if name == "w" else self._limit(symbol, indices)
 
-    def _defined(self, name: str, indices: tuple[int, ...]) -> Any:
-        key = name, indices, self.bound["i"]
+    def _limit(self, symbol: Symbol, indices: tuple[int, ...]) -> Any:
+        """A limit of a sum or an end of a range, kept for the letters that it may depend on."""
+        key = symbol.name, indices, *map(self.bound.get, _LIMITING)
         if key not in self._known:
-            self._known[key] = self.value(self._definitions[name, indices])
+            self._known[key] = self.value(self._cell(symbol, indices))
         return self._known[key]
+
+    def _cell(self, symbol: Symbol, indices: tuple[int, ...]) -> Tree:
+        if (symbol.name, indices) in self._definitions:
+            return self._definitions[symbol.name, indices]
+        return limits.cell(self._form.name, self._letter, symbol, self)
 
     def _last(self, index: int) -> int:
         """m_s and m_1: the number of the last piece of a load."""
@@ -204,13 +211,6 @@ class FormScope(Scope):
             raise MeaninglessError(f"interval {upper[-1]} is beyond the tables") from None
         return combined(increments) if len(increments) > 1 else increments[0][1]
 
-    def _cell(self, symbol: Symbol) -> Any:
-        """A cell of the form's table; a dash for the ends of a range says that it is empty."""
-        tree = cells.corrected(self._form.name, self._letter, symbol, self)
-        if isinstance(tree, Blank):
-            return {True: 1, False: 0}[len(symbol.below) == 2]
-        return self.value(tree)
-
 
 def _derivative(tree: Tree) -> Call:
     """F' with two indices, of one argument."""
@@ -246,7 +246,7 @@ def form_cases(form: Form, definitions: Definitions | None = None) -> Iterator[C
     most = INTERVALS[form.name]
     for m, n in by_size((m, n) for m in SIZES[form.name] for n in (0, 1, most)):
         driven = moved(form.name, m)
-        for letter, rod in cells.functions(form.name, m):
+        for letter, rod in limits.functions(form.name, m):
             scope = scopes.setdefault((m, letter), FormScope(form, driven, letter, definitions))
             for start, number in list(starts(form.name, n))[-1 if n == most else 0 :]:
                 for part in _WITHIN if n < most else _WITHIN[1:]:
@@ -279,7 +279,7 @@ def _shown(driven: Driven, letter: str, rod: int, number: int) -> Callable[[], E
 
 def interval(entry: Entry) -> Test:
     """Adapter: where z lies when a form is said to hold."""
-    told = entry_of(entry.about["form"])
+    told = transcribed(entry.about["form"])
     name = told.about["example"]
     right = Form.of(name, corrected(told))
 
@@ -309,7 +309,7 @@ def _interval_cases(form: Form, reading: Reading) -> Iterator[Case]:
     assert isinstance(left, Call)
     for m in SIZES[form.name][1:3]:
         driven = moved(form.name, m)
-        for letter, rod in cells.functions(form.name, m):
+        for letter, rod in limits.functions(form.name, m):
             scope = FormScope(form, driven, letter)
             most = INTERVALS[form.name] // 2
             for z in (start + part for start in range(2 * most + 2) for part in _WITHIN):
@@ -342,7 +342,7 @@ class RateScope(Scope):
 
 def rate(entry: Entry) -> Test:
     """Adapter: gamma_i; the formulas of (4.11) together give every one once."""
-    others = [corrected(other) for other in entries("rate") if other.id != entry.id]
+    others = [corrected(other) for other in paper().entries() if other.kind == "rate" and other.id != entry.id]
     return Test(
         "the rates of the discs by their derived node laws, m = 1 ... 5",
         lambda reading: _rate_cases(reading, others),
@@ -393,7 +393,7 @@ def _later(scope: RateScope, place: Mapping[str, int], tree: Tree) -> Callable[[
 
 def definition(entry: Entry) -> Test:
     """Adapter: L_0, r_0 and r_1, by what Table 3 makes of them."""
-    form = Form.of("II", corrected(entry_of("(4.10)")))
+    form = Form.of("II", corrected(transcribed("(4.10)")))
 
     def cases(reading: Reading) -> Iterator[Case]:
         known = {**read_definitions(), **_defined(reading)}
@@ -412,7 +412,7 @@ def _moment_cases(form: Form, known: Definitions) -> Iterator[Case]:
     """r from s_1 to R_2 counts the moments that act in a half, each once."""
     for m in range(1, 6):
         driven = moved("II", m)
-        for half, (letter, rod) in product(cells.HALVES, cells.functions("II", m)):
+        for half, (letter, rod) in product(limits.HALVES, limits.functions("II", m)):
             scope = FormScope(form, driven, letter, known)
             at = {"m": m, "half": half, "function": f"{letter}_{rod}", "claim": "moments s"}
             yield case(at, partial(moments, scope, half, rod), acting(driven.exact, half, letter, rod))
@@ -422,7 +422,7 @@ def moments(scope: FormScope, half: str, rod: int, parts: tuple[int, ...] = (1, 
     """The s that Table 3 has in a half, in the order of their parts alpha."""
     found = []
     for alpha in parts:
-        with scope.binding({"half": half, "i": rod, r"\alpha": alpha}):
+        with scope.binding({"n": 0, "half": half, "i": rod, limits.ALPHA: alpha}):
             first, last = (scope.whole(read_formula(rf"{end}_\alpha")) for end in "sR")
             for r in range(first, last + 1):
                 with scope.binding({"r": r}):
@@ -438,20 +438,6 @@ def acting(exact: Exact, half: str, letter: str, rod: int) -> tuple[int, ...]:
     )
 
 
-def entries(kind: str) -> list[Entry]:
-    """The paper's records of a kind."""
-    from wavesym.papers.pielorz1979.paper import paper
-
-    return [entry for entry in paper().entries() if entry.kind == kind]
-
-
-def entry_of(id: str) -> Entry:
-    """A record of the paper."""
-    from wavesym.papers.pielorz1979.paper import paper
-
-    return next(entry for entry in paper().entries() if entry.id == id)
-
-
 def corrected(entry: Entry) -> Reading:
     """A record as it holds."""
     text, ranges = (entry.slip.corrected, entry.slip.ranges) if entry.slip else (entry.printed, None)
@@ -462,7 +448,7 @@ def corrected(entry: Entry) -> Reading:
 @cache
 def read_definitions() -> Definitions:
     """L_0, r_0 and r_1 as they hold."""
-    return {key: tree for entry in entries("definition") for key, tree in _defined(corrected(entry)).items()}
+    return {key: tree for entry in paper().entries() if entry.kind == "definition" for key, tree in _defined(corrected(entry)).items()}
 
 
 def _defined(reading: Reading) -> Definitions:

@@ -4,26 +4,18 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache
-from pathlib import Path
 
-from wavesym.papers.entries import Entry, Paper, problems, read_paper
+from wavesym.papers.entries import Entry, problems
 from wavesym.papers.pielorz1979 import forms
+from wavesym.papers.pielorz1979.transcription import paper
 from wavesym.papers.record import Adapter, Record, judge
 
-_DATA = Path(__file__).with_name("data")
 ADAPTERS: Mapping[str, Adapter] = {
     "definition": forms.definition,
     "form": forms.form,
     "interval": forms.interval,
     "rate": forms.rate,
 }
-
-
-@cache
-def paper() -> Paper:
-    """The data."""
-    return read_paper(sorted(_DATA.glob("*.toml")), _DATA / "hashes.txt")
 
 
 def records(
