@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache
 from itertools import product
 from typing import Any
 
@@ -237,7 +237,9 @@ def form(entry: Entry) -> Test:
     )
 
 
-def form_cases(form: Form, definitions: Definitions | None = None) -> Iterator[Case]:
+def form_cases(
+    form: Form, definitions: Definitions | None = None, scope: type[FormScope] | None = None
+) -> Iterator[Case]:
     """All functions of the form's table at the starts of the first intervals and inside, then in the last interval.
 
     A value there has the increments of all intervals in it, and exponentials of different exponents are independent.
@@ -247,10 +249,10 @@ def form_cases(form: Form, definitions: Definitions | None = None) -> Iterator[C
     for m, n in by_size((m, n) for m in SIZES[form.name] for n in (0, 1, most)):
         driven = moved(form.name, m)
         for letter, rod in limits.functions(form.name, m):
-            scope = scopes.setdefault((m, letter), FormScope(form, driven, letter, definitions))
+            made = scopes.setdefault((m, letter), (scope or FormScope)(form, driven, letter, definitions))
             for start, number in list(starts(form.name, n))[-1 if n == most else 0 :]:
                 for part in _WITHIN if n < most else _WITHIN[1:]:
-                    yield _compared(scope, driven, (letter, rod), number, start + part * driven.exact.interval)
+                    yield _compared(made, driven, (letter, rod), number, start + part * driven.exact.interval)
 
 
 def starts(name: str, n: int) -> Iterator[tuple[int, int]]:
@@ -415,19 +417,20 @@ def _moment_cases(form: Form, known: Definitions) -> Iterator[Case]:
         for half, (letter, rod) in product(limits.HALVES, limits.functions("II", m)):
             scope = FormScope(form, driven, letter, known)
             at = {"m": m, "half": half, "function": f"{letter}_{rod}", "claim": "moments s"}
-            yield case(at, partial(moments, scope, half, rod), acting(driven.exact, half, letter, rod))
+            true = acting(driven.exact, half, letter, rod)
+            yield case(at, lambda: tuple(s for _, s in moments(scope, half, rod)), true)  # noqa: B023
 
 
-def moments(scope: FormScope, half: str, rod: int, parts: tuple[int, ...] = (1, 2)) -> tuple[int, ...]:
-    """The s that Table 3 has in a half, in the order of their parts alpha."""
+def moments(scope: FormScope, half: str, rod: int, parts: tuple[int, ...] = (1, 2)) -> list[tuple[int, int]]:
+    """The r and s that Table 3 has in a half, in the order of their parts alpha."""
     found = []
     for alpha in parts:
         with scope.binding({"n": 0, "half": half, "i": rod, limits.ALPHA: alpha}):
             first, last = (scope.whole(read_formula(rf"{end}_\alpha")) for end in "sR")
             for r in range(first, last + 1):
                 with scope.binding({"r": r}):
-                    found.append(scope.whole(read_formula("s")))
-    return tuple(found)
+                    found.append((r, scope.whole(read_formula("s"))))
+    return found
 
 
 def acting(exact: Exact, half: str, letter: str, rod: int) -> tuple[int, ...]:
