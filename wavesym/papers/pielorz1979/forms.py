@@ -313,10 +313,10 @@ def _interval_cases(form: Form, reading: Reading) -> Iterator[Case]:
         driven = moved(form.name, m)
         for letter, rod in limits.functions(form.name, m):
             scope = FormScope(form, driven, letter)
-            most = INTERVALS[form.name] // 2
-            for z in (start + part for start in range(2 * most + 2) for part in _WITHIN):
+            until, most = (4, 6) if form.name == "II" else (6, 4)
+            for z in (start + part for start in range(until) for part in _WITHIN):
                 inside = []
-                for value in span(numbers, scope, most=2 * most):
+                for value in span(numbers, scope, most=most):
                     variable = latex(numbers.variable)  # type: ignore[union-attr]
                     with scope.binding({variable: value, "z": z, "i": rod}):
                         if holds(reading.formula, scope):

@@ -8,15 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
-from itertools import groupby, pairwise
-from math import ceil
+from itertools import groupby, pairwise, product
 from typing import Any
 
 from flint import fmpq
 
 from wavesym.exact.table import Function, Rules, unit_response
 from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters
+from wavesym.model.node import Parameters, Rod
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds
 from wavesym.papers.exact_tables import INTERVALS, Exact, building, collision, drive
@@ -114,9 +113,8 @@ def _heaviside(words: Words) -> Iterator[Case]:
     known = {" with H(0) = 0": (0,), " with H(0) = 1": (1,)}.get(words["at_0"], (0, 1))
     for at_0 in known:
         scope = type("At0", (FormScope,), {"heaviside_at_0": at_0})
-        for example in ("II", "III"):
-            for tried in form_cases(right_form(example), scope=scope):
-                yield replace(tried, at={"H(0)": at_0, **tried.at})
+        for tried in form_cases(right_form("III"), scope=scope):
+            yield replace(tried, at={"H(0)": at_0, **tried.at})
 
 
 # what stands in the tables
@@ -172,7 +170,7 @@ def _named(rate: fmpq, source: str) -> str:
 def _chain(exact: Exact, system: Any, m: int, **parameters: Any) -> Exact:
     chain = Chain(system, m, Parameters(**parameters))
     rules = Rules(chain)
-    wanted = {Function(letter, rod): 2 * MOST_N + 2 for letter in "fg" for rod in range(1, m + 1)}
+    wanted = {Function(letter, rod): MOST_N + 1 for letter in "fg" for rod in range(1, m + 1)}
     return Exact(chain, rules.interval, {source: unit_response(rules, source, wanted) for source in chain.sources})
 
 
@@ -265,7 +263,7 @@ def _roles(example: str, driven: Driven, lower: tuple[int, ...], upper: tuple[in
     if example == "I":
         return {**found, "begins": begins}
     if example == "II":
-        return {**found, "moment": upper[1], "of": found["of"] - driven.loads[f"M{upper[1]}"][0].time}
+        return {**found, "moment": upper[1], "of": found["of"] - driven.loads[f"M{upper[1]}"][-1].time}
     time = driven.loads["a"][upper[0]].time
     return {**found, "function": upper[1], "part": upper[0], "begins": begins, "of": found["of"] - time}
 
@@ -285,7 +283,8 @@ def _said_roles(
     term = read_formula(words["term"])
     assert isinstance(term, Symbol)
     said = {"function": "function", "power": "power", "begins": "begins", "moment": "moment", "part": "part"}
-    with scope.binding({"k": 0, **letters, "z": _AT}):
+    last = len(driven.loads[f"M{upper[1]}"]) - 1 if "moment" in words else 0
+    with scope.binding({"k": last, **letters, "z": _AT}):
         found = {key: scope.value(read_formula(words[place])) for key, place in said.items() if place in words}
         return {**found, "term": scope.indices(term)[0], "of": scope.value(read_formula(words["of"]))}
 
@@ -294,21 +293,20 @@ def _said_roles(
 
 
 def _moments(words: Words) -> Iterator[Case]:
+    """Inside of intervals: at their ends nothing jumps in a drive."""
     where = read_range(rf"z \in {words['interval']}")
-    for m in (1, 2, 3, 4):
-        exact = drive(m)
-        for z in (fmpq(k, 2) for k in range(12)):
-            scope = Scope({"z": z})
-            inside = [n for n in range(6) if _lies(where, scope, n)]
-            number = int(z.floor()) + 1
-            for letter, i in limits.functions("II", m) if inside else ():
-                come = {s for s in range(1, m + 2) if _gained(exact, s, letter, i, range(1, number + 1))}
-                gaining = {s for s in come if _gained(exact, s, letter, i, range(number, number + 1))}
-                parity = words["odd"] if i % 2 else words["even"]
-                said = {s for s in range(1, m + 2) if s % 2 == (parity == "odd")}
-                true = come if words["quantity"] == "functions" else gaining
-                at = {"m": m, "z": z, "function": f"{letter}'_{i}"}
-                yield Case(at, said & come if words["arrived"] else said, true, bool(true))
+    for m, z in ((m, n + fmpq(1, 2)) for m in (1, 2, 3, 4) for n in range(6)):
+        exact, number = drive(m), int(z.ceil())
+        if not any(_lies(where, Scope({"z": z}), n) for n in range(6)):
+            continue
+        for letter, i in limits.functions("II", m):
+            come = {s for s in range(1, m + 2) if _gained(exact, s, letter, i, range(1, number + 1))}
+            gaining = {s for s in come if _gained(exact, s, letter, i, range(number, number + 1))}
+            parity = words["odd"] if i % 2 else words["even"]
+            said = {s for s in range(1, m + 2) if s % 2 == (parity == "odd")}
+            true = come if words["quantity"] == "functions" else gaining
+            at = {"m": m, "z": z, "function": f"{letter}'_{i}"}
+            yield Case(at, said & come if words["arrived"] else said, true, bool(true))
 
 
 def _lies(where: Tree, scope: Scope, n: int) -> bool:
@@ -360,9 +358,9 @@ def _series(words: Words) -> Iterator[Case]:
         driven = moved(example, 4)
         for n in (0, 1, 2):
             start = 2 * n
-            bound: dict[str, Any] = {"n": n, "d": start + 1, "half": "even", "z": _AT, "k": 0, "s": 2, "i": 1}
+            bound: dict[str, Any] = {"n": n, "d": start + 1, "half": "even", "z": _AT, "k": 1, "s": 2, "i": 1}
             scope = FormScope(right_form(example), driven, "f")
-            time = driven.loads["M2"][0].time if example == "II" else fmpq(0)
+            time = driven.loads[{"II": "M2", "III": "a"}[example]][1].time if example != "I" else 0
             with scope.binding(bound):
                 at = {"form": form, "n": n}
                 yield case(at, lambda: scope.value(read_formula(words[example])), _AT - start - time)  # noqa: B023
@@ -474,6 +472,37 @@ def _slopes(words: Words) -> Iterator[Case]:
                                 yield Case(at, slopes[words[part]], other - one)
 
 
+def _by_4_2(words: Words) -> Iterator[Case]:
+    """What (4.2) gives on both sides of every node, by the conditions that hold there."""
+    order = {"derivatives": 1, "integrals of the derivatives": 0}[words["orders"]]
+    for example, m in (("I", 4), ("II", 2), ("III", 3)):
+        driven = moved(example, m)
+        for x, tau in product(range(m + 1), (fmpq(k) + fmpq(3, 7) for k in range(5))):
+            node, at = driven.exact.chain.nodes[x], {"example": example, "m": m, "x": x, "tau": tau}
+            sides = [rod for rod in (x, x + 1) if 1 <= rod <= m]
+            if words["quantities"] == "velocities and strains":
+                strains = {rod: _field(driven, rod, x, tau, order, -1) for rod in sides}
+                forces = sum((node.alpha * -strains[rod] if rod == x else node.beta * strains[rod]) / 2 for rod in sides)
+                for load in node.loads:
+                    forces += sum(c * driven.load(load.source, tau, k) for k, c in enumerate(load.coefficients) if c)
+                yield Case({**at, "claim": "forces"}, forces, node.inertia * _field(driven, sides[0], x, tau, 2, 1))
+                found = [_field(driven, rod, x, tau, order, 1) + _rod(driven, rod).velocity for rod in sides]
+            else:
+                found = [_field(driven, rod, x, tau, order, 1) + _rod(driven, rod).velocity * tau for rod in sides]
+            yield Case({**at, "claim": "both sides"}, found[0], found[-1], len(sides) > 1)
+
+
+def _rod(driven: Driven, rod: int) -> Rod:
+    return driven.exact.chain.rod(rod)
+
+
+def _field(driven: Driven, rod: int, x: int, tau: fmpq, order: int, sign: int) -> Any:
+    """g with f added or taken away, on the clocks of Table 1."""
+    clock = _rod(driven, rod)
+    since, along = tau - clock.tau0, x - clock.x0
+    return driven.wave("g", rod, since + along, order) + sign * driven.wave("f", rod, since - along, order)
+
+
 HYPOTHESES = ("", ", if all rates are different")
 _NUMBERS = ("1", "2", "3", "4")
 _SLOPES = ("rise", "are equal", "fall")
@@ -486,7 +515,7 @@ SAYINGS = (
             "H is the function of Heaviside{at_0}.",
             {"at_0": (", whose value at 0 is not given", " with H(0) = 0", " with H(0) = 1")},
         ),
-        "the motion, by (4.10) and (4.12)",
+        "the motion, by (4.12)",
         _heaviside,
     ),
     Saying(
@@ -615,12 +644,7 @@ SAYINGS = (
             "For z in {interval} the {quantity} of odd i depend on all {odd} moments, those of even i on the {even} ones"
             "{arrived}.",
             {
-                "interval": (
-                    "(2n, 2n+1)",
-                    r"\langle 2n+1, 2n+2 \rangle",
-                    r"\langle 2n+1, 2n+2 )",
-                    r"(2n, 2n+1 \rangle",
-                ),
+                "interval": ("(2n, 2n+1)", r"\langle 2n+1, 2n+2 \rangle", "(2n, 2n+2)"),
                 "quantity": ("functions", "increments"),
                 "odd": ("odd", "even"),
                 "even": ("even", "odd"),
@@ -709,6 +733,18 @@ SAYINGS = (
         ),
         "the motion, by (4.10) with so many terms in the sums over alpha and beta",
         _parts,
+    ),
+    Saying(
+        Pattern(
+            "fields",
+            "By (4.2) and Table 1 {quantities} follow from the {orders} that the forms give.",
+            {
+                "quantities": ("velocities and strains", "displacements"),
+                "orders": ("derivatives", "integrals of the derivatives"),
+            },
+        ),
+        "the conditions at nodes: one velocity, one displacement, and what strains and loads do to a body",
+        _by_4_2,
     ),
     Saying(
         Pattern(

@@ -127,6 +127,8 @@ def coefficients(entry: Entry) -> Test:
 
     def cases(reading: Reading) -> Iterator[Case]:
         said = [_shape(tree) for tree in items(reading.formula)]
+        bodies = (tree.below[0] for tree in items(reading.formula) if isinstance(tree, Symbol) and len(tree.below) == 2)
+        yield Case({"claim": "a letter for the body"}, all(isinstance(body, Symbol) for body in bodies), True)
         true = {_shape(tree) for form in FORMS for tree in symbols(right_form(form).step) if tree.above}
         yield Case({"claim": "coefficients: upper indices, lower ones"}, sorted(said), sorted(true))
 
