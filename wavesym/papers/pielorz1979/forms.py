@@ -122,7 +122,7 @@ class FormScope(Scope):
         """The equations for a rod, each with its place and the indices of what it gives."""
         numbers = span(self._form.numbers, self, most=INTERVALS[self._form.name])
         halves = limits.HALVES if self._form.name == "II" else (None,)
-        places = [{"i": rod, "n": n, "half": half} for n in numbers for half in halves]
+        places: list[dict[str, Any]] = [{"i": rod, "n": n, "half": half} for n in numbers for half in halves]
         for equation, place in ((self._form.start, {"i": rod}), *((self._form.step, place) for place in places)):
             with self.binding(place):
                 yield equation, place, self.indices(_derivative(sides(equation)[0]).function)
@@ -451,7 +451,12 @@ def corrected(entry: Entry) -> Reading:
 @cache
 def read_definitions() -> Definitions:
     """L_0, r_0 and r_1 as they hold."""
-    return {key: tree for entry in paper().entries() if entry.kind == "definition" for key, tree in _defined(corrected(entry)).items()}
+    return {
+        key: tree
+        for entry in paper().entries()
+        if entry.kind == "definition"
+        for key, tree in _defined(corrected(entry)).items()
+    }
 
 
 def _defined(reading: Reading) -> Definitions:

@@ -56,7 +56,7 @@ def _id(example: str, letter: str, symbol: Symbol, scope: Scope) -> str:
         if name in "dw" and not indices:
             return f"{head}.{name}"
         return f"{head}.{letter}.alpha{scope.bound.get(ALPHA)}.{'_'.join([name, *map(str, indices)])}"
-    row = functions(example, m).get((letter, scope.bound.get("i")))
+    row = functions(example, m).get((letter, scope.bound.get("i", 0)))
     if example == "III":
         last = {1: "1", m: "2" if m == 2 else "m"}.get(indices[0] if len(indices) == 1 else 0)
         return f"{row}.{name}_{last}"

@@ -1,14 +1,16 @@
 """What section 4 says of the solutions in words: sentences, each with what its words are evaluated to.
 
-A `Saying` is a pattern (sentences.py), what it is compared with, and its cases for some words.
+The patterns of the sentences (sentences.py) are in sayings.toml; here are the cases that their words give.
 """
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from itertools import groupby, pairwise, product
+from pathlib import Path
 from typing import Any
 
 from flint import fmpq
@@ -21,14 +23,14 @@ from wavesym.papers.evaluation import MeaninglessError, Scope, holds
 from wavesym.papers.exact_tables import INTERVALS, Exact, building, collision, drive
 from wavesym.papers.pielorz1979 import limits
 from wavesym.papers.pielorz1979.forms import INTERVALS as TRIED
-from wavesym.papers.pielorz1979.forms import Form, FormScope, corrected, form_cases, moved, moments, rates
+from wavesym.papers.pielorz1979.forms import Form, FormScope, corrected, form_cases, moments, moved, rates
 from wavesym.papers.pielorz1979.meetings import most_meetings
 from wavesym.papers.pielorz1979.transcription import entry as transcribed
-from wavesym.papers.pielorz1979.truth import Driven, loads
+from wavesym.papers.pielorz1979.truth import EXAMPLES, Driven, loads
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, Reading, Test, case
 from wavesym.papers.sentences import Pattern, sentence_reader
-from wavesym.papers.tree import Call, Number, Relation, Series, Symbol, Tree, latex, symbols
+from wavesym.papers.tree import Call, Number, Series, Symbol, Tree, latex, symbols
 from wavesym.systems.building import BUILDING_FORCE
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE
@@ -38,25 +40,22 @@ FORMS = {"I": "(4.9)", "II": "(4.10)", "III": "(4.12)"}
 MOST_N = 5
 
 
-@dataclass(frozen=True)
-class Saying:
-    """A pattern of sentences, what they are compared with, and the cases that their words give."""
-
-    pattern: Pattern
-    against: str
-    cases: Callable[[Words], Iterator[Case]]
+@cache
+def sayings() -> Mapping[str, tuple[Pattern, str]]:
+    """The patterns of sentences, each with what it is compared with, by name."""
+    told = tomllib.loads(Path(__file__).with_name("sayings.toml").read_text(encoding="utf-8"))
+    return {name: (Pattern(name, said["text"], said["words"]), said["against"]) for name, said in told.items()}
 
 
 def solution(entry: Entry) -> Test:
     """Adapter: a sentence about the solutions."""
-    reader = sentence_reader(saying.pattern for saying in SAYINGS)
-    known = {saying.pattern.name: saying for saying in SAYINGS}
+    reader = sentence_reader(pattern for pattern, _ in sayings().values())
     right = reader.read(entry.slip.corrected if entry.slip else entry.printed, ()).formula.pattern
 
     def cases(reading: Reading) -> Iterator[Case]:
-        return known[reading.formula.pattern].cases(reading.formula.words)
+        return CASES[reading.formula.pattern](reading.formula.words)
 
-    return Test(known[right].against, cases, reader.read, reader.faults)
+    return Test(sayings()[right][1], cases, reader.read, reader.faults)
 
 
 @cache
@@ -104,7 +103,11 @@ def _lengths(words: Words) -> Iterator[Case]:
 
 
 def _entier(words: Words) -> Iterator[Case]:
-    ways = {"down": lambda x: int(x.floor()), "up": lambda x: int(x.ceil()), "towards 0": int}
+    ways: dict[str, Callable[[fmpq], int]] = {
+        "down": lambda x: int(x.floor()),
+        "up": lambda x: int(x.ceil()),
+        "towards 0": int,
+    }
     scope = type("Rounded", (FormScope,), {"entier": lambda self, value: ways[words["way"]](fmpq(value))})
     yield from form_cases(right_form("I"), scope=scope)
 
@@ -167,7 +170,7 @@ def _named(rate: fmpq, source: str) -> str:
     return " ".join(filter(None, (f"rate {rate}", source)))
 
 
-def _chain(exact: Exact, system: Any, m: int, **parameters: Any) -> Exact:
+def _chain(system: Any, m: int, **parameters: Any) -> Exact:
     chain = Chain(system, m, Parameters(**parameters))
     rules = Rules(chain)
     wanted = {Function(letter, rod): MOST_N + 1 for letter in "fg" for rod in range(1, m + 1)}
@@ -180,11 +183,11 @@ def _like(name: str) -> Exact:
     one = fmpq(1)
     if name == "I":
         kappa = {1: fmpq(3, 7), 3: fmpq(3, 7)}
-        return _chain(collision(4), COLLISION, 4, kappa=kappa, velocity={1: one, 3: -one})
+        return _chain(COLLISION, 4, kappa=kappa, velocity={1: one, 3: -one})
     if name == "II":
-        discs = {i: one for i in range(1, 4)}
-        return _chain(drive(2), DRIVE, 2, kappa={1: one, 2: one}, inertia=discs)
-    return _chain(building(2), BUILDING_FORCE, 2, kappa={0: fmpq(2, 7), 1: fmpq(3, 5), 2: fmpq(6, 5)})
+        discs = dict.fromkeys(range(1, 4), one)
+        return _chain(DRIVE, 2, kappa={1: one, 2: one}, inertia=discs)
+    return _chain(BUILDING_FORCE, 2, kappa={0: fmpq(2, 7), 1: fmpq(3, 5), 2: fmpq(6, 5)})
 
 
 def _collisions(hypothesis: str) -> Iterator[Exact]:
@@ -257,15 +260,15 @@ _AT = fmpq(43, 3)
 
 def _roles(example: str, driven: Driven, lower: tuple[int, ...], upper: tuple[int, ...]) -> dict[str, Any]:
     """What the coefficient with these indices is."""
-    body, power = lower
     begins = driven.exact.interval * (upper[-1] - 1)
-    found = {"function": upper[0], "term": body, "power": power, "of": _AT - begins}
+    found = {"term": lower[0], "power": lower[1]}
     if example == "I":
-        return {**found, "begins": begins}
+        return {**found, "function": upper[0], "begins": begins, "of": _AT - begins}
     if example == "II":
-        return {**found, "moment": upper[1], "of": found["of"] - driven.loads[f"M{upper[1]}"][-1].time}
-    time = driven.loads["a"][upper[0]].time
-    return {**found, "function": upper[1], "part": upper[0], "begins": begins, "of": found["of"] - time}
+        since = _AT - begins - driven.loads[f"M{upper[1]}"][-1].time
+        return {**found, "function": upper[0], "moment": upper[1], "of": since}
+    since = _AT - begins - driven.loads["a"][upper[0]].time
+    return {**found, "function": upper[1], "part": upper[0], "begins": begins, "of": since}
 
 
 def _said_roles(
@@ -282,11 +285,12 @@ def _said_roles(
             raise MeaninglessError(f"{name} is both {letters[name]} and {number}")
     term = read_formula(words["term"])
     assert isinstance(term, Symbol)
-    said = {"function": "function", "power": "power", "begins": "begins", "moment": "moment", "part": "part"}
     last = len(driven.loads[f"M{upper[1]}"]) - 1 if "moment" in words else 0
     with scope.binding({"k": last, **letters, "z": _AT}):
-        found = {key: scope.value(read_formula(words[place])) for key, place in said.items() if place in words}
-        return {**found, "term": scope.indices(term)[0], "of": scope.value(read_formula(words["of"]))}
+        found = {
+            role: scope.value(read_formula(word)) for role, word in words.items() if role not in ("symbol", "term")
+        }
+        return {**found, "term": scope.indices(term)[0]}
 
 
 # which moments act
@@ -318,7 +322,7 @@ def _gained(exact: Exact, s: int, letter: str, rod: int, numbers: range) -> bool
     return any(exact.increment(f"M{s}", letter, rod, number) for number in numbers)
 
 
-def _not_listed(words: Words) -> Iterator[Case]:
+def _unlisted(words: Words) -> Iterator[Case]:
     call = read_formula(words["function"])
     assert isinstance(call, Call)
     for m in (2, 3, 4):
@@ -369,7 +373,7 @@ def _series(words: Words) -> Iterator[Case]:
 def _meetings(words: Words) -> Iterator[Case]:
     for example, sizes in (("I", (4, 6)), ("II", (1, 2, 3)), ("III", (2, 3))):
         for m in sizes:
-            exact = {"I": collision, "II": drive}.get(example, lambda m: _uneven(m))(m)
+            exact = EXAMPLES[example].tables(m)
             for source in exact.responses:
                 for number, rate in rates(exact).items():
                     body = number - (exact.interval == 1)
@@ -381,12 +385,6 @@ def _meetings(words: Words) -> Iterator[Case]:
                             at = {"example": example, "m": m, "source": source, "body": number}
                             at |= {"function": f"{letter}_{rod}", "interval": interval}
                             yield Case(at, max(said, -1), true, true >= 0)
-
-
-def _uneven(m: int) -> Exact:
-    from wavesym.papers.exact_tables import uneven_building
-
-    return uneven_building(m)
 
 
 def _earlier(words: Words) -> Iterator[Case]:
@@ -412,14 +410,14 @@ def _runs(degrees: list[int]) -> set[int]:
     return set([len(list(run)) for _, run in groupby(d for d in degrees if d >= 0)][1:-1])
 
 
-def _changes_i(words: Words) -> Iterator[Case]:
+def _changes_1(words: Words) -> Iterator[Case]:
     for m in (4, 6, 8):
         for body, rate in rates(collision(m)).items():
             said = words["ends"] if body in (1, m - 1) else words["others"]
             yield from _stays("I", collision(m), f"body {body}", rate, int(said))
 
 
-def _changes_iii(words: Words) -> Iterator[Case]:
+def _changes_3(words: Words) -> Iterator[Case]:
     for m in range(2, 7):
         known = rates(building(m))
         for name, rate in (("kappa_1", known[1]), ("kappa_m", known[m])):
@@ -472,7 +470,7 @@ def _slopes(words: Words) -> Iterator[Case]:
                                 yield Case(at, slopes[words[part]], other - one)
 
 
-def _by_4_2(words: Words) -> Iterator[Case]:
+def _fields(words: Words) -> Iterator[Case]:
     """What (4.2) gives on both sides of every node, by the conditions that hold there."""
     order = {"derivatives": 1, "integrals of the derivatives": 0}[words["orders"]]
     for example, m in (("I", 4), ("II", 2), ("III", 3)):
@@ -482,7 +480,9 @@ def _by_4_2(words: Words) -> Iterator[Case]:
             sides = [rod for rod in (x, x + 1) if 1 <= rod <= m]
             if words["quantities"] == "velocities and strains":
                 strains = {rod: _field(driven, rod, x, tau, order, -1) for rod in sides}
-                forces = sum((node.alpha * -strains[rod] if rod == x else node.beta * strains[rod]) / 2 for rod in sides)
+                forces = sum(
+                    (node.alpha * -strains[rod] if rod == x else node.beta * strains[rod]) / 2 for rod in sides
+                )
                 for load in node.loads:
                     forces += sum(c * driven.load(load.source, tau, k) for k, c in enumerate(load.coefficients) if c)
                 yield Case({**at, "claim": "forces"}, forces, node.inertia * _field(driven, sides[0], x, tau, 2, 1))
@@ -503,256 +503,28 @@ def _field(driven: Driven, rod: int, x: int, tau: fmpq, order: int, sign: int) -
     return driven.wave("g", rod, since + along, order) + sign * driven.wave("f", rod, since - along, order)
 
 
-HYPOTHESES = ("", ", if all rates are different")
-_NUMBERS = ("1", "2", "3", "4")
-_SLOPES = ("rise", "are equal", "fall")
-_INDICES = ("i", "j", "k", "l", "s")
-
-SAYINGS = (
-    Saying(
-        Pattern(
-            "H",
-            "H is the function of Heaviside{at_0}.",
-            {"at_0": (", whose value at 0 is not given", " with H(0) = 0", " with H(0) = 1")},
-        ),
-        "the motion, by (4.12)",
-        _heaviside,
-    ),
-    Saying(
-        Pattern(
-            "lengths",
-            "In {examples} the formulas keep their form between successive {numbers} numbers z.",
-            {"examples": ("examples I and III", "example II"), "numbers": ("even", "odd", "whole")},
-        ),
-        "where functions gain anything in the exact tables",
-        _lengths,
-    ),
-    Saying(
-        Pattern("entier", "E(n) is n rounded {way}.", {"way": ("down", "up", "towards 0")}),
-        "the motion, by (4.9)",
-        _entier,
-    ),
-    Saying(
-        Pattern(
-            "Table 2",
-            "Table 2 has the functions F_i and their constants K_1, {powers} and K_{m-1}{hypothesis}.",
-            {
-                "powers": ("K_{j_s}", "K_{j,s}"),
-                "hypothesis": (
-                    *HYPOTHESES,
-                    ", if m is at least 4",
-                    ", if m is at least 4 and all rates are different",
-                ),
-            },
-        ),
-        "highest powers of the exact tables, m = 2 ... 8, with different rates and with equal ones",
-        _listed("I", _collisions),
-    ),
-    Saying(
-        Pattern(
-            "Table 3",
-            "Table 3 has the constants s_alpha, R_alpha, L_beta and K_beta of the functions in the intervals that begin "
-            "at even and odd numbers{hypothesis}.",
-            {"hypothesis": HYPOTHESES},
-        ),
-        "highest powers of the exact tables, m = 1, 2, 3, with different rates and with equal ones",
-        _listed("II", _drives),
-    ),
-    Saying(
-        Pattern(
-            "Table 4",
-            "Table 4 has the functions and their constants K_1 and K_m for a building of one storey (m = 2) and more"
-            "{hypothesis}.",
-            {"hypothesis": HYPOTHESES},
-        ),
-        "highest powers of the exact tables, m = 2, 3, 4, with different rates and with equal ones",
-        _listed("III", _buildings),
-    ),
-    Saying(
-        Pattern(
-            "count",
-            "(4.9) and Table 2 give the derivatives of {count} functions.",
-            {"count": ("m", "m-1", "m+1", "2m")},
-        ),
-        "the functions in the rows of Table 2",
-        _count,
-    ),
-    Saying(
-        Pattern(
-            "others",
-            "Those of the other {count} functions follow from (4.6) and the functions found above.",
-            {"count": ("m", "m-1", "m+1", "2m")},
-        ),
-        "the derived delay equations: which functions they give without integration, from those of Table 2 on",
-        _others,
-    ),
-    Saying(
-        Pattern(
-            "indices of (4.9)",
-            "In (4.9) the coefficient {symbol} is that of function number {function} in the interval that begins at "
-            "{begins}, at the term with {term}, times power {power} of {of}.",
-            {
-                "symbol": ("F_{i,k}^{i,n+1}", "F_{l,k}^{i,n+1}", "F_{l,k}^{i,n}"),
-                "function": _INDICES,
-                "begins": ("2n", "2n+2", "n"),
-                "term": (r"\kappa_i", r"\kappa_l", r"\kappa_1"),
-                "power": _INDICES,
-                "of": ("z-2n", "z-2n-2", "z"),
-            },
-        ),
-        "every coefficient that (4.9) asks for, m = 6",
-        _indices("I"),
-    ),
-    Saying(
-        Pattern(
-            "indices of (4.10)",
-            "In (4.10) the coefficient {symbol} is that of function number {function} and moment number {moment}, at "
-            "the term with {term}, times power {power} of {of}.",
-            {
-                "symbol": ("F_{i,j}^{i,s,d}", "F_{l,j}^{i,s,d}", "F_{l,j}^{i,s,d-1}"),
-                "function": _INDICES,
-                "moment": _INDICES,
-                "term": (r"\gamma_i", r"\gamma_l", r"\gamma_s"),
-                "power": _INDICES,
-                "of": (r"z-d+1-\tau_{s,k}", r"z-d-\tau_{s,k}", "z-d+1"),
-            },
-        ),
-        "every coefficient that (4.10) asks for, m = 3",
-        _indices("II"),
-    ),
-    Saying(
-        Pattern(
-            "indices of (4.12)",
-            "In (4.12) the coefficient {symbol} is that of function number {function} in the interval that begins at "
-            "{begins}, at the term with {term}, times power {power} of {of}, and of part number {part} of (3.2).",
-            {
-                "symbol": ("F_{i,j}^{k,i,n+1}", "F_{l,j}^{k,i,n+1}", "F_{l,j}^{i,k,n+1}"),
-                "function": _INDICES,
-                "begins": ("2n", "2n+2", "n"),
-                "term": (r"\kappa_1", r"\kappa_i", r"\kappa_l"),
-                "power": _INDICES,
-                "of": (r"z-2n-\tau_k", "z-2n", r"z-2n-2-\tau_k"),
-                "part": _INDICES,
-            },
-        ),
-        "every coefficient that (4.12) asks for, m = 3",
-        _indices("III"),
-    ),
-    Saying(
-        Pattern(
-            "moments",
-            "For z in {interval} the {quantity} of odd i depend on all {odd} moments, those of even i on the {even} ones"
-            "{arrived}.",
-            {
-                "interval": ("(2n, 2n+1)", r"\langle 2n+1, 2n+2 \rangle", "(2n, 2n+2)"),
-                "quantity": ("functions", "increments"),
-                "odd": ("odd", "even"),
-                "even": ("even", "odd"),
-                "arrived": ("", ", once they have arrived"),
-            },
-        ),
-        "exact tables, m = 1 ... 4: on which moments a function, or what it gains in an interval, depends",
-        _moments,
-    ),
-    Saying(
-        Pattern(
-            "first equation of (4.8)",
-            "The function {function} is found from the first equation of (4.8).",
-            {"function": ("g'_{i,j}(z)", "g'_{1,n+1}(z)", "g'_{2,n+1}(z)", "f'_{1,n+1}(z)")},
-        ),
-        "the functions without a row in Table 4",
-        _not_listed,
-    ),
-    Saying(
-        Pattern(
-            "masses",
-            "The solutions depend exponentially on the masses of {bodies}, by kappa_i or gamma_i.",
-            {"bodies": ("all rigid bodies", "all rigid bodies but the foundation", "no body")},
-        ),
-        "the exponents of exact tables where one mass is doubled, of every body of every example",
-        _masses,
-    ),
-    Saying(
-        Pattern(
-            "series",
-            "The factors of the exponentials are power series in {I} (I), {III} (III) or {II} (II).",
-            {
-                "I": ("z-2n", "z-2n-1", "z"),
-                "III": (r"z-2n-\tau_k", r"z-2n+\tau_k", r"z-2n-1-\tau_k"),
-                "II": (r"z-d+1-\tau_{s,k}", r"z-d-\tau_{s,k}", "z-d+1"),
-            },
-        ),
-        "the time since the interval began and the load came",
-        _series,
-    ),
-    Saying(
-        Pattern(
-            "meetings",
-            "The highest power is {less} the most times that a wave that has arrived was {met} by the body.",
-            {"less": ("one less than", ""), "met": ("reflected", "reflected, let through or sent")},
-        ),
-        "highest powers of the exact tables, and the ways of waves counted from body to body",
-        _meetings,
-    ),
-    Saying(
-        Pattern(
-            "earlier intervals",
-            "In an interval the solutions are made of their forms in {which}, taken at {when}.",
-            {
-                "which": ("all earlier intervals", "the interval before"),
-                "when": ("the present z", "the end of those intervals"),
-            },
-        ),
-        "the motion",
-        _earlier,
-    ),
-    Saying(
-        Pattern(
-            "changes of powers (I)",
-            "In example I the highest powers change every {ends} at kappa_1 and kappa_{m-1}, and every {others} at the "
-            "others.",
-            {"ends": _NUMBERS, "others": _NUMBERS},
-        ),
-        "highest powers of the exact tables, functions of Table 2: the length in z between changes",
-        _changes_i,
-    ),
-    Saying(
-        Pattern(
-            "changes of powers (III)",
-            "In example III the highest powers change every {step}.",
-            {"step": _NUMBERS},
-        ),
-        "highest powers of the exact tables: the length in z between changes",
-        _changes_iii,
-    ),
-    Saying(
-        Pattern(
-            "parts",
-            "A solution of example II has by its moments {parts} parts, each of which has by gamma {terms} terms.",
-            {"parts": _NUMBERS, "terms": _NUMBERS},
-        ),
-        "the motion, by (4.10) with so many terms in the sums over alpha and beta",
-        _parts,
-    ),
-    Saying(
-        Pattern(
-            "fields",
-            "By (4.2) and Table 1 {quantities} follow from the {orders} that the forms give.",
-            {
-                "quantities": ("velocities and strains", "displacements"),
-                "orders": ("derivatives", "integrals of the derivatives"),
-            },
-        ),
-        "the conditions at nodes: one velocity, one displacement, and what strains and loads do to a body",
-        _by_4_2,
-    ),
-    Saying(
-        Pattern(
-            "slopes",
-            "For moments of the {group} group the highest powers {one} with l, then {two}, then {three}.",
-            {"group": ("first", "second"), "one": _SLOPES, "two": _SLOPES, "three": _SLOPES},
-        ),
-        "highest powers of the exact tables, both halves, differences inside a range of l",
-        _slopes,
-    ),
-)
+CASES: Mapping[str, Callable[[Words], Iterator[Case]]] = {
+    "heaviside": _heaviside,
+    "lengths": _lengths,
+    "entier": _entier,
+    "table_2": _listed("I", _collisions),
+    "table_3": _listed("II", _drives),
+    "table_4": _listed("III", _buildings),
+    "count": _count,
+    "others": _others,
+    "indices_4_9": _indices("I"),
+    "indices_4_10": _indices("II"),
+    "indices_4_12": _indices("III"),
+    "moments": _moments,
+    "unlisted": _unlisted,
+    "masses": _masses,
+    "series": _series,
+    "meetings": _meetings,
+    "earlier": _earlier,
+    "changes_1": _changes_1,
+    "changes_3": _changes_3,
+    "parts": _parts,
+    "fields": _fields,
+    "slopes": _slopes,
+}
+"""What is tried for the words of a saying, by its name."""

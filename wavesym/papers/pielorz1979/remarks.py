@@ -82,7 +82,7 @@ def power(entry: Entry) -> Test:
 
 
 def _power_cases(reading: Reading, others: list[Reading]) -> Iterator[Case]:
-    left, right = sides(reading.formula)
+    _, right = sides(reading.formula)
     letters = sorted(latex(sides(other.formula)[0]) for other in (reading, *others))
     yield Case({"claim": "letters"}, letters, ["K_{1}", "K_{2}", "K_{3}"])
     for m in SIZES:
@@ -149,4 +149,3 @@ def _shape(tree: Tree) -> tuple[str, str]:
         case _:
             below = ", ".join(map(latex, tree.below))
     return ", ".join(map(latex, tree.above)), below
-
