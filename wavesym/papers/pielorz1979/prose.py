@@ -88,7 +88,7 @@ def asked(example: str, driven: Driven, letter: str, rod: int, number: int) -> A
 
 
 def _lengths(words: Words) -> Iterator[Case]:
-    numbers = {"even": lambda z: z % 2 == 0, "odd": lambda z: z % 2 == 1, "whole": lambda z: True}[words["numbers"]]
+    steps = {"even": (0, 2), "odd": (1, 2), "whole": (0, 1)}[words["numbers"]]
     for name in words["examples"].removeprefix("examples ").removeprefix("example ").split(" and "):
         for exact in [moved(name, m).exact for m in (4, 6)[: 2 if name == "I" else 1]]:
             gains = {
@@ -99,7 +99,7 @@ def _lengths(words: Words) -> Iterator[Case]:
                 if increment
             }
             until = max(gains) + 1
-            yield Case({"example": name, "m": exact.m}, [z for z in range(until) if numbers(z)], sorted(gains))
+            yield Case({"example": name, "m": exact.m}, list(range(steps[0], until, steps[1])), sorted(gains))
 
 
 def _entier(words: Words) -> Iterator[Case]:
@@ -133,26 +133,26 @@ def _listed(example: str, chains: Callable[[str], Iterator[Exact]]) -> Callable[
             yield Case({"claim": "the letter of (4.9)"}, columns, found)
         for exact in chains(words["hypothesis"]):
             driven = Driven(exact, loads(exact))
-            kappa = {"kappa": dict(exact.chain.parameters.kappa)}
-            for number in range(1, (TRIED[example] + 1) * (2 if example == "II" else 1) + 1):
-                for letter, rod in limits.functions(example, exact.m):
-                    at = {"m": exact.m, **kappa, "function": f"{letter}_{rod}", "interval": number}
-                    if not 1 <= rod <= exact.m:
-                        yield Case({**at, "claim": "there is such a rod"}, True, False)
-                        continue
+            last = (TRIED[example] + 1) * (2 if example == "II" else 1)
+            for letter, rod in limits.functions(example, exact.m):
+                at = {"m": exact.m, "kappa": dict(exact.chain.parameters.kappa), "function": f"{letter}_{rod}"}
+                if not 1 <= rod <= exact.m:
+                    yield Case({**at, "claim": "there is such a rod"}, True, False)
+                    continue
+                said = [(lower, upper) for lower, upper in asked(example, driven, letter, rod, last).asked if lower[1:]]
+                for number in range(1, last + 1):
                     true = _true_powers(exact, letter, rod, number)
-                    yield case(at, lambda: _said_powers(example, driven, letter, rod, number), true, bool(true))  # noqa: B023
+                    found = _said_powers(exact, [pair for pair in said if pair[1][-1] == number])
+                    yield Case({**at, "interval": number}, found, true, bool(true))
 
     return cases
 
 
-def _said_powers(example: str, driven: Driven, letter: str, rod: int, number: int) -> dict[str, int]:
-    known = rates(driven.exact)
+def _said_powers(exact: Exact, said: list[tuple[tuple[int, ...], tuple[int, ...]]]) -> dict[str, int]:
     found: dict[str, int] = {}
-    for lower, upper in asked(example, driven, letter, rod, number).asked:
-        if len(lower) == 2 and upper[-1] == number:
-            key = _named(known[lower[0]], f"M{upper[1]}" if example == "II" else "")
-            found[key] = max(found.get(key, 0), lower[1])
+    for (body, power), upper in said:
+        key = _named(rates(exact)[body], f"M{upper[1]}" if exact.interval == 1 else "")
+        found[key] = max(found.get(key, 0), power)
     return found
 
 
@@ -199,7 +199,7 @@ def _collisions(hypothesis: str) -> Iterator[Exact]:
 
 
 def _drives(hypothesis: str) -> Iterator[Exact]:
-    yield from (drive(m) for m in (1, 2, 3))
+    yield from (drive(m) for m in (1, 2))
     if "different" not in hypothesis:
         yield _like("II")
 
