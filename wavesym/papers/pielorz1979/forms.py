@@ -7,12 +7,12 @@ A coefficient beyond the highest power does not exist, so that a limit may be ne
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product, tee
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import fmpq
 
@@ -38,8 +38,9 @@ _TABLES: Mapping[str, Callable[[int], Exact]] = {"I": collision, "II": drive, "I
 _WITHIN = (fmpq(0), fmpq(5, 7))
 """Where formulas are compared, as parts of an interval: at its start and inside."""
 
-
 _LIMITING = ("n", "half", "i", limits.ALPHA, "j", "r", "l")
+Words = Mapping[str, str]
+"""The words of a sentence, by their places."""
 Definitions = Mapping[tuple[str, tuple[int, ...]], Tree]
 """L_0, r_0 and r_1, by letter and index."""
 
@@ -69,9 +70,19 @@ class Form:
     @classmethod
     def of(cls, name: str, reading: Reading) -> Form:
         """MeaninglessError where it is none."""
-        if len(found := items(reading.formula)) != 2:
+        found = items(reading.formula)
+        if len(found) != 2 or any(len(sides(equation)) != 2 for equation in found):
             raise MeaninglessError("a form is two equations")
-        return cls(name, *found, *reading.ranges)
+        return cls(name, *found, only(reading.ranges))
+
+
+class _Given(NamedTuple):
+    """An equation at a place: the indices of the F' that it gives, its argument, and what it is."""
+
+    indices: tuple[int, ...]
+    argument: Tree
+    right: Tree
+    place: Mapping[str, Any]
 
 
 class FormScope(Scope):
@@ -85,7 +96,7 @@ class FormScope(Scope):
         super().__init__({"m": driven.exact.m})
         self._form, self._driven, self._letter = form, driven, letter
         self._definitions = definitions or read_definitions()
-        self._equations: dict[int, list[tuple[Tree, dict[str, Any], tuple[int, ...]]]] = {}
+        self._equations: dict[int, list[_Given]] = {}
         self._totals: dict[tuple[int, int, fmpq], Any] = {}
         self._known: dict[tuple[Any, ...], Any] = {}
         self._open: set[tuple[int, int, fmpq]] = set()
@@ -108,10 +119,9 @@ class FormScope(Scope):
         if rod not in self._equations:
             self._equations[rod] = list(self._for(rod))
         found = []
-        for equation, place, given in self._equations[rod]:
-            left, right = sides(equation)
+        for given, argument, right, place in self._equations[rod]:
             with self.binding({**place, "z": z}):
-                if given == (rod, number) and self.value(left.arguments[0]) == z:  # type: ignore[union-attr]
+                if given == (rod, number) and self.value(argument) == z:
                     found.append((right, self.bound))
         if len(found) != 1:
             raise MeaninglessError(f"F'_{{{rod}, {number}}} is given {len(found)} times")
@@ -119,14 +129,16 @@ class FormScope(Scope):
         with self.binding(bound):
             return self.value(right)
 
-    def _for(self, rod: int) -> Iterator[tuple[Tree, dict[str, Any], tuple[int, ...]]]:
-        """The equations for a rod, each with its place and the indices of what it gives."""
+    def _for(self, rod: int) -> Iterator[_Given]:
+        """The equations for a rod."""
         numbers = span(self._form.numbers, self, most=INTERVALS[self._form.name])
         halves = limits.HALVES if self._form.name == "II" else (None,)
         places: list[dict[str, Any]] = [{"i": rod, "n": n, "half": half} for n in numbers for half in halves]
         for equation, place in ((self._form.start, {"i": rod}), *((self._form.step, place) for place in places)):
+            left, right = sides(equation)
+            call = _derivative(left)
             with self.binding(place):
-                yield equation, place, self.indices(_derivative(sides(equation)[0]).function)
+                yield _Given(self.indices(call.function), call.arguments[0], right, place)
 
     def call(self, call: Call) -> Any:
         """F' itself: what the form gives for another interval."""
@@ -213,19 +225,30 @@ def _known(values: Mapping[int, Any], index: int, name: str) -> Any:
     return values[index]
 
 
+def only(ranges: Sequence[Tree]) -> Tree:
+    """The one range that there must be; MeaninglessError."""
+    if len(ranges) != 1:
+        raise MeaninglessError(f"{len(ranges)} ranges")
+    return ranges[0]
+
+
 def form(entry: Entry) -> Test:
     """Adapter: a form whole, for all functions of its table."""
     name = entry.about["example"]
+
+    def cases(reading: Reading) -> Iterator[Case]:
+        yield from copy(_kept(Form.of(name, reading)))
+
     return Test(
         "the motion, exact, under loads with several delayed pieces; "
         f"m = {', '.join(map(str, SIZES[name]))}; coefficients of the exact tables, limits of the corrected tables",
-        lambda reading: copy(_kept(Form.of(name, reading))),
+        cases,
     )
 
 
 @cache
 def _kept(form: Form) -> Iterator[Case]:
-    """The cases of a form; what copies of this iterator reach is kept, as some records differ in what is printed only."""
+    """The cases of a form; what copies of this iterator reach is kept, as some records differ only as printed."""
     (cases,) = tee(form_cases(form), 1)
     return cases
 
@@ -298,7 +321,7 @@ def _interval_faults(reading: Reading) -> Iterator[tuple[str, Reading]]:
 
 
 def _interval_cases(form: Form, reading: Reading) -> Iterator[Case]:
-    (numbers,) = reading.ranges
+    numbers = only(reading.ranges)
     step = items(form.step)[0]
     left = sides(step)[0]
     assert isinstance(left, Call)
@@ -364,7 +387,7 @@ def _rates_given(reading: Reading, scope: RateScope) -> list[tuple[int, Callable
         if not isinstance(left, Symbol) or left.name != r"\gamma":
             raise MeaninglessError(f"{latex(left)} is no gamma")
         plain = _means(left, scope)
-        for place in [{}] if plain else [{"i": i} for i in span(reading.ranges[0], scope)]:
+        for place in [{}] if plain else [{"i": i} for i in span(only(reading.ranges), scope)]:
             with scope.binding(place):
                 found.append((scope.indices(left)[0], _later(scope, place, right)))
     return found
@@ -439,6 +462,16 @@ def corrected(entry: Entry) -> Reading:
     text, ranges = (entry.slip.corrected, entry.slip.ranges) if entry.slip else (entry.printed, None)
     said = entry.ranges if ranges is None else ranges
     return Reading(read_formula(text), tuple(map(read_range, (*said, *entry.inferred))))
+
+
+FORMS = {"I": "(4.9)", "II": "(4.10)", "III": "(4.12)"}
+"""The form of each example's solutions."""
+
+
+@cache
+def right_form(example: str) -> Form:
+    """The form of an example's solutions as corrected."""
+    return Form.of(example, corrected(transcribed(FORMS[example])))
 
 
 @cache
