@@ -15,7 +15,8 @@ from wavesym.model.node import Rod
 from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.exact_tables import INTERVALS, Exact, building, collision, drive
 from wavesym.papers.pielorz1979 import limits
-from wavesym.papers.pielorz1979.forms import FORMS, FormScope, Words, form_cases, moments, moved, rates, right_form
+from wavesym.papers.pielorz1979.definitions import moments
+from wavesym.papers.pielorz1979.forms import FORMS, FormScope, Words, form_cases, moved, rates, right_form
 from wavesym.papers.pielorz1979.listed import AT
 from wavesym.papers.pielorz1979.meetings import most_meetings
 from wavesym.papers.pielorz1979.truth import EXAMPLES, Driven

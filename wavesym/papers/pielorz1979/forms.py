@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import product, tee
+from itertools import tee
 from typing import Any, NamedTuple
 
 from flint import fmpq
@@ -19,7 +19,6 @@ from flint import fmpq
 from wavesym.exact.increments import Increment
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sides, span
-from wavesym.papers.exact_tables import INTERVALS as TABULATED
 from wavesym.papers.exact_tables import Exact, building, collision, drive
 from wavesym.papers.mutations import ends
 from wavesym.papers.pielorz1979 import limits
@@ -156,9 +155,9 @@ class FormScope(Scope):
         if symbol.accent or symbol.above or symbol.primes:
             return super().symbol(symbol)
         if name == r"\kappa" and len(indices) == 1 and self._form.name != "II":
-            return _known(chain.parameters.kappa, indices[0], r"\kappa")
+            return known(chain.parameters.kappa, indices[0], r"\kappa")
         if name == r"\gamma" and len(indices) == 1 and self._form.name == "II":
-            return _known(self._rates, indices[0], r"\gamma")
+            return known(self._rates, indices[0], r"\gamma")
         if name == r"\tau" and indices:
             return self._driven.piece(
                 *((f"M{indices[0]}", indices[1]) if len(indices) == 2 else ("a", indices[0]))
@@ -196,7 +195,7 @@ class FormScope(Scope):
                 raise MeaninglessError(f"F_{lower[0]} is not defined")
             return powers[power] if power < len(powers) else fmpq(0)
         body, power = lower
-        powers = increment.get(_known(self._rates, body, "the rate"), [])
+        powers = increment.get(known(self._rates, body, "the rate"), [])
         if not 0 <= power < len(powers):
             raise MeaninglessError(f"there is no coefficient of power {power} at the rate of body {body}")
         return powers[power]
@@ -219,7 +218,8 @@ def _derivative(tree: Tree) -> Call:
     raise MeaninglessError(f"{latex(tree)} is no derivative of a function")
 
 
-def _known(values: Mapping[int, Any], index: int, name: str) -> Any:
+def known(values: Mapping[int, Any], index: int, name: str) -> Any:
+    """A value by its number; MeaninglessError where there is none."""
     if index not in values:
         raise MeaninglessError(f"{name} has no number {index}")
     return values[index]
@@ -343,120 +343,6 @@ def _interval_cases(form: Form, reading: Reading) -> Iterator[Case]:
                     yield _compared(scope, driven, (letter, rod), number, z)
 
 
-class RateScope(Scope):
-    """kappa and J of a drive."""
-
-    def __init__(self, exact: Exact) -> None:
-        super().__init__({"m": exact.m})
-        self._parameters = exact.chain.parameters
-
-    def symbol(self, symbol: Symbol) -> Any:
-        """kappa_i or J_i."""
-        known = {r"\kappa": self._parameters.kappa, "J": self._parameters.inertia}.get(symbol.name)
-        if known is None or len(symbol.below) != 1:
-            return super().symbol(symbol)
-        return _known(known, self.indices(symbol)[0], symbol.name)
-
-
-def rate(entry: Entry) -> Test:
-    """Adapter: gamma_i; the formulas of (4.11) together give every one once."""
-    others = [corrected(other) for other in paper().entries() if other.kind == "rate" and other.id != entry.id]
-    return Test(
-        "the rates of the discs by their derived node laws, m = 1 ... 5",
-        lambda reading: _rate_cases(reading, others),
-    )
-
-
-def _rate_cases(reading: Reading, others: Iterable[Reading]) -> Iterator[Case]:
-    for m in range(1, 6):
-        exact = drive(m)
-        scope = RateScope(exact)
-        true = rates(exact)
-        parameters = {"kappa": dict(exact.chain.parameters.kappa), "J": dict(exact.chain.parameters.inertia)}
-        given = [number for other in (reading, *others) for number, _ in _rates_given(other, scope)]
-        yield Case({"m": m, "claim": "the gamma that are given"}, sorted(given), sorted(true))
-        for number, value in _rates_given(reading, scope):
-            yield case({"m": m, "i": number, **parameters}, value, true.get(number))
-
-
-def _rates_given(reading: Reading, scope: RateScope) -> list[tuple[int, Callable[[], Any]]]:
-    """The number of every gamma, and what makes its value; once where the left index has no i, else for every i."""
-    found = []
-    for equation in items(reading.formula):
-        left, right = sides(equation)
-        if not isinstance(left, Symbol) or left.name != r"\gamma":
-            raise MeaninglessError(f"{latex(left)} is no gamma")
-        plain = _means(left, scope)
-        for place in [{}] if plain else [{"i": i} for i in span(only(reading.ranges), scope)]:
-            with scope.binding(place):
-                found.append((scope.indices(left)[0], _later(scope, place, right)))
-    return found
-
-
-def _means(left: Symbol, scope: RateScope) -> bool:
-    try:
-        scope.indices(left)
-    except MeaninglessError:
-        return False
-    return True
-
-
-def _later(scope: RateScope, place: Mapping[str, int], tree: Tree) -> Callable[[], Any]:
-    def value() -> Any:
-        with scope.binding(place):
-            return scope.value(tree)
-
-    return value
-
-
-def definition(entry: Entry) -> Test:
-    """Adapter: L_0, r_0 and r_1, by what Table 3 makes of them."""
-    form = Form.of("II", corrected(transcribed("(4.10)")))
-
-    def cases(reading: Reading) -> Iterator[Case]:
-        known = {**read_definitions(), **_defined(reading)}
-        if len(known) > len(read_definitions()):
-            raise MeaninglessError(f"{latex(reading.formula)} defines what is used nowhere")
-        if entry.id == "(4.10).L_0":
-            yield from form_cases(form, known)
-        else:
-            yield from _moment_cases(form, known)
-
-    against = "the motion, by (4.10)" if entry.id == "(4.10).L_0" else "the moments that act in a half, by exact tables"
-    return Test(against, cases)
-
-
-def _moment_cases(form: Form, known: Definitions) -> Iterator[Case]:
-    """r from s_1 to R_2 counts the moments that act in a half, each once."""
-    for m in range(1, 6):
-        driven = moved("II", m)
-        for half, (letter, rod) in product(limits.HALVES, limits.functions("II", m)):
-            scope = FormScope(form, driven, letter, known)
-            at = {"m": m, "half": half, "function": f"{letter}_{rod}", "claim": "moments s"}
-            true = acting(driven.exact, half, letter, rod)
-            yield case(at, lambda: tuple(s for _, s in moments(scope, half, rod)), true)  # noqa: B023
-
-
-def moments(scope: FormScope, half: str, rod: int, parts: tuple[int, ...] = (1, 2)) -> list[tuple[int, int]]:
-    """The r and s that Table 3 has in a half, in the order of their parts alpha."""
-    found = []
-    for alpha in parts:
-        with scope.binding({"n": 0, "half": half, "i": rod, limits.ALPHA: alpha}):
-            first, last = (scope.whole(read_formula(rf"{end}_\alpha")) for end in "sR")
-            for r in range(first, last + 1):
-                with scope.binding({"r": r}):
-                    found.append((r, scope.whole(read_formula("s"))))
-    return found
-
-
-def acting(exact: Exact, half: str, letter: str, rod: int) -> tuple[int, ...]:
-    """The moments that change a function in some interval of a half, in their order."""
-    numbers = range(1 if half == "even" else 2, TABULATED["II"] + 1, 2)
-    return tuple(
-        s for s in range(1, exact.m + 2) if any(exact.increment(f"M{s}", letter, rod, number) for number in numbers)
-    )
-
-
 def corrected(entry: Entry) -> Reading:
     """A record as it holds."""
     text, ranges = (entry.slip.corrected, entry.slip.ranges) if entry.slip else (entry.printed, None)
@@ -481,11 +367,12 @@ def read_definitions() -> Definitions:
         key: tree
         for entry in paper().entries()
         if entry.kind == "definition"
-        for key, tree in _defined(corrected(entry)).items()
+        for key, tree in defined(corrected(entry)).items()
     }
 
 
-def _defined(reading: Reading) -> Definitions:
+def defined(reading: Reading) -> Definitions:
+    """What an equation defines."""
     left, right = sides(reading.formula)
     if not isinstance(left, Symbol):
         raise MeaninglessError(f"{latex(left)} is no letter")

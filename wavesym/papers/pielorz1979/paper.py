@@ -6,19 +6,19 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from wavesym.papers.entries import Entry, problems
-from wavesym.papers.pielorz1979 import forms, prose, remarks
+from wavesym.papers.pielorz1979 import definitions, forms, prose, remarks
 from wavesym.papers.pielorz1979.transcription import paper
 from wavesym.papers.record import Adapter, Record, judge
 
 ADAPTERS: Mapping[str, Adapter] = {
     "coefficients": remarks.coefficients,
-    "definition": forms.definition,
+    "definition": definitions.definition,
     "factor": remarks.factor,
     "form": forms.form,
     "group": remarks.group,
     "interval": forms.interval,
     "power": remarks.power,
-    "rate": forms.rate,
+    "rate": definitions.rate,
     "rest": remarks.rest,
     "solution": prose.solution,
 }

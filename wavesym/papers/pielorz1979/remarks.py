@@ -12,12 +12,11 @@ from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, spa
 from wavesym.papers.exact_tables import building, drive
 from wavesym.papers.exponentials import exponential
 from wavesym.papers.pielorz1979 import limits
+from wavesym.papers.pielorz1979.definitions import acting, moments
 from wavesym.papers.pielorz1979.forms import (
     FORMS,
     FormScope,
-    acting,
     corrected,
-    moments,
     moved,
     only,
     rates,
