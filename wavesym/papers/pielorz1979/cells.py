@@ -18,6 +18,7 @@ from flint import fmpq
 from wavesym.exact.table import Function
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, span
+from wavesym.papers.exponentials import Exponentials
 from wavesym.papers.exact_tables import Exact, building, collision, drive, gammas
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.pielorz1979.scenes import example
@@ -25,8 +26,8 @@ from wavesym.papers.pielorz1979.transcription import entry as record
 from wavesym.papers.pielorz1979.transcription import paper
 from wavesym.papers.pielorz1979.truth import Driven, Loads, Step, driven, instants
 from wavesym.papers.reader import read_formula, read_range
-from wavesym.papers.record import Case, Example, Nothing, Reading, Test, by_size, faults
-from wavesym.papers.tree import Blank, Number, Progression, Relation, Symbol, Tree, latex
+from wavesym.papers.record import Case, Example, Reading, Test, by_size, case
+from wavesym.papers.tree import Blank, Number, Progression, Symbol, Tree, latex
 
 
 @dataclass(frozen=True)
@@ -88,3 +89,375 @@ def _known(id: str, indices: tuple[tuple[str, int], ...]) -> fmpq | int:
 def _plain(value: Any) -> Any:
     """A whole number as one."""
     return int(value.numer()) if isinstance(value, fmpq) and value.denom() == 1 else value
+
+
+# cells
+
+
+def cell(entry: Entry) -> Test:
+    """A cell of a table."""
+    table, row = entry.about["table"], entry.about["row"]
+    if table[:2] == "T3" and row in "dw":
+        return Test(
+            "the motion under delayed moments, interval by interval",
+            partial(_steps, entry),
+            faults=partial(_cell_faults, entry),
+        )
+    trial = {"T2": _collision, "T3": _drive, "T4": _building}[table[:2]]
+    kind = KINDS[table[:2]]
+    return Test(
+        f"the degrees of the exact tables, all rates different, m = {kind.sizes[0]} ... {kind.sizes[-1]}, "
+        f"n = 0 ... {kind.most_n}",
+        partial(trial, entry),
+        faults=partial(_cell_faults, entry),
+    )
+
+
+def _cell_faults(entry: Entry, right: Reading) -> Iterator[tuple[str, Reading]]:
+    """Those of the formula, and of a range that is the cell's own: the others are faults of the heads."""
+    if isinstance(right.formula, Blank):
+        for digit in "01":
+            yield f"{digit} for {latex(right.formula)}", Reading(Number(digit), right.ranges)
+        return
+    for change, formula in mutations(right.formula):
+        yield change, Reading(formula, right.ranges)
+    for place, range_ in enumerate(right.ranges):
+        if range_ not in map(read_range, entry.ranges):
+            for change, wrong in ends(range_):
+                yield change, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
+
+
+@dataclass(frozen=True)
+class _Cells:
+    """The cells of a row or column as they should be, but for the one that is tried; None for a dash."""
+
+    pattern: str
+    tried: Entry
+    reading: Reading
+
+    def __call__(self, name: str, **indices: int) -> Any:
+        id = self.pattern.format(name)
+        tree = self.reading.formula if id == self.tried.id else right(id)
+        if isinstance(tree, Blank):
+            return None
+        return _plain(Indices(indices).value(tree)) if id == self.tried.id else value(id, **indices)
+
+
+def _functions(entry: Entry, ranges: Iterable[Tree], kind: Kind) -> Iterator[tuple[int, int, str, int, bool]]:
+    """m, n, and the functions that a cell is about; whether it says anything of that n."""
+    (head,) = (id for id in entry.heads if record(id).kind == "function")
+    said = (*ranges, *right_ranges(head))
+    for m, n in by_size(product(kind.sizes, range(kind.most_n + 1))):
+        for letter, i in _listed(right(head), said, m):
+            yield m, n, letter, i, n in _numbers(said, kind.most_n)
+
+
+def _listed(function: Tree, ranges: Iterable[Tree], m: int) -> Iterator[tuple[str, int]]:
+    """The functions that a head names for an m: none where a condition on m does not hold."""
+    if not isinstance(function, Symbol):
+        raise MeaninglessError(f"{latex(function)} is no function")
+    scope = Indices({"m": m})
+    if all(holds(range_, scope) for range_ in ranges if _restricts(range_)):
+        running = _progression(ranges, "i")
+        for i in span(running, scope) if running else (None,):
+            with scope.binding({} if i is None else {"i": i}):
+                yield (function.name, *scope.indices(function))  # type: ignore[misc]
+
+
+def _restricts(range_: Tree) -> bool:
+    """Whether a range is a condition on m: not on z, and no running i or n."""
+    if isinstance(range_, Progression):
+        return range_.variable == Symbol("m")
+    return "z" not in latex(range_)
+
+
+def _numbers(ranges: Iterable[Tree], most: int) -> tuple[int, ...]:
+    running = _progression(ranges, "n")
+    return span(running, Scope(), most) if running else ()
+
+
+def _progression(ranges: Iterable[Tree], name: str) -> Progression | None:
+    return next((r for r in ranges if isinstance(r, Progression) and r.variable == Symbol(name)), None)
+
+
+def _collision(entry: Entry, reading: Reading) -> Iterator[Case]:
+    """Table 2: kappa_1, the inner bodies j in two parts, kappa_(m-1)."""
+    column = entry.about["column"]
+    cells = _Cells(f"T2.{entry.about['row']}.{{}}", entry, reading)
+    for m, n, letter, i, said in _functions(entry, reading.ranges, KINDS["T2"]):
+        if column in ("K_1", "K_m-1"):
+            yield _power(collision(m), n, letter, i, cells(column, m=m, n=n, i=i) if said else -1, column)
+        else:
+            yield from _inner_bodies(collision(m), n, letter, i, cells)
+
+
+_LIMIT = read_formula("E(K/2)")
+"""The highest power of an inner body, by (4.9)."""
+
+
+def _inner_bodies(exact: Exact, n: int, letter: str, i: int, cells: _Cells) -> Iterator[Case]:
+    """For every inner body: one part has it, and its highest power is right."""
+    inner = range(1, (exact.m - 4) // 2 + 1)
+    where = {"m": exact.m, "n": n, "i": i}
+    claimed: dict[int, list[Any]] = {j: [] for j in inner}
+    for part in PARTS["T2"]:
+        first, last = cells(f"j_0,{part}", **where), cells(f"j_{part}", **where)
+        for j in _whole_range(first, last):
+            power = cells(f"K_j,{part}", **where, j=j)
+            if power is None:
+                raise MeaninglessError("a part is given whole or not at all")
+            claimed.setdefault(j, []).append(_present(_plain(Scope({"K": power}).value(_LIMIT))))
+        if first is None and cells(f"K_j,{part}", **where, j=1) is not None:
+            raise MeaninglessError("a part is given whole or not at all")
+    for j in sorted(claimed):
+        rate = 2 * exact.chain.parameters.kappa[2 * j + 1] if j in inner else fmpq(0)
+        true = (exact.degree(letter, i, n + 1, rate),) if j in inner else ()
+        seen = _seen(exact, "impact", letter, i, n + 1, rate)
+        yield Case({**where, "j": j}, tuple(claimed[j]), true, true not in ((), (-1,)), seen)
+
+
+def _whole_range(first: Any, last: Any) -> range:
+    """From first to last; none where both are dashes. MeaninglessError where they are no numbers of terms."""
+    if first is None and last is None:
+        return range(0)
+    if not (isinstance(first, int) and isinstance(last, int)):
+        raise MeaninglessError(f"from {first or '—'} to {last or '—'}")
+    return range(first, last + 1)
+
+
+def _building(entry: Entry, reading: Reading) -> Iterator[Case]:
+    """Table 4: the floors' rate 2 kappa_1 and the roof's kappa_m."""
+    column = entry.about["column"]
+    cells = _Cells(f"{entry.about['table']}.{entry.about['row']}.{{}}", entry, reading)
+    for m, n, letter, i, said in _functions(entry, reading.ranges, KINDS["T4"]):
+        yield _power(building(m), n, letter, i, cells(column, m=m, n=n, i=i) if said else -1, column)
+
+
+def _power(exact: Exact, n: int, letter: str, i: int, claimed: Any, column: str) -> Case:
+    """The highest power of the body that a column's label K_(...) names."""
+    label = read_formula(f"K_{{{column.removeprefix('K_')}}}")
+    assert isinstance(label, Symbol)
+    (body,) = Indices({"m": exact.m}).indices(label)
+    kappa = exact.chain.parameters.kappa
+    rate = kappa[body] if 0 in kappa and body == exact.m else 2 * kappa[body]  # a roof has columns on one side only
+    degree = exact.degree(letter, i, n + 1, rate)
+    source = max(exact.responses, key=lambda source: exact.degree(letter, i, n + 1, rate, source))
+    where = {"m": exact.m, "n": n, "i": i}
+    return Case(where, _present(claimed), degree, degree >= 0, _seen(exact, source, letter, i, n + 1, rate))
+
+
+def _present(power: Any) -> Any:
+    """A highest power, -1 for all that say that there is no such term."""
+    return max(power, -1)
+
+
+def _drive(entry: Entry, reading: Reading) -> Iterator[Case]:
+    """Table 3: the moments s in two parts, and for each the bodies l in three ranges."""
+    half, letter = entry.about["table"], entry.about["column"]
+    alpha, name = entry.about["row"].split(".")
+    parts = [_Cells(f"{half}.{letter}.alpha{a}.{{}}", entry, reading) for a in (1, 2)]
+    tried = parts[int(alpha[-1]) - 1]
+    for m, n, _, i, said in _functions(entry, reading.ranges, KINDS["T3"]):
+        at = {"m": m, "n": n, "i": i}
+        if not said:
+            raise MeaninglessError(f"says nothing of n = {n}")
+        if name[0] not in "sR":
+            yield from _bodies(tried, drive(m), at, alpha, name, half, letter)
+        elif n == 0:
+            true = _acting(drive(m), letter, i, value(f"{half}.d", n=KINDS["T3"].most_n))
+            yield case({"m": m, "i": i, "claim": "moments s"}, partial(_all_moments, parts, at), true)
+
+
+def _all_moments(parts: Iterable[_Cells], at: Mapping[str, int]) -> tuple[Any, ...]:
+    return tuple(sorted(s for alpha, part in enumerate(parts, 1) for _, s in _moments(part, alpha, at)))
+
+
+def _moments(part: _Cells, alpha: int, at: Mapping[str, int]) -> list[tuple[int, Any]]:
+    """The r and the s of a part, r from s_alpha to R_alpha."""
+    here = {"m": at["m"], "i": at["i"]}
+    r = part(f"s_{alpha}", **here)
+    found = _whole_range(r, part(f"R_{alpha}", **here))
+    return [(r, part("s", **here, r=r)) for r in found]
+
+
+def _acting(exact: Exact, letter: str, i: int, number: int) -> tuple[int, ...]:
+    """The moments by which a function changes in an interval."""
+    return tuple(s for s in range(1, exact.m + 2) if exact.increment(f"M{s}", letter, i, number))
+
+
+def _bodies(
+    part: _Cells, exact: Exact, at: Mapping[str, int], alpha: str, name: str, half: str, letter: str
+) -> Iterator[Case]:
+    """For every moment of the part, every body is in one of the three ranges, and its highest power is right."""
+    number = value(f"{half}.d", n=at["n"])
+    rates = _rates(exact.m)
+    for r, s in _moments(part, int(alpha[-1]), at):
+        here = {**at, "r": r}
+        ranges, before = {}, 0
+        for beta in PARTS["T3"]:
+            last = part(f"L_{beta}", **here)
+            ranges[beta] = _whole_range(before + 1, last)
+            before = last
+        bodies = set(rates) | {body for members in ranges.values() for body in members}
+        if name[0] == "K":
+            bodies = set(ranges[int(name[-1])])
+        for body in sorted(bodies):
+            claimed = tuple(
+                _present(part(f"K_{beta}", **here, l=body)) for beta, members in ranges.items() if body in members
+            )
+            true = (exact.degree(letter, at["i"], number, rates[body], f"M{s}"),) if body in rates else ()
+            seen = _seen(exact, f"M{s}", letter, at["i"], number, rates.get(body, fmpq(0)))
+            yield Case({**at, "s": s, "l": body}, claimed, true, true not in ((), (-1,)), seen)
+
+
+@cache
+def _rates(m: int) -> dict[int, fmpq]:
+    return gammas(drive(m))
+
+
+def _seen(exact: Exact, source: str, letter: str, rod: int, number: int, rate: fmpq) -> Callable[[], Example]:
+    """The table of the exact increments, where a highest power is read off."""
+
+    def make() -> Example:
+        degree = exact.degree(letter, rod, number, rate, source)
+        what = f"its highest power is {degree}" if degree >= 0 else "there is none"
+        look = f"{letter} of rod {rod}, source {source}, interval {number}, rate {rate}: {what}"
+        until = exact.interval * number
+        loads = {name: (Step(fmpq(0), fmpq(name == source)),) for name in exact.responses}
+        return example(exact, loads, until, {"strain": ["1-"]}, "wavesym tables SCENE", look)()
+
+    return make
+
+
+# heads
+
+
+def _steps(entry: Entry, reading: Reading) -> Iterator[Case]:
+    """F' under delayed moments is the sum of increments number d at w, each from its start on: d and w make it right."""
+    for m, z in product((1, 2), instants(5)):
+        chain = driven("II", m)
+        begun = list(_begun(chain.loads, entry, reading, z))
+        for letter, i in product("fg", range(1, m + 1)):
+            total: Any = 0
+            for source, weight, number, w in begun:
+                total = total + weight * chain.increment(source, letter, i, number, w)
+            yield Case({"m": m, "function": f"{letter}_{i}", "z": z}, total, chain.wave(letter, i, z), total != 0)
+
+
+def _begun(loads: Loads, entry: Entry, reading: Reading, z: fmpq) -> Iterator[tuple[str, fmpq, int, fmpq]]:
+    """The pieces of moments and the intervals that have begun for them: source, weight, d and w."""
+    for half in ("T3.even", "T3.odd"):
+        d, w = (reading.formula if f"{half}.{name}" == entry.id else right(f"{half}.{name}") for name in "dw")
+        for n in _numbers(reading.ranges, 2):
+            number = Indices({"n": n}).whole(d)
+            for source, pieces in loads.items():
+                for k, piece in enumerate(pieces):
+                    since = _Delayed({"n": n, "z": z, "s": int(source[1:]), "k": k}, loads).value(w)
+                    if since >= 0:
+                        yield source, piece.weight, number, since
+
+
+class _Delayed(Indices):
+    """With the times tau_(s,k) at which moments change."""
+
+    def __init__(self, bound: Mapping[str, Any], loads: Loads) -> None:
+        super().__init__(bound)
+        self._loads = loads
+
+    def symbol(self, symbol: Symbol) -> Any:
+        if symbol.name == r"\tau":
+            s, k = self.indices(symbol)
+            pieces = self._loads.get(f"M{s}", ())
+            if not 0 <= k < len(pieces):
+                raise MeaninglessError(f"M_{s} has no step {k}")
+            return pieces[k].time
+        return super().symbol(symbol)
+
+
+def head_range(entry: Entry) -> Test:
+    """A range in the head of a table: instants z and numbers n, or sizes m."""
+    if entry.about.get("of") == "m":
+        return Test("the functions that the derived laws tell apart, for every m", partial(_covered, entry))
+    return Test(
+        "the motion under loads from z = 0 on: increments up to the interval of z, for every z in one",
+        partial(_intervals, entry),
+    )
+
+
+def function(entry: Entry) -> Test:
+    """The functions that a row or column is about."""
+    return Test("the functions that the derived laws tell apart, for every m", partial(_covered, entry))
+
+
+def _covered(entry: Entry, reading: Reading) -> Iterator[Case]:
+    """Every function once; those that differ by a delay, or in the first interval alone, are one."""
+    table = entry.id[:2]
+    group = entry.id.rsplit(".", 1)[0] if table == "T3" else table
+    heads = [e.id for e in paper().entries() if e.kind == "function" and e.id.startswith(f"{group}.")]
+    for m in KINDS[table].sizes:
+        listed: list[tuple[str, int]] = []
+        for id in heads:
+            tried = id == entry.id
+            said = reading.ranges if tried else right_ranges(id)
+            block = id.rsplit(".", 1)[0]
+            if table == "T4":
+                condition = reading.formula if block == entry.id else right(block)
+                said = (*said, condition)
+            listed += _listed(reading.formula if tried else right(id), said, m)
+        families = _families(table, m)
+        for family in families:
+            names = ", ".join(f"{letter}_{i}" for letter, i in family)
+            yield Case({"m": m, "functions": names, "claim": "how often"}, sum(x in family for x in listed), 1)
+        for letter, i in sorted({x for x in listed if not any(x in family for family in families)}):
+            yield Case({"m": m, "function": f"{letter}_{i}", "claim": "exists"}, True, False)
+
+
+@cache
+def _families(table: str, m: int) -> tuple[tuple[tuple[str, int], ...], ...]:
+    """Functions that are one but for a delay and the first interval: those next to bodies without mass, or to ends."""
+    exact = KINDS[table].tables(m)
+    found: list[list[tuple[str, int]]] = []
+    for key in product("fg", range(1, exact.m + 1)):
+        same = next((family for family in found if _alike(exact, family[0], key)), None)
+        found.remove(same) if same else None
+        found.append([*(same or []), key])
+    return tuple(map(tuple, sorted(found)))
+
+
+def _alike(exact: Exact, one: tuple[str, int], other: tuple[str, int]) -> bool:
+    rows = [(r[Function(*one)][1:], r[Function(*other)][1:]) for r in exact.responses.values()]
+    return any(
+        all(a[max(by, 0) : len(a) + min(by, 0)] == b[max(-by, 0) : len(b) + min(-by, 0)] for a, b in rows)
+        for by in (-1, 0, 1)
+    )
+
+
+def _intervals(entry: Entry, reading: Reading) -> Iterator[Case]:
+    """Every z from 0 on is in one interval, and what has been gained up to it is the motion."""
+    table = entry.id[:2]
+    kind = KINDS[table]
+    heads = [e.id for e in paper().entries() if e.kind == "range" and not e.about and e.id.startswith(table)]
+    for m in kind.sizes[:2]:
+        exact = kind.tables(m)
+        chain = Driven(exact, {source: (Step(fmpq(0), fmpq(1)),) for source in exact.responses})
+        for z in instants(8):
+            numbers = []
+            for id in heads:
+                where, ranges = (reading.formula, reading.ranges) if id == entry.id else (right(id), right_ranges(id))
+                for n in _numbers(ranges, kind.most_n):
+                    if holds(where, Indices({"n": n, "z": z})):
+                        half = id.removesuffix(".range")
+                        numbers.append(value(f"{half}.d", n=n) if table == "T3" else n + 1)
+            for letter, i in product("fg", range(1, m + 1)):
+                sums = tuple(
+                    sum(
+                        (
+                            chain.increment(source, letter, i, d, z - exact.interval * (d - 1))
+                            for source, d in product(chain.loads, range(1, number + 1))
+                        ),
+                        Exponentials({}),
+                    )
+                    for number in numbers
+                )
+                true = chain.wave(letter, i, z)
+                yield Case({"m": m, "function": f"{letter}_{i}", "z": z}, sums, (true,), true != 0)

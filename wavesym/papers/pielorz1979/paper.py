@@ -6,10 +6,15 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from wavesym.papers.entries import Entry, problems
+from wavesym.papers.pielorz1979 import cells
 from wavesym.papers.pielorz1979.transcription import paper
 from wavesym.papers.record import Adapter, Record, judge
 
-ADAPTERS: Mapping[str, Adapter] = {}
+ADAPTERS: Mapping[str, Adapter] = {
+    "cell": cells.cell,
+    "range": cells.head_range,
+    "function": cells.function,
+}
 
 
 def records(
