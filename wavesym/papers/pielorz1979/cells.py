@@ -18,8 +18,8 @@ from flint import fmpq
 from wavesym.exact.table import Function
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, span
-from wavesym.papers.exponentials import Exponentials
 from wavesym.papers.exact_tables import Exact, building, collision, drive, gammas
+from wavesym.papers.exponentials import Exponentials
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcription import entry as record
@@ -333,7 +333,7 @@ def _seen(exact: Exact, source: str, letter: str, rod: int, number: int, rate: f
 
 
 def _steps(entry: Entry, reading: Reading) -> Iterator[Case]:
-    """F' under delayed moments is the sum of increments number d at w, each from its start on: d and w make it right."""
+    """F' under delayed moments is the sum of increments number d at w, each from its start on."""
     for m, z in product((1, 2), instants(5)):
         chain = driven("II", m)
         begun = list(_begun(chain.loads, entry, reading, z))

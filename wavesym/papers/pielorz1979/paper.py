@@ -6,14 +6,16 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from wavesym.papers.entries import Entry, problems
-from wavesym.papers.pielorz1979 import cells
+from wavesym.papers.pielorz1979 import cells, coefficients
 from wavesym.papers.pielorz1979.transcription import paper
 from wavesym.papers.record import Adapter, Record, judge
 
 ADAPTERS: Mapping[str, Adapter] = {
     "cell": cells.cell,
+    "coefficient": coefficients.coefficient,
     "range": cells.head_range,
     "function": cells.function,
+    "sizes": coefficients.sizes,
 }
 
 
