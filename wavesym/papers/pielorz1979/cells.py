@@ -8,9 +8,9 @@ cover: every function once, every instant in one interval.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
-from itertools import product
+from itertools import chain, product
 from typing import Any
 
 from flint import fmpq
@@ -19,11 +19,9 @@ from wavesym.exact.table import Function
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, span
 from wavesym.papers.exact_tables import Exact, building, collision, drive, gammas
-from wavesym.papers.exponentials import Exponentials
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.pielorz1979.scenes import example
-from wavesym.papers.pielorz1979.transcription import entry as record
-from wavesym.papers.pielorz1979.transcription import paper
+from wavesym.papers.pielorz1979.transcription import entries
 from wavesym.papers.pielorz1979.truth import Driven, Loads, Step, driven, instants
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, Example, Reading, Test, by_size, case
@@ -64,25 +62,25 @@ class Indices(Scope):
 @cache
 def right(id: str) -> Tree:
     """A cell, or the formula of a head, as it should be; KeyError where there is none."""
-    entry = record(id)
+    entry = entries()[id]
     return read_formula(entry.slip.corrected if entry.slip else entry.printed)
 
 
 @cache
 def right_ranges(id: str) -> tuple[Tree, ...]:
     """The ranges of a cell or a head as they should be."""
-    entry = record(id)
+    entry = entries()[id]
     said = entry.ranges if entry.slip is None or entry.slip.ranges is None else entry.slip.ranges
     return tuple(map(read_range, said))
 
 
-def value(id: str, **indices: int) -> fmpq | int:
+def value(id: str, **indices: int) -> Any:
     """The value of a cell as it should be, such as value("T3.even.f.alpha1.K_1", m=4, n=2, i=3, r=1, l=2)."""
     return _known(id, tuple(sorted(indices.items())))
 
 
 @cache
-def _known(id: str, indices: tuple[tuple[str, int], ...]) -> fmpq | int:
+def _known(id: str, indices: tuple[tuple[str, int], ...]) -> Any:
     return _plain(Indices(dict(indices)).value(right(id)))
 
 
@@ -92,6 +90,56 @@ def _plain(value: Any) -> Any:
 
 
 # cells
+
+
+@dataclass(frozen=True)
+class Term:
+    """Where a power is: a function, an interval, a body's rate, and the source, or all of them."""
+
+    table: str
+    m: int
+    letter: str
+    rod: int
+    number: int
+    body: int
+    source: str | None = None
+
+    @property
+    def exact(self) -> Exact:
+        return KINDS[self.table].tables(self.m)
+
+    @property
+    def rate(self) -> fmpq:
+        """The rate of the body: gamma of a drive, 2 kappa, or kappa of a roof, which has columns on one side only."""
+        if self.table == "T3":
+            return gammas(self.exact)[self.body]
+        kappa = self.exact.chain.parameters.kappa
+        return fmpq(kappa[self.body]) * (1 if self.table == "T4" and self.body == self.m else 2)
+
+    def example(self) -> Example:
+        """The table of the exact increments, where the highest power is read off."""
+        source = self.source or max(self.exact.responses, key=lambda source: highest(replace(self, source=source)))
+        degree = highest(replace(self, source=source))
+        what = f"its highest power is {degree}" if degree >= 0 else "there is none"
+        look = f"{self.letter} of rod {self.rod}, source {source}, interval {self.number}, rate {self.rate}: {what}"
+        loads = {name: (Step(fmpq(0), fmpq(name == source)),) for name in self.exact.responses}
+        until = self.exact.interval * self.number
+        return example(self.exact, loads, until, {"strain": ["1-"]}, "wavesym tables SCENE", look)()
+
+
+@cache
+def highest(term: Term) -> int:
+    """The highest power, -1 where there is no such term."""
+    return term.exact.degree(term.letter, term.rod, term.number, term.rate, term.source)
+
+
+def _compared(where: Mapping[str, int], claimed: Sequence[Any], term: Term | None) -> Case:
+    """The highest powers that the ranges claim which have a body, with that of the term, where there is such a body."""
+    said = tuple(max(power, -1) for power in claimed)  # all below 0 say that there is no term
+    true = () if term is None else (highest(term),)
+    if len(said) == len(true) == 1:
+        return Case(where, said[0], true[0], true[0] >= 0, term and term.example)
+    return Case(where, said, true, true not in ((), (-1,)), term and term.example)
 
 
 def cell(entry: Entry) -> Test:
@@ -143,9 +191,10 @@ class _Cells:
         return _plain(Indices(indices).value(tree)) if id == self.tried.id else value(id, **indices)
 
 
-def _functions(entry: Entry, ranges: Iterable[Tree], kind: Kind) -> Iterator[tuple[int, int, str, int, bool]]:
+def _functions(entry: Entry, ranges: Iterable[Tree], table: str) -> Iterator[tuple[int, int, str, int, bool]]:
     """m, n, and the functions that a cell is about; whether it says anything of that n."""
-    (head,) = (id for id in entry.heads if record(id).kind == "function")
+    kind = KINDS[table]
+    (head,) = (id for id in entry.heads if entries()[id].kind == "function")
     said = (*ranges, *right_ranges(head))
     for m, n in by_size(product(kind.sizes, range(kind.most_n + 1))):
         for letter, i in _listed(right(head), said, m):
@@ -184,42 +233,38 @@ def _collision(entry: Entry, reading: Reading) -> Iterator[Case]:
     """Table 2: kappa_1, the inner bodies j in two parts, kappa_(m-1)."""
     column = entry.about["column"]
     cells = _Cells(f"T2.{entry.about['row']}.{{}}", entry, reading)
-    for m, n, letter, i, said in _functions(entry, reading.ranges, KINDS["T2"]):
+    for m, n, letter, i, said in _functions(entry, reading.ranges, "T2"):
         if column in ("K_1", "K_m-1"):
-            yield _power(collision(m), n, letter, i, cells(column, m=m, n=n, i=i) if said else -1, column)
+            yield _power(cells, Term("T2", m, letter, i, n + 1, _body(column, m)), column, said)
         else:
-            yield from _inner_bodies(collision(m), n, letter, i, cells)
+            yield from _inner_bodies(Term("T2", m, letter, i, n + 1, 0), cells)
 
 
 _LIMIT = read_formula("E(K/2)")
 """The highest power of an inner body, by (4.9)."""
 
 
-def _inner_bodies(exact: Exact, n: int, letter: str, i: int, cells: _Cells) -> Iterator[Case]:
+def _inner_bodies(term: Term, cells: _Cells) -> Iterator[Case]:
     """For every inner body: one part has it, and its highest power is right."""
-    inner = range(1, (exact.m - 4) // 2 + 1)
-    where = {"m": exact.m, "n": n, "i": i}
+    inner = range(1, (term.m - 4) // 2 + 1)
+    where = {"m": term.m, "n": term.number - 1, "i": term.rod}
     claimed: dict[int, list[Any]] = {j: [] for j in inner}
     for part in PARTS["T2"]:
-        first, last = cells(f"j_0,{part}", **where), cells(f"j_{part}", **where)
-        for j in _whole_range(first, last):
+        members = _whole_range(cells(f"j_0,{part}", **where), cells(f"j_{part}", **where))
+        for j in members or (1,):
             power = cells(f"K_j,{part}", **where, j=j)
-            if power is None:
+            if (power is None) is not (members is None):
                 raise MeaninglessError("a part is given whole or not at all")
-            claimed.setdefault(j, []).append(_present(_plain(Scope({"K": power}).value(_LIMIT))))
-        if first is None and cells(f"K_j,{part}", **where, j=1) is not None:
-            raise MeaninglessError("a part is given whole or not at all")
+            if members:
+                claimed.setdefault(j, []).append(_plain(Scope({"K": power}).value(_LIMIT)))
     for j in sorted(claimed):
-        rate = 2 * exact.chain.parameters.kappa[2 * j + 1] if j in inner else fmpq(0)
-        true = (exact.degree(letter, i, n + 1, rate),) if j in inner else ()
-        seen = _seen(exact, "impact", letter, i, n + 1, rate)
-        yield Case({**where, "j": j}, tuple(claimed[j]), true, true not in ((), (-1,)), seen)
+        yield _compared({**where, "j": j}, claimed[j], replace(term, body=2 * j + 1) if j in inner else None)
 
 
-def _whole_range(first: Any, last: Any) -> range:
-    """From first to last; none where both are dashes. MeaninglessError where they are no numbers of terms."""
+def _whole_range(first: Any, last: Any) -> range | None:
+    """From first to last; None where both are dashes. MeaninglessError where they are no numbers of terms."""
     if first is None and last is None:
-        return range(0)
+        return None
     if not (isinstance(first, int) and isinstance(last, int)):
         raise MeaninglessError(f"from {first or '—'} to {last or '—'}")
     return range(first, last + 1)
@@ -229,26 +274,19 @@ def _building(entry: Entry, reading: Reading) -> Iterator[Case]:
     """Table 4: the floors' rate 2 kappa_1 and the roof's kappa_m."""
     column = entry.about["column"]
     cells = _Cells(f"{entry.about['table']}.{entry.about['row']}.{{}}", entry, reading)
-    for m, n, letter, i, said in _functions(entry, reading.ranges, KINDS["T4"]):
-        yield _power(building(m), n, letter, i, cells(column, m=m, n=n, i=i) if said else -1, column)
+    for m, n, letter, i, said in _functions(entry, reading.ranges, "T4"):
+        yield _power(cells, Term("T4", m, letter, i, n + 1, _body(column, m)), column, said)
 
 
-def _power(exact: Exact, n: int, letter: str, i: int, claimed: Any, column: str) -> Case:
-    """The highest power of the body that a column's label K_(...) names."""
-    label = read_formula(f"K_{{{column.removeprefix('K_')}}}")
-    assert isinstance(label, Symbol)
-    (body,) = Indices({"m": exact.m}).indices(label)
-    kappa = exact.chain.parameters.kappa
-    rate = kappa[body] if 0 in kappa and body == exact.m else 2 * kappa[body]  # a roof has columns on one side only
-    degree = exact.degree(letter, i, n + 1, rate)
-    source = max(exact.responses, key=lambda source: exact.degree(letter, i, n + 1, rate, source))
-    where = {"m": exact.m, "n": n, "i": i}
-    return Case(where, _present(claimed), degree, degree >= 0, _seen(exact, source, letter, i, n + 1, rate))
+def _power(cells: _Cells, term: Term, column: str, said: bool) -> Case:
+    """The highest power of one body."""
+    where = {"m": term.m, "n": term.number - 1, "i": term.rod}
+    return _compared(where, [cells(column, **where) if said else -1], term)
 
 
-def _present(power: Any) -> Any:
-    """A highest power, -1 for all that say that there is no such term."""
-    return max(power, -1)
+def _body(column: str, m: int) -> int:
+    """The body that a column's label K_(...) names."""
+    return Indices({"m": m}).whole(read_formula(column.removeprefix("K_")))
 
 
 def _drive(entry: Entry, reading: Reading) -> Iterator[Case]:
@@ -257,12 +295,12 @@ def _drive(entry: Entry, reading: Reading) -> Iterator[Case]:
     alpha, name = entry.about["row"].split(".")
     parts = [_Cells(f"{half}.{letter}.alpha{a}.{{}}", entry, reading) for a in (1, 2)]
     tried = parts[int(alpha[-1]) - 1]
-    for m, n, _, i, said in _functions(entry, reading.ranges, KINDS["T3"]):
+    for m, n, _, i, said in _functions(entry, reading.ranges, "T3"):
         at = {"m": m, "n": n, "i": i}
         if not said:
             raise MeaninglessError(f"says nothing of n = {n}")
         if name[0] not in "sR":
-            yield from _bodies(tried, drive(m), at, alpha, name, half, letter)
+            yield from _bodies(tried, int(alpha[-1]), name, Term("T3", m, letter, i, value(f"{half}.d", n=n), 0), at)
         elif n == 0:
             true = _acting(drive(m), letter, i, value(f"{half}.d", n=KINDS["T3"].most_n))
             yield case({"m": m, "i": i, "claim": "moments s"}, partial(_all_moments, parts, at), true)
@@ -275,9 +313,8 @@ def _all_moments(parts: Iterable[_Cells], at: Mapping[str, int]) -> tuple[Any, .
 def _moments(part: _Cells, alpha: int, at: Mapping[str, int]) -> list[tuple[int, Any]]:
     """The r and the s of a part, r from s_alpha to R_alpha."""
     here = {"m": at["m"], "i": at["i"]}
-    r = part(f"s_{alpha}", **here)
-    found = _whole_range(r, part(f"R_{alpha}", **here))
-    return [(r, part("s", **here, r=r)) for r in found]
+    found = _whole_range(part(f"s_{alpha}", **here), part(f"R_{alpha}", **here))
+    return [(r, part("s", **here, r=r)) for r in found or ()]
 
 
 def _acting(exact: Exact, letter: str, i: int, number: int) -> tuple[int, ...]:
@@ -285,48 +322,17 @@ def _acting(exact: Exact, letter: str, i: int, number: int) -> tuple[int, ...]:
     return tuple(s for s in range(1, exact.m + 2) if exact.increment(f"M{s}", letter, i, number))
 
 
-def _bodies(
-    part: _Cells, exact: Exact, at: Mapping[str, int], alpha: str, name: str, half: str, letter: str
-) -> Iterator[Case]:
+def _bodies(part: _Cells, alpha: int, name: str, term: Term, at: Mapping[str, int]) -> Iterator[Case]:
     """For every moment of the part, every body is in one of the three ranges, and its highest power is right."""
-    number = value(f"{half}.d", n=at["n"])
-    rates = _rates(exact.m)
-    for r, s in _moments(part, int(alpha[-1]), at):
+    everybody = range(1, term.m + 2)
+    for r, s in _moments(part, alpha, at):
         here = {**at, "r": r}
-        ranges, before = {}, 0
-        for beta in PARTS["T3"]:
-            last = part(f"L_{beta}", **here)
-            ranges[beta] = _whole_range(before + 1, last)
-            before = last
-        bodies = set(rates) | {body for members in ranges.values() for body in members}
-        if name[0] == "K":
-            bodies = set(ranges[int(name[-1])])
-        for body in sorted(bodies):
-            claimed = tuple(
-                _present(part(f"K_{beta}", **here, l=body)) for beta, members in ranges.items() if body in members
-            )
-            true = (exact.degree(letter, at["i"], number, rates[body], f"M{s}"),) if body in rates else ()
-            seen = _seen(exact, f"M{s}", letter, at["i"], number, rates.get(body, fmpq(0)))
-            yield Case({**at, "s": s, "l": body}, claimed, true, true not in ((), (-1,)), seen)
-
-
-@cache
-def _rates(m: int) -> dict[int, fmpq]:
-    return gammas(drive(m))
-
-
-def _seen(exact: Exact, source: str, letter: str, rod: int, number: int, rate: fmpq) -> Callable[[], Example]:
-    """The table of the exact increments, where a highest power is read off."""
-
-    def make() -> Example:
-        degree = exact.degree(letter, rod, number, rate, source)
-        what = f"its highest power is {degree}" if degree >= 0 else "there is none"
-        look = f"{letter} of rod {rod}, source {source}, interval {number}, rate {rate}: {what}"
-        until = exact.interval * number
-        loads = {name: (Step(fmpq(0), fmpq(name == source)),) for name in exact.responses}
-        return example(exact, loads, until, {"strain": ["1-"]}, "wavesym tables SCENE", look)()
-
-    return make
+        last = [0, *(part(f"L_{beta}", **here) for beta in PARTS["T3"])]
+        ranges = {beta: _whole_range(last[beta - 1] + 1, last[beta]) or () for beta in PARTS["T3"]}
+        for body in ranges[int(name[-1])] if name[0] == "K" else sorted({*everybody, *chain(*ranges.values())}):
+            claimed = [part(f"K_{beta}", **here, l=body) for beta, members in ranges.items() if body in members]
+            true = replace(term, body=body, source=f"M{s}") if body in everybody else None
+            yield _compared({**at, "s": s, "l": body}, claimed, true)
 
 
 # heads
@@ -335,13 +341,13 @@ def _seen(exact: Exact, source: str, letter: str, rod: int, number: int, rate: f
 def _steps(entry: Entry, reading: Reading) -> Iterator[Case]:
     """F' under delayed moments is the sum of increments number d at w, each from its start on."""
     for m, z in product((1, 2), instants(5)):
-        chain = driven("II", m)
-        begun = list(_begun(chain.loads, entry, reading, z))
+        motion = driven("II", m)
+        begun = list(_begun(motion.loads, entry, reading, z))
         for letter, i in product("fg", range(1, m + 1)):
             total: Any = 0
             for source, weight, number, w in begun:
-                total = total + weight * chain.increment(source, letter, i, number, w)
-            yield Case({"m": m, "function": f"{letter}_{i}", "z": z}, total, chain.wave(letter, i, z), total != 0)
+                total = total + weight * motion.increment(source, letter, i, number, w)
+            yield Case({"m": m, "function": f"{letter}_{i}", "z": z}, total, motion.wave(letter, i, z), total != 0)
 
 
 def _begun(loads: Loads, entry: Entry, reading: Reading, z: fmpq) -> Iterator[tuple[str, fmpq, int, fmpq]]:
@@ -393,7 +399,7 @@ def _covered(entry: Entry, reading: Reading) -> Iterator[Case]:
     """Every function once; those that differ by a delay, or in the first interval alone, are one."""
     table = entry.id[:2]
     group = entry.id.rsplit(".", 1)[0] if table == "T3" else table
-    heads = [e.id for e in paper().entries() if e.kind == "function" and e.id.startswith(f"{group}.")]
+    heads = [e.id for e in entries().values() if e.kind == "function" and e.id.startswith(f"{group}.")]
     for m in KINDS[table].sizes:
         listed: list[tuple[str, int]] = []
         for id in heads:
@@ -436,28 +442,33 @@ def _intervals(entry: Entry, reading: Reading) -> Iterator[Case]:
     """Every z from 0 on is in one interval, and what has been gained up to it is the motion."""
     table = entry.id[:2]
     kind = KINDS[table]
-    heads = [e.id for e in paper().entries() if e.kind == "range" and not e.about and e.id.startswith(table)]
-    for m in kind.sizes[:2]:
-        exact = kind.tables(m)
-        chain = Driven(exact, {source: (Step(fmpq(0), fmpq(1)),) for source in exact.responses})
-        for z in instants(8):
-            numbers = []
-            for id in heads:
-                where, ranges = (reading.formula, reading.ranges) if id == entry.id else (right(id), right_ranges(id))
-                for n in _numbers(ranges, kind.most_n):
-                    if holds(where, Indices({"n": n, "z": z})):
-                        half = id.removesuffix(".range")
-                        numbers.append(value(f"{half}.d", n=n) if table == "T3" else n + 1)
-            for letter, i in product("fg", range(1, m + 1)):
-                sums = tuple(
-                    sum(
-                        (
-                            chain.increment(source, letter, i, d, z - exact.interval * (d - 1))
-                            for source, d in product(chain.loads, range(1, number + 1))
-                        ),
-                        Exponentials({}),
-                    )
-                    for number in numbers
-                )
-                true = chain.wave(letter, i, z)
-                yield Case({"m": m, "function": f"{letter}_{i}", "z": z}, sums, (true,), true != 0)
+    heads = [e.id for e in entries().values() if e.kind == "range" and not e.about and e.id.startswith(table)]
+    for m, z in product(kind.sizes[:2], instants(8)):
+        numbers = []
+        for id in heads:
+            where, ranges = (reading.formula, reading.ranges) if id == entry.id else (right(id), right_ranges(id))
+            for n in _numbers(ranges, kind.most_n):
+                if holds(where, Indices({"n": n, "z": z})):
+                    numbers.append(value(id.replace("range", "d"), n=n) if table == "T3" else n + 1)
+        for letter, i in product("fg", range(1, m + 1)):
+            sums = tuple(_gained(table, m, letter, i, number, z) for number in numbers)
+            true = _motion(table, m).wave(letter, i, z)
+            yield Case({"m": m, "function": f"{letter}_{i}", "z": z}, sums, (true,), true != 0)
+
+
+@cache
+def _motion(table: str, m: int) -> Driven:
+    """A chain under a unit of every source, from z = 0 on."""
+    exact = KINDS[table].tables(m)
+    return Driven(exact, {source: (Step(fmpq(0), fmpq(1)),) for source in exact.responses})
+
+
+@cache
+def _gained(table: str, m: int, letter: str, i: int, number: int, z: fmpq) -> Any:
+    """The sum of the increments up to a number, begun or not."""
+    motion = _motion(table, m)
+    step = motion.exact.interval
+    total: Any = 0
+    for source, d in product(motion.loads, range(1, number + 1)):
+        total = total + motion.increment(source, letter, i, d, z - step * (d - 1))
+    return total

@@ -15,15 +15,14 @@ from wavesym.papers.pielorz1979.lines import STEPS, Coefficients, Key, Line, giv
 from wavesym.papers.record import Case, Reading, Test, by_size, case
 from wavesym.papers.tree import Tree
 
-SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(9)))
-"""m and n; n + 1 intervals are in the exact tables."""
+SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(12 - m)))
 SMALL = tuple((m, n) for m, n in SIZES if m + n < 9)
 
 
 def coefficient(entry: Entry) -> Test:
     """A line of the list."""
     return Test(
-        "the exact tables with equal floors under a load of three steps, m = 3 ... 6, n = 0 ... 8: values, the H of "
+        "the exact tables with equal floors under a load of three steps, m = 3 ... 6, m + n < 12: values, the H of "
         "every coefficient, and every coefficient given once",
         partial(_cases, entry.id),
         observed=partial(alone.consequence, entry.id) if entry.slip else None,

@@ -1,8 +1,8 @@
-"""The language of the list III.1 ... III.22: what its letters mean, what a line gives, and which coefficients there are.
+"""The language of the list III.1 ... III.22: what its letters mean, what a line gives, and what there is to give.
 
 A coefficient has the letter of its function, upper indices k (the step of the load), rod and interval, and lower ones:
-none where it is constant, 0 where it is linear in the time since the interval began, (1, i) and (m, i) before power i of
-that time and an exponential of rate 2 kappa_1 or kappa_m.
+none where it is constant, 0 where it is linear in the time since the interval began, (1, i) and (m, i) before power i
+of that time and an exponential of rate 2 kappa_1 or kappa_m.
 """
 
 from __future__ import annotations
@@ -14,9 +14,10 @@ from typing import Any, NamedTuple
 
 from flint import fmpq
 
+from wavesym.exact.increments import Increment
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sides, span
 from wavesym.papers.exact_tables import Exact, building
-from wavesym.papers.pielorz1979.transcription import entry, paper
+from wavesym.papers.pielorz1979.transcription import entries
 from wavesym.papers.pielorz1979.truth import Step, loads
 from wavesym.papers.record import Reading, reading
 from wavesym.papers.tree import Progression, Symbol, Tree, latex
@@ -65,6 +66,7 @@ class Truth:
         self.kappa = self.exact.chain.parameters.kappa
         self.loads: Mapping[str, tuple[Step, ...]] = {name: tuple(steps) for name, steps in loads(self.exact).items()}
         self._known: dict[Key, fmpq] = {}
+        self._found: dict[Key, bool] = {}
 
     def __call__(self, key: Key) -> fmpq:
         """A coefficient: 0 before the first interval and where it does not exist; MeaninglessError."""
@@ -82,7 +84,7 @@ class Truth:
             total += steps[key.k].weight * powers[place] if place < len(powers) else 0
         return total
 
-    def _increment(self, source: str, key: Key) -> Any:
+    def _increment(self, source: str, key: Key) -> Increment:
         try:
             return self.exact.increment(source, key.letter, key.rod, key.interval)
         except IndexError:
@@ -93,6 +95,11 @@ class Truth:
 
     def exists(self, key: Key) -> bool:
         """Whether (4.12) has such a term there: the function has begun to move, and the power is not too high."""
+        if key not in self._found:
+            self._found[key] = self._exists(key)
+        return self._found[key]
+
+    def _exists(self, key: Key) -> bool:
         if key.interval < 1 or not 1 <= key.rod <= self.m:
             return False
         if key.family in ("", "0"):
@@ -190,7 +197,7 @@ def _bindings(ranges: tuple[Tree, ...], bound: dict[str, int]) -> Iterator[dict[
 @cache
 def line(id: str, printed: bool = False) -> Line:
     """A line of the list as it should be, or as it is printed."""
-    record = entry(id)
+    record = entries()[id]
     slip = None if printed else record.slip
     ranges = record.ranges if slip is None or slip.ranges is None else slip.ranges
     return Line.of(reading(slip.corrected if slip else record.printed, (*ranges, *record.inferred)))
@@ -199,7 +206,7 @@ def line(id: str, printed: bool = False) -> Line:
 @cache
 def ids() -> tuple[str, ...]:
     """The lines of the list."""
-    return tuple(entry.id for entry in paper().entries() if entry.kind == "coefficient")
+    return tuple(entry.id for entry in entries().values() if entry.kind == "coefficient")
 
 
 def given(lines: Iterable[Line], m: int, n: int) -> Iterator[Key]:
