@@ -122,7 +122,7 @@ class Term:
         degree = highest(replace(self, source=source))
         what = f"its highest power is {degree}" if degree >= 0 else "there is none"
         look = f"{self.letter} of rod {self.rod}, source {source}, interval {self.number}, rate {self.rate}: {what}"
-        loads = {name: (Step(fmpq(0), fmpq(name == source)),) for name in self.exact.responses}
+        loads = {source: (Step(fmpq(0), fmpq(1)),)}
         until = self.exact.interval * self.number
         return example(self.exact, loads, until, {"strain": ["1-"]}, "wavesym tables SCENE", look)()
 
@@ -136,10 +136,12 @@ def highest(term: Term) -> int:
 def _compared(where: Mapping[str, int], claimed: Sequence[Any], term: Term | None) -> Case:
     """The highest powers that the ranges claim which have a body, with that of the term, where there is such a body."""
     said = tuple(max(power, -1) for power in claimed)  # all below 0 say that there is no term
-    true = () if term is None else (highest(term),)
-    if len(said) == len(true) == 1:
-        return Case(where, said[0], true[0], true[0] >= 0, term and term.example)
-    return Case(where, said, true, true not in ((), (-1,)), term and term.example)
+    if term is None:
+        return Case(where, said, (), False)
+    true = highest(term)
+    if len(said) == 1:
+        return Case(where, said[0], true, true >= 0, term.example)
+    return Case(where, said, (true,), true >= 0, term.example)
 
 
 def cell(entry: Entry) -> Test:
@@ -444,12 +446,11 @@ def _intervals(entry: Entry, reading: Reading) -> Iterator[Case]:
     kind = KINDS[table]
     heads = [e.id for e in entries().values() if e.kind == "range" and not e.about and e.id.startswith(table)]
     for m, z in product(kind.sizes[:2], instants(8)):
-        numbers = []
+        numbers: list[int] = []
         for id in heads:
             where, ranges = (reading.formula, reading.ranges) if id == entry.id else (right(id), right_ranges(id))
-            for n in _numbers(ranges, kind.most_n):
-                if holds(where, Indices({"n": n, "z": z})):
-                    numbers.append(value(id.replace("range", "d"), n=n) if table == "T3" else n + 1)
+            found = (n for n in _numbers(ranges, kind.most_n) if holds(where, Indices({"n": n, "z": z})))
+            numbers += (value(id.replace("range", "d"), n=n) if table == "T3" else n + 1 for n in found)
         for letter, i in product("fg", range(1, m + 1)):
             sums = tuple(_gained(table, m, letter, i, number, z) for number in numbers)
             true = _motion(table, m).wave(letter, i, z)

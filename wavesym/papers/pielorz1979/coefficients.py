@@ -54,8 +54,10 @@ def _cases(id: str, reading: Reading) -> Iterator[Case]:
 
 
 def _value(bound: dict[str, int], key: Key, right: Tree) -> Case:
-    true = truth(bound["m"])(key)
-    return case(bound, lambda: Coefficients(bound, bound["m"], truth(bound["m"])).value(right), true, true != 0)
+    known = truth(bound["m"])
+    true = known(key)
+    value = partial(Coefficients(bound, bound["m"], known).value, right)
+    return case(bound, value, true, true != 0, partial(known.example, key))
 
 
 def _lets_in(bound: dict[str, int], key: Key, right: Tree) -> Iterator[Case]:

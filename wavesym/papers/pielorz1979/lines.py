@@ -17,9 +17,10 @@ from flint import fmpq
 from wavesym.exact.increments import Increment
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sides, span
 from wavesym.papers.exact_tables import Exact, building
+from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcription import entries
 from wavesym.papers.pielorz1979.truth import Step, loads
-from wavesym.papers.record import Reading, reading
+from wavesym.papers.record import Example, Reading, reading
 from wavesym.papers.tree import Progression, Symbol, Tree, latex
 
 STEPS = range(3)
@@ -91,7 +92,7 @@ class Truth:
             raise MeaninglessError(f"{key} is beyond the tables") from None
 
     def _rate(self, family: str) -> fmpq:
-        return {"": fmpq(0), "0": fmpq(0), "1": 2 * self.kappa[1], "m": fmpq(self.kappa[self.m])}[family]
+        return {"": fmpq(0), "0": fmpq(0), "1": 2 * self.kappa[1], "m": self.kappa[self.m]}[family]
 
     def exists(self, key: Key) -> bool:
         """Whether (4.12) has such a term there: the function has begun to move, and the power is not too high."""
@@ -105,6 +106,17 @@ class Truth:
         if key.family in ("", "0"):
             return self.exact.alive(key.letter, key.rod, key.interval)
         return 0 <= key.power <= self.exact.degree(key.letter, key.rod, key.interval, self._rate(key.family))
+
+    def example(self, key: Key) -> Example:
+        """The tables of increments for units of both sources, of which a coefficient is made."""
+        place = int(key.family == "0") or key.power
+        parts = " and ".join(f"{steps[key.k].weight} times source {name}" for name, steps in self.loads.items())
+        look = (
+            f"{key.letter} of rod {key.rod}, interval {key.interval}, rate {self._rate(key.family)}, power {place}: "
+            f"{parts} is {self(key)}"
+        )
+        until = self.exact.interval * key.interval
+        return example(self.exact, self.loads, until, {"strain": ["1-"]}, "wavesym tables SCENE", look)()
 
     def unknowns(self, n: int) -> frozenset[Key]:
         """The coefficients of interval n + 1, for all steps: those of f_1, ..., f_m and g_2, ..., g_m."""
