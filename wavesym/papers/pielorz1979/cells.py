@@ -1,8 +1,7 @@
-"""Tables 2 to 4, cell by cell and head by head: the highest powers of (4.9), (4.10) and (4.12).
+"""Tables 2 to 4, cell by cell: the highest powers of (4.9), (4.10) and (4.12).
 
 A cell is tried among the others of its row or column, which are as they should be, against the degrees of the exact
-tables; a power below 0 says that there is no such term, a dash that there is no such part. Heads are tried by what they
-cover: every function once, every instant in one interval.
+tables; a power below 0 says that there is no such term, a dash that there is no such part.
 """
 
 from __future__ import annotations
@@ -15,14 +14,13 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.exact.table import Function
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, span
 from wavesym.papers.exact_tables import Exact, building, collision, drive, gammas
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcription import entries
-from wavesym.papers.pielorz1979.truth import Driven, Loads, Step, driven, instants
+from wavesym.papers.pielorz1979.truth import Loads, Step, driven, instants
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, Example, Reading, Test, by_size, case
 from wavesym.papers.tree import Blank, Number, Progression, Symbol, Tree, latex
@@ -199,11 +197,11 @@ def _functions(entry: Entry, ranges: Iterable[Tree], table: str) -> Iterator[tup
     (head,) = (id for id in entry.heads if entries()[id].kind == "function")
     said = (*ranges, *right_ranges(head))
     for m, n in by_size(product(kind.sizes, range(kind.most_n + 1))):
-        for letter, i in _listed(right(head), said, m):
-            yield m, n, letter, i, n in _numbers(said, kind.most_n)
+        for letter, i in listed(right(head), said, m):
+            yield m, n, letter, i, n in numbers(said, kind.most_n)
 
 
-def _listed(function: Tree, ranges: Iterable[Tree], m: int) -> Iterator[tuple[str, int]]:
+def listed(function: Tree, ranges: Iterable[Tree], m: int) -> Iterator[tuple[str, int]]:
     """The functions that a head names for an m: none where a condition on m does not hold."""
     if not isinstance(function, Symbol):
         raise MeaninglessError(f"{latex(function)} is no function")
@@ -222,7 +220,8 @@ def _restricts(range_: Tree) -> bool:
     return "z" not in latex(range_)
 
 
-def _numbers(ranges: Iterable[Tree], most: int) -> tuple[int, ...]:
+def numbers(ranges: Iterable[Tree], most: int) -> tuple[int, ...]:
+    """The n of some ranges, up to `most`."""
     running = _progression(ranges, "n")
     return span(running, Scope(), most) if running else ()
 
@@ -337,9 +336,6 @@ def _bodies(part: _Cells, alpha: int, name: str, term: Term, at: Mapping[str, in
             yield _compared({**at, "s": s, "l": body}, claimed, true)
 
 
-# heads
-
-
 def _steps(entry: Entry, reading: Reading) -> Iterator[Case]:
     """F' under delayed moments is the sum of increments number d at w, each from its start on."""
     for m, z in product((1, 2), instants(5)):
@@ -356,7 +352,7 @@ def _begun(loads: Loads, entry: Entry, reading: Reading, z: fmpq) -> Iterator[tu
     """The pieces of moments and the intervals that have begun for them: source, weight, d and w."""
     for half in ("T3.even", "T3.odd"):
         d, w = (reading.formula if f"{half}.{name}" == entry.id else right(f"{half}.{name}") for name in "dw")
-        for n in _numbers(reading.ranges, 2):
+        for n in numbers(reading.ranges, 2):
             number = Indices({"n": n}).whole(d)
             for source, pieces in loads.items():
                 for k, piece in enumerate(pieces):
@@ -380,96 +376,3 @@ class _Delayed(Indices):
                 raise MeaninglessError(f"M_{s} has no step {k}")
             return pieces[k].time
         return super().symbol(symbol)
-
-
-def head_range(entry: Entry) -> Test:
-    """A range in the head of a table: instants z and numbers n, or sizes m."""
-    if entry.about.get("of") == "m":
-        return Test("the functions that the derived laws tell apart, for every m", partial(_covered, entry))
-    return Test(
-        "the motion under loads from z = 0 on: increments up to the interval of z, for every z in one",
-        partial(_intervals, entry),
-    )
-
-
-def function(entry: Entry) -> Test:
-    """The functions that a row or column is about."""
-    return Test("the functions that the derived laws tell apart, for every m", partial(_covered, entry))
-
-
-def _covered(entry: Entry, reading: Reading) -> Iterator[Case]:
-    """Every function once; those that differ by a delay, or in the first interval alone, are one."""
-    table = entry.id[:2]
-    group = entry.id.rsplit(".", 1)[0] if table == "T3" else table
-    heads = [e.id for e in entries().values() if e.kind == "function" and e.id.startswith(f"{group}.")]
-    for m in KINDS[table].sizes:
-        listed: list[tuple[str, int]] = []
-        for id in heads:
-            tried = id == entry.id
-            said = reading.ranges if tried else right_ranges(id)
-            block = id.rsplit(".", 1)[0]
-            if table == "T4":
-                condition = reading.formula if block == entry.id else right(block)
-                said = (*said, condition)
-            listed += _listed(reading.formula if tried else right(id), said, m)
-        families = _families(table, m)
-        for family in families:
-            names = ", ".join(f"{letter}_{i}" for letter, i in family)
-            yield Case({"m": m, "functions": names, "claim": "how often"}, sum(x in family for x in listed), 1)
-        for letter, i in sorted({x for x in listed if not any(x in family for family in families)}):
-            yield Case({"m": m, "function": f"{letter}_{i}", "claim": "exists"}, True, False)
-
-
-@cache
-def _families(table: str, m: int) -> tuple[tuple[tuple[str, int], ...], ...]:
-    """Functions that are one but for a delay and the first interval: those next to bodies without mass, or to ends."""
-    exact = KINDS[table].tables(m)
-    found: list[list[tuple[str, int]]] = []
-    for key in product("fg", range(1, exact.m + 1)):
-        same = next((family for family in found if _alike(exact, family[0], key)), None)
-        found.remove(same) if same else None
-        found.append([*(same or []), key])
-    return tuple(map(tuple, sorted(found)))
-
-
-def _alike(exact: Exact, one: tuple[str, int], other: tuple[str, int]) -> bool:
-    rows = [(r[Function(*one)][1:], r[Function(*other)][1:]) for r in exact.responses.values()]
-    return any(
-        all(a[max(by, 0) : len(a) + min(by, 0)] == b[max(-by, 0) : len(b) + min(-by, 0)] for a, b in rows)
-        for by in (-1, 0, 1)
-    )
-
-
-def _intervals(entry: Entry, reading: Reading) -> Iterator[Case]:
-    """Every z from 0 on is in one interval, and what has been gained up to it is the motion."""
-    table = entry.id[:2]
-    kind = KINDS[table]
-    heads = [e.id for e in entries().values() if e.kind == "range" and not e.about and e.id.startswith(table)]
-    for m, z in product(kind.sizes[:2], instants(8)):
-        numbers: list[int] = []
-        for id in heads:
-            where, ranges = (reading.formula, reading.ranges) if id == entry.id else (right(id), right_ranges(id))
-            found = (n for n in _numbers(ranges, kind.most_n) if holds(where, Indices({"n": n, "z": z})))
-            numbers += (value(id.replace("range", "d"), n=n) if table == "T3" else n + 1 for n in found)
-        for letter, i in product("fg", range(1, m + 1)):
-            sums = tuple(_gained(table, m, letter, i, number, z) for number in numbers)
-            true = _motion(table, m).wave(letter, i, z)
-            yield Case({"m": m, "function": f"{letter}_{i}", "z": z}, sums, (true,), true != 0)
-
-
-@cache
-def _motion(table: str, m: int) -> Driven:
-    """A chain under a unit of every source, from z = 0 on."""
-    exact = KINDS[table].tables(m)
-    return Driven(exact, {source: (Step(fmpq(0), fmpq(1)),) for source in exact.responses})
-
-
-@cache
-def _gained(table: str, m: int, letter: str, i: int, number: int, z: fmpq) -> Any:
-    """The sum of the increments up to a number, begun or not."""
-    motion = _motion(table, m)
-    step = motion.exact.interval
-    total: Any = 0
-    for source, d in product(motion.loads, range(1, number + 1)):
-        total = total + motion.increment(source, letter, i, d, z - step * (d - 1))
-    return total

@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import cache, partial
+from itertools import product
 
 from flint import fmpq
 
 from wavesym.papers.entries import Entry
-from wavesym.papers.evaluation import Scope, holds
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds
 from wavesym.papers.pielorz1979 import alone
 from wavesym.papers.pielorz1979.lines import STEPS, Coefficients, Key, Line, given, ids, line, truth
 from wavesym.papers.record import Case, Reading, Test, by_size, case
-from wavesym.papers.tree import Tree
+from wavesym.papers.tree import Addition, Group, Minus, Product, Tree, latex
 
 SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(12 - m)))
 SMALL = tuple((m, n) for m, n in SIZES if m + n < 9)
@@ -25,8 +26,52 @@ def coefficient(entry: Entry) -> Test:
         "the exact tables with equal floors under a load of three steps, m = 3 ... 6, m + n < 12: values, the H of "
         "every coefficient, and every coefficient given once",
         partial(_cases, entry.id),
+        difference=partial(_difference, entry.id) if entry.slip else None,
         observed=partial(alone.consequence, entry.id) if entry.slip else None,
     )
+
+
+def _difference(id: str, read: Reading) -> str:
+    """What is printed less what is right: the terms in which they differ."""
+    try:
+        ((_, printed),) = Line.of(read).equations
+    except (MeaninglessError, ValueError):
+        return "no line of the list"
+    ((_, right),) = line(id).equations
+    mine, theirs = list(_terms(printed)), list(_terms(right))
+    left = [term for term in mine if term not in theirs] + [_negative(term) for term in theirs if term not in mine]
+    return latex(Addition(tuple(left))) if left else "0"
+
+
+def _terms(tree: Tree) -> Iterator[Tree]:
+    """The terms of a sum, brackets with coefficients in them multiplied out."""
+    match tree:
+        case Addition(terms):
+            for term in terms:
+                yield from _terms(term)
+        case Minus(of):
+            yield from map(_negative, _terms(of))
+        case Product(factors):
+            for chosen in product(*([*_terms(f.inner)] if _brackets(f) else [f] for f in factors)):  # type: ignore[union-attr]
+                flat = [part for factor in chosen for part in _factors(factor)]
+                turned = sum(isinstance(factor, Minus) for factor in chosen) % 2
+                yield _negative(Product(tuple(flat))) if turned else Product(tuple(flat))
+        case _:
+            yield tree
+
+
+def _brackets(factor: Tree) -> bool:
+    return isinstance(factor, Group) and "^" in latex(factor)
+
+
+def _factors(factor: Tree) -> tuple[Tree, ...]:
+    """Of a term, its sign apart."""
+    plain = factor.of if isinstance(factor, Minus) else factor
+    return plain.factors if isinstance(plain, Product) else (plain,)
+
+
+def _negative(term: Tree) -> Tree:
+    return term.of if isinstance(term, Minus) else Minus(term)
 
 
 def sizes(entry: Entry) -> Test:

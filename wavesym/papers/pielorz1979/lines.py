@@ -18,7 +18,7 @@ from wavesym.exact.increments import Increment
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sides, span
 from wavesym.papers.exact_tables import Exact, building
 from wavesym.papers.pielorz1979.scenes import example
-from wavesym.papers.pielorz1979.transcription import entries
+from wavesym.papers.pielorz1979.transcription import entries, entry
 from wavesym.papers.pielorz1979.truth import Step, loads
 from wavesym.papers.record import Example, Reading, reading
 from wavesym.papers.tree import Progression, Symbol, Tree, latex
@@ -64,7 +64,7 @@ class Truth:
     def __init__(self, m: int) -> None:
         self.exact: Exact = building(m)
         self.m = m
-        self.kappa = self.exact.chain.parameters.kappa
+        self.kappa = {i: fmpq(kappa) for i, kappa in self.exact.chain.parameters.kappa.items()}
         self.loads: Mapping[str, tuple[Step, ...]] = {name: tuple(steps) for name, steps in loads(self.exact).items()}
         self._known: dict[Key, fmpq] = {}
         self._found: dict[Key, bool] = {}
@@ -209,7 +209,7 @@ def _bindings(ranges: tuple[Tree, ...], bound: dict[str, int]) -> Iterator[dict[
 @cache
 def line(id: str, printed: bool = False) -> Line:
     """A line of the list as it should be, or as it is printed."""
-    record = entries()[id]
+    record = entry(id)
     slip = None if printed else record.slip
     ranges = record.ranges if slip is None or slip.ranges is None else slip.ranges
     return Line.of(reading(slip.corrected if slip else record.printed, (*ranges, *record.inferred)))
@@ -218,7 +218,7 @@ def line(id: str, printed: bool = False) -> Line:
 @cache
 def ids() -> tuple[str, ...]:
     """The lines of the list."""
-    return tuple(entry.id for entry in entries().values() if entry.kind == "coefficient")
+    return tuple(id for id, record in entries().items() if record.kind == "coefficient")
 
 
 def given(lines: Iterable[Line], m: int, n: int) -> Iterator[Key]:

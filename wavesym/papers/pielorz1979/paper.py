@@ -6,15 +6,16 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from wavesym.papers.entries import Entry, problems
-from wavesym.papers.pielorz1979 import cells, coefficients
+from wavesym.papers.pielorz1979 import cells, coefficients, heads, rates
 from wavesym.papers.pielorz1979.transcription import paper
 from wavesym.papers.record import Adapter, Record, judge
 
 ADAPTERS: Mapping[str, Adapter] = {
     "cell": cells.cell,
     "coefficient": coefficients.coefficient,
-    "range": cells.head_range,
-    "function": cells.function,
+    "range": heads.interval_or_size,
+    "function": heads.function,
+    "rates": rates.rates,
     "sizes": coefficients.sizes,
 }
 

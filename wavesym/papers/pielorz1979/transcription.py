@@ -21,3 +21,8 @@ def paper() -> Paper:
 def entries() -> Mapping[str, Entry]:
     """All records by their ids, in the order of print."""
     return {entry.id: entry for entry in paper().entries()}
+
+
+def entry(id: str) -> Entry:
+    """A record by its id; KeyError."""
+    return entries()[id]
