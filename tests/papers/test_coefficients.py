@@ -75,6 +75,12 @@ def test_every_correction_is_necessary():
     assert "rests on itself" in alone.consequence("III.17")
 
 
+def test_what_lines_differ_in():
+    entry = entries()["III.17"]
+    difference = judge(entry, ADAPTERS[entry.kind](entry)).difference
+    assert difference == "-g_{m,0}^{k,m,n + 1} + g^{k,m,n + 1}"
+
+
 def test_what_the_list_lacks_is_said_in_words(monkeypatch):
     short = Line.of(reading(entries()["III.9"].printed, [r"j = 3, 4, \dots, m"]))
     with pytest.raises(alone.NotGivenError, match=r"f_0\^\(1,2,1\) is in no line's range"):

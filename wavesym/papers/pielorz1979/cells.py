@@ -21,7 +21,7 @@ from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcription import entries
 from wavesym.papers.pielorz1979.truth import Loads, Step, driven, instants
-from wavesym.papers.reader import read_formula, read_range
+from wavesym.papers.reader import UnreadableError, read_formula, read_range
 from wavesym.papers.record import Case, Example, Reading, Test, by_size, case
 from wavesym.papers.tree import Blank, Number, Progression, Symbol, Tree, latex
 
@@ -59,9 +59,12 @@ class Indices(Scope):
 
 @cache
 def right(id: str) -> Tree:
-    """A cell, or the formula of a head, as it should be; KeyError where there is none."""
+    """A cell, or the formula of a head, as it should be; KeyError where there is none, MeaninglessError."""
     entry = entries()[id]
-    return read_formula(entry.slip.corrected if entry.slip else entry.printed)
+    try:
+        return read_formula(entry.slip.corrected if entry.slip else entry.printed)
+    except UnreadableError as error:
+        raise MeaninglessError(str(error)) from None
 
 
 @cache
@@ -127,8 +130,11 @@ class Term:
 
 @cache
 def highest(term: Term) -> int:
-    """The highest power, -1 where there is no such term."""
-    return term.exact.degree(term.letter, term.rod, term.number, term.rate, term.source)
+    """The highest power, -1 where there is no such term; MeaninglessError where there is no such function or body."""
+    try:
+        return term.exact.degree(term.letter, term.rod, term.number, term.rate, term.source)
+    except (KeyError, IndexError):
+        raise MeaninglessError(f"there is no power of {term}") from None
 
 
 def _compared(where: Mapping[str, int], claimed: Sequence[Any], term: Term | None) -> Case:
@@ -319,8 +325,11 @@ def _moments(part: _Cells, alpha: int, at: Mapping[str, int]) -> list[tuple[int,
 
 
 def _acting(exact: Exact, letter: str, i: int, number: int) -> tuple[int, ...]:
-    """The moments by which a function changes in an interval."""
-    return tuple(s for s in range(1, exact.m + 2) if exact.increment(f"M{s}", letter, i, number))
+    """The moments by which a function changes in an interval; MeaninglessError where there is no such function."""
+    try:
+        return tuple(s for s in range(1, exact.m + 2) if exact.increment(f"M{s}", letter, i, number))
+    except (KeyError, IndexError):
+        raise MeaninglessError(f"there is no interval {number} of {letter}_{i}") from None
 
 
 def _bodies(part: _Cells, alpha: int, name: str, term: Term, at: Mapping[str, int]) -> Iterator[Case]:

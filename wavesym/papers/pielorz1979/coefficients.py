@@ -141,12 +141,10 @@ def _coverage(id: str, tried: Line, m: int, n: int) -> Iterator[Case]:
 
 @cache
 def _wanted(id: str, m: int, n: int) -> frozenset[Key]:
-    """The coefficients that no other line gives."""
-    others: set[Key] = set()
-    for other in ids():
-        if other != id:
-            others |= _given(other, m, n)
-    return truth(m).unknowns(n) - others
+    """The coefficients that no other line gives, of the letter and the family that this line is about."""
+    about = {key[:2] for key in given([line(id)], m, n)} or {key[:2] for key in given([line(id)], m, n + 1)}
+    others = {key for other in ids() if other != id for key in _given(other, m, n)}
+    return frozenset(key for key in truth(m).unknowns(n) - others if key[:2] in about)
 
 
 @cache

@@ -43,7 +43,7 @@ def _covered(entry: Entry, reading: Reading) -> Iterator[Case]:
     group = entry.id.rsplit(".", 1)[0] if table == "T3" else table
     heads = [e.id for e in entries().values() if e.kind == "function" and e.id.startswith(f"{group}.")]
     for m in KINDS[table].sizes:
-        named: list[tuple[str, int]] = []
+        named: dict[str, list[tuple[str, int]]] = {}
         for id in heads:
             tried = id == entry.id
             said = reading.ranges if tried else right_ranges(id)
@@ -51,12 +51,15 @@ def _covered(entry: Entry, reading: Reading) -> Iterator[Case]:
             if table == "T4":
                 condition = reading.formula if block == entry.id else right(block)
                 said = (*said, condition)
-            named += listed(reading.formula if tried else right(id), said, m)
-        families = _families(table, m)
-        for family in families:
-            names = ", ".join(f"{letter}_{i}" for letter, i in family)
-            yield Case({"m": m, "functions": names, "claim": "how often"}, sum(x in family for x in named), 1)
-        for letter, i in sorted({x for x in named if not any(x in family for family in families)}):
+            named[id] = list(listed(reading.formula if tried else right(id), said, m))
+        everything = [x for functions in named.values() for x in functions]
+        own = named.get(entry.id, everything)
+        for family in _families(table, m):
+            count = sum(x in family for x in everything)
+            if count == 0 or not set(family).isdisjoint(own):
+                names = ", ".join(f"{letter}_{i}" for letter, i in family)
+                yield Case({"m": m, "functions": names, "claim": "how often"}, count, 1)
+        for letter, i in sorted(set(own) - {x for family in _families(table, m) for x in family}):
             yield Case({"m": m, "function": f"{letter}_{i}", "claim": "exists"}, True, False)
 
 

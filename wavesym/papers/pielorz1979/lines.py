@@ -20,6 +20,7 @@ from wavesym.papers.exact_tables import Exact, building
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcription import entries, entry
 from wavesym.papers.pielorz1979.truth import Step, loads
+from wavesym.papers.reader import UnreadableError
 from wavesym.papers.record import Example, Reading, reading
 from wavesym.papers.tree import Progression, Symbol, Tree, latex
 
@@ -208,11 +209,14 @@ def _bindings(ranges: tuple[Tree, ...], bound: dict[str, int]) -> Iterator[dict[
 
 @cache
 def line(id: str, printed: bool = False) -> Line:
-    """A line of the list as it should be, or as it is printed."""
+    """A line of the list as it should be, or as it is printed; MeaninglessError."""
     record = entry(id)
     slip = None if printed else record.slip
     ranges = record.ranges if slip is None or slip.ranges is None else slip.ranges
-    return Line.of(reading(slip.corrected if slip else record.printed, (*ranges, *record.inferred)))
+    try:
+        return Line.of(reading(slip.corrected if slip else record.printed, (*ranges, *record.inferred)))
+    except UnreadableError as error:
+        raise MeaninglessError(str(error)) from None
 
 
 @cache
