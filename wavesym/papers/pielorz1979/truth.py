@@ -94,6 +94,10 @@ class Driven:
                             parts[-rate * w] = parts.get(-rate * w, fmpq(0)) + piece.weight * value
         return Exponentials(parts)
 
+    def load(self, source: str, z: fmpq, power: int = 0) -> fmpq:
+        """The sum of the source's pieces that have begun, each times the time since then to a power."""
+        return sum((p.weight * (z - p.time) ** power for p in self.loads.get(source, ()) if z >= p.time), fmpq(0))
+
     def increment(self, source: str, letter: str, rod: int, number: int, w: fmpq) -> Exponentials:
         """What f' or g' of a rod gains in interval 1, 2, ... for a unit of a source, w after its start; nothing before.
 
@@ -118,10 +122,6 @@ class Driven:
             value = sum((power * w**k for k, power in enumerate(powers)), fmpq(0))
             parts[-rate * w] = parts.get(-rate * w, fmpq(0)) + value
         return Exponentials(parts)
-
-    def load(self, source: str, z: fmpq, power: int = 0) -> fmpq:
-        """The sum of the source's pieces that have begun, each times the time since then to a power."""
-        return sum((p.weight * (z - p.time) ** power for p in self.loads.get(source, ()) if z >= p.time), fmpq(0))
 
 
 def _ordered(source: str, exact: Exact, letter: str, rod: int, number: int, order: int) -> Increment:
