@@ -222,7 +222,7 @@ def line(id: str, printed: bool = False) -> Line:
 @cache
 def ids() -> tuple[str, ...]:
     """The lines of the list."""
-    return tuple(id for id, record in entries().items() if record.kind == "coefficient")
+    return tuple(id for id, record in entries().items() if record.kind == "line")
 
 
 def given(lines: Iterable[Line], m: int, n: int) -> Iterator[Key]:

@@ -6,17 +6,27 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from wavesym.papers.entries import Entry, problems
-from wavesym.papers.pielorz1979 import cells, coefficients, heads, rates
+from wavesym.papers.pielorz1979 import cells, coefficients, forms, heads, prose, rates, remarks
 from wavesym.papers.pielorz1979.transcription import paper
 from wavesym.papers.record import Adapter, Record, judge
 
 ADAPTERS: Mapping[str, Adapter] = {
     "cell": cells.cell,
-    "coefficient": coefficients.coefficient,
-    "range": heads.interval_or_size,
+    "coefficients": remarks.coefficients,
+    "definition": forms.definition,
+    "different rates": rates.rates,
+    "factor": remarks.factor,
+    "form": forms.form,
     "function": heads.function,
-    "rates": rates.rates,
+    "group": remarks.group,
+    "interval": forms.interval,
+    "line": coefficients.coefficient,
+    "power": remarks.power,
+    "range": heads.interval_or_size,
+    "rate": forms.rate,
+    "rest": remarks.rest,
     "sizes": coefficients.sizes,
+    "solution": prose.solution,
 }
 
 
