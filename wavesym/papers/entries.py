@@ -113,9 +113,7 @@ class Passage(_Data):
                 **self.cell.get(place.id, {}),
             }
             where = f"{self.where}, row {place.row}, column {place.column}"
-            yield Entry(
-                id=place.id, kind="cell", scan=place.scan, where=where, lines=self.lines, heads=heads, **given
-            )
+            yield Entry(id=place.id, kind="cell", scan=place.scan, where=where, lines=self.lines, heads=heads, **given)
 
 
 def _said(head: Entry) -> tuple[str, ...]:

@@ -200,6 +200,7 @@ _COMPARED: dict[str, Callable[[Any, Any], bool]] = {
     r"\le": lambda a, b: bool(a <= b),
     r"\geq": lambda a, b: bool(a >= b),
     r"\ge": lambda a, b: bool(a >= b),
+    r"\neq": lambda a, b: bool(a != b),
 }
 
 

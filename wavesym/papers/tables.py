@@ -97,6 +97,8 @@ def problems(tables: Iterable[Table], text: str, start: int, others: Iterable[st
         for column in table.columns:
             if column.label not in cells[table.head - start]:
                 yield f"line {table.head} has no label {column.label}"
-            left -= {(table.head - start, x) for x, cell in enumerate(cells[table.head - start]) if cell == column.label}
+            left -= {
+                (table.head - start, x) for x, cell in enumerate(cells[table.head - start]) if cell == column.label
+            }
     if left:
         yield "neither judged nor set aside: " + ", ".join(cells[y][x] for y, x in sorted(left))

@@ -6,20 +6,26 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from wavesym.papers.entries import Entry, problems
-from wavesym.papers.pielorz1979 import definitions, forms, prose, remarks
+from wavesym.papers.pielorz1979 import cells, coefficients, definitions, forms, heads, prose, rates, remarks
 from wavesym.papers.pielorz1979.transcription import paper
 from wavesym.papers.record import Adapter, Record, judge
 
 ADAPTERS: Mapping[str, Adapter] = {
+    "cell": cells.cell,
     "coefficients": remarks.coefficients,
     "definition": definitions.definition,
+    "different rates": rates.rates,
     "factor": remarks.factor,
     "form": forms.form,
+    "function": heads.function,
     "group": remarks.group,
     "interval": forms.interval,
+    "line": coefficients.coefficient,
     "power": remarks.power,
+    "range": heads.interval_or_size,
     "rate": definitions.rate,
     "rest": remarks.rest,
+    "sizes": coefficients.sizes,
     "solution": prose.solution,
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
@@ -17,6 +18,11 @@ def paper() -> Paper:
 
 
 @cache
+def entries() -> Mapping[str, Entry]:
+    """All records by their ids, in the order of print."""
+    return {entry.id: entry for entry in paper().entries()}
+
+
 def entry(id: str) -> Entry:
     """A record by its id; KeyError."""
-    return {entry.id: entry for entry in paper().entries()}[id]
+    return entries()[id]
