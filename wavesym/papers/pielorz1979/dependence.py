@@ -16,7 +16,7 @@ from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.exact_tables import INTERVALS, Exact, building, collision, drive
 from wavesym.papers.pielorz1979 import limits
 from wavesym.papers.pielorz1979.definitions import moments
-from wavesym.papers.pielorz1979.forms import FORMS, FormScope, Words, form_cases, moved, rates, right_form
+from wavesym.papers.pielorz1979.forms import FORMS, FormScope, Words, form_cases, moved, rates, right_form, shown
 from wavesym.papers.pielorz1979.listed import AT
 from wavesym.papers.pielorz1979.meetings import most_meetings
 from wavesym.papers.pielorz1979.truth import EXAMPLES, Driven
@@ -75,7 +75,8 @@ def acting_moments(words: Words) -> Iterator[Case]:
             said = {s for s in range(1, m + 2) if s % 2 == (parity == "odd")}
             true = come if words["quantity"] == "functions" else gaining
             at = {"m": m, "z": z, "function": f"{letter}'_{i}"}
-            yield Case(at, said & come if words["arrived"] else said, true, bool(true))
+            told = shown(exact, letter, i, number)
+            yield Case(at, said & come if words["arrived"] else said, true, bool(true), told)
 
 
 def _lies(where: Tree, scope: Scope, n: int) -> bool:
@@ -153,7 +154,7 @@ def meetings(words: Words) -> Iterator[Case]:
                             said = count(letter, rod, interval) - {"one less than": 1, "": 0}[words["less"]]
                             at = {"example": example, "m": m, "source": source, "body": number}
                             at |= {"function": f"{letter}_{rod}", "interval": interval}
-                            yield Case(at, max(said, -1), true, true >= 0)
+                            yield Case(at, max(said, -1), true, true >= 0, shown(exact, letter, rod, interval))
 
 
 def earlier(words: Words) -> Iterator[Case]:
@@ -171,7 +172,7 @@ def earlier(words: Words) -> Iterator[Case]:
                 then = z if words["when"] == "the present z" else min(z, fmpq(step * p))
                 total = total + scope.total(rod, p, then) - scope.total(rod, p - 1, then)
             at = {"example": example, "m": m, "function": f"{letter}'_{rod}", "z": z}
-            yield Case(at, total, driven.wave(letter, rod, z))
+            yield Case(at, total, driven.wave(letter, rod, z), True, shown(driven.exact, letter, rod, number))
 
 
 def _runs(degrees: list[int]) -> set[int]:
@@ -199,7 +200,8 @@ def _stays(example: str, exact: Exact, name: str, rate: fmpq, said: int) -> Iter
     for letter, rod in limits.functions(example, exact.m):
         degrees = [exact.degree(letter, rod, n, rate) for n in range(1, INTERVALS[example] + 1)]
         if lengths := {exact.interval * length for length in _runs(degrees)}:
-            yield Case({"m": exact.m, "function": f"{letter}_{rod}", "rate": name}, {said}, lengths)
+            at = {"m": exact.m, "function": f"{letter}_{rod}", "rate": name}
+            yield Case(at, {said}, lengths, True, shown(exact, letter, rod, INTERVALS[example]))
 
 
 def parts(words: Words) -> Iterator[Case]:
@@ -239,7 +241,7 @@ def slopes(words: Words) -> Iterator[Case]:
                         for body, (one, other) in enumerate(pairwise(powers), low + 1):
                             if min(one, other) >= 0:
                                 at = {"m": m, "n": n, "half": half, "function": f"{letter}_{i}", "s": s, "l": body}
-                                yield Case(at, slopes[words[part]], other - one)
+                                yield Case(at, slopes[words[part]], other - one, True, shown(exact, letter, i, d))
 
 
 def by_4_2(words: Words) -> Iterator[Case]:

@@ -280,19 +280,19 @@ def _compared(scope: FormScope, driven: Driven, function: tuple[str, int], numbe
     letter, rod = function
     true = driven.wave(letter, rod, z)
     at = {"m": driven.exact.m, "function": f"{letter}'_{rod}", "z": z, "interval": number}
-    return case(at, lambda: scope.total(rod, number, z), true, true != 0, _shown(driven, letter, rod, number))
+    return case(at, lambda: scope.total(rod, number, z), true, true != 0, shown(driven.exact, letter, rod, number))
 
 
-def _shown(driven: Driven, letter: str, rod: int, number: int) -> Callable[[], Example]:
-    place = f"{rod - 1}+" if letter == "f" else f"{rod}-"
-    return example(
-        driven.exact,
-        driven.loads,
-        driven.exact.interval * number + driven.exact.m,
-        {"velocity": [place]},
+def shown(exact: Exact, letter: str, rod: int, number: int) -> Callable[[], Example]:
+    """The scene of a chain under its loads, and where its table has what a function gains in an interval."""
+    return lambda: example(
+        exact,
+        loads(exact),
+        exact.interval * number + exact.m,
+        {"velocity": [f"{rod - 1}+" if letter == "f" else f"{rod}-"]},
         "wavesym tables SCENE",
         f"{letter} of rod {rod}, interval {number}: its rates and coefficients",
-    )
+    )()
 
 
 def interval(entry: Entry) -> Test:

@@ -14,7 +14,7 @@ from wavesym.model.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.exact_tables import Exact, building, collision, drive
 from wavesym.papers.pielorz1979 import limits
-from wavesym.papers.pielorz1979.forms import INTERVALS, Form, FormScope, Words, moved, rates, right_form
+from wavesym.papers.pielorz1979.forms import INTERVALS, Form, FormScope, Words, moved, rates, right_form, shown
 from wavesym.papers.pielorz1979.truth import Driven, loads
 from wavesym.papers.reader import read_formula
 from wavesym.papers.record import Case, case
@@ -89,7 +89,8 @@ def listed(example: str, chains: Callable[[str], Iterator[Exact]]) -> Callable[[
                 for number in range(1, last + 1):
                     true = _true_powers(exact, letter, rod, number)
                     powers = _said_powers(exact, [pair for pair in said if pair[1][-1] == number])
-                    yield Case({**at, "interval": number}, powers, true, bool(true))
+                    told = shown(exact, letter, rod, number)
+                    yield Case({**at, "interval": number}, powers, true, bool(true), told)
         if "powers" in words:
             letters = {latex(tree) for tree in symbols(right_form("I").step) if tree.name == "K"}
             yield Case({"claim": "a letter of (4.9)"}, latex(read_formula(words["powers"])) in letters, True)

@@ -21,6 +21,7 @@ from wavesym.papers.pielorz1979.forms import (
     only,
     rates,
     right_form,
+    shown,
 )
 from wavesym.papers.pielorz1979.transcription import paper
 from wavesym.papers.record import Case, Reading, Test, case
@@ -107,7 +108,8 @@ def _power_cases(reading: Reading, others: list[Reading]) -> Iterator[Case]:
                             true = exact.degree("f", i, 2 * n + 1, known[body], f"M{s}")
                             with scope.binding({"n": n, "l": body}):
                                 where = {**at, "n": n, "l": body}
-                                yield case(where, lambda: max(scope.whole(right), -1), true, true >= 0)  # noqa: B023
+                                told = shown(exact, "f", i, 2 * n + 1)
+                                yield case(where, lambda: max(scope.whole(right), -1), true, true >= 0, told)  # noqa: B023
 
 
 def factor(entry: Entry) -> Test:
