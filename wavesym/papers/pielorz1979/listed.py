@@ -89,7 +89,7 @@ def listed(example: str, chains: Callable[[str], Iterator[Exact]]) -> Callable[[
                 for number in range(1, last + 1):
                     true = _true_powers(exact, letter, rod, number)
                     powers = _said_powers(exact, [pair for pair in said if pair[1][-1] == number])
-                    told = shown(exact, letter, rod, number)
+                    told = shown(exact, letter, rod, number) if exact.m >= exact.chain.system.smallest else None
                     yield Case({**at, "interval": number}, powers, true, bool(true), told)
         if "powers" in words:
             letters = {latex(tree) for tree in symbols(right_form("I").step) if tree.name == "K"}
@@ -142,11 +142,11 @@ def _like(name: str) -> Exact:
 
 def collisions(hypothesis: str) -> Iterator[Exact]:
     """Collisions for which a hypothesis holds."""
-    if "m is at least 4" not in hypothesis:
-        yield collision(2)
     yield from (collision(m) for m in (4, 6, 8))
     if "different" not in hypothesis:
         yield _like("I")
+    if "m is at least 4" not in hypothesis:
+        yield collision(2)
 
 
 def drives(hypothesis: str) -> Iterator[Exact]:
