@@ -176,8 +176,8 @@ class Scope:
 
 
 def sides(tree: Tree) -> tuple[Tree, ...]:
-    """The two sides of an equation; UnreadableError where it is none."""
-    if not isinstance(tree, Relation) or set(tree.signs) != {"="}:
+    """The two sides of an equation; MeaninglessError where it is none."""
+    if not isinstance(tree, Relation) or tree.signs != ("=",):
         raise MeaninglessError(f"{latex(tree)} is no equation")
     return tree.sides
 

@@ -72,10 +72,10 @@ def _rates_given(reading: Reading, scope: RateScope) -> list[tuple[int, Callable
     found = []
     for equation in items(reading.formula):
         left, right = sides(equation)
-        if not isinstance(left, Symbol) or left.name != r"\gamma":
+        if not isinstance(left, Symbol) or left.name != r"\gamma" or len(left.below) != 1:
             raise MeaninglessError(f"{latex(left)} is no gamma")
         plain = _means(left, scope)
-        for place in [{}] if plain else [{"i": i} for i in span(only(reading.ranges), scope)]:
+        for place in [{}] if plain else [{"i": i} for i in span(only("i", reading.ranges), scope)]:
             with scope.binding(place):
                 found.append((scope.indices(left)[0], _later(scope, place, right)))
     return found

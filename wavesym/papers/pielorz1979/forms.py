@@ -28,7 +28,7 @@ from wavesym.papers.pielorz1979.transcription import paper
 from wavesym.papers.pielorz1979.truth import Driven, loads
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, Example, Reading, Test, by_size, case
-from wavesym.papers.tree import Call, Symbol, Tree, latex
+from wavesym.papers.tree import Call, Progression, Symbol, Tree, latex
 
 INTERVALS = {"I": 4, "II": 2, "III": 4}
 """The numbers n = 0, 1, ... that are tried; for each, example II has two intervals."""
@@ -70,9 +70,9 @@ class Form:
     def of(cls, name: str, reading: Reading) -> Form:
         """MeaninglessError where it is none."""
         found = items(reading.formula)
-        if len(found) != 2 or any(len(sides(equation)) != 2 for equation in found):
+        if len(found) != 2:
             raise MeaninglessError("a form is two equations")
-        return cls(name, *found, only(reading.ranges))
+        return cls(name, *found, only("n", reading.ranges))
 
 
 class _Given(NamedTuple):
@@ -225,11 +225,11 @@ def known(values: Mapping[int, Any], index: int, name: str) -> Any:
     return values[index]
 
 
-def only(ranges: Sequence[Tree]) -> Tree:
-    """The one range that there must be; MeaninglessError."""
-    if len(ranges) != 1:
-        raise MeaninglessError(f"{len(ranges)} ranges")
-    return ranges[0]
+def only(letters: str, ranges: Sequence[Tree]) -> Progression:
+    """The one range that there must be, of one of some letters; MeaninglessError."""
+    if len(ranges) == 1 and isinstance(ranges[0], Progression) and latex(ranges[0].variable) in letters:
+        return ranges[0]
+    raise MeaninglessError(f"the range of {letters} is not given")
 
 
 def form(entry: Entry) -> Test:
@@ -321,7 +321,7 @@ def _interval_faults(reading: Reading) -> Iterator[tuple[str, Reading]]:
 
 
 def _interval_cases(form: Form, reading: Reading) -> Iterator[Case]:
-    numbers = only(reading.ranges)
+    numbers = only("nd", reading.ranges)
     step = items(form.step)[0]
     left = sides(step)[0]
     assert isinstance(left, Call)
@@ -333,7 +333,7 @@ def _interval_cases(form: Form, reading: Reading) -> Iterator[Case]:
             for z in (start + part for start in range(until) for part in _WITHIN):
                 inside = []
                 for value in span(numbers, scope, most=most):
-                    variable = latex(numbers.variable)  # type: ignore[union-attr]
+                    variable = latex(numbers.variable)
                     with scope.binding({variable: value, "z": z, "i": rod}):
                         if holds(reading.formula, scope):
                             inside.append(value if variable == "d" else scope.whole(left.function.below[1]))

@@ -44,7 +44,7 @@ def _rest_cases(reading: Reading) -> Iterator[Case]:
         said = set()
         for j in range(1, MOST_N + 1):
             scope = Scope({"m": m, "j": j, "n": j - 1, "z": fmpq(1)})
-            for i in span(only(reading.ranges), scope):
+            for i in span(only("i", reading.ranges), scope):
                 with scope.binding({"i": i}):
                     rod, interval = scope.indices(left.function)
                     if scope.value(left.arguments[0]) == 1:
@@ -75,7 +75,7 @@ def _numbers(scope: FormScope, reading: Reading, left: Tree, right: Tree) -> tup
     if left != Symbol("s"):
         raise MeaninglessError(f"{latex(left)} is no moment")
     found = []
-    for r in span(only(reading.ranges), scope):
+    for r in span(only("r", reading.ranges), scope):
         with scope.binding({"r": r}):
             found.append(scope.whole(right))
     return tuple(found)
@@ -100,11 +100,13 @@ def _power_cases(reading: Reading, others: list[Reading]) -> Iterator[Case]:
             scope = FormScope(right_form("II"), moved("II", m), "f")
             for r, s in moments(scope, "even", i, (1,)):
                 with scope.binding({"half": "even", "i": i, "r": r, "n": 0, limits.ALPHA: 1}):
-                    bodies = sorted(body for other in (reading, *others) for body in span(only(other.ranges), scope))
+                    bodies = sorted(
+                        body for other in (reading, *others) for body in span(only("l", other.ranges), scope)
+                    )
                     at = {"m": m, "function": f"f_{i}", "s": s}
                     yield Case({**at, "claim": "bodies l"}, bodies, sorted(known))
                     for n in range(MOST_N + 1):
-                        for body in span(only(reading.ranges), scope):
+                        for body in {*known} & {*span(only("l", reading.ranges), scope)}:
                             true = exact.degree("f", i, 2 * n + 1, known[body], f"M{s}")
                             with scope.binding({"n": n, "l": body}):
                                 where = {**at, "n": n, "l": body}
