@@ -65,3 +65,10 @@ def test_ranges_of_powers_are_judged() -> None:
     for last in ("2r-r_0+1", "2r-r_0-1"):
         changed = told.model_copy(update={"ranges": (rf"l=1, 2, \dots, {last}",)})
         assert judge(changed, ADAPTERS[changed.kind](changed)).verdict == "untested"
+
+
+def test_a_sentence_or_a_range_that_means_nothing_is_a_verdict() -> None:
+    told = entry("text.11").model_copy(update={"printed": "In example III nothing changes."})
+    assert judge(told, ADAPTERS[told.kind](told)).verdict == "untested"
+    told = entry("text.13.K_2").model_copy(update={"ranges": (r"k=2r-r_0+1, \dots, i",)})
+    assert judge(told, ADAPTERS[told.kind](told)).verdict == "untested"
