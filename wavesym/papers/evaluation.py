@@ -130,12 +130,16 @@ class Scope:
         function = call.function
         if function in (Symbol("H"), Symbol("E")) and len(call.arguments) == 1:
             value = self.value(call.arguments[0])
-            return self.step(value) if function.name == "H" else fmpq(value).floor()
+            return self.step(value) if function.name == "H" else self.entier(value)
         return self.call(call)
 
     def step(self, value: Any) -> Any:
         """H."""
         return self.heaviside_at_0 if value == 0 else int(value > 0)
+
+    def entier(self, value: Any) -> Any:
+        """E."""
+        return int(fmpq(value).floor())
 
     def _series(self, series: Series) -> Any:
         first, last = self.whole(series.first), self.whole(series.last)
@@ -207,6 +211,7 @@ _COMPARED: dict[str, Callable[[Any, Any], bool]] = {
     r"\le": lambda a, b: bool(a <= b),
     r"\geq": lambda a, b: bool(a >= b),
     r"\ge": lambda a, b: bool(a >= b),
+    r"\neq": lambda a, b: bool(a != b),
 }
 
 
@@ -217,7 +222,8 @@ def holds(where: Tree, scope: Scope) -> bool:
             values = [scope.value(side) for side in sides]
             return all(_COMPARED[sign](a, b) for sign, a, b in zip(signs, values, values[1:], strict=False))
         case Progression(variable):
-            return scope.value(variable) in span(where, scope)
+            value = scope.value(variable)
+            return value in span(where, scope, most=value)
         case Interval(variable, (opening, closing), low, high):
             value, first, last = scope.value(variable), scope.value(low), scope.value(high)
             after = first <= value if opening == r"\langle" else first < value
@@ -256,7 +262,11 @@ def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
         if len(steps) != 1 or 0 in steps:
             raise MeaninglessError(f"{latex(progression)} has no one step")
         (step,) = steps
-    last = most if progression.last is None else scope.whole(progression.last)
+    if progression.last is None:
+        last = max(most, shown[-1])
+        last -= (last - shown[0]) % step
+    else:
+        last = scope.whole(progression.last)
     if (last - shown[0]) % step:
         raise MeaninglessError(f"{latex(progression)}: {last} is not reached from {shown[0]} in steps of {step}")
     return tuple(range(shown[0], last + (1 if step > 0 else -1), step))

@@ -17,7 +17,7 @@ from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.exponentials import Exponentials
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.reader import UnreadableError, read_formula, read_range
-from wavesym.papers.tree import Tree
+from wavesym.papers.tree import Tree, latex
 
 Verdict = Literal["holds", "misprint", "unreadable", "convention", "model", "depends", "incomplete", "untested"]
 
@@ -123,12 +123,16 @@ def reading(printed: str, ranges: Iterable[str]) -> Reading:
 
 
 def faults(right: Reading) -> Iterator[tuple[str, Reading]]:
-    """Every fault in the formula, and both ends of every range."""
+    """Every fault in the formula, and both ends of every range; no two have the same name."""
+    named = set()
     for change, formula in mutations(right.formula):
+        named.add(change)
         yield change, Reading(formula, right.ranges)
     for place, range_ in enumerate(right.ranges):
         for change, wrong in ends(range_):
-            yield change, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
+            name = f"{change}, in {latex(range_)}" if change in named else change
+            named.add(name)
+            yield name, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
 
 
 @dataclass(frozen=True)

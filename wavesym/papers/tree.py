@@ -6,8 +6,9 @@ A tree says what stands there, not what it means: an index is an expression, a b
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Union
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, Union
 
 
 @dataclass(frozen=True)
@@ -245,6 +246,18 @@ def latex(tree: Tree) -> str:
         case Marked(of):
             return rf"\marked{{{latex(of)}}}"
     raise TypeError(tree)
+
+
+def symbols(tree: Any) -> Iterator[Symbol]:
+    """All letters of a tree, those of indices included."""
+    if isinstance(tree, Symbol):
+        yield tree
+    if isinstance(tree, tuple):
+        for part in tree:
+            yield from symbols(part)
+    elif is_dataclass(tree):
+        for field in fields(tree):
+            yield from symbols(getattr(tree, field.name))
 
 
 def _symbol(symbol: Symbol) -> str:

@@ -12,7 +12,7 @@ from functools import cache, cached_property
 
 from flint import fmpq
 
-from wavesym.exact.increments import Increment, integrated
+from wavesym.exact.increments import Increment, combined, integrated
 from wavesym.exact.table import Function
 from wavesym.model.node import System
 from wavesym.papers.evaluation import MeaninglessError
@@ -107,9 +107,63 @@ class Driven:
         late = clock.tau0 + x - clock.x0, clock.tau0 - x + clock.x0
         return self.wave("f", rod, tau - late[0], order), self.wave("g", rod, tau - late[1], order)
 
+    def gain(self, letter: str, rod: int, interval: int, source: str, piece: int | None = None) -> Increment:
+        """What a unit of a source, or a piece of a load, gives to f or g in interval 1, 2, ...; "ab" is a with b.
+
+        MeaninglessError where there is no such source, piece or rod, or the interval is beyond the tables.
+        """
+        key = letter, rod, interval, source, piece
+        if key not in self._gains:
+            sources = ["a", "b"] if source == "ab" else [source]
+            if not 1 <= rod <= self.exact.m or not {*sources} <= self.exact.responses.keys():
+                raise MeaninglessError(f"there is no rod {rod}, or no {source}")
+            weights = [fmpq(1) if piece is None else self.piece(name, piece).weight for name in sources]
+            try:
+                parts = [self.exact.increment(name, letter, rod, interval) for name in sources]
+            except IndexError:
+                raise MeaninglessError(f"interval {interval} is beyond the tables") from None
+            self._gains[key] = combined(zip(weights, parts, strict=True))
+        return self._gains[key]
+
+    @cached_property
+    def _gains(self) -> dict[tuple[str, int, int, str, int | None], Increment]:
+        return {}
+
+    def piece(self, source: str, number: int) -> Step:
+        """A piece of a load; MeaninglessError where there is none."""
+        pieces = self.loads.get(source, ())
+        if not 0 <= number < len(pieces):
+            raise MeaninglessError(f"{source} has no piece {number}")
+        return pieces[number]
+
     def load(self, source: str, z: fmpq, power: int = 0) -> fmpq:
         """The sum of the source's pieces that have begun, each times the time since then to a power."""
         return sum((p.weight * (z - p.time) ** power for p in self.loads.get(source, ()) if z >= p.time), fmpq(0))
+
+    def increment(self, source: str, letter: str, rod: int, number: int, w: fmpq) -> Exponentials:
+        """What f' or g' of a rod gains in interval 1, 2, ... for a unit of a source, w after its start; nothing before.
+
+        MeaninglessError where there is no such rod, or the interval is beyond the tables.
+        """
+        key = source, letter, rod, number, fmpq(w)
+        if key not in self._gained:
+            self._gained[key] = self._increment(*key)
+        return self._gained[key]
+
+    @cached_property
+    def _gained(self) -> dict[tuple[str, str, int, int, fmpq], Exponentials]:
+        return {}
+
+    def _increment(self, source: str, letter: str, rod: int, number: int, w: fmpq) -> Exponentials:
+        try:
+            increment = self.exact.increment(source, letter, rod, number)
+        except (KeyError, IndexError):
+            raise MeaninglessError(f"there is no interval {number} of {letter}_{rod}") from None
+        parts: dict[fmpq, fmpq] = {}
+        for rate, powers in increment.items():
+            value = sum((power * w**k for k, power in enumerate(powers)), fmpq(0))
+            parts[-rate * w] = parts.get(-rate * w, fmpq(0)) + value
+        return Exponentials(parts)
 
 
 def _ordered(source: str, exact: Exact, letter: str, rod: int, number: int, order: int) -> Increment:
