@@ -15,7 +15,7 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.papers.entries import Entry
-from wavesym.papers.evaluation import MeaninglessError, Scope, holds, span
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds, sides, span
 from wavesym.papers.exact_tables import Exact, building, collision, drive, gammas
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.pielorz1979.scenes import example
@@ -45,13 +45,19 @@ PARTS = {"T2": (1, 2), "T3": (1, 2, 3)}
 
 
 class Indices(Scope):
-    """The letters of a cell: those bound, and r_0, r_1, the parities of i and of i+1 that the text defines."""
+    """The letters of a cell: those bound, and r_0, r_1 as the text under (4.11) has them."""
 
     def symbol(self, symbol: Symbol) -> Any:
         match symbol:
-            case Symbol("r", below=(Number("0" | "1" as parity),)) if "i" in self.bound:
-                return (self.bound["i"] + 1 + int(parity)) % 2
+            case Symbol("r", below=(Number("0" | "1" as index),)) if "i" in self.bound:
+                return _parity(index, self.bound["i"])
         return super().symbol(symbol)
+
+
+@cache
+def _parity(index: str, i: int) -> Any:
+    _, cases = sides(right(f"(4.11).r_{index}"))
+    return Scope({"i": i}).value(cases)
 
 
 # the tables as they should be
