@@ -84,12 +84,16 @@ class Scope:
 
     def value(self, tree: Tree) -> Any:
         """The value of a tree; MeaninglessError."""
-        return _RULES[type(tree)](self, tree)
+        return _runner(tree)(self)
+
+    def literal(self, value: Any) -> Any:
+        """A number as it is written."""
+        return value
 
     def whole(self, tree: Tree) -> int:
         """The value of an index or a limit."""
-        value = self.value(tree)
-        if isinstance(value, int):
+        value = _runner(tree)(self)
+        if type(value) is int:
             return value
         if isinstance(value, fmpq) and value.denom() == 1:
             return int(value.numer())
@@ -113,11 +117,6 @@ class Scope:
         finally:
             self.bound = before
 
-    def _symbol(self, symbol: Symbol) -> Any:
-        if not (symbol.below or symbol.above or symbol.primes or symbol.accent) and symbol.name in self.bound:
-            return self.bound[symbol.name]
-        return self._constant(symbol) if symbol in self.constants else self.symbol(symbol)
-
     def _constant(self, symbol: Symbol) -> Any:
         """Its value, in letters that are no constants themselves."""
         constants, self.constants = self.constants, {}
@@ -125,13 +124,6 @@ class Scope:
             return self.value(constants[symbol])
         finally:
             self.constants = constants
-
-    def _call(self, call: Call) -> Any:
-        function = call.function
-        if function in (Symbol("H"), Symbol("E")) and len(call.arguments) == 1:
-            value = self.value(call.arguments[0])
-            return self.step(value) if function.name == "H" else self.entier(value)
-        return self.call(call)
 
     def step(self, value: Any) -> Any:
         """H."""
@@ -141,40 +133,31 @@ class Scope:
         """E."""
         return int(fmpq(value).floor())
 
-    def _series(self, series: Series) -> Any:
+    def series(self, series: Series) -> Any:
+        """A sum with limits."""
         first, last = self.whole(series.first), self.whole(series.last)
         if last - first > MOST_TERMS:
             raise MeaninglessError(f"a sum from {first} to {last}")
         total: Any = 0
-        for number in range(first, last + 1):
-            with self.binding({series.variable.name: number}):
-                total = total + self.value(series.body)
+        body, name, before = _runner(series.body), series.variable.name, self.bound
+        try:
+            self.bound = dict(before)
+            for number in range(first, last + 1):
+                self.bound[name] = number
+                total = total + body(self)
+        finally:
+            self.bound = before
         return total
 
     def _power(self, power: Power) -> Any:
         exponent = self.value(power.exponent)
-        if power.base == Symbol("e"):
+        if power.base == _E:
             return exponential(exponent)
         base = self.value(power.base)
         whole = self.whole(power.exponent)
         if whole < 0 and base == 0:
             raise MeaninglessError(f"{latex(power)} divides by 0")
         return fmpq(base) ** whole if not isinstance(base, int) or whole < 0 else base**whole
-
-    def _fraction(self, fraction: Fraction) -> Any:
-        over, under = self.value(fraction.over), self.value(fraction.under)
-        if under == 0:
-            raise MeaninglessError(f"{latex(fraction)} divides by 0")
-        return fmpq(over) / under if isinstance(over, int) else over / under
-
-    def _product(self, product: Product) -> Any:
-        """A factor 0 in front (H, mostly) leaves the rest unread: what it switches off need not exist."""
-        total: Any = 1
-        for factor in sorted(product.factors, key=_switches):
-            total = total * self.value(factor)
-            if isinstance(total, int) and total == 0:
-                return 0
-        return total
 
     def _cases(self, cases: Cases) -> Any:
         found = [value for value, where in cases.branches if holds(where, self)]
@@ -284,30 +267,111 @@ def _equation(where: Tree) -> tuple[tuple[str, ...], tuple[Tree, ...]]:
     return (variable.name,), (value,)
 
 
-def _number(scope: Scope, tree: Number) -> Any:
-    if "." not in tree.digits:
-        return int(tree.digits)
-    before, after = tree.digits.split(".")
-    return fmpq(int(before + after), 10 ** len(after))
+Runner = Callable[[Scope], Any]
+"""A tree made ready: its value in a scope. Trees that share a part share its runner."""
 
 
-_RULES: dict[type, Callable[[Any, Any], Any]] = {
+def _runner(tree: Tree) -> Runner:
+    try:
+        return tree.__dict__["_runner"]  # type: ignore[no-any-return]
+    except KeyError:
+        made = _MAKERS[type(tree)](tree)
+        tree.__dict__["_runner"] = made
+        return made
+
+
+def _number(tree: Number) -> Runner:
+    before, point, after = tree.digits.partition(".")
+    value = fmpq(int(before + after), 10 ** len(after)) if point else int(before)
+    return lambda scope: scope.literal(value)
+
+
+def _symbol(tree: Symbol) -> Runner:
+    name = tree.name
+
+    def plain(scope: Scope) -> Any:
+        bound = scope.bound
+        return bound[name] if name in bound else marked(scope)
+
+    def marked(scope: Scope) -> Any:
+        if scope.constants and tree in scope.constants:
+            return scope._constant(tree)
+        return scope.symbol(tree)
+
+    return marked if tree.below or tree.above or tree.primes or tree.accent else plain
+
+
+def _minus(tree: Minus) -> Runner:
+    of = _runner(tree.of)
+    return lambda scope: -of(scope)
+
+
+def _addition(tree: Addition) -> Runner:
+    first, *others = map(_runner, tree.terms)
+
+    def run(scope: Scope) -> Any:
+        total = first(scope)
+        for term in others:
+            total = total + term(scope)
+        return total
+
+    return run
+
+
+def _product(tree: Product) -> Runner:
+    """A factor 0 in front (H, mostly) leaves the rest unread: what it switches off need not exist."""
+    factors = [_runner(factor) for factor in sorted(tree.factors, key=_switches)]
+
+    def run(scope: Scope) -> Any:
+        total: Any = 1
+        for factor in factors:
+            total = total * factor(scope)
+            if type(total) is int and total == 0:
+                return 0
+        return total
+
+    return run
+
+
+def _fraction(tree: Fraction) -> Runner:
+    above, below = _runner(tree.over), _runner(tree.under)
+
+    def run(scope: Scope) -> Any:
+        over, under = above(scope), below(scope)
+        if under == 0:
+            raise MeaninglessError(f"{latex(tree)} divides by 0")
+        return fmpq(over) / under if isinstance(over, int) else over / under
+
+    return run
+
+
+def _call(tree: Call) -> Runner:
+    if tree.function in (_H, _ENTIER) and len(tree.arguments) == 1:
+        argument = _runner(tree.arguments[0])
+        if tree.function == _H:
+            return lambda scope: scope.step(argument(scope))
+        return lambda scope: scope.entier(argument(scope))
+    return lambda scope: scope.call(tree)
+
+
+def _by(method: Callable[[Scope, Any], Any]) -> Callable[[Any], Runner]:
+    return lambda tree: lambda scope: method(scope, tree)
+
+
+_E, _H, _ENTIER = Symbol("e"), Symbol("H"), Symbol("E")
+_MAKERS: dict[type, Callable[[Any], Runner]] = {
     Number: _number,
-    Symbol: Scope._symbol,
-    Blank: Scope._nothing,
-    Minus: lambda scope, tree: -scope.value(tree.of),
-    Addition: lambda scope, tree: sum((scope.value(term) for term in tree.terms[1:]), scope.value(tree.terms[0])),
-    Product: Scope._product,
-    Fraction: Scope._fraction,
-    Power: Scope._power,
-    Group: lambda scope, tree: scope.value(tree.inner),
-    Call: Scope._call,
-    Series: Scope._series,
-    Derivative: lambda scope, tree: scope.derivative(tree),
-    AtValue: lambda scope, tree: scope.at_value(tree),
-    Cases: Scope._cases,
-    Relation: Scope._nothing,
-    Listed: Scope._nothing,
-    Progression: Scope._nothing,
-    Interval: Scope._nothing,
+    Symbol: _symbol,
+    Minus: _minus,
+    Addition: _addition,
+    Product: _product,
+    Fraction: _fraction,
+    Power: _by(Scope._power),
+    Group: lambda tree: _runner(tree.inner),
+    Call: _call,
+    Series: _by(lambda scope, tree: scope.series(tree)),
+    Derivative: _by(lambda scope, tree: scope.derivative(tree)),
+    AtValue: _by(lambda scope, tree: scope.at_value(tree)),
+    Cases: _by(Scope._cases),
+    **dict.fromkeys((Blank, Relation, Listed, Progression, Interval), _by(Scope._nothing)),
 }

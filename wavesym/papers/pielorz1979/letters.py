@@ -18,7 +18,7 @@ from wavesym.model.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError, Scope, sides
 from wavesym.papers.pielorz1979.truth import Driven
 from wavesym.papers.record import Case, Example, Nothing, Reading, case, shown
-from wavesym.papers.tree import Number, Progression, Series, Symbol, Tree
+from wavesym.papers.tree import Progression, Series, Symbol, Tree
 from wavesym.papers.tree import latex as latex_of
 
 K, Z = Letter("k"), Letter("z")
@@ -118,14 +118,13 @@ class Symbols(Letters):
     def __init__(self, bound: Mapping[str, Any] | None = None) -> None:
         super().__init__({"i": INDEX, "m": COUNT, "z": Z, r"\tau": Z, "t": Z, "l": Integer(1), **(bound or {})})
 
-    def value(self, tree: Tree) -> Any:
-        if isinstance(tree, Number):
-            return Integer(tree.digits)
-        if isinstance(tree, Series):
-            with self.binding({tree.variable.name: K}):
-                body = self.value(tree.body)
-            return added(body, self.value(tree.last), self.value(tree.first))
-        return super().value(tree)
+    def literal(self, value: Any) -> Any:
+        return Integer(value)
+
+    def series(self, series: Series) -> Any:
+        with self.binding({series.variable.name: K}):
+            body = self.value(series.body)
+        return added(body, self.value(series.last), self.value(series.first))
 
     def whole(self, tree: Tree) -> Any:
         return expand(self.value(tree))
