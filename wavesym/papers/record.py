@@ -195,7 +195,7 @@ def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
     """The verdict on an entry, with its evidence. `problems` are those of its transcription."""
     found = list(problems)
     slip = entry.slip
-    printed = _Trial.of(test, entry.printed, (*entry.ranges, *entry.inferred))
+    printed = _Trial.of(test, entry.printed, (*entry.ranges, *entry.inferred), stop=entry.slip is not None)
     settled, text, ranges = printed, entry.printed, (*entry.ranges, *entry.inferred)
     evidence: list[str] = []
     if slip:
@@ -284,13 +284,13 @@ class _Trial:
             self.wrong = self.wrong or Case({}, Nothing(str(error)), "a value")
 
     @classmethod
-    def of(cls, test: Test, text: str, ranges: Iterable[str]) -> _Trial:
-        """A string tried; one that cannot be read fails."""
+    def of(cls, test: Test, text: str, ranges: Iterable[str], stop: bool = False) -> _Trial:
+        """A string tried, to its end or to the first case that fails; one that cannot be read fails."""
         try:
             read = test.read(text, ranges)
         except UnreadableError as error:
             return cls(iter([Case({}, Nothing(str(error)), "a formula")]))
-        return cls(test.cases(read))
+        return cls(test.cases(read), stop)
 
     @classmethod
     def turned(cls, test: Test, read: Reading) -> bool:
