@@ -92,7 +92,7 @@ def test_a_false_range_is_seen(id: str, range_: str) -> None:
 
 @pytest.mark.parametrize("id", ["text.22", "text.24", "text.25", "text.26", "text.27", "text.28"])
 def test_every_load_is_told_with_its_outcome(id: str) -> None:
-    told = judged(id).evidence[2]
+    told = next(part for part in judged(id).evidence if "; false under " in part)
     true, _, false = told.partition("; false under ")
     slip = ENTRIES[id].slip
     assert slip is not None
