@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from wavesym.papers.entries import Aside, Entry, Paper, Passage, digest, plain, problems
+from wavesym.papers.entries import WHOLE, Aside, Entry, Paper, Passage, digest, edited, plain, problems
 
 TEXT = r"$$(1.1) \quad a_i + \\ + b = 0 \quad \text{dla} \quad i=1, 2, \dots, m$$"
 ENTRY = Entry(
@@ -15,7 +15,7 @@ ENTRY = Entry(
     ranges=(r"i = 1, 2, \dots, m",),
     edits=(("+ +", "+", "the sign stands twice where the line breaks"),),
 )
-HASHES = {"3": digest(TEXT), "5": digest("and so on")}
+HASHES = {"3": digest(TEXT), "5": digest("and so on"), "(1.1):edits": digest(edited(ENTRY))}
 LATER = Passage(lines=(5, 5), why="announces")
 
 
@@ -39,6 +39,7 @@ def test_what_fits():
         _changed(ranges=(r"i = 1, 2, \dots, m-1",)),
         _changed(edits=()),
         _changed(edits=(*ENTRY.edits, ("c", "d", "nothing"))),
+        _changed(edits=(("+ +", "-", "the sign stands twice"),), printed="a_i - b = 0"),
         _changed(scan="a_i - b = 0"),
     ],
 )
@@ -49,7 +50,7 @@ def test_a_string_that_is_changed_does_not(entry):
 def test_a_changed_line_is_seen():
     wrong = TEXT.replace("b", "c")
     entry = _changed(scan=ENTRY.scan.replace("b", "c"), printed="a_i + c = 0")
-    assert list(problems(_paper(entry, wrong))) == [("lines 3-3", "line 3 is not the source's")]
+    assert list(problems(_paper(entry, wrong))) == [("(1.1)", "lines 3-3: line 3 is not the source's")]
 
 
 def test_a_changed_translation_is_seen():
@@ -63,12 +64,12 @@ def test_a_changed_translation_is_seen():
 def test_nothing_is_left_out():
     longer = TEXT + r" oraz $c = 1$"
     hashes = {**HASHES, "3": digest(longer)}
-    assert "neither judged nor set aside" in dict(problems(_paper(text=longer, hashes=hashes)))["lines 3-3"]
+    assert "neither judged nor set aside" in dict(problems(_paper(text=longer, hashes=hashes)))["(1.1)"]
     aside = (Aside(scan="$c = 1$", why="a definition"),)
     assert not list(problems(_paper(text=longer, hashes=hashes, aside=aside)))
-    assert dict(problems(_paper(hashes={**HASHES, "7": digest("more")})))["paper"] == "lines in no passage: [7]"
-    assert dict(problems(_paper(later=Passage(lines=(3, 5), why="announces"))))["paper"] == "lines in two passages: [3]"
-    assert dict(problems(_paper(later=Passage(lines=(5, 5)))))["lines 5-5"] == "is neither judged nor set aside"
+    assert dict(problems(_paper(hashes={**HASHES, "7": digest("more")})))[WHOLE] == "lines in no passage: [7]"
+    assert dict(problems(_paper(later=Passage(lines=(3, 5), why="announces"))))[WHOLE] == "lines in two passages: [3]"
+    assert dict(problems(_paper(later=Passage(lines=(5, 5)))))[WHOLE] == "lines 5-5: neither judged nor set aside"
 
 
 def test_layout_is_no_difference():

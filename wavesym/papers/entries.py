@@ -157,29 +157,44 @@ def digest(text: str) -> str:
     return sha256(" ".join(text.split()).encode()).hexdigest()[:16]
 
 
+WHOLE = "paper"
+"""What is wrong with the data as a whole, not with a record."""
+
+
 def problems(paper: Paper) -> Iterator[tuple[str, str]]:
-    """What does not fit: the id of a record or the lines of a passage, and what is wrong."""
+    """What does not fit: the id of a record, or `WHOLE`, and what is wrong. A passage's problems are all its records'."""
     yield from _uncovered(paper)
     for passage in paper.passages:
-        name = f"lines {passage.lines[0]}-{passage.lines[1]}"
-        if passage.text:
-            for number, line in zip(_span(passage), passage.text.strip("\n").split("\n"), strict=False):
-                if paper.hashes.get(str(number), digest("")) != digest(line):
-                    yield name, f"line {number} is not the source's"
-            if len(passage.text.strip("\n").split("\n")) != len(_span(passage)):
-                yield name, "has not as many lines as it says"
-            if passage.table:
-                others = [record.scan for record in passage.record] + [aside.scan for aside in passage.aside]
-                found = tables.problems(passage.table, passage.text, passage.lines[0], others)
-                yield from ((name, problem) for problem in found)
-                ids = {entry.id for entry in passage.entries()}
-                yield from ((name, f"has no cell {id}") for id in passage.cell if id not in ids)
-            elif left := _left_over(passage):
-                yield name, f"neither judged nor set aside: {left}"
-        elif not passage.why:
-            yield name, "is neither judged nor set aside"
-        for entry in passage.entries():
+        entries = tuple(passage.entries())
+        for problem in _misfits(passage, paper.hashes):
+            told = f"lines {passage.lines[0]}-{passage.lines[1]}: {problem}"
+            yield from ((entry.id, told) for entry in entries)
+            if not entries:
+                yield WHOLE, told
+        for entry in entries:
             yield from ((entry.id, problem) for problem in _unlike(entry, passage, paper.hashes))
+
+
+def _misfits(passage: Passage, hashes: Mapping[str, str]) -> Iterator[str]:
+    """How a passage does not fit the source, or leaves out something of it."""
+    if not passage.text:
+        if not passage.why:
+            yield "neither judged nor set aside"
+        return
+    lines = passage.text.strip("\n").split("\n")
+    for number, line in zip(_span(passage), lines, strict=False):
+        if hashes.get(str(number), digest("")) != digest(line):
+            yield f"line {number} is not the source's"
+    if len(lines) != len(_span(passage)):
+        yield "not as many lines as it says"
+    if passage.table:
+        others = [record.scan for record in passage.record] + [aside.scan for aside in passage.aside]
+        yield from tables.problems(passage.table, passage.text, passage.lines[0], others)
+        ids = {entry.id for entry in passage.entries()}
+        yield from (f"there is no cell {id}" for id in passage.cell if id not in ids)
+    elif left := _left_over(passage):
+        yield f"neither judged nor set aside: {left}"
+    yield from (f"set aside without a reason: {aside.scan}" for aside in passage.aside if not aside.why)
 
 
 def _span(passage: Passage) -> range:
@@ -190,9 +205,9 @@ def _uncovered(paper: Paper) -> Iterator[tuple[str, str]]:
     numbers = sorted(number for passage in paper.passages for number in _span(passage))
     lines = sorted(int(name) for name in paper.hashes if name.isdigit())
     if twice := sorted({n for n in numbers if numbers.count(n) > 1}):
-        yield "paper", f"lines in two passages: {twice}"
+        yield WHOLE, f"lines in two passages: {twice}"
     if missing := sorted(set(lines) - set(numbers)):
-        yield "paper", f"lines in no passage: {missing}"
+        yield WHOLE, f"lines in no passage: {missing}"
 
 
 def _left_over(passage: Passage) -> str:
@@ -221,6 +236,8 @@ def _unlike(entry: Entry, passage: Passage, hashes: Mapping[str, str]) -> Iterat
         if hashes.get(entry.id) != digest(entry.printed):
             yield "is not the translation that was checked"
         return
+    if entry.edits and hashes.get(f"{entry.id}:edits") != digest(edited(entry)):
+        yield "its edits are not those that were checked"
     text = plain(entry.scan)
     for before, after, _ in entry.edits:
         if plain(before) not in text:
@@ -229,6 +246,11 @@ def _unlike(entry: Entry, passage: Passage, hashes: Mapping[str, str]) -> Iterat
     said = plain(entry.printed if entry.heads else ",".join((entry.printed, *entry.ranges)))
     if text != said:
         yield f"is not what its edits make of the scan: {text} there, {said} printed"
+
+
+def edited(entry: Entry) -> str:
+    """What is edited in a scan, as it is checked: from, to, from, to."""
+    return " | ".join(part for before, after, _ in entry.edits for part in (before, after))
 
 
 def plain(text: str) -> str:

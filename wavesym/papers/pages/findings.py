@@ -151,8 +151,9 @@ def ranges_as_corrected(slip: Slip, entry: Entry) -> tuple[str, ...]:
 
 
 def origin(record: Record) -> str:
-    """What is known of where a slip comes from."""
-    return ORIGINS[record.entry.slip.origin] if record.entry.slip else ""
+    """What is known of where a slip comes from; of what the text says without a slip, nothing."""
+    slip = record.entry.slip
+    return ORIGINS[slip.origin] if slip and slip.verdict in ("misprint", "unreadable") else ""
 
 
 def faults_tried(record: Record) -> str:

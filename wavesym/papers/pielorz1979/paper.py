@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from wavesym.papers.entries import Entry, problems
+from wavesym.papers.entries import WHOLE, Entry, problems
 from wavesym.papers.pielorz1979 import (
     cells,
     clocks,
@@ -73,9 +73,14 @@ ADAPTERS: Mapping[str, Adapter] = {
 def records(
     wanted: Sequence[Entry] | None = None, watch: Callable[[Sequence[Entry]], Iterable[Entry]] = iter
 ) -> tuple[Record, ...]:
-    """The verdict on the `wanted` records, or all; `watch` goes through them as they are judged."""
+    """The verdict on the `wanted` records, or all; `watch` goes through them as they are judged.
+
+    Where the data as a whole do not fit the source, no verdict counts.
+    """
     unlike = defaultdict(list)
     for id, problem in problems(paper()):
         unlike[id].append(problem)
     entries = paper().entries() if wanted is None else wanted
-    return tuple(judge(entry, ADAPTERS[entry.kind](entry), unlike[entry.id]) for entry in watch(entries))
+    return tuple(
+        judge(entry, ADAPTERS[entry.kind](entry), [*unlike[WHOLE], *unlike[entry.id]]) for entry in watch(entries)
+    )
