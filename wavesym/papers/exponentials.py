@@ -99,7 +99,7 @@ Number = Union[int, fmpq, Exponentials]
 
 def _made(parts: dict[Key, fmpq]) -> Exponentials:
     """The sum with these parts, those left out that are 0."""
-    made = Exponentials({})
+    made = Exponentials.__new__(Exponentials)
     made.parts = {q: c for q, c in parts.items() if c != 0}
     return made
 

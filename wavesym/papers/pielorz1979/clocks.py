@@ -10,7 +10,7 @@ from wavesym.model.chain import Chain
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, span
 from wavesym.papers.exact_tables import Exact
-from wavesym.papers.pielorz1979.motion import body_velocity
+from wavesym.papers.pielorz1979.letters import body_velocity
 from wavesym.papers.pielorz1979.scenes import example as scene
 from wavesym.papers.pielorz1979.truth import EXAMPLES
 from wavesym.papers.record import Case, Example, Reading, Test, case

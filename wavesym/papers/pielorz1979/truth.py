@@ -82,19 +82,32 @@ class Driven:
         terms = []
         step = self.exact.interval
         for source, pieces in self.loads.items():
-            increments = self.exact.responses[source][Function(letter, rod)]
+            function = Function(letter, rod)
+            increments = self.exact.responses[source][function]
             for piece in pieces:
                 since = z - piece.time
                 if since >= step * len(increments):
                     raise MeaninglessError(f"z = {z} is beyond the tables")
                 for number in range(int(since / step) + 1 if since >= 0 else 0):
                     w = since - step * number
-                    for rate, powers in _ordered(source, self.exact, letter, rod, number, order).items():
+                    for rate, powers in self._ordered(source, function, number, order).items():
                         value = fmpq(0)
                         for power in reversed(powers):
                             value = value * w + power
                         terms.append((-rate * w, piece.weight * value))
         return Exponentials.total(terms)
+
+    def _ordered(self, source: str, function: Function, number: int, order: int) -> Increment:
+        """An increment, or its integral or derivative."""
+        key = source, *function, number, order
+        if key not in self._orders:
+            increment = self.exact.responses[source][function][number]
+            self._orders[key] = {0: integrated, 1: lambda same: same, 2: _derived}[order](increment)
+        return self._orders[key]
+
+    @cached_property
+    def _orders(self) -> dict[tuple[str, str, int, int, int], Increment]:
+        return {}
 
     def waves_at(self, rod: int, x: int, tau: fmpq, order: int = 1) -> tuple[Exponentials, Exponentials]:
         """f and g of a rod at x, where (4.2) has them: g - f is the strain, f + g and v the velocity.
@@ -166,16 +179,7 @@ class Driven:
         return Exponentials(parts)
 
 
-def _ordered(source: str, exact: Exact, letter: str, rod: int, number: int, order: int) -> Increment:
-    return _derived(exact.responses[source][Function(letter, rod)], number, order)
-
-
-def _derived(increments: list[Increment], number: int, order: int) -> Increment:
-    increment = increments[number]
-    if order == 1:
-        return increment
-    if order == 0:
-        return integrated(increment)
+def _derived(increment: Increment) -> Increment:
     return {
         rate: [
             (k + 1) * above - rate * this
