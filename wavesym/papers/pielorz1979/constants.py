@@ -21,10 +21,10 @@ from wavesym.papers.evaluation import MeaninglessError, Scope, given, range_of, 
 from wavesym.papers.pielorz1979.letters import Letters
 from wavesym.papers.pielorz1979.truth import EXAMPLES
 from wavesym.papers.record import Case, Reading, Test, case
-from wavesym.papers.tree import Call, Symbol, Tree, latex
+from wavesym.papers.tree import Call, Number, Symbol, Tree, latex
 
 SIZES: Mapping[str, Sequence[int]] = {"I": (4, 6), "II": (1, 2, 3), "III": (2, 3, 4)}
-_SPEED, _MOMENT = fmpq(3, 2), fmpq(7, 3)
+_SPEED = fmpq(3, 2)
 _PLAIN: Mapping[str, Mapping[str, fmpq]] = {
     "I": {"E": fmpq(33, 8), "F": fmpq(3, 8)},
     "II": {"G": fmpq(33, 8)},
@@ -96,7 +96,7 @@ class Material(Letters):
         self.functions["S"] = moment
         self.letters = {
             "U": {0: physical.U_0}.__getitem__,
-            "S": {0: _MOMENT}.__getitem__,
+            "S": {0: fmpq(7, 3)}.__getitem__,
             "M": physical.inertia,
             **{name: lambda: plain[name] for name in ("k'",) if name in plain},
         }
@@ -180,7 +180,8 @@ def moment_factor(entry: Entry) -> Test:
         letter, value = sides(reading.formula)
         for at, scope, physical, body in _loaded(reading):
             yield Case({**at, "of": latex(letter)}, _number(letter, "A", r"\bar", scope), body, telling=False)
-            yield case(at, partial(scope.value, value), physical.acceleration(body, _MOMENT))
+            unit = scope.value(Symbol("S", below=(Number("0"),)))
+            yield case(at, partial(scope.value, value), physical.acceleration(body, unit))
 
     return Test("the acceleration that the unit of moment gives a body", cases)
 

@@ -16,21 +16,19 @@ from wavesym.papers.pielorz1979 import (
     form_constants,
     forms,
     heads,
-    makeup,
     motion,
     prose,
     rates,
     remarks,
-    systems,
+    statements,
 )
-from wavesym.papers.pielorz1979.bodies import number_of_bodies
 from wavesym.papers.pielorz1979.figures import caption_of_figure, end_of_contact, said_of_figure
 from wavesym.papers.pielorz1979.transcript import paper
 from wavesym.papers.record import Adapter, Record, judge
 
 ADAPTERS: Mapping[str, Adapter] = {
     "base acceleration": motion.base,
-    "bodies": number_of_bodies,
+    "bodies": statements.statement,
     "caption": caption_of_figure,
     "cell": cells.cell,
     "clock": clocks.cell,
@@ -52,7 +50,7 @@ ADAPTERS: Mapping[str, Adapter] = {
     "line": coefficients.coefficient,
     "load without dimensions": constants.load,
     "loads of bodies": motion.bodies,
-    "makeup": makeup.makeup,
+    "makeup": statements.statement,
     "moments": motion.moments,
     "power": remarks.power,
     "range": heads.interval_or_size,
@@ -62,9 +60,9 @@ ADAPTERS: Mapping[str, Adapter] = {
     "sizes": coefficients.sizes,
     "solution": motion.solution,
     "speed": constants.speed,
-    "systems": systems.test,
+    "systems": statements.statement,
     "unit of moment": constants.moment_factor,
-    "waves": makeup.waves,
+    "waves": statements.statement,
 }
 
 
