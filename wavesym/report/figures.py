@@ -19,7 +19,7 @@ from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest
 from wavesym.papers.pielorz1979.figure_scenes import TriedLoad, contact_end, figure, loads, section
-from wavesym.papers.pielorz1979.figure_sentences import Finding
+from wavesym.papers.pielorz1979.measures import Finding
 from wavesym.papers.pielorz1979.figures import (
     FigureStatement,
     finding,
