@@ -96,8 +96,8 @@ def _add_section_2(scope: Letters, name: str, read: Reading) -> None:
         """A body's number in its example; the condition may number bodies by their places."""
         if numbering is None:
             return number
-        with scope.binding({**scope.bound, "i": number, "l": 1}):
-            return scope.value(numbering.shown[0]) + (1 if name == "II" else 0)
+        with scope.binding({**scope.bound, "i": number}):
+            return scope.value(numbering.shown[0]) / scope.bound["l"] + (1 if name == "II" else 0)
 
     if name == "II":  # in units in which the B_i of (2.4) is J_i
         moments = scope.functions[r"\barM"]
@@ -129,7 +129,7 @@ def _tried(id: str, name: str, driven: Driven, read: Reading, kind: str | None) 
         mentioned = tuple(sorted(_mentioned(read.formula, Scope(bound))))
         yield Case({**at, "what": "its rods"}, mentioned, rods_at(chain, bound["x"]), telling=False)
         said[_said(read.formula), bound["x"]] += 1
-        scope.bound |= bound
+        scope.bound |= {**bound, "l": _LENGTH}
         yield from _balanced(scope, read, bound["x"], at)
     if not kind:
         beside = _others(id, m)
