@@ -10,7 +10,6 @@ from typing import Any
 
 from flint import fmpq
 from sympy import Expr, IndexedBase, Rational, expand
-from sympy import Symbol as Letter
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.delay_terms import exact
@@ -175,12 +174,12 @@ def _where(read: Reading, bound: Mapping[str, int]) -> Iterator[int]:
 def _mentioned(formula: Tree, scope: Scope) -> set[Any]:
     """The rods that a condition is about; MeaninglessError where it is about another place than the node."""
     for part in within(formula):
-        if isinstance(part, Call) and letter(part.function) in DISPLACEMENTS.values():
-            if tuple(map(latex, part.arguments)) != (r"\bar{x}", r"\tau"):
-                raise MeaninglessError(f"{latex(part)} is not at the node")
+        displaced = isinstance(part, Call) and letter(part.function) in DISPLACEMENTS.values()
+        if displaced and tuple(map(latex, part.arguments)) != (r"\bar{x}", r"\tau"):
+            raise MeaninglessError(f"{latex(part)} is not at the node")
     symbols = (part for part in within(formula) if isinstance(part, Symbol))
-    displaced = (symbol for symbol in symbols if letter(symbol) in ("U", *DISPLACEMENTS.values()))
-    return {rod for symbol in displaced for rod in scope.indices(symbol)}
+    moved = (symbol for symbol in symbols if letter(symbol) in ("U", *DISPLACEMENTS.values()))
+    return {rod for symbol in moved for rod in scope.indices(symbol)}
 
 
 def _balanced(scope: Moving, read: Reading, x: int, at: Mapping[str, object]) -> Iterator[Case]:
@@ -192,7 +191,9 @@ def _balanced(scope: Moving, read: Reading, x: int, at: Mapping[str, object]) ->
         if scope.chain.system is UNEQUAL_COLLISION:  # no scene has it
             return None
         f, g = driven.waves_at(x if node.left else x + 1, x, tau, order=2)
-        look = f"put strain and velocity of tau = {tau}, and its slope there, {shown(f + g)}, into the condition: {left}"
+        look = (
+            f"put strain and velocity of tau = {tau}, and its slope there, {shown(f + g)}, into the condition: {left}"
+        )
         until = tau if tau > 0 else 1
         return example(driven.exact, driven.loads, until, outputs, "wavesym run SCENE --samples 1001", look)
 

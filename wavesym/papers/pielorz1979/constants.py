@@ -6,7 +6,7 @@ are what the nodes of a chain with the printed constants are compared with, and 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from math import prod
@@ -98,8 +98,9 @@ class Material(Letters):
             "U": {0: physical.U_0}.__getitem__,
             "S": {0: fmpq(7, 3)}.__getitem__,
             "M": physical.inertia,
-            **{name: lambda: plain[name] for name in ("k'",) if name in plain},
         }
+        if "k'" in plain:
+            self.letters["k'"] = lambda: plain["k'"]
         if physical.example == "II":
             del self.letters["M"]
             self.letters["J"] = self._inertia_or_section
@@ -176,33 +177,45 @@ def _chain_cases(physical: Physical, letter: Tree, value: Tree, numbers: Tree) -
 def moment_factor(entry: Entry) -> Test:
     """A under (4.4)."""
 
-    def cases(reading: Reading) -> Iterator[Case]:
-        letter, value = sides(reading.formula)
-        for at, scope, physical, body in _loaded(reading):
-            yield Case({**at, "of": latex(letter)}, _number(letter, "A", r"\bar", scope), body, telling=False)
-            unit = scope.value(Symbol("S", below=(Number("0"),)))
-            yield case(at, partial(scope.value, value), physical.acceleration(body, unit))
+    def true(scope: Material, body: int) -> fmpq:
+        return scope.physical.acceleration(body, scope.value(Symbol("S", below=(Number("0"),))))
 
-    return Test("the acceleration that the unit of moment gives a body", cases)
+    return Test("the acceleration that the unit of moment gives a body", partial(_body_cases, "A", true))
 
 
 def load(entry: Entry) -> Test:
     """The load without dimensions, line before Table 1."""
 
-    def cases(reading: Reading) -> Iterator[Case]:
-        left, value = sides(reading.formula)
+    def true(scope: Material, body: int) -> fmpq:
+        physical = scope.physical
+        laws = {i: physical.node(i - 1) for i in range(1, physical.m + 1)}
+        _, unit = physical.chain({i: law.beta / law.inertia / 2 for i, law in laws.items()}).loaded[f"M{body}"]
+        # the last moment counts against positive rotation, here and there
+        return physical.acceleration(body, moment(body, scope.bound["t"])) / abs(unit.coefficients[0])
+
+    against = "the acceleration that a moment gives a disc, in that of the unit load of a drive"
+    return Test(against, partial(_body_cases, "S", true))
+
+
+def _body_cases(name: str, true: Callable[[Material, int], fmpq], reading: Reading) -> Iterator[Case]:
+    """A letter with a bar of every body of some drives; S is a function of tau."""
+    left, value = sides(reading.formula)
+    letter: Tree = left
+    if name == "S":
         if not isinstance(left, Call) or left.arguments != (Symbol(r"\tau"),):
             raise MeaninglessError(f"{latex(left)} is no function of tau")
-        for at, scope, physical, body in _loaded(reading):
-            yield Case({**at, "of": latex(left)}, _number(left.function, "S", r"\bar", scope), body, telling=False)
-            laws = {i: physical.node(i - 1) for i in range(1, physical.m + 1)}
-            _, unit = physical.chain({i: law.beta / law.inertia / 2 for i, law in laws.items()}).loaded[f"M{body}"]
-            scope.bound["t"] = t = fmpq(5, 4)
-            acceleration = physical.acceleration(body, moment(body, t))
-            # the last moment counts against positive rotation, here and there
-            yield case({**at, "t": t}, partial(scope.value, value), acceleration / abs(unit.coefficients[0]))
-
-    return Test("the acceleration that a moment gives a disc, in that of the unit load of a drive", cases)
+        letter = left.function
+    numbers = range_of("i", reading.ranges)
+    for m in SIZES["II"]:
+        scope = Material(Physical("II", m), given(reading.ranges))
+        scope.bound["t"] = fmpq(5, 4)
+        if (bodies := span(numbers, scope)) != tuple(range(1, m + 2)):
+            raise MeaninglessError(f"{latex(numbers)} are not the {m + 1} bodies")
+        for body in bodies:
+            scope.bound["i"] = body
+            at = {"m": m, "i": body}
+            yield Case({**at, "of": latex(left)}, _number(letter, name, r"\bar", scope), body, telling=False)
+            yield case(at, partial(scope.value, value), true(scope, body))
 
 
 def _number(letter: Tree, name: str, accent: str, scope: Scope) -> int:
@@ -211,16 +224,3 @@ def _number(letter: Tree, name: str, accent: str, scope: Scope) -> int:
         case Symbol(found, mark, 0, (index,)) if (found, mark) == (name, accent):
             return scope.whole(index)
     raise MeaninglessError(f"{latex(letter)} is not defined")
-
-
-def _loaded(reading: Reading) -> Iterator[tuple[dict[str, object], Material, Physical, int]]:
-    """Every body of some drives, where the range has it."""
-    numbers = range_of("i", reading.ranges)
-    for m in SIZES["II"]:
-        physical = Physical("II", m)
-        scope = Material(physical, given(reading.ranges))
-        if (bodies := span(numbers, scope)) != tuple(range(1, m + 2)):
-            raise MeaninglessError(f"{latex(numbers)} are not the {m + 1} bodies")
-        for body in bodies:
-            scope.bound["i"] = body
-            yield {"m": m, "i": body}, scope, physical, body

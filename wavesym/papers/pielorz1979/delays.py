@@ -79,10 +79,11 @@ def _balanced(scope: Moving, equation: Tree, at: Mapping[str, int]) -> Iterator[
 def _unknown(equation: Tree, scope: Scope) -> Unknown:
     """What an equation gives: the one function on its left."""
     calls = [part for part in within(sides(equation)[0]) if isinstance(part, Call)]
-    match list({(call.function.name, *scope.indices(call.function)) for call in calls}):
-        case [(name, rod)]:
-            return name, rod
-    raise MeaninglessError("its left side has not one function of one rod")
+    found = {(call.function.name, scope.indices(call.function)) for call in calls}
+    if len(found) != 1 or any(len(index) != 1 for _, index in found):
+        raise MeaninglessError("its left side has not one function of one rod")
+    ((name, (rod,)),) = found
+    return name, rod
 
 
 @cache

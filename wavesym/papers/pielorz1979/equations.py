@@ -21,7 +21,7 @@ def within(tree: Any) -> tuple[Any, ...]:
     """A tree and all its parts."""
     values = (getattr(tree, field.name) for field in fields(tree))
     parts = (part for value in values for part in (value if isinstance(value, tuple) else (value,)))
-    return (tree, *(inner for part in parts if is_dataclass(part) for inner in within(part)))
+    return (tree, *(inner for part in parts if is_dataclass(part) for inner in within(part)))  # type: ignore[arg-type]
 
 
 def ranges_of(reading: Reading, letters: Container[str]) -> Mapping[str, Progression]:

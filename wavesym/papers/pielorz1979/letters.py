@@ -59,9 +59,12 @@ class Letters(Scope):
 class Units:
     """The speed of sound, the length of a rod, the unit of displacement."""
 
-    c_f: fmpq = fmpq(1)
-    l: fmpq = fmpq(1)  # noqa: E741 - the paper's letter
-    U_0: fmpq = fmpq(1)
+    c_f: fmpq
+    l: fmpq  # noqa: E741 - the paper's letter
+    U_0: fmpq
+
+
+_ONES = Units(fmpq(1), fmpq(1), fmpq(1))
 
 
 class Moving(Letters):
@@ -70,10 +73,8 @@ class Moving(Letters):
     A velocity with a bar is that of a body. `most` is the highest derivative that is asked for.
     """
 
-    def __init__(
-        self, motion: Driven, units: Units | None = None, constants: Mapping[Tree, Tree] | None = None
-    ) -> None:
-        self.units = units = units or Units()
+    def __init__(self, motion: Driven, units: Units = _ONES, constants: Mapping[Tree, Tree] | None = None) -> None:
+        self.units = units
         super().__init__({"m": motion.exact.m, "l": units.l}, constants)
         self.motion, self.chain, self.seen, self.most = motion, motion.exact.chain, False, 2
         parameters, late = self.chain.parameters, units.l / units.c_f

@@ -27,8 +27,8 @@ BOUNDS: Mapping[str, tuple[str, Callable[[float], bool]]] = {
     "larger": ("more than 1", lambda ratio: ratio > 1),
     "smaller": ("less than 1", lambda ratio: ratio < 1),
     "irregular oscillations": (
-        f"at least three swings of {_SWING:.3g} of the largest value or more, the largest more than {_UNEVEN:.3g} times "
-        "the smallest",
+        f"at least three swings of {_SWING:.3g} of the largest value or more, "
+        f"the largest more than {_UNEVEN:.3g} times the smallest",
         lambda ratio: ratio > _UNEVEN,
     ),
     "regular oscillations": (
@@ -134,7 +134,7 @@ def _unevenness(words: Words, curve: Curve) -> Finding:
     for place in places:
         values = curve(quantity, place)
         turns = _turns(values.tolist(), _SWING * float(np.max(np.abs(values))))
-        swings = sorted(pairwise(turns), key=lambda ends: abs(values[ends[1]] - values[ends[0]]))  # noqa: B023
+        swings = sorted(pairwise(turns), key=lambda ends: abs(values[ends[1]] - values[ends[0]]))
         if len(swings) < 3:
             found.append(Finding(0.0))
             continue

@@ -69,7 +69,9 @@ def _inside_cases(reading: Reading) -> Iterator[Case]:
             if said and sixth % 6 in (1, 4):
                 for number, equation in enumerate(items(reading.formula), 1):
                     value = f"left less right side, equation {number}"
-                    yield case({**here, "value": value}, partial(_less, scope, equation), 0, "U" in latex(equation), _front)
+                    yield case(
+                        {**here, "value": value}, partial(_less, scope, equation), 0, "U" in latex(equation), _front
+                    )
 
 
 def _less(scope: Moving, equation: Tree) -> Any:

@@ -225,8 +225,3 @@ def instants(
         found += [z, *(z + part for part in between)]
         z += 1
     return tuple(t for t in found if t < until)
-
-
-def positions(exact: Exact) -> Sequence[fmpq]:
-    """Places inside every rod."""
-    return [fmpq(i) - fmpq(p, q) for i in range(1, exact.m + 1) for p, q in ((1, 2), (1, 7))]
