@@ -6,6 +6,7 @@ that of unit steps and ramps, shifted and added.
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -21,8 +22,8 @@ from wavesym.exact.contact import contact_ends
 from wavesym.exact.reference import Reference
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
-from wavesym.papers.entries import Paper, read_paper
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, ungrouped
+from wavesym.papers.pielorz1979.transcript import entry
 from wavesym.papers.pielorz1979.truth import Step
 from wavesym.papers.reader import read_formula
 from wavesym.papers.record import shown
@@ -51,68 +52,44 @@ class TriedLoad(NamedTuple):
     pieces: tuple[tuple[str, tuple[Step, ...]], ...]
 
 
-def _pieces(*pieces: tuple[int | fmpq, int | fmpq]) -> tuple[Step, ...]:
-    return tuple(Step(fmpq(time), fmpq(weight)) for time, weight in pieces)
-
-
-_STEP = _pieces((0, 1))
-_PULSE = _pieces((0, 1), (2, -1))
-_HALF, _QUARTER = fmpq(1, 2), fmpq(1, 4)
-_MOMENTS: Mapping[str, tuple[Step, ...]] = {
-    "step": _STEP,
-    "pulse of length 1/2": _pieces((0, 1), (_HALF, -1)),
-    "pulse of length 1": _pieces((0, 1), (1, -1)),
-    "pulse of length 2": _PULSE,
-    "pulse of length 10": _pieces((0, 1), (10, -1)),
-    "stairs up": _pieces((0, _QUARTER), (1, _QUARTER), (2, _QUARTER), (3, _QUARTER)),
-    "stairs down": _pieces((0, 1), (1, -_QUARTER), (2, -_QUARTER), (3, -_HALF)),
-}
-"""(3.1): a moment changes in steps."""
-_QUAKES = (
-    TriedLoad("step", (("a", _STEP),)),
-    TriedLoad("ramp", (("b", _STEP),)),
-    TriedLoad("slow rise", (("b", _pieces((0, fmpq(1, 8)), (8, fmpq(-1, 8)))),)),
-    TriedLoad("pulse of length 2", (("a", _PULSE),)),
-    TriedLoad("triangle of length 4", (("b", _pieces((0, 1), (2, -2), (4, 1))),)),
-    TriedLoad("one slow swing", (("b", _pieces((0, _HALF), (2, -1), (6, 1), (8, -_HALF))),)),
-    TriedLoad(
-        "fast zigzag",
-        (("b", _pieces((0, 1), (1, -2), (2, 5 * _HALF), (3, -3), (4, 5 * _HALF), (5, -3 * _HALF), (6, _HALF))),),
-    ),
-)
-"""(3.2): an acceleration jumps (a) and bends (b)."""
 SENSES: Mapping[str, int] = {"M_1 = M_2": 1, "M_1 = -M_2": -1}
 """Equal moments are opposed, as (4.4) counts the last one against positive rotation."""
 
 
+def _rational(text: str) -> fmpq:
+    return fmpq(*map(int, text.split("/")))
+
+
+def _steps(pieces: Iterable[tuple[str, str]], sign: int = 1) -> tuple[Step, ...]:
+    return tuple(Step(_rational(time), sign * _rational(weight)) for time, weight in pieces)
+
+
+_LOADS = tomllib.loads(Path(__file__).with_name("figure_loads.toml").read_text(encoding="utf-8"))
+
+
+@cache
 def loads(figure: int, sense: int = 1) -> tuple[TriedLoad, ...]:
-    """The loads that a figure is tried with."""
-    if figure == 6:
-        return (TriedLoad("impact", (("impact", _STEP),)),)
-    if figure == 8:
-        return _QUAKES
+    """The loads that a figure is tried with; of two moments the second has a `sense`."""
     return tuple(
-        TriedLoad(name, (("M1", steps), ("M2", tuple(Step(step.time, sense * step.weight) for step in steps))))
-        for name, steps in _MOMENTS.items()
+        TriedLoad(name, tuple((source, _steps(pieces, sense if source == "M2" else 1)) for source in sources.split()))
+        for name, given in _LOADS[str(figure)].items()
+        for sources, pieces in given.items()
     )
-
-
-Quantities = tuple[tuple[str, int, fmpq], ...]
-"""What a caption gives: letter, index (0 where there is none), value."""
 
 
 @dataclass(frozen=True)
 class Described:
-    """What a caption describes: a figure, and its quantities."""
+    """What a caption describes: a figure, and its quantities: letter, index (0 where there is none), value."""
 
     figure: int
-    quantities: Quantities
+    quantities: tuple[tuple[str, int, fmpq], ...]
 
     def curve(self, load: TriedLoad, quantity: str, place: str) -> Array:
         """An output under a load at the instants. MeaninglessError where there is none."""
         total = np.zeros(SAMPLES)
         for source, steps in load.pieces:
-            unit = _unit(self, source, quantity, place)
+            known = place in PLOTTED[self.figure].get(quantity, ())
+            unit = _units(self, source, None if known else (quantity, place))[f"{quantity}@{place}"]
             for step in steps:
                 late = int(step.time * (SAMPLES - 1) / UNTIL)
                 total[late:] += float(step.weight) * unit[: SAMPLES - late]
@@ -147,13 +124,6 @@ class Described:
             raise MeaninglessError(str(error)) from None
 
 
-def _unit(described: Described, source: str, quantity: str, place: str) -> Array:
-    """An output under a unit of one source."""
-    plotted = PLOTTED[described.figure]
-    known = place in plotted.get(quantity, ())
-    return _units(described, source, None if known else (quantity, place))[f"{quantity}@{place}"]
-
-
 @cache
 def _units(described: Described, source: str, other: tuple[str, str] | None) -> Mapping[str, Array]:
     """The plotted outputs under a unit of one source, at once as they have much in common; or one that is not plotted.
@@ -162,7 +132,7 @@ def _units(described: Described, source: str, other: tuple[str, str] | None) -> 
     """
     outputs = None if other is None else {other[0]: (other[1],)}
     try:
-        reference = Reference(lower(described.scene(TriedLoad("unit", ((source, _STEP),)), outputs)))
+        reference = Reference(lower(described.scene(TriedLoad("unit", ((source, _steps([("0", "1")])),)), outputs)))
     except SceneError as error:
         raise MeaninglessError(str(error)) from None
     values = reference.values(np.linspace(0, reference.tau_max, SAMPLES).tolist())
@@ -241,14 +211,6 @@ def _drive(rates: Sequence[fmpq]) -> Mapping[str, object]:
 
 
 @cache
-def section() -> Paper:
-    """The data of section 5."""
-    data = Path(__file__).with_name("data")
-    return read_paper([data / "section_5.toml"], data / "hashes.txt")
-
-
-@cache
 def figure(number: int) -> Described:
     """What the caption of a figure describes."""
-    (entry,) = (entry for entry in section().entries() if entry.id == f"Fig.{number}.caption")
-    return described(number, read_formula(entry.printed))
+    return described(number, read_formula(entry(f"Fig.{number}.caption").printed))

@@ -31,10 +31,10 @@ from wavesym.papers.pielorz1979.figure_scenes import (
     described,
     figure,
     loads,
-    section,
 )
 from wavesym.papers.pielorz1979.measures import BOUNDS, MEASURES, Finding
 from wavesym.papers.pielorz1979.scenes import written
+from wavesym.papers.pielorz1979.transcript import entries
 from wavesym.papers.reader import UnreadableError, read_formula
 from wavesym.papers.record import Case, Example, Nothing, Reading, Sentence, Test, case, shown
 from wavesym.papers.sentences import Pattern, sentence_reader
@@ -127,7 +127,7 @@ def findings(number: int, statement: FigureStatement) -> list[tuple[TriedLoad, F
 
 
 def _of(number: int, kind: str) -> Iterable[Entry]:
-    return (entry for entry in section().entries() if entry.about.get("figure") == number and entry.kind == kind)
+    return (entry for entry in entries().values() if entry.about.get("figure") == number and entry.kind == kind)
 
 
 # The adapters
