@@ -6,9 +6,10 @@ steps, at rational instants, in numbers that are equal only if they are the same
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
+from typing import Any
 
 from flint import fmpq
 
@@ -59,10 +60,6 @@ class Driven:
     exact: Exact
     loads: Loads
 
-    @cached_property
-    def _known(self) -> dict[tuple[str, int, int, int, int], Exponentials]:
-        return {}
-
     def wave(self, letter: str, rod: int, z: fmpq, order: int = 1) -> Exponentials:
         """f or g of a rod at z, just after any jump there: itself (order 0), its derivative (1), the next (2).
 
@@ -72,50 +69,48 @@ class Driven:
         key = letter, rod, int(z.p), int(z.q), order  # which are hashed faster than z
         if key not in self._known:
             self._known[key] = self._computed(letter, rod, z, order)
-        return self._known[key]
+        found: Exponentials = self._known[key]
+        return found
+
+    @cached_property
+    def _known(self) -> dict[Any, Any]:
+        """What was computed, by what it is."""
+        return {}
 
     def _computed(self, letter: str, rod: int, z: fmpq, order: int) -> Exponentials:
-        if not 1 <= rod <= self.exact.m:
-            raise MeaninglessError(f"there is no rod {rod}")
+        self._check(rod)
         if order > 2:
             raise MeaninglessError(f"there is no derivative of order {order} here")
-        terms = []
-        step = self.exact.interval
+        terms: list[tuple[fmpq, fmpq]] = []
+        step, function = self.exact.interval, Function(letter, rod)
         for source, pieces in self.loads.items():
-            function = Function(letter, rod)
-            increments = self.exact.responses[source][function]
             for piece in pieces:
                 since = z - piece.time
-                if since >= step * len(increments):
+                if since >= step * len(self.exact.responses[source][function]):
                     raise MeaninglessError(f"z = {z} is beyond the tables")
                 for number in range(int(since / step) + 1 if since >= 0 else 0):
-                    w = since - step * number
-                    for rate, powers in self._ordered(source, function, number, order).items():
-                        value = fmpq(0)
-                        for power in reversed(powers):
-                            value = value * w + power
-                        terms.append((-rate * w, piece.weight * value))
+                    terms += _terms(self._ordered(source, function, number, order), since - step * number, piece.weight)
         return Exponentials.total(terms)
+
+    def _check(self, rod: int) -> None:
+        if not 1 <= rod <= self.exact.m:
+            raise MeaninglessError(f"there is no rod {rod}")
 
     def _ordered(self, source: str, function: Function, number: int, order: int) -> Increment:
         """An increment, or its integral or derivative."""
         key = source, *function, number, order
-        if key not in self._orders:
+        if key not in self._known:
             increment = self.exact.responses[source][function][number]
-            self._orders[key] = {0: integrated, 1: lambda same: same, 2: _derived}[order](increment)
-        return self._orders[key]
-
-    @cached_property
-    def _orders(self) -> dict[tuple[str, str, int, int, int], Increment]:
-        return {}
+            self._known[key] = {0: integrated, 1: lambda same: same, 2: _derived}[order](increment)
+        found: Increment = self._known[key]
+        return found
 
     def waves_at(self, rod: int, x: int, tau: fmpq, order: int = 1) -> tuple[Exponentials, Exponentials]:
         """f and g of a rod at x, where (4.2) has them: g - f is the strain, f + g and v the velocity.
 
         MeaninglessError where there is no such rod.
         """
-        if not 1 <= rod <= self.exact.m:
-            raise MeaninglessError(f"there is no rod {rod}")
+        self._check(rod)
         clock = self.exact.chain.rod(rod)
         late = clock.tau0 + x - clock.x0, clock.tau0 - x + clock.x0
         return self.wave("f", rod, tau - late[0], order), self.wave("g", rod, tau - late[1], order)
@@ -125,8 +120,8 @@ class Driven:
 
         MeaninglessError where there is no such source, piece or rod, or the interval is beyond the tables.
         """
-        key = letter, rod, interval, source, piece
-        if key not in self._gains:
+        key = letter, rod, interval, source, piece, "gain"
+        if key not in self._known:
             sources = ["a", "b"] if source == "ab" else [source]
             if not 1 <= rod <= self.exact.m or not {*sources} <= self.exact.responses.keys():
                 raise MeaninglessError(f"there is no rod {rod}, or no {source}")
@@ -135,12 +130,9 @@ class Driven:
                 parts = [self.exact.increment(name, letter, rod, interval) for name in sources]
             except IndexError:
                 raise MeaninglessError(f"interval {interval} is beyond the tables") from None
-            self._gains[key] = combined(zip(weights, parts, strict=True))
-        return self._gains[key]
-
-    @cached_property
-    def _gains(self) -> dict[tuple[str, int, int, str, int | None], Increment]:
-        return {}
+            self._known[key] = combined(zip(weights, parts, strict=True))
+        found: Increment = self._known[key]
+        return found
 
     def piece(self, source: str, number: int) -> Step:
         """A piece of a load; MeaninglessError where there is none."""
@@ -158,25 +150,21 @@ class Driven:
 
         MeaninglessError where there is no such rod, or the interval is beyond the tables.
         """
-        key = source, letter, rod, number, fmpq(w)
-        if key not in self._gained:
-            self._gained[key] = self._increment(*key)
-        return self._gained[key]
+        w = fmpq(w)
+        key = source, letter, rod, number, int(w.p), int(w.q)
+        if key not in self._known:
+            self._known[key] = Exponentials.total(_terms(self.gain(letter, rod, number, source), w))
+        found: Exponentials = self._known[key]
+        return found
 
-    @cached_property
-    def _gained(self) -> dict[tuple[str, str, int, int, fmpq], Exponentials]:
-        return {}
 
-    def _increment(self, source: str, letter: str, rod: int, number: int, w: fmpq) -> Exponentials:
-        try:
-            increment = self.exact.increment(source, letter, rod, number)
-        except (KeyError, IndexError):
-            raise MeaninglessError(f"there is no interval {number} of {letter}_{rod}") from None
-        parts: dict[fmpq, fmpq] = {}
-        for rate, powers in increment.items():
-            value = sum((power * w**k for k, power in enumerate(powers)), fmpq(0))
-            parts[-rate * w] = parts.get(-rate * w, fmpq(0)) + value
-        return Exponentials(parts)
+def _terms(increment: Increment, w: fmpq, weight: fmpq | int = 1) -> Iterator[tuple[fmpq, fmpq]]:
+    """What an increment is w after its start, as exponents and what stands before their powers of e."""
+    for rate, powers in increment.items():
+        value = fmpq(0)
+        for power in reversed(powers):
+            value = value * w + power
+        yield -rate * w, weight * value
 
 
 def _derived(increment: Increment) -> Increment:
