@@ -147,10 +147,17 @@ class Moving(Letters):
             raise MeaninglessError(f"rod {rod} does not reach to {x.value} l")
         if tau.value < 0:
             raise MeaninglessError("the motion begins at t = 0")
-        clock = self.chain.rod(rod)
-        f = self._along("f", rod, tau - x + (clock.x0 - clock.tau0))
-        g = self._along("g", rod, tau + x - (clock.x0 + clock.tau0))
-        moved: Jet = f + g + tau * clock.velocity
+        numbers = (fmpq(n) for at in (x, tau) for n in (at.value, at.first, at.second))
+        key = ("displacement", rod, self.most, *((int(n.p), int(n.q)) for n in numbers))
+        if key not in self.motion.known:
+            clock = self.chain.rod(rod)
+            f = self._along("f", rod, tau - x + (clock.x0 - clock.tau0))
+            g = self._along("g", rod, tau + x - (clock.x0 + clock.tau0))
+            changes = any(part != 0 for part in (f.first, f.second, g.first, g.second))
+            self.motion.known[key] = f + g + tau * clock.velocity, changes
+        moved: Jet
+        moved, changes = self.motion.known[key]
+        self.seen = self.seen or changes
         return moved
 
     def _displaced(self, *at: Any) -> Jet:

@@ -67,13 +67,13 @@ class Driven:
         """
         z = fmpq(z)
         key = letter, rod, int(z.p), int(z.q), order  # which are hashed faster than z
-        if key not in self._known:
-            self._known[key] = self._computed(letter, rod, z, order)
-        found: Exponentials = self._known[key]
+        if key not in self.known:
+            self.known[key] = self._computed(letter, rod, z, order)
+        found: Exponentials = self.known[key]
         return found
 
     @cached_property
-    def _known(self) -> dict[Any, Any]:
+    def known(self) -> dict[Any, Any]:
         """What was computed, by what it is."""
         return {}
 
@@ -99,10 +99,10 @@ class Driven:
     def _ordered(self, source: str, function: Function, number: int, order: int) -> Increment:
         """An increment, or its integral or derivative."""
         key = source, *function, number, order
-        if key not in self._known:
+        if key not in self.known:
             increment = self.exact.responses[source][function][number]
-            self._known[key] = {0: integrated, 1: lambda same: same, 2: _derived}[order](increment)
-        found: Increment = self._known[key]
+            self.known[key] = {0: integrated, 1: lambda same: same, 2: _derived}[order](increment)
+        found: Increment = self.known[key]
         return found
 
     def waves_at(self, rod: int, x: int, tau: fmpq, order: int = 1) -> tuple[Exponentials, Exponentials]:
@@ -121,7 +121,7 @@ class Driven:
         MeaninglessError where there is no such source, piece or rod, or the interval is beyond the tables.
         """
         key = letter, rod, interval, source, piece, "gain"
-        if key not in self._known:
+        if key not in self.known:
             sources = ["a", "b"] if source == "ab" else [source]
             if not 1 <= rod <= self.exact.m or not {*sources} <= self.exact.responses.keys():
                 raise MeaninglessError(f"there is no rod {rod}, or no {source}")
@@ -130,8 +130,8 @@ class Driven:
                 parts = [self.exact.increment(name, letter, rod, interval) for name in sources]
             except IndexError:
                 raise MeaninglessError(f"interval {interval} is beyond the tables") from None
-            self._known[key] = combined(zip(weights, parts, strict=True))
-        found: Increment = self._known[key]
+            self.known[key] = combined(zip(weights, parts, strict=True))
+        found: Increment = self.known[key]
         return found
 
     def piece(self, source: str, number: int) -> Step:
@@ -152,9 +152,9 @@ class Driven:
         """
         w = fmpq(w)
         key = source, letter, rod, number, int(w.p), int(w.q)
-        if key not in self._known:
-            self._known[key] = Exponentials.total(_terms(self.gain(letter, rod, number, source), w))
-        found: Exponentials = self._known[key]
+        if key not in self.known:
+            self.known[key] = Exponentials.total(_terms(self.gain(letter, rod, number, source), w))
+        found: Exponentials = self.known[key]
         return found
 
 
