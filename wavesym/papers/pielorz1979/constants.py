@@ -191,7 +191,8 @@ def load(entry: Entry) -> Test:
         laws = {i: physical.node(i - 1) for i in range(1, physical.m + 1)}
         _, unit = physical.chain({i: law.beta / law.inertia / 2 for i, law in laws.items()}).loaded[f"M{body}"]
         # the last moment counts against positive rotation, here and there
-        return physical.acceleration(body, moment(body, scope.bound["t"])) / abs(unit.coefficients[0])
+        acceleration = physical.acceleration(body, moment(body, scope.bound["t"]))
+        return fmpq(acceleration / abs(unit.coefficients[0]))
 
     against = "the acceleration that a moment gives a disc, in that of the unit load of a drive"
     return Test(against, partial(_body_cases, "S", true))
