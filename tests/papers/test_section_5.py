@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from wavesym.exact.reference import Reference
-from wavesym.papers.entries import Entry, Slip
+from wavesym.papers.entries import PaperEntry, Slip
 from wavesym.papers.pielorz1979.figure_scenes import PLOTTED, figure, loads
 from wavesym.papers.pielorz1979.paper import ADAPTERS
 from wavesym.papers.pielorz1979.transcript import paper
 from wavesym.papers.record import Record, judge
 from wavesym.scene import lower
 
-ENTRIES: Mapping[str, Entry] = {entry.id: entry for entry in paper().entries()}
+ENTRIES: Mapping[str, PaperEntry] = {entry.id: entry for entry in paper().entries()}
 
 
 def judged(id: str, **update: object) -> Record:

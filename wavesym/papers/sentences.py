@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.reader import UnreadableError, read_formula, read_range
@@ -24,7 +24,7 @@ Words = Mapping[str, str]
 
 
 @dataclass(frozen=True)
-class Pattern:
+class SentencePattern:
     """A sentence with places in braces, such as "the {quantity} at x = {place} rises", and the words for each.
 
     A place whose words include "" may be left out, with a space or comma of its own inside the words. One for which no
@@ -64,13 +64,13 @@ class Pattern:
                     yield change, Sentence(self.name, {**sentence.words, place: word})
 
 
-def sentence_reader(patterns: Iterable[Pattern]) -> _Reader:
+def sentence_reader(patterns: Iterable[SentencePattern]) -> _Reader:
     """What reads sentences of some patterns, and puts faults into them."""
     return _Reader(tuple(patterns))
 
 
 class _Reader:
-    def __init__(self, patterns: Sequence[Pattern]) -> None:
+    def __init__(self, patterns: Sequence[SentencePattern]) -> None:
         self._patterns = {pattern.name: pattern for pattern in patterns}
 
     def read(self, printed: str, ranges: Iterable[str]) -> Reading:
@@ -95,7 +95,7 @@ def sayings(path: Path, cases: Mapping[str, Callable[[Words], Iterable[Case]]]) 
     Of the cases those count that are within the ranges of a sentence.
     """
     known = tomllib.loads(path.read_text(encoding="utf-8"))
-    patterns = [Pattern(name, told["text"], told["words"]) for name, told in known.items()]
+    patterns = [SentencePattern(name, told["text"], told["words"]) for name, told in known.items()]
     reader = sentence_reader(patterns)
 
     def tried(reading: Reading) -> Iterator[Case]:
@@ -107,7 +107,7 @@ def sayings(path: Path, cases: Mapping[str, Callable[[Words], Iterable[Case]]]) 
         if none:
             raise MeaninglessError("nothing is within its ranges")
 
-    def adapter(entry: Entry) -> Test:
+    def adapter(entry: PaperEntry) -> Test:
         said = next((p for p in patterns if p.match(entry.settled[0])), None)
         return Test(known[said.name]["against"] if said else "nothing known", tried, reader.read, reader.faults)
 

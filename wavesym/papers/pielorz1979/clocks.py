@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
 from wavesym.model.chain import Chain
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.exact_tables import Exact
 from wavesym.papers.pielorz1979.equations import covers
-from wavesym.papers.pielorz1979.letters import Letters, body_velocity
+from wavesym.papers.pielorz1979.letters import IndexedLetters, body_velocity
 from wavesym.papers.pielorz1979.scenes import example as scene
 from wavesym.papers.pielorz1979.truth import EXAMPLES
-from wavesym.papers.record import Case, Example, Reading, Test, case
+from wavesym.papers.record import Case, Reading, Reproduction, Test, case
 from wavesym.papers.tree import Cases
 
 _MOST_SIZES = 3
@@ -39,7 +39,7 @@ def arrival(chain: Chain, rod: int, which: Callable[[Iterable[int]], int] = min)
     return first, {end for end, time in times.items() if time == first}
 
 
-def cell(entry: Entry) -> Test:
+def cell(entry: PaperEntry) -> Test:
     """A cell of the columns x_0, tau_0, v, for every rod."""
     example, column = EXAMPLES[entry.about["example"]], entry.about["column"]
 
@@ -48,7 +48,7 @@ def cell(entry: Entry) -> Test:
         ranges = [where for _, where in formula.branches] if isinstance(formula, Cases) else reading.ranges
         for m in example.sizes[:_MOST_SIZES]:
             chain = example.tables(m).chain
-            scope = Letters({"m": m})
+            scope = IndexedLetters({"m": m})
             scope.letters[r"\barv"] = (chain.parameters.velocity or {}).__getitem__
             yield covers({"m": m}, "rods", ranges, scope, range(1, m + 1))
             for rod in range(1, m + 1):
@@ -69,7 +69,7 @@ def cell(entry: Entry) -> Test:
     return Test(_AGAINST[column], cases)
 
 
-def _seen(exact: Exact, rod: int) -> Callable[[], Example]:
+def _seen(exact: Exact, rod: int) -> Callable[[], Reproduction]:
     """How a rod of a collision moves before anything reaches it."""
     middle = f"{2 * rod - 1}/2"
     look = f"velocity@{middle} at tau = 0 is how fast rod {rod} moves at first: as the body to which it is fixed"

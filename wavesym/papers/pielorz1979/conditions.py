@@ -14,17 +14,17 @@ from sympy import Expr, IndexedBase, Rational, expand
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.delay_terms import exact
 from wavesym.model.node import Node, Parameters
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
 from wavesym.papers.exact_tables import UNEQUAL_COLLISION, grounded_building, unequal_collision
 from wavesym.papers.pielorz1979.equations import left_over, once, ranges_of, within
-from wavesym.papers.pielorz1979.letters import Letters, Moving, letter, rods_at
+from wavesym.papers.pielorz1979.letters import IndexedLetters, Moving, letter, rods_at
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.symbols import ACCELERATION, DISPLACEMENTS, Symbols, moment, strain, told
 from wavesym.papers.pielorz1979.transcript import others
-from wavesym.papers.pielorz1979.truth import EXAMPLES, Driven, driven, instants, loads
+from wavesym.papers.pielorz1979.truth import EXAMPLES, DrivenChain, driven, instants, loads
 from wavesym.papers.reader import UnreadableError
-from wavesym.papers.record import Case, Example, Reading, Test, reading, shown
+from wavesym.papers.record import Case, Reading, Reproduction, Test, reading, shown
 from wavesym.papers.tree import Call, Derivative, Progression, Symbol, Tree, latex
 
 UNTIL = 6
@@ -47,7 +47,7 @@ KINDS: Mapping[str, Callable[[Node], bool]] = {
 """The nodes that the words before (2.4)_1, ..., (2.4)_5 are about."""
 
 
-def test(entry: Entry) -> Test:
+def test(entry: PaperEntry) -> Test:
     """How a condition is tried: at its nodes, where it is about all the rods and nothing is said twice."""
     names = (str(entry.about["example"]),) if "example" in entry.about else tuple(EXAMPLES)
     kind, base = entry.about.get("at"), entry.about.get("base")
@@ -68,7 +68,7 @@ def test(entry: Entry) -> Test:
     )
 
 
-def _balances(entry: Entry) -> bool:
+def _balances(entry: PaperEntry) -> bool:
     """Whether what is right balances forces, which the nodes have in symbols."""
     try:
         return _said(reading(*entry.settled).formula) == _FORCES
@@ -77,16 +77,16 @@ def _balances(entry: Entry) -> bool:
 
 
 @cache
-def _moved(name: str, m: int, kind: str | None, base: str | None) -> Driven:
+def _moved(name: str, m: int, kind: str | None, base: str | None) -> DrivenChain:
     """A chain of an example under its loads; for (2.4), which has an A_i for each rod, with unequal rods."""
     if base == "ground":
-        return Driven(grounded_building(m), loads(grounded_building(m)))
+        return DrivenChain(grounded_building(m), loads(grounded_building(m)))
     if name == "I" and kind:
-        return Driven(unequal_collision(m), loads(unequal_collision(m)))
+        return DrivenChain(unequal_collision(m), loads(unequal_collision(m)))
     return driven(name, m)
 
 
-def _add_section_2(scope: Letters, name: str, read: Reading) -> None:
+def _add_section_2(scope: IndexedLetters, name: str, read: Reading) -> None:
     """Give a scope the A, B and S of (2.4)."""
     kappa, inertia = scope.letters[r"\kappa"], scope.letters["J"]
     numbering = ranges_of(read, _RANGES).get("x_{i}")
@@ -112,7 +112,7 @@ def _add_section_2(scope: Letters, name: str, read: Reading) -> None:
 # on chains
 
 
-def _tried(id: str, name: str, driven: Driven, read: Reading, kind: str | None) -> Iterator[Case]:
+def _tried(id: str, name: str, driven: DrivenChain, read: Reading, kind: str | None) -> Iterator[Case]:
     """A condition at all its places of a chain."""
     chain, m = driven.exact.chain, driven.exact.m
     said: Counter[tuple[str, int]] = Counter()
@@ -187,7 +187,7 @@ def _balanced(scope: Moving, read: Reading, x: int, at: Mapping[str, object]) ->
     driven, node = scope.motion, scope.chain.nodes[x]
     outputs = {"strain": [f"{x}{s}" for s, rod in (("-", node.left), ("+", node.right)) if rod], "velocity": [str(x)]}
 
-    def seen(tau: fmpq, left: str) -> Callable[[], Example] | None:
+    def seen(tau: fmpq, left: str) -> Callable[[], Reproduction] | None:
         if scope.chain.system is UNEQUAL_COLLISION:  # no scene has it
             return None
         f, g = driven.waves_at(x if node.left else x + 1, x, tau, order=2)

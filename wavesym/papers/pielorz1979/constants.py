@@ -16,9 +16,9 @@ from flint import fmpq
 
 from wavesym.model.chain import Chain
 from wavesym.model.node import Node, Parameters
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, given, range_of, sides, span
-from wavesym.papers.pielorz1979.letters import Letters
+from wavesym.papers.pielorz1979.letters import IndexedLetters
 from wavesym.papers.pielorz1979.truth import EXAMPLES
 from wavesym.papers.record import Case, Reading, Test, case
 from wavesym.papers.tree import Call, Number, Symbol, Tree, latex
@@ -86,7 +86,7 @@ class Physical:
         return fmpq(load / self.U_0 / self.node(body - 1).inertia)
 
 
-class Material(Letters):
+class Material(IndexedLetters):
     """The letters of a physical system."""
 
     def __init__(self, physical: Physical, constants: Mapping[Tree, Tree] | None = None) -> None:
@@ -120,7 +120,7 @@ def moment(body: int, t: fmpq) -> fmpq:
     return t + fmpq(2 * body + 1, 3)
 
 
-def speed(entry: Entry) -> Test:
+def speed(entry: PaperEntry) -> Test:
     """c_f^2 in Table 1; the letter after it is a name for its root."""
 
     def cases(reading: Reading) -> Iterator[Case]:
@@ -134,7 +134,7 @@ def speed(entry: Entry) -> Test:
     return Test("stiffness of a rod over its inertia per length", cases)
 
 
-def kappa(entry: Entry) -> Test:
+def kappa(entry: PaperEntry) -> Test:
     """kappa under (4.3), (4.4), (4.5)."""
     example = entry.about["example"]
 
@@ -174,7 +174,7 @@ def _chain_cases(physical: Physical, letter: Tree, value: Tree, numbers: Tree) -
             yield Case({**at, "x": x, "law": "rate 2 kappa"}, 2 * found[x + 1], true.rate)
 
 
-def moment_factor(entry: Entry) -> Test:
+def moment_factor(entry: PaperEntry) -> Test:
     """A under (4.4)."""
 
     def true(scope: Material, body: int) -> fmpq:
@@ -183,7 +183,7 @@ def moment_factor(entry: Entry) -> Test:
     return Test("the acceleration that the unit of moment gives a body", partial(_body_cases, "A", true))
 
 
-def load(entry: Entry) -> Test:
+def load(entry: PaperEntry) -> Test:
     """The load without dimensions, line before Table 1."""
 
     def true(scope: Material, body: int) -> fmpq:

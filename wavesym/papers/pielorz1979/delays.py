@@ -13,7 +13,7 @@ from sympy import Integer, expand
 from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equations
 from wavesym.derivation.delay_terms import Line, Operator, Wave, exact
 from wavesym.model.node import System
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, span
 from wavesym.papers.pielorz1979.equations import left_over, once, ranges_of, within
 from wavesym.papers.pielorz1979.letters import Moving
@@ -21,7 +21,7 @@ from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.symbols import Symbols, expression, told
 from wavesym.papers.pielorz1979.transcript import others
 from wavesym.papers.pielorz1979.truth import EXAMPLES, driven, instants
-from wavesym.papers.record import Case, Example, Reading, Test
+from wavesym.papers.record import Case, Reading, Reproduction, Test
 from wavesym.papers.tree import Call, Tree
 
 UNTIL = 8
@@ -33,7 +33,7 @@ Unknown = tuple[str, Any]
 """f or g, and the number of its rod."""
 
 
-def test(entry: Entry) -> Test:
+def test(entry: PaperEntry) -> Test:
     """How an equation is tried: both its sides at instants, and whether it gives what no other of its group gives."""
     drawn = EXAMPLES[str(entry.about["example"])]
 
@@ -68,7 +68,7 @@ def _balanced(scope: Moving, equation: Tree, at: Mapping[str, int]) -> Iterator[
     """The equation at instants."""
     motion = scope.motion
 
-    def seen(z: fmpq, left: str) -> Callable[[], Example]:
+    def seen(z: fmpq, left: str) -> Callable[[], Reproduction]:
         look = f"put the sums of these rows, each from the start of its interval, into the equation at z = {z}: {left}"
         return example(motion.exact, motion.loads, UNTIL, {"velocity": ["1"]}, "wavesym tables SCENE", look)
 

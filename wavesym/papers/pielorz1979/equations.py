@@ -12,7 +12,7 @@ from flint import fmpq
 
 from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
 from wavesym.papers.pielorz1979.letters import Moving
-from wavesym.papers.record import Case, Example, Nothing, Reading, case, shown
+from wavesym.papers.record import Case, Nothing, Reading, Reproduction, case, shown
 from wavesym.papers.tree import Progression, Tree, latex
 
 
@@ -39,7 +39,7 @@ def covers(
     scope: Scope,
     wanted: Iterable[int],
     telling: bool = False,
-    example: Callable[[], Example] | None = None,
+    example: Callable[[], Reproduction] | None = None,
 ) -> Case:
     """Whether ranges have each number that is wanted once; MeaninglessError."""
     named = tuple(ranges)
@@ -61,7 +61,7 @@ def left_over(
     scope: Moving,
     clock: tuple[str, Iterable[fmpq]],
     bound: Callable[[fmpq], Mapping[str, Any]],
-    seen: Callable[[fmpq, str], Callable[[], Example] | None],
+    seen: Callable[[fmpq, str], Callable[[], Reproduction] | None],
 ) -> Iterator[Case]:
     """An equation at instants of a clock, with what is bound there: what is left of it, and where that is `seen`."""
     left, right = sides(equation)

@@ -24,7 +24,7 @@ from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, ungrouped
 from wavesym.papers.pielorz1979.transcript import entry
-from wavesym.papers.pielorz1979.truth import Step
+from wavesym.papers.pielorz1979.truth import LoadStep
 from wavesym.papers.reader import read_formula
 from wavesym.papers.record import shown
 from wavesym.papers.tree import Number, Product, Symbol, Tree, latex
@@ -49,7 +49,7 @@ class TriedLoad(NamedTuple):
     """A shape of load: what each source does, piece by piece."""
 
     name: str
-    pieces: tuple[tuple[str, tuple[Step, ...]], ...]
+    pieces: tuple[tuple[str, tuple[LoadStep, ...]], ...]
 
 
 SENSES: Mapping[str, int] = {"M_1 = M_2": 1, "M_1 = -M_2": -1}
@@ -60,8 +60,8 @@ def _rational(text: str) -> fmpq:
     return fmpq(*map(int, text.split("/")))
 
 
-def _steps(pieces: Iterable[tuple[str, str]], sign: int = 1) -> tuple[Step, ...]:
-    return tuple(Step(_rational(time), sign * _rational(weight)) for time, weight in pieces)
+def _steps(pieces: Iterable[tuple[str, str]], sign: int = 1) -> tuple[LoadStep, ...]:
+    return tuple(LoadStep(_rational(time), sign * _rational(weight)) for time, weight in pieces)
 
 
 _LOADS = tomllib.loads(Path(__file__).with_name("figure_loads.toml").read_text(encoding="utf-8"))

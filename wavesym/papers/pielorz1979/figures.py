@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from flint import fmpq
 
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.pielorz1979.figure_scenes import (
     PLOTTED,
@@ -36,8 +36,8 @@ from wavesym.papers.pielorz1979.measures import BOUNDS, MEASURES, Finding
 from wavesym.papers.pielorz1979.scenes import written
 from wavesym.papers.pielorz1979.transcript import entries
 from wavesym.papers.reader import UnreadableError, read_formula
-from wavesym.papers.record import Case, Example, Nothing, Reading, Sentence, Test, case, shown
-from wavesym.papers.sentences import Pattern, sentence_reader
+from wavesym.papers.record import Case, Nothing, Reading, Reproduction, Sentence, Test, case, shown
+from wavesym.papers.sentences import SentencePattern, sentence_reader
 from wavesym.papers.tree import Number, Relation, Tree, latex
 from wavesym.scene import lower
 
@@ -47,7 +47,7 @@ ONLY = ", under these loads only: "
 _KINDS: Mapping[str, Any] = tomllib.loads(Path(__file__).with_name("figure_sentences.toml").read_text(encoding="utf-8"))
 _READERS = {
     number: sentence_reader(
-        Pattern(name, kind["text"], kind["words"]) for name, kind in _KINDS.items() if kind["figure"] == number
+        SentencePattern(name, kind["text"], kind["words"]) for name, kind in _KINDS.items() if kind["figure"] == number
     )
     for number in PLOTTED
 }
@@ -126,14 +126,14 @@ def findings(number: int, statement: FigureStatement) -> list[tuple[TriedLoad, F
     return [(load, finding(figure(number), load, statement)) for load in tried(number, statement)]
 
 
-def _of(number: int, kind: str) -> Iterable[Entry]:
+def _of(number: int, kind: str) -> Iterable[PaperEntry]:
     return (entry for entry in entries().values() if entry.about.get("figure") == number and entry.kind == kind)
 
 
 # The adapters
 
 
-def said_of_figure(entry: Entry) -> Test:
+def said_of_figure(entry: PaperEntry) -> Test:
     """A sentence about a figure."""
     number = entry.about["figure"]
     base = " (the base of (4.5))" if number == 8 else ""
@@ -158,7 +158,7 @@ def _cases(scene: Described, said: FigureStatement) -> Iterator[Case]:
         yield Case(at, claimed, is_so, example=partial(_example, scene, load, found))
 
 
-def _observed(scene: Described, entry: Entry) -> str:
+def _observed(scene: Described, entry: PaperEntry) -> str:
     """Every load with its outcome."""
     try:
         said = read(scene.figure, entry.printed)
@@ -180,7 +180,7 @@ def _outcomes(scene: Described, said: FigureStatement) -> str:
     return "; ".join(f"{'true' if so else 'false'} under {', '.join(names)}" for so, names in outcomes.items() if names)
 
 
-def _example(scene: Described, load: TriedLoad, found: Finding) -> Example:
+def _example(scene: Described, load: TriedLoad, found: Finding) -> Reproduction:
     """The scene of a case, and where to look: the values of its curves at the spots."""
     points = dict.fromkeys(point for spot in found.spots for point in spot)
     outputs: dict[str, list[str]] = {}
@@ -194,13 +194,13 @@ def _example(scene: Described, load: TriedLoad, found: Finding) -> Example:
     return _shown(scene, load, outputs or PLOTTED[scene.figure], look or "fewer than three swings")
 
 
-def _shown(scene: Described, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Example:
+def _shown(scene: Described, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Reproduction:
     model = lower(scene.scene(load))
     text = written(model.chain, dict(load.pieces), model.until, outputs)
-    return Example(text, f"wavesym run SCENE --samples {SAMPLES}", look)
+    return Reproduction(text, f"wavesym run SCENE --samples {SAMPLES}", look)
 
 
-def caption_of_figure(entry: Entry) -> Test:
+def caption_of_figure(entry: PaperEntry) -> Test:
     """The quantities of a figure: what is said of it must be true of the scene that they describe."""
     number = entry.about["figure"]
     return Test(
@@ -229,12 +229,12 @@ def _described_cases(number: int, formula: Tree) -> Iterator[Case]:
         yield case({"said": entry.printed}, partial(under_some_load, entry.printed), True)
 
 
-def end_of_contact(entry: Entry) -> Test:
+def end_of_contact(entry: PaperEntry) -> Test:
     """When the contact of Fig. 6 opens: to as many places as are printed."""
     return Test("when the contact at x = 2 opens, in ball arithmetic", lambda said: _end_cases(said.formula))
 
 
-def printed_end(entry: Entry) -> float:
+def printed_end(entry: PaperEntry) -> float:
     """The time that a record of this kind gives."""
     return float(_approximate(read_formula(entry.printed))[1].digits)
 
@@ -255,7 +255,7 @@ def _end_cases(formula: Tree) -> Iterator[Case]:
     yield Case({"x": 2, "places": places}, number.digits, opens, example=partial(_opening, float(number.digits)))
 
 
-def _opening(read_off: float) -> Example:
+def _opening(read_off: float) -> Reproduction:
     """The strain of the contact, until it is 0 again."""
     (load,) = loads(6)
     scene = figure(6)

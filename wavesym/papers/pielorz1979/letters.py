@@ -13,7 +13,7 @@ from sympy.tensor.indexed import IndexException
 from wavesym.model.chain import Chain
 from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.jets import Jet
-from wavesym.papers.pielorz1979.truth import Driven
+from wavesym.papers.pielorz1979.truth import DrivenChain
 from wavesym.papers.record import shown
 from wavesym.papers.tree import Call, Derivative, Symbol, Tree, latex
 
@@ -29,7 +29,7 @@ def letter(symbol: Symbol) -> str:
     return symbol.accent + symbol.name + "'" * symbol.primes
 
 
-class Letters(Scope):
+class IndexedLetters(Scope):
     """Letters as functions of their indices, functions as those of their indices and arguments; each by `letter`."""
 
     def __init__(self, bound: Mapping[str, Any], constants: Mapping[Tree, Tree] | None = None) -> None:
@@ -67,13 +67,13 @@ class Units:
 _ONES = Units(fmpq(1), fmpq(1), fmpq(1))
 
 
-class Moving(Letters):
+class Moving(IndexedLetters):
     """The letters on the motion of a chain; `seen` tells whether anything moved where it was looked at.
 
     A velocity with a bar is that of a body. `most` is the highest derivative that is asked for.
     """
 
-    def __init__(self, motion: Driven, units: Units = _ONES, constants: Mapping[Tree, Tree] | None = None) -> None:
+    def __init__(self, motion: DrivenChain, units: Units = _ONES, constants: Mapping[Tree, Tree] | None = None) -> None:
         self.units = units
         super().__init__({"m": motion.exact.m, "l": units.l}, constants)
         self.motion, self.chain, self.seen, self.most = motion, motion.exact.chain, False, 2

@@ -13,16 +13,16 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, given, holds, items, range_of, sides, span
 from wavesym.papers.jets import Jet
 from wavesym.papers.pielorz1979.equations import covers
 from wavesym.papers.pielorz1979.letters import Moving, Units
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcript import entry as entry_of
-from wavesym.papers.pielorz1979.truth import Driven, Step, driven
+from wavesym.papers.pielorz1979.truth import DrivenChain, LoadStep, driven
 from wavesym.papers.reader import read_formula, read_range
-from wavesym.papers.record import Case, Example, Reading, Test, case
+from wavesym.papers.record import Case, Reading, Reproduction, Test, case
 from wavesym.papers.tree import Call, Relation, Symbol, Tree, latex
 
 _INSTANTS = (fmpq(2, 3), fmpq(31, 9))
@@ -48,7 +48,7 @@ def _rods(reading: Reading, scope: Moving, at: Mapping[str, object]) -> Case:
     return covers(at, "rods", [range_of("i", reading.ranges)], scope, range(1, scope.chain.m + 1))
 
 
-def inside(entry: Entry) -> Test:
+def inside(entry: PaperEntry) -> Test:
     """Equations that are said to hold inside the rods, from the start on or at the start."""
     return Test("the exact motion of chains under loads, inside every rod; c_f and l are varied", _inside_cases)
 
@@ -79,9 +79,9 @@ def _less(scope: Moving, equation: Tree) -> Any:
     return Jet.of(scope.value(left) - scope.value(right)).value
 
 
-def _shown(name: str, m: int, until: int, places: list[str], look: str) -> Example:
+def _shown(name: str, m: int, until: int, places: list[str], look: str) -> Reproduction:
     """A chain at rest that its first moment moves, or bodies that meet; and what is seen there."""
-    step = {"M1": (Step(fmpq(0), fmpq(1)),)} if name == "II" else {}
+    step = {"M1": (LoadStep(fmpq(0), fmpq(1)),)} if name == "II" else {}
     return example(driven(name, m).exact, step, until, {"velocity": places}, "wavesym run SCENE --samples 9", look)()
 
 
@@ -91,13 +91,13 @@ _CLOCKS = "velocity@3/2 changes from tau = 1/2 on, velocity@1/2 from tau = 3/2: 
 _clocks = partial(_shown, "I", 4, 2, ["1/2", "3/2"], _CLOCKS)
 
 
-def solution(entry: Entry) -> Test:
+def solution(entry: PaperEntry) -> Test:
     """A displacement in f and g, (2.5) or (4.2)."""
     return Test(_NODES, lambda reading: _solution_cases(reading, reading.formula, _scopes(), _clocks))
 
 
 def _solution_cases(
-    reading: Reading, formula: Tree, scopes: Scopes, shown: Callable[[], Example] | None = None
+    reading: Reading, formula: Tree, scopes: Scopes, shown: Callable[[], Reproduction] | None = None
 ) -> Iterator[Case]:
     """A displacement in the laws of all nodes; `reading` has the range of its rods."""
     for at, scope in scopes:
@@ -131,7 +131,7 @@ def _printed(scope: Moving, formula: Tree, rod: int, x: Jet, tau: Jet) -> Jet:
     raise MeaninglessError(f"{latex(left)} is not the displacement of rod {rod}")
 
 
-def definition(entry: Entry) -> Test:
+def definition(entry: PaperEntry) -> Test:
     """A quantity without dimensions: put into (4.2), which no other of its name then has a place in."""
 
     def cases(reading: Reading) -> Iterator[Case]:
@@ -145,7 +145,9 @@ def definition(entry: Entry) -> Test:
 class _Defining(Moving):
     """(4.2) where one letter is what its definition makes of the motion in physical units."""
 
-    def __init__(self, letter: Tree, means: Tree, motion: Driven, units: Units, constants: Mapping[Tree, Tree]) -> None:
+    def __init__(
+        self, letter: Tree, means: Tree, motion: DrivenChain, units: Units, constants: Mapping[Tree, Tree]
+    ) -> None:
         super().__init__(motion, units, constants)
         if not isinstance(letter, Symbol):
             raise MeaninglessError(f"{latex(letter)} is no letter to define")
@@ -182,7 +184,7 @@ class _Defining(Moving):
 # loads
 
 
-def moments(entry: Entry) -> Test:
+def moments(entry: PaperEntry) -> Test:
     """(3.1)."""
 
     def cases(reading: Reading) -> Iterator[Case]:
@@ -198,7 +200,7 @@ def moments(entry: Entry) -> Test:
     return Test(_ACTING, cases)
 
 
-def base(entry: Entry) -> Test:
+def base(entry: PaperEntry) -> Test:
     """(3.2)."""
     return Test(_ACTING, lambda reading: _load_cases(reading, Moving(driven("III", 2)), {"m": 2}, "a"))
 
@@ -222,7 +224,7 @@ def _load(scope: Moving, source: str, t: fmpq) -> Any:
     return scope.acting(x, t) / unit.coefficients[0]
 
 
-def bodies(entry: Entry) -> Test:
+def bodies(entry: PaperEntry) -> Test:
     """The loads S_i of Table 1, of the body at the left end of rod i: (4.4) counts bodies so."""
 
     def cases(reading: Reading) -> Iterator[Case]:
@@ -237,7 +239,7 @@ def bodies(entry: Entry) -> Test:
                 yield case({"m": m, "i": i, "t": t}, partial(scope.value, reading.formula), true)
             wanted = {*range(1, m + 1), *(body for body, loaded in rigid.items() if loaded)}
             look = f"velocity@{m} is not 0: M_{m + 1} moves the drive, and no cell has it for i = 1, ..., {m}"
-            moment = {f"M{m + 1}": (Step(fmpq(0), fmpq(1)),)}
+            moment = {f"M{m + 1}": (LoadStep(fmpq(0), fmpq(1)),)}
             shown = example(
                 driven("II", m).exact, moment, 3, {"velocity": [str(m)]}, "wavesym run SCENE --samples 7", look
             )

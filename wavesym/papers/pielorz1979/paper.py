@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from wavesym.papers.entries import Entry, problems
+from wavesym.papers.entries import PaperEntry, problems
 from wavesym.papers.pielorz1979 import (
     cells,
     clocks,
@@ -67,7 +67,7 @@ ADAPTERS: Mapping[str, Adapter] = {
 
 
 def records(
-    wanted: Sequence[Entry] | None = None, watch: Callable[[Sequence[Entry]], Iterable[Entry]] = iter
+    wanted: Sequence[PaperEntry] | None = None, watch: Callable[[Sequence[PaperEntry]], Iterable[PaperEntry]] = iter
 ) -> tuple[Record, ...]:
     """The verdict on the `wanted` records, or all; `watch` goes through them as they are judged."""
     unlike = defaultdict(list)

@@ -9,7 +9,7 @@ from flint import fmpq
 from wavesym.model.chain import Chain
 from wavesym.papers.exact_tables import Exact
 from wavesym.papers.pielorz1979.truth import Loads
-from wavesym.papers.record import Example
+from wavesym.papers.record import Reproduction
 from wavesym.systems.building import BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE
@@ -17,12 +17,12 @@ from wavesym.systems.drive import DRIVE
 
 def example(
     exact: Exact, loads: Loads, until: fmpq | int, outputs: Mapping[str, Sequence[str]], command: str, look: str
-) -> Callable[[], Example]:
+) -> Callable[[], Reproduction]:
     """A case's example: the chain under its loads as a scene, the command that shows it, and what to look at.
 
     `outputs` are as in a scene, {"strain": ["1-"]}; `command` has SCENE for the file.
     """
-    return lambda: Example(written(exact.chain, loads, until, outputs), command, look)
+    return lambda: Reproduction(written(exact.chain, loads, until, outputs), command, look)
 
 
 def written(chain: Chain, loads: Loads, until: fmpq | int, outputs: Mapping[str, Sequence[str]]) -> str:

@@ -24,7 +24,7 @@ from wavesym.papers.exact_tables import drive, meeting, uneven_building
 from wavesym.papers.pielorz1979.clocks import arrival
 from wavesym.papers.pielorz1979.delays import given_once
 from wavesym.papers.pielorz1979.scenes import example
-from wavesym.papers.pielorz1979.truth import EXAMPLES, Driven, instants, loads
+from wavesym.papers.pielorz1979.truth import EXAMPLES, DrivenChain, instants, loads
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case
 from wavesym.papers.sentences import Words, sayings
@@ -150,7 +150,7 @@ def _follows(words: Words) -> Iterator[Case]:
 def _while_closed(velocities: tuple[int, ...], words: Words) -> Iterator[Case]:
     """A collision: whether contacts are closed at first, and whether (4.6) is its motion when it is said to be."""
     exact = meeting(velocities)
-    driven = Driven(exact, loads(exact))
+    driven = DrivenChain(exact, loads(exact))
     contacts = range(2, exact.m, 2)
     at_first = _strains(driven, contacts, fmpq(0))
     closed = all(strain <= 0 for strain in at_first)
@@ -171,7 +171,7 @@ def _while_closed(velocities: tuple[int, ...], words: Words) -> Iterator[Case]:
             yield Case(at, True, bool(arb(tau) < _first_opening(velocities)), example=seen)
 
 
-def _strains(driven: Driven, contacts: range, tau: fmpq) -> list[float]:
+def _strains(driven: DrivenChain, contacts: range, tau: fmpq) -> list[float]:
     """The strain at contacts, as numbers whose signs are right."""
     waves = (driven.waves_at(x, x, tau) for x in contacts)
     return [float(g - f) for f, g in waves]

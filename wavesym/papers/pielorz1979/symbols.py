@@ -13,7 +13,7 @@ from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.delay_terms import Line
 from wavesym.model.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError
-from wavesym.papers.pielorz1979.letters import Letters, letter
+from wavesym.papers.pielorz1979.letters import IndexedLetters, letter
 from wavesym.papers.tree import Call, Derivative, Series, Symbol, Tree
 from wavesym.papers.tree import latex as latex_of
 
@@ -25,7 +25,7 @@ STEP = Function("H")
 _M, _A, _B, _T, _LAST = (IndexedBase(name) for name in ("M", "a", "b", "tau", "m"))
 
 
-class Symbols(Letters):
+class Symbols(IndexedLetters):
     """Expressions; z is the clock, strain and velocity stand as they are, the acceleration of either rod for the
     node's.
     """

@@ -1,6 +1,6 @@
 """What formulas of this paper are compared with: named functions of the derived laws on a chain, nothing read off them.
 
-The exact tables (exact_tables.py) are the derived laws run; a `Driven` chain is their response to loads with several
+The exact tables (exact_tables.py) are the derived laws run; a `DrivenChain` is their response to loads with several
 steps, at rational instants, in numbers that are equal only if they are the same (exponentials.py).
 """
 
@@ -25,7 +25,7 @@ from wavesym.systems.drive import DRIVE
 
 
 @dataclass(frozen=True)
-class Example:
+class PaperExample:
     """An example: its name, its derivation, its tables, and the m that they are tried with."""
 
     name: str
@@ -34,27 +34,27 @@ class Example:
     sizes: range
 
 
-EXAMPLES: Mapping[str, Example] = {
-    "I": Example("I", COLLISION, collision, range(4, 11, 2)),
-    "II": Example("II", DRIVE, drive, range(1, 6)),
-    "III": Example("III", BUILDING_FORCE, uneven_building, range(2, 7)),
+EXAMPLES: Mapping[str, PaperExample] = {
+    "I": PaperExample("I", COLLISION, collision, range(4, 11, 2)),
+    "II": PaperExample("II", DRIVE, drive, range(1, 6)),
+    "III": PaperExample("III", BUILDING_FORCE, uneven_building, range(2, 7)),
 }
 
 
 @dataclass(frozen=True)
-class Step:
+class LoadStep:
     """A piece of a load: when it begins, and how much of its unit it is."""
 
     time: fmpq
     weight: fmpq
 
 
-Loads = Mapping[str, Sequence[Step]]
+Loads = Mapping[str, Sequence[LoadStep]]
 """The pieces of every source of a chain, number k of each from 0 on."""
 
 
 @dataclass(frozen=True)
-class Driven:
+class DrivenChain:
     """A chain under loads: the motion that the derived laws give it."""
 
     exact: Exact
@@ -134,7 +134,7 @@ class Driven:
         found: Increment = self.known[key]
         return found
 
-    def piece(self, source: str, number: int) -> Step:
+    def piece(self, source: str, number: int) -> LoadStep:
         """A piece of a load; MeaninglessError where there is none."""
         pieces = self.loads.get(source, ())
         if not 0 <= number < len(pieces):
@@ -178,28 +178,28 @@ def _derived(increment: Increment) -> Increment:
 
 
 @cache
-def driven(example: str, m: int) -> Driven:
+def driven(example: str, m: int) -> DrivenChain:
     """An example under loads in which nothing coincides: every source has pieces of its own, at times of its own."""
     exact = EXAMPLES[example].tables(m)
-    return Driven(exact, loads(exact))
+    return DrivenChain(exact, loads(exact))
 
 
 def loads(exact: Exact) -> Loads:
     """Pieces for every source of a chain: moment s has 1 + (s + 1) mod 4; an impact is one, at 0."""
     if exact.chain.sources == ("impact",):
-        return {source: (Step(fmpq(0), fmpq(1)),) for source in exact.responses}
+        return {source: (LoadStep(fmpq(0), fmpq(1)),) for source in exact.responses}
     if exact.chain.system is DRIVE:
         return {
             f"M{s}": tuple(
-                Step(fmpq(k * (s + 2), 3), fmpq(2 * s + 1, k + 2) * (-1) ** k) for k in range(1 + (s + 1) % 4)
+                LoadStep(fmpq(k * (s + 2), 3), fmpq(2 * s + 1, k + 2) * (-1) ** k) for k in range(1 + (s + 1) % 4)
             )
             for s in range(1, exact.m + 2)
         }
     times = (fmpq(0), fmpq(3, 4), fmpq(7, 3))
     a, b = (fmpq(1), fmpq(-2, 3), fmpq(5, 7)), (fmpq(1, 3), fmpq(-3, 5), fmpq(2, 9))
     return {
-        "a": tuple(map(Step, times, a)),
-        "b": tuple(map(Step, times, b)),
+        "a": tuple(map(LoadStep, times, a)),
+        "b": tuple(map(LoadStep, times, b)),
     }
 
 
