@@ -8,7 +8,7 @@ from wavesym.papers.asked import asked
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.pages import as_json, html, latex, markdown, text
 from wavesym.papers.pages.findings import Findings
-from wavesym.papers.pielorz1979 import paper, particulars, transcript
+from wavesym.papers.pielorz1979 import paper, particulars
 
 _PAGES: Mapping[str, Callable[[Findings], str]] = {
     "text": text.page,
@@ -31,7 +31,7 @@ def published(
     `names` are ids of records or groups, none for the whole paper; WavesymError for one that there is not. `watch`
     goes through the records as they are judged.
     """
-    wanted = asked(transcript.paper().entries(), names) if names else None
-    passages = () if names else transcript.paper().passages
+    wanted = asked(paper.paper().entries(), names) if names else None
+    passages = () if names else paper.paper().passages
     findings = Findings(particulars.about(), paper.records(wanted, watch), passages, reproduce)
     return _PAGES[format](findings), findings.passed

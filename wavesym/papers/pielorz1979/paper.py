@@ -23,7 +23,7 @@ from wavesym.papers.pielorz1979 import (
     statements,
 )
 from wavesym.papers.pielorz1979.figures import caption_of_figure, end_of_contact, said_of_figure
-from wavesym.papers.pielorz1979.transcript import paper
+from wavesym.papers.pielorz1979.transcript import paper as paper
 from wavesym.papers.record import Adapter, Record, judge
 
 ADAPTERS: Mapping[str, Adapter] = {
