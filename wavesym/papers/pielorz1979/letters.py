@@ -173,7 +173,8 @@ class Moving(IndexedLetters):
 
     def velocity(self, rod: int) -> fmpq:
         """How fast the body is at the start that a rod is fixed to; MeaninglessError."""
-        return body_velocity(self.chain, self._first(0, rod) and rod)
+        self._first(0, rod)
+        return body_velocity(self.chain, rod)
 
     def law(self, x: int, tau: fmpq, displaced: Displaced) -> tuple[Any, Any]:
         """What displacements mean for a node: a step of velocity, and what has to act there."""
