@@ -44,7 +44,7 @@ from wavesym.writing import traces, write_whole
 if TYPE_CHECKING:
     from wavesym.model.model import Model
     from wavesym.model.node import System
-    from wavesym.papers.entries import Entry
+    from wavesym.papers.entries import PaperEntry
 
 
 _AT_ONCE = 5000  # tau of `run`
@@ -308,7 +308,7 @@ def published(
     format: str = "text",
     names: Sequence[str] = (),
     reproduce: bool = False,
-    watch: Callable[[Sequence[Entry]], Iterable[Entry]] = iter,
+    watch: Callable[[Sequence[PaperEntry]], Iterable[PaperEntry]] = iter,
 ) -> tuple[str, bool]:
     """A verdict on every formula of the paper, or on those that `names` ask for, and whether all could be tested.
 

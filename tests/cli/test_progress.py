@@ -13,7 +13,7 @@ import pytest
 from tests.papers.small import Paper
 from wavesym.cli import main, progress
 from wavesym.papers import published
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.record import Record
 
 pty = pytest.importorskip("pty", reason="no terminals to open here")
@@ -24,9 +24,9 @@ class Slow(Paper):
 
     @staticmethod
     def records(
-        wanted: Sequence[Entry] | None = None, watch: Callable[[Sequence[Entry]], Iterable[Entry]] = iter
+        wanted: Sequence[PaperEntry] | None = None, watch: Callable[[Sequence[PaperEntry]], Iterable[PaperEntry]] = iter
     ) -> tuple[Record, ...]:
-        def waiting(entries: Sequence[Entry]) -> Iterator[Entry]:
+        def waiting(entries: Sequence[PaperEntry]) -> Iterator[PaperEntry]:
             for entry in watch(entries):
                 time.sleep(0.02)
                 yield entry

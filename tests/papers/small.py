@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from wavesym.papers.about import About, Heading, PrintedTable
-from wavesym.papers.entries import Aside, Entry, Passage, Slip
+from wavesym.papers.entries import Aside, PaperEntry, Passage, Slip
 from wavesym.papers.entries import Paper as EntriesPaper
 from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.mutations import mutations
 from wavesym.papers.pages.findings import Findings
-from wavesym.papers.record import Case, Example, Reading, Record, Test, case, judge
+from wavesym.papers.record import Case, Reading, Record, Reproduction, Test, case, judge
 from wavesym.papers.tree import Relation
 
 SCENE = 'name = "counterexample"\n\n[system]\ntype = "drive"\n'
@@ -32,7 +32,7 @@ ABOUT = About(
 )
 
 
-def adding(entry: Entry) -> Test:
+def adding(entry: PaperEntry) -> Test:
     """Both sides of a sum, for n = 1, 2."""
     return Test("addition", _cases, faults=_faults)
 
@@ -49,13 +49,13 @@ def _cases(reading: Reading) -> Iterator[Case]:
         if all(holds(range_, scope) for range_ in reading.ranges):
             assert isinstance(reading.formula, Relation)
             left, right = reading.formula.sides
-            show = (lambda: Example(SCENE, "wavesym tables SCENE", "the power is 1")) if n == 1 else None
+            show = (lambda: Reproduction(SCENE, "wavesym tables SCENE", "the power is 1")) if n == 1 else None
             yield case({"n": n}, lambda left=left, scope=scope: scope.value(left), scope.value(right), example=show)
 
 
-def entry(id: str, printed: str, where: str, slip: Slip | None = None, **more: object) -> Entry:
+def entry(id: str, printed: str, where: str, slip: Slip | None = None, **more: object) -> PaperEntry:
     given = {"scan": printed, "lines": (1, 2), **more}
-    return Entry(id=id, kind="sum", printed=printed, where=where, slip=slip, **given)
+    return PaperEntry(id=id, kind="sum", printed=printed, where=where, slip=slip, **given)
 
 
 def _slip(corrected: str, **more: object) -> Slip:
@@ -74,7 +74,7 @@ ENTRIES = (
 )
 
 
-def records(*entries: Entry) -> tuple[Record, ...]:
+def records(*entries: PaperEntry) -> tuple[Record, ...]:
     return tuple(judge(each, adding(each)) for each in entries or ENTRIES)
 
 
@@ -97,7 +97,7 @@ class Paper:
 
     @staticmethod
     def records(
-        wanted: Sequence[Entry] | None = None, watch: Callable[[Sequence[Entry]], Iterable[Entry]] = iter
+        wanted: Sequence[PaperEntry] | None = None, watch: Callable[[Sequence[PaperEntry]], Iterable[PaperEntry]] = iter
     ) -> tuple[Record, ...]:
         return tuple(judge(each, adding(each)) for each in watch(ENTRIES if wanted is None else wanted))
 

@@ -6,11 +6,8 @@ from functools import cache
 
 import pytest
 
-from wavesym.papers.pielorz1979.paper import ADAPTERS
-from wavesym.papers.pielorz1979.transcript import paper
-from wavesym.papers.record import judge
+from tests.papers.falsified import ENTRIES, judged
 
-ENTRIES = {entry.id: entry for entry in paper().entries() if entry.kind == "condition"}
 SLIPS = {
     "(2.3)": "misprint",
     "(2.4).2": "incomplete",
@@ -28,14 +25,6 @@ def right(id):
     return judged(id)
 
 
-def judged(id, slip=None, **changes):
-    """The record of an entry, some of its strings falsified."""
-    entry = ENTRIES[id].model_copy(update=changes)
-    if slip:
-        entry = entry.model_copy(update={"slip": entry.slip.model_copy(update=slip)})
-    return judge(entry, ADAPTERS[entry.kind](entry))
-
-
 @pytest.mark.parametrize("id", ["(2.3)", "(2.4).2", "(2.4).5", "(4.3).5", "(4.4).1", "(4.4).4", "(4.5).1", "(4.5).2"])
 def test_verdicts(id):
     record = right(id)
@@ -45,7 +34,7 @@ def test_verdicts(id):
 
 
 def test_what_is_wrong_is_stated_beside_what_holds():
-    assert {id for id, entry in ENTRIES.items() if entry.slip} == SLIPS.keys()
+    assert {id for id, e in ENTRIES.items() if e.kind == "condition" and e.slip} == SLIPS.keys()
 
 
 @pytest.mark.parametrize(

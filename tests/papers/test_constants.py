@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.papers.test_motion import ENTRIES, judged
+from tests.papers.falsified import ENTRIES, judged
 from wavesym.papers.pielorz1979.constants import Physical
 
 
@@ -21,14 +21,14 @@ def test_as_printed(id, verdict):
 @pytest.mark.parametrize(
     ("id", "changes"),
     [
-        ("(4.3).kappa", {"corrected": r"\kappa_i = \frac{2F\rho l}{M_i}"}),
-        ("(4.3).kappa", {"corrected": r"\kappa_i = 0"}),
+        ("(4.3).kappa", {"slip": {"corrected": r"\kappa_i = \frac{2F\rho l}{M_i}"}}),
+        ("(4.3).kappa", {"slip": {"corrected": r"\kappa_i = 0"}}),
         ("(4.3).kappa", {"ranges": (r"i = 1, 2, \dots, m-1",)}),
         ("(4.4).kappa", {"printed": r"\kappa_i = \frac{J_{0,1} \rho l}{J_i}"}),
         ("(4.4).kappa", {"inferred": (r"i = 1, 2, \dots, m+1",)}),
-        ("(4.4).A", {"slip_ranges": (r"S_0 = \frac{G J_{0,1} U_0}{2l}",)}),
-        ("(4.5).kappa", {"slip_ranges": ENTRIES["(4.5).kappa"].ranges}),
-        ("def.s", {"slip_ranges": ()}),
+        ("(4.4).A", {"slip": {"ranges": (r"S_0 = \frac{G J_{0,1} U_0}{2l}",)}}),
+        ("(4.5).kappa", {"slip": {"ranges": ENTRIES["(4.5).kappa"].ranges}}),
+        ("def.s", {"slip": {"ranges": ()}}),
         ("T1.III.c_f^2", {"printed": r"\frac{G}{\rho} = C^2"}),
     ],
 )

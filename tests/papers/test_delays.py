@@ -6,26 +6,14 @@ from functools import cache
 
 import pytest
 
+from tests.papers.falsified import ENTRIES, judged
 from wavesym.papers.pielorz1979.delays import given_once
-from wavesym.papers.pielorz1979.paper import ADAPTERS
-from wavesym.papers.pielorz1979.transcript import paper
-from wavesym.papers.record import judge
-
-ENTRIES = {entry.id: entry for entry in paper().entries() if entry.kind in ("delay", "systems")}
 
 
 @cache
 def right(id):
     """The record of an entry as it is."""
     return judged(id)
-
-
-def judged(id, slip=None, **changes):
-    """The record of an entry, some of its strings falsified."""
-    entry = ENTRIES[id].model_copy(update=changes)
-    if slip:
-        entry = entry.model_copy(update={"slip": entry.slip.model_copy(update=slip)})
-    return judge(entry, ADAPTERS[entry.kind](entry))
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from wavesym.papers.entries import WHOLE, Aside, Entry, Paper, Passage, digest, edited, plain, problems
+from wavesym.papers.entries import WHOLE, Aside, Paper, PaperEntry, Passage, digest, edited, plain, problems
 
 TEXT = r"$$(1.1) \quad a_i + \\ + b = 0 \quad \text{dla} \quad i=1, 2, \dots, m$$"
-ENTRY = Entry(
+ENTRY = PaperEntry(
     id="(1.1)",
     kind="test",
     scan=r"a_i + \\ + b = 0 \quad \text{dla} \quad i=1, 2, \dots, m",
@@ -54,7 +54,7 @@ def test_a_changed_line_is_seen():
 
 
 def test_a_changed_translation_is_seen():
-    said = Entry(id="text.1", kind="sentence", scan="a_i rośnie", printed="a rises", translated=True)
+    said = PaperEntry(id="text.1", kind="sentence", scan="a_i rośnie", printed="a rises", translated=True)
     hashes = {"3": digest("a_i rośnie"), "text.1": digest("a rises"), "5": HASHES["5"]}
     assert not list(problems(_paper(said, "a_i rośnie", hashes)))
     falls = said.model_copy(update={"printed": "a falls"})

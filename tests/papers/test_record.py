@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from wavesym.papers.entries import Entry, Slip
+from wavesym.papers.entries import PaperEntry, Slip
 from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
 from wavesym.papers.record import Case, Nothing, Test, case, judge
-from wavesym.papers.sentences import Pattern, sentence_reader
+from wavesym.papers.sentences import SentencePattern, sentence_reader
 
 
 def _cases(reading):
@@ -23,7 +23,7 @@ def _cases(reading):
 
 
 TEST = Test("what comes next", _cases)
-ENTRY = Entry(id="x", kind="test", printed="a = n + 1", ranges=(r"n = 0, 1, \dots, 2",))
+ENTRY = PaperEntry(id="x", kind="test", printed="a = n + 1", ranges=(r"n = 0, 1, \dots, 2",))
 
 
 def _judged(**changes):
@@ -93,7 +93,7 @@ def test_no_meaning_is_no_value():
     assert str(found) == "With i = 5, what is printed has no value (no rod 5); it should be 0"
 
 
-RISES = Pattern(
+RISES = SentencePattern(
     "rises",
     "the {quantity} {turn}{where}",
     {"quantity": ("strain", "velocity"), "turn": ("rises", "falls"), "where": ("", ", at x = 1")},
@@ -110,7 +110,7 @@ def test_sentences_are_read_by_their_words():
         "nothing for , at x = 1",
     ]
     test = Test("what rises", lambda read: [Case({}, read.formula.words["turn"], "rises")], reader.read, reader.faults)
-    said = Entry(id="text.1", kind="sentence", printed="the strain rises")
+    said = PaperEntry(id="text.1", kind="sentence", printed="the strain rises")
     excused = (("velocity for strain", "both rise"), (", at x = 1 for nothing", "everywhere"))
     assert judge(said.model_copy(update={"equivalent": excused}), test).verdict == "holds"
     assert judge(said, test).verdict == "untested"

@@ -2,31 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import pytest
 
+from tests.papers.falsified import ENTRIES, judged
 from wavesym.exact.reference import Reference
-from wavesym.papers.entries import Entry, Slip
 from wavesym.papers.pielorz1979.figure_scenes import PLOTTED, figure, loads
-from wavesym.papers.pielorz1979.paper import ADAPTERS
-from wavesym.papers.pielorz1979.transcript import paper
-from wavesym.papers.record import Record, judge
 from wavesym.scene import lower
-
-ENTRIES: Mapping[str, Entry] = {entry.id: entry for entry in paper().entries()}
-
-
-def judged(id: str, **update: object) -> Record:
-    entry = ENTRIES[id].model_copy(update=update)
-    return judge(entry, ADAPTERS[entry.kind](entry))
-
-
-def corrected(id: str, text: str) -> Record:
-    slip = ENTRIES[id].slip
-    assert isinstance(slip, Slip)
-    return judged(id, slip=slip.model_copy(update={"corrected": text}))
 
 
 @pytest.mark.parametrize(
@@ -80,7 +62,7 @@ def test_a_false_sentence_is_seen(id: str, word: str, other: str) -> None:
     ],
 )
 def test_a_false_correction_is_seen(id: str, text: str) -> None:
-    assert corrected(id, text).verdict == "untested"
+    assert judged(id, slip={"corrected": text}).verdict == "untested"
 
 
 @pytest.mark.parametrize(

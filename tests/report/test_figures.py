@@ -11,7 +11,7 @@ import pytest
 from tests.report.clear import texts_keep_clear
 from wavesym.papers.pielorz1979 import figures as section_5
 from wavesym.papers.pielorz1979.figure_scenes import Array, contact_end, figure, loads
-from wavesym.papers.pielorz1979.figure_sentences import Finding
+from wavesym.papers.pielorz1979.measures import Finding
 from wavesym.papers.record import Record
 from wavesym.scene import lower
 

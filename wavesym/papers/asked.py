@@ -7,13 +7,13 @@ from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 from wavesym.errors import WavesymError
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 
 MOST_MEANT = 3
 """Names that an unknown one is answered with."""
 
 
-def asked(entries: Sequence[Entry], names: Iterable[str]) -> tuple[Entry, ...]:
+def asked(entries: Sequence[PaperEntry], names: Iterable[str]) -> tuple[PaperEntry, ...]:
     """The records that `names` ask for, in the order of print; WavesymError for a name that none has.
 
     A name is an id ("(4.8).5", "III.14", "text.22"), the beginning of some ("4.8", "III", "T3", "T2.g_1"), or a place
@@ -30,7 +30,7 @@ def asked(entries: Sequence[Entry], names: Iterable[str]) -> tuple[Entry, ...]:
     return tuple(entry for entry in entries if entry.id in wanted)
 
 
-def _means(name: str, entry: Entry) -> bool:
+def _means(name: str, entry: PaperEntry) -> bool:
     id, given = _plain(entry.id), _plain(name)
     where, place = entry.where.casefold(), name.strip().casefold()
     return id == given or id.startswith(f"{given}.") or where == place or where.startswith(f"{place},")
@@ -45,7 +45,7 @@ def _bare(name: str) -> str:
     return re.sub(r"[()]", "", name.strip().replace(")_", ")."))
 
 
-def _known(entries: Iterable[Entry]) -> set[str]:
+def _known(entries: Iterable[PaperEntry]) -> set[str]:
     """The ids and their beginnings, as they are typed."""
     known = set()
     for entry in entries:

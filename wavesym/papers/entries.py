@@ -41,7 +41,7 @@ class Slip(_Data):
     note: str
 
 
-class Entry(_Data):
+class PaperEntry(_Data):
     """One printed formula, cell or sentence.
 
     `scan` is the text of the source, verbatim; `printed` what it says, on one line, without words: it differs by
@@ -92,12 +92,12 @@ class Passage(_Data):
     where: str = ""
     text: str = ""
     why: str = ""
-    record: tuple[Entry, ...] = ()
+    record: tuple[PaperEntry, ...] = ()
     aside: tuple[Aside, ...] = ()
     table: tuple[Table, ...] = ()
     cell: Mapping[str, Mapping[str, Any]] = {}
 
-    def entries(self) -> Iterator[Entry]:
+    def entries(self) -> Iterator[PaperEntry]:
         """The records, each with its place and its scan."""
         for entry in self.record:
             yield entry.model_copy(
@@ -109,7 +109,7 @@ class Passage(_Data):
             )
         yield from self._cells()
 
-    def _cells(self) -> Iterator[Entry]:
+    def _cells(self) -> Iterator[PaperEntry]:
         """The cells of tables, each with the ranges of its heads."""
         known = {entry.id: entry for entry in self.record}
         for place in tables.places(self.table, self.text, self.lines[0]):
@@ -121,10 +121,12 @@ class Passage(_Data):
                 **self.cell.get(place.id, {}),
             }
             where = f"{self.where}, row {place.row}, column {place.column}"
-            yield Entry(id=place.id, kind="cell", scan=place.scan, where=where, lines=self.lines, heads=heads, **given)
+            yield PaperEntry(
+                id=place.id, kind="cell", scan=place.scan, where=where, lines=self.lines, heads=heads, **given
+            )
 
 
-def _said(head: Entry) -> tuple[str, ...]:
+def _said(head: PaperEntry) -> tuple[str, ...]:
     """The ranges that a head gives to its cells: its own, and itself where it is one."""
     return (head.printed, *head.ranges) if head.kind == "range" else head.ranges
 
@@ -136,7 +138,7 @@ class Paper:
     passages: tuple[Passage, ...]
     hashes: Mapping[str, str]
 
-    def entries(self) -> tuple[Entry, ...]:
+    def entries(self) -> tuple[PaperEntry, ...]:
         """All records."""
         return tuple(entry for passage in self.passages for entry in passage.entries())
 
@@ -229,7 +231,7 @@ LONGEST_REST = 25
 _TAGS = re.compile(r"\(\d\.\d+\)(_\d)?|\[cd\.\]")
 
 
-def _unlike(entry: Entry, passage: Passage, hashes: Mapping[str, str]) -> Iterator[str]:
+def _unlike(entry: PaperEntry, passage: Passage, hashes: Mapping[str, str]) -> Iterator[str]:
     if entry.scan not in passage.text:
         yield "its scan is not in the text of its passage"
     if entry.translated:
@@ -248,7 +250,7 @@ def _unlike(entry: Entry, passage: Passage, hashes: Mapping[str, str]) -> Iterat
         yield f"is not what its edits make of the scan: {text} there, {said} printed"
 
 
-def edited(entry: Entry) -> str:
+def edited(entry: PaperEntry) -> str:
     """What is edited in a scan, as it is checked: from, to, from, to."""
     return " | ".join(part for before, after, _ in entry.edits for part in (before, after))
 

@@ -76,8 +76,10 @@ class Scope:
 
     def at_value(self, tree: AtValue) -> Any:
         """What something is where a variable has a value."""
-        (name,), (side,) = _equation(tree.where)
-        with self.binding({name: self.value(side)}):
+        variable, value = sides(tree.where)
+        if not isinstance(variable, Symbol):
+            raise MeaninglessError(f"{latex(tree.where)} gives no value")
+        with self.binding({variable.name: self.value(value)}):
             return self.value(tree.of)
 
     # what all formulas share
@@ -258,13 +260,6 @@ def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
 def _switches(factor: Tree) -> bool:
     """Not H; for sorting, H first."""
     return not (isinstance(factor, Call) and factor.function.name == "H")
-
-
-def _equation(where: Tree) -> tuple[tuple[str, ...], tuple[Tree, ...]]:
-    variable, value = sides(where)
-    if not isinstance(variable, Symbol):
-        raise MeaninglessError(f"{latex(where)} gives no value")
-    return (variable.name,), (value,)
 
 
 Runner = Callable[[Scope], Any]

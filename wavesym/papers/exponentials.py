@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from itertools import product
-from typing import Union
 
 from flint import arb, fmpq
 
-Exact = Union[int, fmpq]
+Exact = int | fmpq
 DIGITS_BITS = 128
 """Enough for what is shown; nothing is decided by it."""
 
@@ -94,12 +93,12 @@ class Exponentials:
         return f"{float(self):.6g}"
 
 
-Number = Union[int, fmpq, Exponentials]
+Number = int | fmpq | Exponentials
 
 
 def _made(parts: dict[Key, fmpq]) -> Exponentials:
     """The sum with these parts, those left out that are 0."""
-    made = Exponentials({})
+    made = Exponentials.__new__(Exponentials)
     made.parts = {q: c for q, c in parts.items() if c != 0}
     return made
 

@@ -49,7 +49,13 @@ class Jet:
     def __truediv__(self, other: Any) -> Jet:
         return Jet(self.value / other, self.first / other, self.second / other)
 
-    def of_function(self, derivative: Callable[[int], Any]) -> Jet:
-        """A function of this; `derivative(order)` is what it is here: itself, its derivative, the next."""
-        first, second = derivative(1), derivative(2)
-        return Jet(derivative(0), first * self.first, second * (self.first * self.first) + first * self.second)
+    def of_function(self, derivative: Callable[[int], Any], most: int = 2) -> Jet:
+        """A function of this; `derivative(order)` is what it is here: itself, its derivative, the next.
+
+        Those that nothing asks for are not taken: the second with `most` 1, and none of what does not change.
+        """
+        if self.first == 0 and self.second == 0:
+            return Jet(derivative(0))
+        first = derivative(1)
+        second = derivative(2) * (self.first * self.first) if most > 1 else 0
+        return Jet(derivative(0), first * self.first, second if self.second == 0 else second + first * self.second)

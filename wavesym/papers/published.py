@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from wavesym.papers.asked import asked
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.pages import as_json, html, latex, markdown, text
 from wavesym.papers.pages.findings import Findings
 from wavesym.papers.pielorz1979 import paper, particulars
@@ -24,7 +24,7 @@ def published(
     names: Sequence[str],
     format: str,
     reproduce: bool = False,
-    watch: Callable[[Sequence[Entry]], Iterable[Entry]] = iter,
+    watch: Callable[[Sequence[PaperEntry]], Iterable[PaperEntry]] = iter,
 ) -> tuple[str, bool]:
     """The verdicts as a page, and whether everything could be tested.
 

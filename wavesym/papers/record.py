@@ -12,7 +12,7 @@ from typing import Any, Literal, Union
 
 from flint import fmpq
 
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.exponentials import Exponentials
 from wavesym.papers.mutations import ends, mutations
@@ -34,7 +34,7 @@ VERDICTS: dict[Verdict, str] = {
 
 
 @dataclass(frozen=True)
-class Example:
+class Reproduction:
     """Where a case can be seen: a scene, the command that shows it, and what to look at."""
 
     scene: str
@@ -53,7 +53,7 @@ class Case:
     printed: object
     true: object
     telling: bool = True
-    example: Callable[[], Example] | None = field(default=None, compare=False)
+    example: Callable[[], Reproduction] | None = field(default=None, compare=False)
 
     @property
     def agrees(self) -> bool:
@@ -85,7 +85,7 @@ def case(
     printed: Callable[[], object],
     true: object,
     telling: bool = True,
-    example: Callable[[], Example] | None = None,
+    example: Callable[[], Reproduction] | None = None,
 ) -> Case:
     """A case whose printed value may have no meaning."""
     try:
@@ -155,7 +155,7 @@ class Test:
     observed: Callable[[], str] | None = None
 
 
-Adapter = Callable[[Entry], Test]
+Adapter = Callable[[PaperEntry], Test]
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ class Mutations:
 class Record:
     """An entry with its verdict; `cases` counts those that told something, `problems` is empty where all is well."""
 
-    entry: Entry
+    entry: PaperEntry
     against: str
     verdict: Verdict
     evidence: tuple[str, ...]
@@ -191,7 +191,7 @@ class Record:
         return self.entry.slip.corrected if self.entry.slip else None
 
 
-def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
+def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record:
     """The verdict on an entry, with its evidence. `problems` are those of its transcription."""
     found = list(problems)
     slip = entry.slip
@@ -246,7 +246,7 @@ def _less_derived(test: Test, text: str, ranges: Iterable[str]) -> str | None:
         return None
 
 
-def _faulty(entry: Entry, test: Test, text: str, ranges: Iterable[str]) -> tuple[Mutations, tuple[str, ...]]:
+def _faulty(entry: PaperEntry, test: Test, text: str, ranges: Iterable[str]) -> tuple[Mutations, tuple[str, ...]]:
     """The faults tried in what holds; and what is wrong with them."""
     reasons = dict(entry.equivalent)
     tried, problems, survived = 0, [], []

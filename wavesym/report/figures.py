@@ -18,8 +18,7 @@ from matplotlib.figure import Figure
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest
-from wavesym.papers.pielorz1979.figure_scenes import TriedLoad, contact_end, figure, loads, section
-from wavesym.papers.pielorz1979.figure_sentences import Finding
+from wavesym.papers.pielorz1979.figure_scenes import TriedLoad, contact_end, figure, loads
 from wavesym.papers.pielorz1979.figures import (
     FigureStatement,
     finding,
@@ -29,7 +28,9 @@ from wavesym.papers.pielorz1979.figures import (
     statements,
     true,
 )
+from wavesym.papers.pielorz1979.measures import Finding
 from wavesym.papers.pielorz1979.paper import records
+from wavesym.papers.pielorz1979.transcript import entries
 from wavesym.papers.record import Record, shown
 from wavesym.report.histories import Histories, History, histories
 from wavesym.report.panels import CHARACTERS, Instant, Mark, PlotPanel, axis_title, stacked
@@ -57,7 +58,7 @@ def published(directory: Path, number: int) -> list[Path]:
 
 def judged(number: int) -> dict[str, Record]:
     """The verdicts on what the paper says of a figure."""
-    said = [entry for entry in section().entries() if entry.about.get("figure") == number and entry.kind != "caption"]
+    said = [e for e in entries().values() if e.about.get("figure") == number and e.kind != "caption"]
     return {record.id: record for record in records(said)}
 
 

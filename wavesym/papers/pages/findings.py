@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from wavesym.papers.about import About
-from wavesym.papers.entries import Entry, Passage, Slip
+from wavesym.papers.entries import PaperEntry, Passage, Slip
 from wavesym.papers.record import VERDICTS, Record, Verdict
 
 ORIGINS = {
@@ -125,7 +125,7 @@ class Findings:
         return place(record.entry), note or record.id, record.verdict
 
 
-def place(entry: Entry) -> str:
+def place(entry: PaperEntry) -> str:
     """The section or table of an entry."""
     name = entry.where.split(",")[0].strip() or "elsewhere"
     return name[0].upper() + name[1:]
@@ -145,7 +145,7 @@ def lines(span: tuple[int, int]) -> str:
     return f"line {first}" if first == last else f"lines {first}-{last}"
 
 
-def ranges_as_corrected(slip: Slip, entry: Entry) -> tuple[str, ...]:
+def ranges_as_corrected(slip: Slip, entry: PaperEntry) -> tuple[str, ...]:
     """The printed ranges as they should be."""
     return entry.ranges if slip.ranges is None else slip.ranges
 

@@ -14,15 +14,15 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, sides, span
 from wavesym.papers.exact_tables import Exact, building, collision, drive, gammas
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcript import entries
-from wavesym.papers.pielorz1979.truth import Loads, Step, driven, instants
+from wavesym.papers.pielorz1979.truth import Loads, LoadStep, driven, instants
 from wavesym.papers.reader import UnreadableError, read_formula, read_range
-from wavesym.papers.record import Case, Example, Reading, Test, by_size, case
+from wavesym.papers.record import Case, Reading, Reproduction, Test, by_size, case
 from wavesym.papers.tree import Blank, Number, Progression, Symbol, Tree, latex
 
 
@@ -123,13 +123,13 @@ class Term:
         kappa = self.exact.chain.parameters.kappa
         return fmpq(kappa[self.body]) * (1 if self.table == "T4" and self.body == self.m else 2)
 
-    def example(self) -> Example:
+    def example(self) -> Reproduction:
         """The table of the exact increments, where the highest power is read off."""
         source = self.source or max(self.exact.responses, key=lambda source: highest(replace(self, source=source)))
         degree = highest(replace(self, source=source))
         what = f"its highest power is {degree}" if degree >= 0 else "there is none"
         look = f"{self.letter} of rod {self.rod}, source {source}, interval {self.number}, rate {self.rate}: {what}"
-        loads = {source: (Step(fmpq(0), fmpq(1)),)}
+        loads = {source: (LoadStep(fmpq(0), fmpq(1)),)}
         until = self.exact.interval * self.number
         return example(self.exact, loads, until, {"strain": ["1-"]}, "wavesym tables SCENE", look)()
 
@@ -154,7 +154,7 @@ def _compared(where: Mapping[str, int], claimed: Sequence[Any], term: Term | Non
     return Case(where, said, (true,), true >= 0, term.example)
 
 
-def cell(entry: Entry) -> Test:
+def cell(entry: PaperEntry) -> Test:
     """A cell of a table."""
     table, row = entry.about["table"], entry.about["row"]
     if table[:2] == "T3" and row in "dw":
@@ -173,7 +173,7 @@ def cell(entry: Entry) -> Test:
     )
 
 
-def _cell_faults(entry: Entry, right: Reading) -> Iterator[tuple[str, Reading]]:
+def _cell_faults(entry: PaperEntry, right: Reading) -> Iterator[tuple[str, Reading]]:
     """Those of the formula, and of a range that is the cell's own: the others are faults of the heads."""
     if isinstance(right.formula, Blank):
         for digit in "01":
@@ -192,7 +192,7 @@ class _Cells:
     """The cells of a row or column as they should be, but for the one that is tried; None for a dash."""
 
     pattern: str
-    tried: Entry
+    tried: PaperEntry
     reading: Reading
 
     def __call__(self, name: str, **indices: int) -> Any:
@@ -203,7 +203,7 @@ class _Cells:
         return _plain(Indices(indices).value(tree)) if id == self.tried.id else value(id, **indices)
 
 
-def _functions(entry: Entry, ranges: Iterable[Tree], table: str) -> Iterator[tuple[int, int, str, int, bool]]:
+def _functions(entry: PaperEntry, ranges: Iterable[Tree], table: str) -> Iterator[tuple[int, int, str, int, bool]]:
     """m, n, and the functions that a cell is about; whether it says anything of that n."""
     kind = KINDS[table]
     (head,) = (id for id in entry.heads if entries()[id].kind == "function")
@@ -242,7 +242,7 @@ def _progression(ranges: Iterable[Tree], name: str) -> Progression | None:
     return next((r for r in ranges if isinstance(r, Progression) and r.variable == Symbol(name)), None)
 
 
-def _collision(entry: Entry, reading: Reading) -> Iterator[Case]:
+def _collision(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
     """Table 2: kappa_1, the inner bodies j in two parts, kappa_(m-1)."""
     column = entry.about["column"]
     cells = _Cells(f"T2.{entry.about['row']}.{{}}", entry, reading)
@@ -283,7 +283,7 @@ def _whole_range(first: Any, last: Any) -> range | None:
     return range(first, last + 1)
 
 
-def _building(entry: Entry, reading: Reading) -> Iterator[Case]:
+def _building(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
     """Table 4: the floors' rate 2 kappa_1 and the roof's kappa_m."""
     column = entry.about["column"]
     cells = _Cells(f"{entry.about['table']}.{entry.about['row']}.{{}}", entry, reading)
@@ -302,7 +302,7 @@ def _body(column: str, m: int) -> int:
     return Indices({"m": m}).whole(read_formula(column.removeprefix("K_")))
 
 
-def _drive(entry: Entry, reading: Reading) -> Iterator[Case]:
+def _drive(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
     """Table 3: the moments s in two parts, and for each the bodies l in three ranges."""
     half, letter = entry.about["table"], entry.about["column"]
     alpha, name = entry.about["row"].split(".")
@@ -351,7 +351,7 @@ def _bodies(part: _Cells, alpha: int, name: str, term: Term, at: Mapping[str, in
             yield _compared({**at, "s": s, "l": body}, claimed, true)
 
 
-def _steps(entry: Entry, reading: Reading) -> Iterator[Case]:
+def _steps(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
     """F' under delayed moments is the sum of increments number d at w, each from its start on."""
     for m, z in product((1, 2), instants(5)):
         motion = driven("II", m)
@@ -363,7 +363,7 @@ def _steps(entry: Entry, reading: Reading) -> Iterator[Case]:
             yield Case({"m": m, "function": f"{letter}_{i}", "z": z}, total, motion.wave(letter, i, z), total != 0)
 
 
-def _begun(loads: Loads, entry: Entry, reading: Reading, z: fmpq) -> Iterator[tuple[str, fmpq, int, fmpq]]:
+def _begun(loads: Loads, entry: PaperEntry, reading: Reading, z: fmpq) -> Iterator[tuple[str, fmpq, int, fmpq]]:
     """The pieces of moments and the intervals that have begun for them: source, weight, d and w."""
     for half in ("T3.even", "T3.odd"):
         d, w = (reading.formula if f"{half}.{name}" == entry.id else right(f"{half}.{name}") for name in "dw")

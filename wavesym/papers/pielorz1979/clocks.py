@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
-from typing import Any
 
 from wavesym.model.chain import Chain
-from wavesym.papers.entries import Entry
-from wavesym.papers.evaluation import MeaninglessError, Scope, span
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.exact_tables import Exact
-from wavesym.papers.pielorz1979.motion import body_velocity
+from wavesym.papers.pielorz1979.equations import covers
+from wavesym.papers.pielorz1979.letters import IndexedLetters, body_velocity
 from wavesym.papers.pielorz1979.scenes import example as scene
 from wavesym.papers.pielorz1979.truth import EXAMPLES
-from wavesym.papers.record import Case, Example, Reading, Test, case
-from wavesym.papers.tree import Cases, Symbol, latex
+from wavesym.papers.record import Case, Reading, Reproduction, Test, case
+from wavesym.papers.tree import Cases
 
 _MOST_SIZES = 3
+_FIRST = "at which the first disturbance arrives, and the clock with which (4.6)-(4.8) follow"
+_AGAINST = {
+    "x_0": f"the end {_FIRST}",
+    "tau_0": f"the time {_FIRST}",
+    "v": "the velocity of the body to which the rod is fixed",
+}
 
 
 def arrival(chain: Chain, rod: int, which: Callable[[Iterable[int]], int] = min) -> tuple[int, set[int]]:
@@ -34,75 +39,38 @@ def arrival(chain: Chain, rod: int, which: Callable[[Iterable[int]], int] = min)
     return first, {end for end, time in times.items() if time == first}
 
 
-class _Clocks(Scope):
-    """i, m, and the velocities of the bodies."""
-
-    def __init__(self, chain: Chain) -> None:
-        super().__init__({"m": chain.m})
-        self._chain = chain
-
-    def symbol(self, symbol: Symbol) -> Any:
-        match symbol:
-            case Symbol("v", r"\bar", 0, (index,)):
-                body = self.whole(index)
-                given = self._chain.parameters.velocity or {}
-                if body not in given:
-                    raise MeaninglessError(f"no velocity is given of a body {body}")
-                return given[body]
-        return super().symbol(symbol)
-
-
-def cell(entry: Entry) -> Test:
+def cell(entry: PaperEntry) -> Test:
     """A cell of the columns x_0, tau_0, v, for every rod."""
     example, column = EXAMPLES[entry.about["example"]], entry.about["column"]
 
     def cases(reading: Reading) -> Iterator[Case]:
+        formula = reading.formula
+        ranges = [where for _, where in formula.branches] if isinstance(formula, Cases) else reading.ranges
         for m in example.sizes[:_MOST_SIZES]:
             chain = example.tables(m).chain
-            scope = _Clocks(chain)
-            yield _all_rods(reading, scope)
+            scope = IndexedLetters({"m": m})
+            scope.letters[r"\barv"] = (chain.parameters.velocity or {}).__getitem__
+            yield covers({"m": m}, "rods", ranges, scope, range(1, m + 1))
             for rod in range(1, m + 1):
                 scope.bound["i"] = rod
                 at = {"m": m, "i": rod}
                 time, ends = arrival(chain, rod)
-                value = partial(scope.value, reading.formula)
-                shown = partial(_seen, example.tables(m), rod) if column == "v" else None
-                yield case(at, value, _TRUE[column](chain, rod), example=shown)
-                if column == "tau_0":
-                    yield case({**at, "front": "time"}, value, time)
-                if column == "x_0":
-                    yield case({**at, "front": "end"}, partial(_among, value, ends), True)
+                value = partial(scope.value, formula)
+                match column:
+                    case "v":
+                        yield case(at, value, body_velocity(chain, rod), example=_seen(example.tables(m), rod))
+                    case "tau_0":
+                        yield case(at, value, chain.rod(rod).tau0)
+                        yield case({**at, "front": "time"}, value, time)
+                    case "x_0":
+                        yield case(at, value, chain.rod(rod).x0)
+                        yield case({**at, "front": "end"}, lambda: value() in ends, True)  # noqa: B023 - called here
 
     return Test(_AGAINST[column], cases)
 
 
-def _seen(exact: Exact, rod: int) -> Example:
+def _seen(exact: Exact, rod: int) -> Callable[[], Reproduction]:
     """How a rod of a collision moves before anything reaches it."""
     middle = f"{2 * rod - 1}/2"
     look = f"velocity@{middle} at tau = 0 is how fast rod {rod} moves at first: as the body to which it is fixed"
-    return scene(exact, {}, 2, {"velocity": [middle]}, "wavesym run SCENE --samples 9", look)()
-
-
-def _among(value: Callable[[], Any], ends: set[int]) -> bool:
-    return value() in ends
-
-
-_TRUE: Mapping[str, Callable[[Chain, int], Any]] = {
-    "x_0": lambda chain, rod: chain.rod(rod).x0,
-    "tau_0": lambda chain, rod: chain.rod(rod).tau0,
-    "v": body_velocity,
-}
-_AGAINST = {
-    "x_0": "the end at which the first disturbance arrives, and the clock with which (4.6)-(4.8) follow",
-    "tau_0": "the time at which the first disturbance arrives, and the clock with which (4.6)-(4.8) follow",
-    "v": "the velocity of the body to which the rod is fixed",
-}
-
-
-def _all_rods(reading: Reading, scope: Scope) -> Case:
-    """Whether the ranges have every rod once."""
-    formula = reading.formula
-    ranges = [where for _, where in formula.branches] if isinstance(formula, Cases) else reading.ranges
-    rods = tuple(sorted(rod for where in ranges for rod in span(where, scope)))
-    said = "; ".join(map(latex, ranges))
-    return Case({"m": scope.bound["m"], "rods": said}, rods, tuple(range(1, scope.bound["m"] + 1)), telling=False)
+    return scene(exact, {}, 2, {"velocity": [middle]}, "wavesym run SCENE --samples 9", look)

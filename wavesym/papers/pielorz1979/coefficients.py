@@ -9,7 +9,7 @@ from itertools import product
 
 from flint import fmpq
 
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds
 from wavesym.papers.pielorz1979 import alone
 from wavesym.papers.pielorz1979.lines import STEPS, Coefficients, Key, Line, given, ids, line, truth
@@ -20,7 +20,7 @@ SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(12 - m)))
 SMALL = tuple((m, n) for m, n in SIZES if m + n < 9)
 
 
-def coefficient(entry: Entry) -> Test:
+def coefficient(entry: PaperEntry) -> Test:
     """A line of the list."""
     return Test(
         "the exact tables with equal floors under a load of three steps, m = 3 ... 6, m + n < 12: values, the H of "
@@ -74,7 +74,7 @@ def _negative(term: Tree) -> Tree:
     return term.of if isinstance(term, Minus) else Minus(term)
 
 
-def sizes(entry: Entry) -> Test:
+def sizes(entry: PaperEntry) -> Test:
     """The m for which the list is said to give the coefficients."""
     return Test("whether the list, run by itself, gives every coefficient, m = 2 ... 6, n = 0 ... 5", _sizes)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 from flint import fmpq
@@ -13,33 +13,26 @@ from sympy import Expr, IndexedBase, Rational, expand
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.delay_terms import exact
-from wavesym.model.node import Family, Node, Parameters
-from wavesym.papers.entries import Entry
+from wavesym.model.node import Node, Parameters
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
 from wavesym.papers.exact_tables import UNEQUAL_COLLISION, grounded_building, unequal_collision
-from wavesym.papers.pielorz1979.at_node import (
-    ACCELERATION,
-    COORDINATES,
-    DISPLACEMENTS,
-    LENGTH,
-    MotionAtNode,
-    SymbolsAtNode,
-    letter,
-    moment_on,
-    strain,
-)
-from wavesym.papers.pielorz1979.letters import Symbols, left_over, ranges_of, told, within
+from wavesym.papers.pielorz1979.equations import left_over, once, ranges_of, within
+from wavesym.papers.pielorz1979.letters import IndexedLetters, Moving, letter, rods_at
 from wavesym.papers.pielorz1979.scenes import example
+from wavesym.papers.pielorz1979.symbols import ACCELERATION, DISPLACEMENTS, Symbols, moment, strain, told
 from wavesym.papers.pielorz1979.transcript import others
-from wavesym.papers.pielorz1979.truth import EXAMPLES, Driven, driven, instants, loads
+from wavesym.papers.pielorz1979.truth import EXAMPLES, DrivenChain, driven, instants, loads
 from wavesym.papers.reader import UnreadableError
-from wavesym.papers.record import Case, Example, Reading, Test, reading, shown
-from wavesym.papers.tree import Derivative, Progression, Symbol, Tree
+from wavesym.papers.record import Case, Reading, Reproduction, Test, reading, shown
+from wavesym.papers.tree import Call, Derivative, Progression, Symbol, Tree, latex
 
 UNTIL = 6
 """How far in tau conditions are tried: every node has moved, and every load has begun."""
 _SIZE = 8
 """An m at which every range has more than one member."""
+_LENGTH = fmpq(7)
+"""The l of section 2: x = i is no place, x = il is."""
 _RANGES = ("i", "x", r"\bar{x}", "x_{i}")
 """Letters that a range may be of; x_i is where body i is."""
 _CONTINUOUS, _FORCES = "the rods move together", "forces are balanced"
@@ -54,7 +47,7 @@ KINDS: Mapping[str, Callable[[Node], bool]] = {
 """The nodes that the words before (2.4)_1, ..., (2.4)_5 are about."""
 
 
-def test(entry: Entry) -> Test:
+def test(entry: PaperEntry) -> Test:
     """How a condition is tried: at its nodes, where it is about all the rods and nothing is said twice."""
     names = (str(entry.about["example"]),) if "example" in entry.about else tuple(EXAMPLES)
     kind, base = entry.about.get("at"), entry.about.get("base")
@@ -70,12 +63,12 @@ def test(entry: Entry) -> Test:
         + (", on a foundation that moves with the ground" if base else "")
         + ("; the node for symbolic i and m" if in_symbols else ""),
         cases,
-        difference=(lambda read: difference(names, kind, read)) if in_symbols else None,
+        difference=partial(_difference, names, kind) if in_symbols else None,
         mathematics=(lambda read: cases(read, None)) if base else None,
     )
 
 
-def _balances(entry: Entry) -> bool:
+def _balances(entry: PaperEntry) -> bool:
     """Whether what is right balances forces, which the nodes have in symbols."""
     try:
         return _said(reading(*entry.settled).formula) == _FORCES
@@ -84,31 +77,64 @@ def _balances(entry: Entry) -> bool:
 
 
 @cache
-def _moved(name: str, m: int, kind: str | None, base: str | None) -> Driven:
+def _moved(name: str, m: int, kind: str | None, base: str | None) -> DrivenChain:
     """A chain of an example under its loads; for (2.4), which has an A_i for each rod, with unequal rods."""
     if base == "ground":
-        return Driven(grounded_building(m), loads(grounded_building(m)))
+        return DrivenChain(grounded_building(m), loads(grounded_building(m)))
     if name == "I" and kind:
-        return Driven(unequal_collision(m), loads(unequal_collision(m)))
+        return DrivenChain(unequal_collision(m), loads(unequal_collision(m)))
     return driven(name, m)
+
+
+def _add_section_2(scope: IndexedLetters, name: str, read: Reading) -> None:
+    """Give a scope the A, B and S of (2.4)."""
+    kappa, inertia = scope.letters[r"\kappa"], scope.letters["J"]
+    numbering = ranges_of(read, _RANGES).get("x_{i}")
+
+    def own(number: Any) -> Any:
+        """A body's number in its example; the condition may number bodies by their places."""
+        if numbering is None:
+            return number
+        with scope.binding({**scope.bound, "i": number}):
+            return scope.value(numbering.shown[0]) / scope.bound["l"] + (1 if name == "II" else 0)
+
+    if name == "II":  # in units in which the B_i of (2.4) is J_i
+        moments = scope.functions[r"\barM"]
+        scope.letters["A"] = lambda rod: kappa(rod) * inertia(rod)
+        scope.letters["B"] = lambda number: inertia(own(number))
+        scope.functions["S"] = lambda number, t: kappa(1) * inertia(1) * moments(own(number), t)
+    else:
+        scope.letters["A"] = inertia if name == "I" else lambda _: 1
+        scope.letters["B"] = lambda number: 1 / kappa(own(number))
+        scope.functions["S"] = lambda number, t: 0  # Table 1
 
 
 # on chains
 
 
-def _tried(id: str, name: str, driven: Driven, read: Reading, kind: str | None) -> Iterator[Case]:
+def _tried(id: str, name: str, driven: DrivenChain, read: Reading, kind: str | None) -> Iterator[Case]:
     """A condition at all its places of a chain."""
-    chain = driven.exact.chain
+    chain, m = driven.exact.chain, driven.exact.m
     said: Counter[tuple[str, int]] = Counter()
+    scope = Moving(driven)
+    scope.functions[DISPLACEMENTS[name]] = scope.functions[r"\barU"]
+    scope.letters["U"] = lambda rod: scope.functions["U"](rod, scope.bound["x"], scope.bound["t"])
+    # along positive rotation; the tables count the moment on the last body against it
+    scope.functions[r"\barM"] = lambda i, t: (-1 if i == m + 1 else 1) * scope.functions["M"](i, t)
+    _add_section_2(scope, name, read)
     nodes = [x for x, node in enumerate(chain.nodes) if KINDS[kind](node)] if kind else None
-    for bound in _places(read, chain.m, nodes):
+    for bound in _places(read, m, nodes):
         at: dict[str, object] = {"example": name, **bound}
-        rods = _rods(chain.nodes[bound["x"]], bound["x"])
-        yield Case({**at, "what": "its rods"}, tuple(sorted(_mentioned(read.formula, Scope(bound)))), rods, False)
+        mentioned = tuple(sorted(_mentioned(read.formula, Scope(bound))))
+        yield Case({**at, "what": "its rods"}, mentioned, rods_at(chain, bound["x"]), telling=False)
         said[_said(read.formula), bound["x"]] += 1
-        yield from _balanced(name, driven, read, bound, at)
+        scope.bound |= {**bound, "l": _LENGTH}
+        yield from _balanced(scope, read, bound["x"], at)
     if not kind:
-        yield from _once(said, _others(id, chain.m), chain.m)
+        beside = _others(id, m)
+        stated = {what for what, _ in said + beside}  # (2.3) alone is of continuity
+        needed = [(_FORCES, x) for x in range(m + 1)] + [(_CONTINUOUS, x) for x in range(1, m)]
+        yield from once({"m": m}, said, beside, [(what, x) for what, x in needed if what in stated])
 
 
 def _places(read: Reading, m: int, nodes: list[int] | None = None) -> Iterator[dict[str, int]]:
@@ -138,62 +164,48 @@ def _place(read: Reading) -> Progression:
 def _where(read: Reading, bound: Mapping[str, int]) -> Iterator[int]:
     """The places that are given, in lengths of rods."""
     place = _place(read)
-    for x in span(place, Scope({**bound, "l": LENGTH})):
-        count = x / (LENGTH if place.variable == Symbol("x") else fmpq(1))
+    for x in span(place, Scope({**bound, "l": _LENGTH})):
+        count = x / (_LENGTH if place.variable == Symbol("x") else fmpq(1))
         if count.q != 1:
             raise MeaninglessError(f"no rod ends at x = {x}")
         yield int(count)
 
 
-def _rods(node: Node, x: Any) -> tuple[Any, ...]:
-    """The numbers of the rods at a node."""
-    return tuple(rod for rod, there in ((x, node.left), (x + 1, node.right)) if there)
-
-
 def _mentioned(formula: Tree, scope: Scope) -> set[Any]:
-    """The rods that a condition is about."""
+    """The rods that a condition is about; MeaninglessError where it is about another place than the node."""
+    for part in within(formula):
+        displaced = isinstance(part, Call) and letter(part.function) in DISPLACEMENTS.values()
+        if displaced and tuple(map(latex, part.arguments)) != (r"\bar{x}", r"\tau"):
+            raise MeaninglessError(f"{latex(part)} is not at the node")
     symbols = (part for part in within(formula) if isinstance(part, Symbol))
-    displaced = (symbol for symbol in symbols if letter(symbol) in ("U", *DISPLACEMENTS.values()))
-    return {rod for symbol in displaced for rod in scope.indices(symbol)}
+    moved = (symbol for symbol in symbols if letter(symbol) in ("U", *DISPLACEMENTS.values()))
+    return {rod for symbol in moved for rod in scope.indices(symbol)}
 
 
-def _balanced(
-    name: str, driven: Driven, read: Reading, bound: Mapping[str, int], at: Mapping[str, object]
-) -> Iterator[Case]:
+def _balanced(scope: Moving, read: Reading, x: int, at: Mapping[str, object]) -> Iterator[Case]:
     """The condition at instants."""
-    x, node = bound["x"], driven.exact.chain.nodes[bound["x"]]
+    driven, node = scope.motion, scope.chain.nodes[x]
     outputs = {"strain": [f"{x}{s}" for s, rod in (("-", node.left), ("+", node.right)) if rod], "velocity": [str(x)]}
 
-    def seen(tau: fmpq, left: str) -> Callable[[], Example] | None:
-        if driven.exact.chain.system is UNEQUAL_COLLISION:  # no scene has it
+    def seen(tau: fmpq, left: str) -> Callable[[], Reproduction] | None:
+        if scope.chain.system is UNEQUAL_COLLISION:  # no scene has it
             return None
         f, g = driven.waves_at(x if node.left else x + 1, x, tau, order=2)
-        slope = shown(f + g)
-        look = f"put strain and velocity of tau = {tau}, and its slope there, {slope}, into the condition: {left}"
+        look = (
+            f"put strain and velocity of tau = {tau}, and its slope there, {shown(f + g)}, into the condition: {left}"
+        )
         until = tau if tau > 0 else 1
         return example(driven.exact, driven.loads, until, outputs, "wavesym run SCENE --samples 1001", look)
 
-    numbering = ranges_of(read, _RANGES).get("x_{i}")
     taus = instants(UNTIL, between=[fmpq(5, 6)])
-    scopes = ((tau, MotionAtNode(name, driven, bound, tau, numbering)) for tau in taus)
-    return left_over(read.formula, at, "tau", scopes, seen)
+    return left_over(read.formula, at, scope, ("tau", taus), partial(scope.at, x), seen)
 
 
 def _said(formula: Tree) -> str:
     """What a condition says: it compares velocities, as (2.3) does, or else forces, or how a node moves."""
     found = [part for part in within(formula) if isinstance(part, Derivative)]
-    alike = all(COORDINATES.get(letter(part.by)) == "t" and part.order == 1 for part in found)
+    alike = all(latex(part.by) in ("t", r"\tau") and part.order == 1 for part in found)
     return _CONTINUOUS if alike else _FORCES
-
-
-def _once(said: Counter[tuple[str, int]], others: Counter[tuple[str, int]], m: int) -> Iterator[Case]:
-    """How often conditions say what a node needs: the balance of forces, and that its rods move together."""
-    total = said + others
-    for x in range(m + 1):
-        for what in (_FORCES, _CONTINUOUS) if 0 < x < m else (_FORCES,):
-            if all(other != what for other, _ in total):  # (2.3) alone is of continuity
-                continue
-            yield Case({"m": m, "x": x, "how often": what}, total[what, x], 1, telling=(what, x) in said)
 
 
 @cache
@@ -206,7 +218,7 @@ def _others(id: str, m: int) -> Counter[tuple[str, int]]:
 # in symbols
 
 
-def difference(names: tuple[str, ...], kind: str | None, read: Reading) -> str:
+def _difference(names: tuple[str, ...], kind: str | None, read: Reading) -> str:
     """Printed less derived for symbolic i and m, both scaled to the same strain."""
     lines = []
     for name in names:
@@ -214,31 +226,28 @@ def difference(names: tuple[str, ...], kind: str | None, read: Reading) -> str:
         if name == "I" and kind:
             system, letters = UNEQUAL_COLLISION, replace(SYMBOLS, inertia=IndexedBase("A"))
         for family in system.families(COUNT, letters):
-            x = INDEX if family.first != family.last else exact(family.first)
-            if kind is None and {bound["x"] for bound in _places(read, _SIZE)} <= _of(family):
-                x = expand(Symbols().value(_place(read).shown[0]))
+            first, last = (exact(end) for end in (family.first, family.last))
+            x = INDEX if first != last else first
+            members = range(int(first.subs(COUNT, _SIZE)), int(last.subs(COUNT, _SIZE)) + 1, family.step)
+            if kind is None and {bound["x"] for bound in _places(read, _SIZE)} <= set(members):
+                x = expand(Symbols(bound={"l": 1}).value(_place(read).shown[0]))
             elif kind is None or not KINDS[kind](family.at(x)):
                 continue
-            over = _left_over(name, letters, family.at(x), x, read)
+            over = _less_derived(name, letters, family.at(x), x, read)
             if over != "0":
                 lines.append(f"{name}: {over}" if len(names) > 1 else over)
     return "; ".join(dict.fromkeys(lines)) or "0"
 
 
-def _of(family: Family) -> set[int]:
-    first, last = (int(exact(end).subs(COUNT, _SIZE)) for end in (family.first, family.last))
-    return set(range(first, last + 1, family.step))
-
-
-def _left_over(name: str, letters: Parameters, node: Node, place: Expr, read: Reading) -> str:
+def _less_derived(name: str, letters: Parameters, node: Node, place: Expr, read: Reading) -> str:
     """What is left of a condition at one kind of node."""
-    rods = set(_rods(node, place))
-    ranges = ranges_of(read, _RANGES)
-    indices = [INDEX] if "i" in ranges else [place, expand(place + 1)]
-    scopes = [SymbolsAtNode(name, letters, index, ranges.get("x_{i}")) for index in indices]
-    scope = next((s for s in scopes if _mentioned(read.formula, s) == {expand(rod) for rod in rods}), scopes[0])
+    rods = [expand(rod) for rod, there in ((place, node.left), (place + 1, node.right)) if there]
+    indices = [INDEX] if "i" in ranges_of(read, _RANGES) else [place, expand(place + 1)]
+    scopes = [Symbols(letters, {"i": index}) for index in indices]
+    scope = next((s for s in scopes if _mentioned(read.formula, s) == set(rods)), scopes[0])
+    _add_section_2(scope, name, read)
     left, right = sides(read.formula)
-    unit = strain(expand(max(rods, key=lambda rod: expand(rod - place))))
+    unit = strain(rods[-1])
     printed, derived = expand(scope.value(left) - scope.value(right)), expand(_balance(node, place))
     scaled = [expand(side / side.coeff(unit)) for side in (printed, derived) if side.coeff(unit) != 0]
     if len(scaled) < 2:
@@ -255,5 +264,5 @@ def _balance(node: Node, x: Expr) -> Expr:
         total -= Rational(1, 2) * node.alpha * strain(expand(x))
     for unit in node.loads:
         sign = -1 if unit.number == COUNT + 1 else 1
-        total += sign * unit.coefficients[0] * moment_on(expand(unit.number))
+        total += sign * unit.coefficients[0] * moment(unit.number)
     return total

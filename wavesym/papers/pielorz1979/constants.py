@@ -6,7 +6,7 @@ are what the nodes of a chain with the printed constants are compared with, and 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from math import prod
@@ -16,8 +16,9 @@ from flint import fmpq
 
 from wavesym.model.chain import Chain
 from wavesym.model.node import Node, Parameters
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, given, range_of, sides, span
+from wavesym.papers.pielorz1979.letters import IndexedLetters
 from wavesym.papers.pielorz1979.truth import EXAMPLES
 from wavesym.papers.record import Case, Reading, Test, case
 from wavesym.papers.tree import Call, Number, Symbol, Tree, latex
@@ -30,8 +31,6 @@ _PLAIN: Mapping[str, Mapping[str, fmpq]] = {
     "III": {"G": fmpq(99, 20), "k'": fmpq(5, 6), "A": fmpq(2, 9), "n": fmpq(4)},
 }
 """Numbers for what the text gives an example's rods, but for their density and length."""
-_AREA = {"I": ("F",), "III": ("n", "A")}
-_MODULUS = {"I": ("E",), "II": ("G",), "III": ("k'", "G")}
 
 
 @dataclass(frozen=True)
@@ -55,66 +54,65 @@ class Physical:
 
     def area(self, rod: int) -> fmpq:
         """What of a rod's section resists, and is inert: F, J_0, or all columns of a storey."""
-        return self.section(rod) if self.example == "II" else self._product(*_AREA[self.example])
+        return self.section(rod) if self.example == "II" else self._product("F", "n", "A")
 
     def stiffness(self, rod: int) -> fmpq:
         """Force in a rod for a unit of strain."""
-        return self._product(*_MODULUS[self.example]) * self.area(rod)
+        return self._product("E", "G", "k'") * self.area(rod)
 
     def _product(self, *names: str) -> fmpq:
-        return prod((_PLAIN[self.example][name] for name in names), start=fmpq(1))
-
-    def density(self, rod: int) -> fmpq:
-        """Inertia of a rod for a unit of length."""
-        return self.rho * self.area(rod)
+        """Of those that the example has."""
+        return prod((_PLAIN[self.example].get(name, fmpq(1)) for name in names), start=fmpq(1))
 
     def speed_squared(self, rod: int) -> fmpq:
-        """Of waves: stiffness U_xx = density U_tt."""
-        return self.stiffness(rod) / self.density(rod)
-
-    def body(self, x: int) -> int:
-        """The number of the body at x = 0, 1, ...: discs are numbered from 1 on."""
-        return x + 1 if self.example == "II" else x
+        """Of waves: stiffness U_xx = density area U_tt."""
+        return self.stiffness(rod) / (self.rho * self.area(rod))
 
     def node(self, x: int) -> Node:
         """The law of the body at x in tau and x / l: inertia U_tt = stiffness (dU_right/dx - dU_left/dx)."""
         alpha = 2 * self.stiffness(x) / self.l if x > 0 else fmpq(0)
         beta = 2 * self.stiffness(x + 1) / self.l if x < self.m else fmpq(0)
-        return Node(None, None, self.inertia(self.body(x)) * self.speed_squared(max(x, 1)) / self.l**2, alpha, beta)
+        body = x + 1 if self.example == "II" else x  # discs are numbered from 1 on
+        return Node(None, None, self.inertia(body) * self.speed_squared(max(x, 1)) / self.l**2, alpha, beta)
+
+    def chain(self, kappa: Mapping[int, fmpq]) -> Chain:
+        """The chain without dimensions of these constants."""
+        inertia = {body: self.inertia(body) for body in range(1, self.m + 2)}
+        given = Parameters(kappa, inertia, dict.fromkeys(range(1, self.m, 2), 0))
+        return Chain(EXAMPLES[self.example].system, self.m, given)
 
     def acceleration(self, body: int, load: fmpq) -> fmpq:
         """What a load alone gives a body, in units of U_0."""
         return fmpq(load / self.U_0 / self.node(body - 1).inertia)
 
 
-class Material(Scope):
+class Material(IndexedLetters):
     """The letters of a physical system."""
 
     def __init__(self, physical: Physical, constants: Mapping[Tree, Tree] | None = None) -> None:
-        c = _SPEED
-        plain = {**_PLAIN[physical.example], r"\rho": physical.rho, "l": physical.l, "m": physical.m, "a": c, "C": c}
-        super().__init__(plain, constants)
+        plain = {**_PLAIN[physical.example], r"\rho": physical.rho, "l": physical.l, "m": physical.m}
+        super().__init__({**plain, "a": _SPEED, "C": _SPEED}, constants)
         self.physical = physical
+        self.functions["S"] = moment
+        self.letters = {
+            "U": {0: physical.U_0}.__getitem__,
+            "S": {0: fmpq(7, 3)}.__getitem__,
+            "M": physical.inertia,
+        }
+        if "k'" in plain:
+            self.letters["k'"] = lambda: plain["k'"]
+        if physical.example == "II":
+            del self.letters["M"]
+            self.letters["J"] = self._inertia_or_section
 
-    def symbol(self, symbol: Symbol) -> Any:
-        match symbol:
-            case Symbol("k", "", 1, ()) if "k'" in self.bound:
-                return self.bound["k'"]
-            case Symbol("U", "", 0, (Number("0"),)):
-                return self.physical.U_0
-            case Symbol("S", "", 0, (Number("0"),)):
-                return fmpq(7, 3)
-            case Symbol("J", "", 0, (Number("0"), rod)) if self.physical.example == "II":
-                return self.physical.section(self.whole(rod))
-            case Symbol(name, "", 0, (body,)) if name == ("J" if self.physical.example == "II" else "M"):
-                return self.physical.inertia(self.whole(body))
-        return super().symbol(symbol)
-
-    def call(self, call: Call) -> Any:
-        match call:
-            case Call(Symbol("S", "", 0, (body,)), (t,)):
-                return moment(self.whole(body), self.value(t))
-        return super().call(call)
+    def _inertia_or_section(self, *index: int) -> fmpq:
+        """J_i of a body, J_(0,i) of a shaft."""
+        if len(index) == 1:
+            return self.physical.inertia(*index)
+        zero, rod = index
+        if zero != 0:
+            raise LookupError(index)
+        return self.physical.section(rod)
 
 
 def moment(body: int, t: fmpq) -> fmpq:
@@ -122,7 +120,7 @@ def moment(body: int, t: fmpq) -> fmpq:
     return t + fmpq(2 * body + 1, 3)
 
 
-def speed(entry: Entry) -> Test:
+def speed(entry: PaperEntry) -> Test:
     """c_f^2 in Table 1; the letter after it is a name for its root."""
 
     def cases(reading: Reading) -> Iterator[Case]:
@@ -136,7 +134,7 @@ def speed(entry: Entry) -> Test:
     return Test("stiffness of a rod over its inertia per length", cases)
 
 
-def kappa(entry: Entry) -> Test:
+def kappa(entry: PaperEntry) -> Test:
     """kappa under (4.3), (4.4), (4.5)."""
     example = entry.about["example"]
 
@@ -153,19 +151,17 @@ def kappa(entry: Entry) -> Test:
 
 def _chain_cases(physical: Physical, letter: Tree, value: Tree, numbers: Tree) -> Iterator[Case]:
     example, m = physical.example, physical.m
-    system, scope = EXAMPLES[example].system, Material(physical)
+    scope = Material(physical)
     at = {"m": m, **({"sections": "equal" if physical.equal else "unequal"} if example == "II" else {})}
     found: dict[int, Any] = {}
     for i in span(numbers, scope):
         scope.bound["i"] = i
         found[_number(letter, r"\kappa", "", scope)] = scope.value(value)
-    wanted = tuple(system.indices(m)["kappa"])
+    wanted = tuple(EXAMPLES[example].system.indices(m)["kappa"])
     yield Case({**at, "kappa": latex(numbers)}, tuple(found), wanted, telling=False)
     if tuple(found) != wanted or any(number <= 0 for number in found.values()):
         raise MeaninglessError("no system has these constants")
-    inertia = {body: physical.inertia(body) for body in range(1, m + 2)}
-    printed = Chain(system, m, Parameters(found, inertia, dict.fromkeys(range(1, m, 2), 0)))
-    for x, node in enumerate(printed.nodes):
+    for x, node in enumerate(physical.chain(found).nodes):
         true = physical.node(x)
         if node.inertia:
             yield Case({**at, "x": x, "law": "rate"}, node.rate, true.rate)
@@ -178,39 +174,49 @@ def _chain_cases(physical: Physical, letter: Tree, value: Tree, numbers: Tree) -
             yield Case({**at, "x": x, "law": "rate 2 kappa"}, 2 * found[x + 1], true.rate)
 
 
-def moment_factor(entry: Entry) -> Test:
+def moment_factor(entry: PaperEntry) -> Test:
     """A under (4.4)."""
 
-    def cases(reading: Reading) -> Iterator[Case]:
-        letter, value = sides(reading.formula)
-        for at, scope, physical, body in _loaded(reading):
-            yield Case({**at, "of": latex(letter)}, _number(letter, "A", r"\bar", scope), body, telling=False)
-            unit = scope.value(Symbol("S", below=(Number("0"),)))
-            yield case(at, partial(scope.value, value), physical.acceleration(body, unit))
+    def true(scope: Material, body: int) -> fmpq:
+        return scope.physical.acceleration(body, scope.value(Symbol("S", below=(Number("0"),))))
 
-    return Test("the acceleration that the unit of moment gives a body", cases)
+    return Test("the acceleration that the unit of moment gives a body", partial(_body_cases, "A", true))
 
 
-def load(entry: Entry) -> Test:
+def load(entry: PaperEntry) -> Test:
     """The load without dimensions, line before Table 1."""
 
-    def cases(reading: Reading) -> Iterator[Case]:
-        left, value = sides(reading.formula)
+    def true(scope: Material, body: int) -> fmpq:
+        physical = scope.physical
+        laws = {i: physical.node(i - 1) for i in range(1, physical.m + 1)}
+        _, unit = physical.chain({i: law.beta / law.inertia / 2 for i, law in laws.items()}).loaded[f"M{body}"]
+        # the last moment counts against positive rotation, here and there
+        acceleration = physical.acceleration(body, moment(body, scope.bound["t"]))
+        return fmpq(acceleration / abs(unit.coefficients[0]))
+
+    against = "the acceleration that a moment gives a disc, in that of the unit load of a drive"
+    return Test(against, partial(_body_cases, "S", true))
+
+
+def _body_cases(name: str, true: Callable[[Material, int], fmpq], reading: Reading) -> Iterator[Case]:
+    """A letter with a bar of every body of some drives; S is a function of tau."""
+    left, value = sides(reading.formula)
+    letter: Tree = left
+    if name == "S":
         if not isinstance(left, Call) or left.arguments != (Symbol(r"\tau"),):
             raise MeaninglessError(f"{latex(left)} is no function of tau")
-        for at, scope, physical, body in _loaded(reading):
-            yield Case({**at, "of": latex(left)}, _number(left.function, "S", r"\bar", scope), body, telling=False)
-            shafts = range(1, physical.m + 1)
-            rates = {i: physical.node(i - 1).beta / physical.node(i - 1).inertia / 2 for i in shafts}
-            inertia = {i: physical.inertia(i) for i in range(1, physical.m + 2)}
-            chain = Chain(EXAMPLES["II"].system, physical.m, Parameters(rates, inertia))
-            _, unit = chain.loaded[f"M{body}"]
-            scope.bound["t"] = t = fmpq(5, 4)
-            acceleration = physical.acceleration(body, moment(body, t))
-            # the last moment counts against positive rotation, here and there
-            yield case({**at, "t": t}, partial(scope.value, value), acceleration / abs(unit.coefficients[0]))
-
-    return Test("the acceleration that a moment gives a disc, in that of the unit load of a drive", cases)
+        letter = left.function
+    numbers = range_of("i", reading.ranges)
+    for m in SIZES["II"]:
+        scope = Material(Physical("II", m), given(reading.ranges))
+        scope.bound["t"] = fmpq(5, 4)
+        if (bodies := span(numbers, scope)) != tuple(range(1, m + 2)):
+            raise MeaninglessError(f"{latex(numbers)} are not the {m + 1} bodies")
+        for body in bodies:
+            scope.bound["i"] = body
+            at = {"m": m, "i": body}
+            yield Case({**at, "of": latex(left)}, _number(letter, name, r"\bar", scope), body, telling=False)
+            yield case(at, partial(scope.value, value), true(scope, body))
 
 
 def _number(letter: Tree, name: str, accent: str, scope: Scope) -> int:
@@ -219,18 +225,3 @@ def _number(letter: Tree, name: str, accent: str, scope: Scope) -> int:
         case Symbol(found, mark, 0, (index,)) if (found, mark) == (name, accent):
             return scope.whole(index)
     raise MeaninglessError(f"{latex(letter)} is not defined")
-
-
-def _loaded(reading: Reading) -> Iterator[tuple[dict[str, object], Material, Physical, int]]:
-    """Every body of some drives, where the range has it."""
-    constants = given(reading.ranges)
-    numbers = range_of("i", reading.ranges)
-    for m in SIZES["II"]:
-        physical = Physical("II", m)
-        scope = Material(physical, constants)
-        bodies = span(numbers, scope)
-        if bodies != tuple(range(1, m + 2)):
-            raise MeaninglessError(f"{latex(numbers)} are not the {m + 1} bodies")
-        for body in bodies:
-            scope.bound["i"] = body
-            yield {"m": m, "i": body}, scope, physical, body

@@ -4,32 +4,24 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 from flint import fmpq
-from sympy import Expr, Integer, expand
+from sympy import Integer, expand
 
 from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equations
 from wavesym.derivation.delay_terms import Line, Operator, Wave, exact
 from wavesym.model.node import System
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, span
-from wavesym.papers.pielorz1979.letters import (
-    Numbers,
-    Symbols,
-    Z,
-    expression,
-    left_over,
-    ranges_of,
-    told,
-    wave,
-    within,
-)
+from wavesym.papers.pielorz1979.equations import left_over, once, ranges_of, within
+from wavesym.papers.pielorz1979.letters import Moving
 from wavesym.papers.pielorz1979.scenes import example
+from wavesym.papers.pielorz1979.symbols import Symbols, expression, told
 from wavesym.papers.pielorz1979.transcript import others
-from wavesym.papers.pielorz1979.truth import EXAMPLES, Driven, driven, instants
-from wavesym.papers.record import Case, Example, Reading, Test
+from wavesym.papers.pielorz1979.truth import EXAMPLES, driven, instants
+from wavesym.papers.record import Case, Reading, Reproduction, Test
 from wavesym.papers.tree import Call, Tree
 
 UNTIL = 8
@@ -41,24 +33,26 @@ Unknown = tuple[str, Any]
 """f or g, and the number of its rod."""
 
 
-def test(entry: Entry) -> Test:
+def test(entry: PaperEntry) -> Test:
     """How an equation is tried: both its sides at instants, and whether it gives what no other of its group gives."""
-    name = str(entry.about["example"])
-    sizes = EXAMPLES[name].sizes
+    drawn = EXAMPLES[str(entry.about["example"])]
 
     def cases(read: Reading) -> Iterator[Case]:
-        for m in sizes:
+        for m in drawn.sizes:
             given: Counter[Unknown] = Counter()
+            scope = Moving(driven(drawn.name, m))
             for equation, bound in _stated(read, m):
                 given[_unknown(equation, Scope(bound))] += 1
-                yield from _balanced(driven(name, m), equation, bound)
-            yield from _once(entry.id, EXAMPLES[name].system, m, given)
+                scope.bound |= bound
+                yield from _balanced(scope, equation, bound)
+            wanted = {(e.function, rod) for e in delay_equations(drawn.system) for rod in _rods(e, m)}
+            yield from once({"m": m}, given, _others(entry.id, m), wanted)
 
     return Test(
         "the exact motion of chains with all parameters different under loads of several steps, "
-        f"m = {sizes[0]} ... {sizes[-1]}; the derived equation for symbolic i and m",
+        f"m = {drawn.sizes[0]} ... {drawn.sizes[-1]}; the derived equation for symbolic i and m",
         cases,
-        difference=lambda read: difference(EXAMPLES[name].system, read),
+        difference=partial(_difference, drawn.system),
     )
 
 
@@ -70,48 +64,26 @@ def _stated(read: Reading, m: int) -> Iterator[tuple[Tree, Mapping[str, int]]]:
             yield equation, {"m": m} if i is None else {"m": m, "i": i}
 
 
-class _Delayed(Numbers):
-    """Derivatives of f and g at an instant."""
-
-    def call(self, call: Call) -> Any:
-        letter, index = call.function, self.indices(call.function)
-        if letter.name not in ("f", "g") or letter.accent or len(index) != 1 or len(call.arguments) != 1:
-            return super().call(call)
-        z = fmpq(self.value(call.arguments[0]))
-        return self.moved(self.driven.wave(letter.name, index[0], z, letter.primes))
-
-
-def _balanced(driven: Driven, equation: Tree, bound: Mapping[str, int]) -> Iterator[Case]:
+def _balanced(scope: Moving, equation: Tree, at: Mapping[str, int]) -> Iterator[Case]:
     """The equation at instants."""
+    motion = scope.motion
 
-    def seen(z: fmpq, left: str) -> Callable[[], Example]:
+    def seen(z: fmpq, left: str) -> Callable[[], Reproduction]:
         look = f"put the sums of these rows, each from the start of its interval, into the equation at z = {z}: {left}"
-        return example(driven.exact, driven.loads, UNTIL, {"velocity": ["1"]}, "wavesym tables SCENE", look)
+        return example(motion.exact, motion.loads, UNTIL, {"velocity": ["1"]}, "wavesym tables SCENE", look)
 
-    scopes = ((z, _Delayed(driven, {**bound, "z": z})) for z in instants(UNTIL, between=[fmpq(5, 6)]))
-    return left_over(equation, bound, "z", scopes, seen)
+    clock = "z", instants(UNTIL, between=[fmpq(5, 6)])
+    return left_over(equation, at, scope, clock, lambda z: {"z": z}, seen)
 
 
 def _unknown(equation: Tree, scope: Scope) -> Unknown:
     """What an equation gives: the one function on its left."""
     calls = [part for part in within(sides(equation)[0]) if isinstance(part, Call)]
     found = {(call.function.name, scope.indices(call.function)) for call in calls}
-    if len(found) != 1:
-        raise MeaninglessError("its left side has not one function")
-    ((letter, index),) = found
-    if len(index) != 1:
-        raise MeaninglessError(f"{letter} has {len(index)} indices")
-    return letter, index[0]
-
-
-def _once(id: str, system: System, m: int, given: Counter[Unknown]) -> Iterator[Case]:
-    """How often an equation and those beside it give every function that the derivation gives."""
-    total = given + _others(id, m)
-    wanted = {(e.function, rod) for e in delay_equations(system) for rod in _rods(e, m)}
-    for unknown in sorted(wanted | total.keys()):
-        letter, rod = unknown
-        at = {"m": m, "how often it is given": f"{letter}_{rod}"}
-        yield Case(at, total[unknown], int(unknown in wanted), telling=unknown in given)
+    if len(found) != 1 or any(len(index) != 1 for _, index in found):
+        raise MeaninglessError("its left side has not one function of one rod")
+    ((name, (rod,)),) = found
+    return name, rod
 
 
 @cache
@@ -134,22 +106,12 @@ def _rods(equation: DelayEquation, m: int) -> range:
     return range(first, last + 1, equation.step)
 
 
-class _Formal(Symbols):
-    """Derivatives of f and g as symbols."""
-
-    def call(self, call: Call) -> Expr:
-        letter, index = call.function, self.indices(call.function)
-        if letter.name not in ("f", "g") or len(index) != 1:
-            return super().call(call)
-        return wave(letter.name, letter.primes, index[0], expand(Z - self.value(call.arguments[0])))
-
-
-def difference(system: System, read: Reading) -> str:
+def _difference(system: System, read: Reading) -> str:
     """Printed less derived, both as left less right side, for symbolic i and m."""
     lines = []
+    scope = Symbols()
     for equation in items(read.formula):
         left, right = sides(equation)
-        scope = _Formal()
         unknown = _unknown(equation, scope)
         numbers = {_unknown(e, Scope(bound)) for e, bound in _stated(read, _SIZE) if e == equation}
         printed = expand(scope.value(left) - scope.value(right))

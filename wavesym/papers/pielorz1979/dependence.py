@@ -19,7 +19,7 @@ from wavesym.papers.pielorz1979.form_constants import moments
 from wavesym.papers.pielorz1979.forms import FORMS, FormScope, Words, form_cases, moved, rates, right_form, shown
 from wavesym.papers.pielorz1979.listed import AT
 from wavesym.papers.pielorz1979.meetings import most_meetings
-from wavesym.papers.pielorz1979.truth import EXAMPLES, Driven
+from wavesym.papers.pielorz1979.truth import EXAMPLES, DrivenChain
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, case
 from wavesym.papers.tree import Call, Number, Series, Tree
@@ -266,11 +266,11 @@ def by_4_2(words: Words) -> Iterator[Case]:
             yield Case({**at, "claim": "both sides"}, found[0], found[-1], len(sides) > 1)
 
 
-def _rod(driven: Driven, rod: int) -> Rod:
+def _rod(driven: DrivenChain, rod: int) -> Rod:
     return driven.exact.chain.rod(rod)
 
 
-def _field(driven: Driven, rod: int, x: int, tau: fmpq, order: int, sign: int) -> Any:
+def _field(driven: DrivenChain, rod: int, x: int, tau: fmpq, order: int, sign: int) -> Any:
     """g with f added or taken away, on the clocks of Table 1."""
     clock = _rod(driven, rod)
     since, along = tau - clock.tau0, x - clock.x0

@@ -6,6 +6,7 @@ that of unit steps and ramps, shifted and added.
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -21,9 +22,9 @@ from wavesym.exact.contact import contact_ends
 from wavesym.exact.reference import Reference
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
-from wavesym.papers.entries import Paper, read_paper
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, ungrouped
-from wavesym.papers.pielorz1979.truth import Loads, Step
+from wavesym.papers.pielorz1979.transcript import entry
+from wavesym.papers.pielorz1979.truth import LoadStep
 from wavesym.papers.reader import read_formula
 from wavesym.papers.record import shown
 from wavesym.papers.tree import Number, Product, Symbol, Tree, latex
@@ -48,70 +49,47 @@ class TriedLoad(NamedTuple):
     """A shape of load: what each source does, piece by piece."""
 
     name: str
-    pieces: Loads
+    pieces: tuple[tuple[str, tuple[LoadStep, ...]], ...]
 
 
-def _pieces(*pieces: tuple[int | fmpq, int | fmpq]) -> tuple[Step, ...]:
-    return tuple(Step(fmpq(time), fmpq(weight)) for time, weight in pieces)
-
-
-_STEP = _pieces((0, 1))
-_PULSE = _pieces((0, 1), (2, -1))
-_HALF, _QUARTER = fmpq(1, 2), fmpq(1, 4)
-_MOMENTS: Mapping[str, Sequence[Step]] = {
-    "step": _STEP,
-    "pulse of length 1/2": _pieces((0, 1), (_HALF, -1)),
-    "pulse of length 1": _pieces((0, 1), (1, -1)),
-    "pulse of length 2": _PULSE,
-    "pulse of length 10": _pieces((0, 1), (10, -1)),
-    "stairs up": _pieces((0, _QUARTER), (1, _QUARTER), (2, _QUARTER), (3, _QUARTER)),
-    "stairs down": _pieces((0, 1), (1, -_QUARTER), (2, -_QUARTER), (3, -_HALF)),
-}
-"""(3.1): a moment changes in steps."""
-_QUAKES: Mapping[str, Loads] = {
-    "step": {"a": _STEP},
-    "ramp": {"b": _STEP},
-    "slow rise": {"b": _pieces((0, fmpq(1, 8)), (8, fmpq(-1, 8)))},
-    "pulse of length 2": {"a": _PULSE},
-    "triangle of length 4": {"b": _pieces((0, 1), (2, -2), (4, 1))},
-    "one slow swing": {"b": _pieces((0, _HALF), (2, -1), (6, 1), (8, -_HALF))},
-    "fast zigzag": {
-        "b": _pieces((0, 1), (1, -2), (2, 5 * _HALF), (3, -3), (4, 5 * _HALF), (5, -3 * _HALF), (6, _HALF))
-    },
-}
-"""(3.2): an acceleration jumps (a) and bends (b)."""
 SENSES: Mapping[str, int] = {"M_1 = M_2": 1, "M_1 = -M_2": -1}
 """Equal moments are opposed, as (4.4) counts the last one against positive rotation."""
 
 
+def _rational(text: str) -> fmpq:
+    return fmpq(*map(int, text.split("/")))
+
+
+def _steps(pieces: Iterable[tuple[str, str]], sign: int = 1) -> tuple[LoadStep, ...]:
+    return tuple(LoadStep(_rational(time), sign * _rational(weight)) for time, weight in pieces)
+
+
+_LOADS = tomllib.loads(Path(__file__).with_name("figure_loads.toml").read_text(encoding="utf-8"))
+
+
+@cache
 def loads(figure: int, sense: int = 1) -> tuple[TriedLoad, ...]:
-    """The loads that a figure is tried with."""
-    if figure == 6:
-        return (TriedLoad("impact", {"impact": _STEP}),)
-    if figure == 8:
-        return tuple(TriedLoad(name, pieces) for name, pieces in _QUAKES.items())
+    """The loads that a figure is tried with; of two moments the second has a `sense`."""
     return tuple(
-        TriedLoad(name, {"M1": steps, "M2": [Step(step.time, sense * step.weight) for step in steps]})
-        for name, steps in _MOMENTS.items()
+        TriedLoad(name, tuple((source, _steps(pieces, sense if source == "M2" else 1)) for source in sources.split()))
+        for name, given in _LOADS[str(figure)].items()
+        for sources, pieces in given.items()
     )
-
-
-Quantities = tuple[tuple[str, int, fmpq], ...]
-"""What a caption gives: letter, index (0 where there is none), value."""
 
 
 @dataclass(frozen=True)
 class Described:
-    """What a caption describes: a figure, and its quantities."""
+    """What a caption describes: a figure, and its quantities: letter, index (0 where there is none), value."""
 
     figure: int
-    quantities: Quantities
+    quantities: tuple[tuple[str, int, fmpq], ...]
 
     def curve(self, load: TriedLoad, quantity: str, place: str) -> Array:
         """An output under a load at the instants. MeaninglessError where there is none."""
         total = np.zeros(SAMPLES)
-        for source, steps in load.pieces.items():
-            unit = _unit(self, source, quantity, place)
+        for source, steps in load.pieces:
+            known = place in PLOTTED[self.figure].get(quantity, ())
+            unit = _units(self, source, None if known else (quantity, place))[f"{quantity}@{place}"]
             for step in steps:
                 late = int(step.time * (SAMPLES - 1) / UNTIL)
                 total[late:] += float(step.weight) * unit[: SAMPLES - late]
@@ -128,7 +106,7 @@ class Described:
         """The scene under a load, with the curves of its figure or others. MeaninglessError where it is none."""
         end = until or (contact_end(self) if self.figure == 6 else str(UNTIL))
         acting: list[Mapping[str, object]] = []
-        for source, steps in load.pieces.items():
+        for source, steps in load.pieces:
             times, weights = [str(step.time) for step in steps], [str(step.weight) for step in steps]
             if self.figure == 7:
                 acting.append({"body": int(source.removeprefix("M")), "times": times, "steps": weights})
@@ -146,13 +124,6 @@ class Described:
             raise MeaninglessError(str(error)) from None
 
 
-def _unit(described: Described, source: str, quantity: str, place: str) -> Array:
-    """An output under a unit of one source."""
-    plotted = PLOTTED[described.figure]
-    known = place in plotted.get(quantity, ())
-    return _units(described, source, None if known else (quantity, place))[f"{quantity}@{place}"]
-
-
 @cache
 def _units(described: Described, source: str, other: tuple[str, str] | None) -> Mapping[str, Array]:
     """The plotted outputs under a unit of one source, at once as they have much in common; or one that is not plotted.
@@ -161,7 +132,7 @@ def _units(described: Described, source: str, other: tuple[str, str] | None) -> 
     """
     outputs = None if other is None else {other[0]: (other[1],)}
     try:
-        reference = Reference(lower(described.scene(TriedLoad("unit", {source: _STEP}), outputs)))
+        reference = Reference(lower(described.scene(TriedLoad("unit", ((source, _steps([("0", "1")])),)), outputs)))
     except SceneError as error:
         raise MeaninglessError(str(error)) from None
     values = reference.values(np.linspace(0, reference.tau_max, SAMPLES).tolist())
@@ -186,7 +157,13 @@ def described(figure: int, formula: Tree) -> Described:
     scope = Scope()
     for equation in items(formula):
         left, right = sides(equation)
-        factor, symbol = _factor(ungrouped(left))
+        match ungrouped(left):
+            case Symbol() as symbol:
+                factor: Tree = Number("1")
+            case Product((Number() as factor, Symbol() as symbol)):
+                pass
+            case other:
+                raise MeaninglessError(f"{latex(other)} is no quantity")
         name = symbol.accent + symbol.name, (*scope.indices(symbol), 0)[0]
         if name in found:
             raise MeaninglessError(f"{latex(symbol)} is given twice")
@@ -196,41 +173,31 @@ def described(figure: int, formula: Tree) -> Described:
     return Described(figure, tuple((letter, index, value) for (letter, index), value in sorted(found.items())))
 
 
-def _factor(left: Tree) -> tuple[Tree, Symbol]:
-    match left:
-        case Symbol():
-            return Number("1"), left
-        case Product((Number() as factor, Symbol() as symbol)):
-            return factor, symbol
-    raise MeaninglessError(f"{latex(left)} is no quantity")
-
-
 def _system(described: Described) -> Mapping[str, object]:
     """The system of a scene. MeaninglessError where quantities are missing, or are too many."""
     values = {(letter, index): value for letter, index, value in described.quantities}
 
     def taken(letter: str, indices: Iterable[int]) -> list[fmpq]:
-        try:
-            return [values.pop((letter, index)) for index in indices]
-        except KeyError as error:
-            raise MeaninglessError(f"no {letter}_{error.args[0][1]}") from None
+        if missing := [index for index in indices if (letter, index) not in values]:
+            raise MeaninglessError(f"no {letter}_{missing[0]}")
+        return [values.pop((letter, index)) for index in indices]
 
     (size,) = taken("m", (0,))
     if size.denom() != 1 or size < 1:
         raise MeaninglessError(f"m = {size}")
     m = int(size.numer())
-    made: dict[str, object] = {"m": m}
+    made: dict[str, object]
     if described.figure == 6:
         bodies = range(1, m, 2)
-        made |= {"type": "collision", "kappa": _texts(taken(r"\kappa", bodies))}
-        made |= {"velocity": _texts(taken(r"\barv", bodies))}
+        kappa, velocity = taken(r"\kappa", bodies), taken(r"\barv", bodies)
+        made = {"type": "collision", "kappa": list(map(str, kappa)), "velocity": list(map(str, velocity))}
     elif described.figure == 7:
-        made |= {"type": "drive", **_drive(taken(r"\gamma", range(1, m + 2)))}
+        made = {"type": "drive", **_drive(taken(r"\gamma", range(1, m + 2)))}
     else:
-        made |= {"type": "building", "kappa": _texts(taken(r"\kappa", range(m + 1))), "base": "force"}
+        made = {"type": "building", "kappa": list(map(str, taken(r"\kappa", range(m + 1)))), "base": "force"}
     if values:
         raise MeaninglessError(f"m = {m} has no {', no '.join(f'{letter}_{index}' for letter, index in values)}")
-    return made
+    return {"m": m, **made}
 
 
 def _drive(rates: Sequence[fmpq]) -> Mapping[str, object]:
@@ -243,19 +210,7 @@ def _drive(rates: Sequence[fmpq]) -> Mapping[str, object]:
     return {"kappa": [str(kappa)], "inertia": ["1", str(kappa * second / rates[1])]}
 
 
-def _texts(values: Iterable[fmpq]) -> list[str]:
-    return [str(value) for value in values]
-
-
-@cache
-def section() -> Paper:
-    """The data of section 5."""
-    data = Path(__file__).with_name("data")
-    return read_paper([data / "section_5.toml"], data / "hashes.txt")
-
-
 @cache
 def figure(number: int) -> Described:
     """What the caption of a figure describes."""
-    (entry,) = (entry for entry in section().entries() if entry.id == f"Fig.{number}.caption")
-    return described(number, read_formula(entry.printed))
+    return described(number, read_formula(entry(f"Fig.{number}.caption").printed))

@@ -1,21 +1,25 @@
 """Section 5: the statements about Figs. 6, 7 and 8, on the exact motion of what their captions describe.
 
 The load curves of Figs. 7 and 8 are not in the text: a statement is tried under several loads, and is either said of
-all of them, or of those only that it names. A caption is judged by what is said of its figure.
+all of them, or of those only that it names. A caption is judged by what is said of its figure. The patterns of the
+sentences are in figure_sentences.toml.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache, partial
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from flint import fmpq
 
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.pielorz1979.figure_scenes import (
     PLOTTED,
@@ -27,18 +31,26 @@ from wavesym.papers.pielorz1979.figure_scenes import (
     described,
     figure,
     loads,
-    section,
 )
-from wavesym.papers.pielorz1979.figure_sentences import KINDS, Finding, Kind
+from wavesym.papers.pielorz1979.measures import BOUNDS, MEASURES, Finding
 from wavesym.papers.pielorz1979.scenes import written
+from wavesym.papers.pielorz1979.transcript import entries
 from wavesym.papers.reader import UnreadableError, read_formula
-from wavesym.papers.record import Case, Example, Nothing, Reading, Sentence, Test, case, shown
-from wavesym.papers.sentences import sentence_reader
+from wavesym.papers.record import Case, Nothing, Reading, Reproduction, Sentence, Test, case, shown
+from wavesym.papers.sentences import SentencePattern, sentence_reader
 from wavesym.papers.tree import Number, Relation, Tree, latex
 from wavesym.scene import lower
 
 NEAR = 0.01
 """How far a time that is read off a figure may be out, as a part of itself."""
+ONLY = ", under these loads only: "
+_KINDS: Mapping[str, Any] = tomllib.loads(Path(__file__).with_name("figure_sentences.toml").read_text(encoding="utf-8"))
+_READERS = {
+    number: sentence_reader(
+        SentencePattern(name, kind["text"], kind["words"]) for name, kind in _KINDS.items() if kind["figure"] == number
+    )
+    for number in PLOTTED
+}
 
 
 @dataclass(frozen=True)
@@ -48,14 +60,17 @@ class FigureStatement:
     sentence: Sentence
     only: tuple[str, ...] | None = None
 
-
-ONLY = ", under these loads only: "
+    @property
+    def bound(self) -> str:
+        """The word that it is judged by."""
+        judged = _KINDS[self.sentence.pattern]["bound"]
+        return self.sentence.words.get(judged, judged)
 
 
 def read(number: int, printed: str) -> FigureStatement:
     """The statement of a sentence about a figure; UnreadableError."""
     said, only, names = printed.partition(ONLY)
-    sentence = sentence_reader(kind.pattern for kind in KINDS[number]).read(said, ()).formula
+    sentence = _READERS[number].read(said, ()).formula
     chosen = tuple(names.split("; ")) if only else None
     if unknown := set(chosen or ()) - {load.name for load in loads(number)}:
         raise UnreadableError(f"no load is called {', '.join(sorted(unknown))}")
@@ -65,30 +80,19 @@ def read(number: int, printed: str) -> FigureStatement:
 def _faults(number: int, right: Reading) -> Iterator[tuple[str, Reading]]:
     """Every other word in every place, and every load in or out of those named."""
     said: FigureStatement = right.formula
-    for change, wrong in sentence_reader(kind.pattern for kind in KINDS[number]).faults(Reading(said.sentence)):
+    for change, wrong in _READERS[number].faults(Reading(said.sentence)):
         yield change, Reading(FigureStatement(wrong.formula, said.only))
-    if said.only is not None:
-        for load in loads(number):
-            others = tuple(name for name in said.only if name != load.name)
-            if len(others) < len(said.only):
-                yield f"not under {load.name}", Reading(FigureStatement(said.sentence, others))
-            else:
-                yield f"under {load.name} too", Reading(FigureStatement(said.sentence, (*others, load.name)))
-
-
-def kind_of(statement: FigureStatement) -> Kind:
-    """What its sentence means."""
-    return _kinds()[statement.sentence.pattern]
-
-
-@cache
-def _kinds() -> Mapping[str, Kind]:
-    return {kind.pattern.name: kind for kinds in KINDS.values() for kind in kinds}
+    for load in loads(number) if said.only is not None else ():
+        others = tuple(name for name in said.only or () if name != load.name)
+        named = load.name in (said.only or ())
+        change = f"not under {load.name}" if named else f"under {load.name} too"
+        yield change, Reading(FigureStatement(said.sentence, others if named else (*others, load.name)))
 
 
 def meaning(statement: FigureStatement) -> str:
     """The same in words."""
-    return kind_of(statement).meaning(statement.sentence.words)
+    told: str = _KINDS[statement.sentence.pattern]["meaning"]
+    return told.format(**{**statement.sentence.words, "bound": BOUNDS[statement.bound][0]})
 
 
 def tried(number: int, statement: FigureStatement) -> tuple[TriedLoad, ...]:
@@ -98,23 +102,23 @@ def tried(number: int, statement: FigureStatement) -> tuple[TriedLoad, ...]:
 
 def finding(scene: Described, load: TriedLoad, statement: FigureStatement) -> Finding:
     """What is measured under a load. MeaninglessError where there is nothing to measure."""
-    return _measured(scene, load.name, statement.sentence)
+    (drawn,) = (drawn for drawn in tried(scene.figure, statement) if drawn.name == load.name)
+    return _measured(scene, drawn, statement.sentence)
 
 
 @cache
-def _measured(scene: Described, name: str, sentence: Sentence) -> Finding:
-    (load,) = (load for load in tried(scene.figure, FigureStatement(sentence)) if load.name == name)
-    return _kinds()[sentence.pattern].measured(sentence.words, partial(scene.curve, load))
+def _measured(scene: Described, load: TriedLoad, sentence: Sentence) -> Finding:
+    return MEASURES[_KINDS[sentence.pattern]["measure"]](sentence.words, partial(scene.curve, load))
 
 
 def true(scene: Described, load: TriedLoad, statement: FigureStatement) -> bool:
     """Whether what a sentence says is so under a load. MeaninglessError."""
-    return kind_of(statement).true(statement.sentence.words, finding(scene, load, statement).value)
+    return BOUNDS[statement.bound][1](finding(scene, load, statement).value)
 
 
 def statements(number: int) -> dict[str, FigureStatement]:
     """What is printed of a figure, by id."""
-    return {entry.id: read(number, entry.printed) for entry in _of(number) if entry.kind == "figure"}
+    return {entry.id: read(number, entry.printed) for entry in _of(number, "figure")}
 
 
 def findings(number: int, statement: FigureStatement) -> list[tuple[TriedLoad, Finding]]:
@@ -122,14 +126,14 @@ def findings(number: int, statement: FigureStatement) -> list[tuple[TriedLoad, F
     return [(load, finding(figure(number), load, statement)) for load in tried(number, statement)]
 
 
-def _of(number: int) -> list[Entry]:
-    return [entry for entry in section().entries() if entry.about.get("figure") == number]
+def _of(number: int, kind: str) -> Iterable[PaperEntry]:
+    return (entry for entry in entries().values() if entry.about.get("figure") == number and entry.kind == kind)
 
 
 # The adapters
 
 
-def said_of_figure(entry: Entry) -> Test:
+def said_of_figure(entry: PaperEntry) -> Test:
     """A sentence about a figure."""
     number = entry.about["figure"]
     base = " (the base of (4.5))" if number == 8 else ""
@@ -154,7 +158,7 @@ def _cases(scene: Described, said: FigureStatement) -> Iterator[Case]:
         yield Case(at, claimed, is_so, example=partial(_example, scene, load, found))
 
 
-def _observed(scene: Described, entry: Entry) -> str:
+def _observed(scene: Described, entry: PaperEntry) -> str:
     """Every load with its outcome."""
     try:
         said = read(scene.figure, entry.printed)
@@ -176,12 +180,12 @@ def _outcomes(scene: Described, said: FigureStatement) -> str:
     return "; ".join(f"{'true' if so else 'false'} under {', '.join(names)}" for so, names in outcomes.items() if names)
 
 
-def _example(scene: Described, load: TriedLoad, found: Finding) -> Example:
+def _example(scene: Described, load: TriedLoad, found: Finding) -> Reproduction:
     """The scene of a case, and where to look: the values of its curves at the spots."""
     points = dict.fromkeys(point for spot in found.spots for point in spot)
     outputs: dict[str, list[str]] = {}
-    for place in dict.fromkeys((point.quantity, point.place) for point in points):
-        outputs.setdefault(place[0], []).append(place[1])
+    for quantity, place in dict.fromkeys((point.quantity, point.place) for point in points):
+        outputs.setdefault(quantity, []).append(place)
     look = ", ".join(
         f"{point.output} = {scene.curve(load, point.quantity, point.place)[point.instant]:.4g}"
         f" at tau = {scene.instants[point.instant]:.6g}"
@@ -190,13 +194,13 @@ def _example(scene: Described, load: TriedLoad, found: Finding) -> Example:
     return _shown(scene, load, outputs or PLOTTED[scene.figure], look or "fewer than three swings")
 
 
-def _shown(scene: Described, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Example:
+def _shown(scene: Described, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Reproduction:
     model = lower(scene.scene(load))
-    text = written(model.chain, load.pieces, model.until, outputs)
-    return Example(text, f"wavesym run SCENE --samples {SAMPLES}", look)
+    text = written(model.chain, dict(load.pieces), model.until, outputs)
+    return Reproduction(text, f"wavesym run SCENE --samples {SAMPLES}", look)
 
 
-def caption_of_figure(entry: Entry) -> Test:
+def caption_of_figure(entry: PaperEntry) -> Test:
     """The quantities of a figure: what is said of it must be true of the scene that they describe."""
     number = entry.about["figure"]
     return Test(
@@ -208,36 +212,31 @@ def caption_of_figure(entry: Entry) -> Test:
 def _described_cases(number: int, formula: Tree) -> Iterator[Case]:
     """Each sentence, as printed, under some load at least: the load curves are not in the text."""
     scene = described(number, formula)
-    for entry in _of(number):
-        if entry.kind == "contact":
-            at = {"said": entry.printed, "allowed": f"{NEAR:.0%}"}
-            yield case(at, partial(_near, scene, entry), True)
-        elif entry.kind == "figure":
-            yield case({"said": entry.printed}, partial(_under_some_load, scene, entry.printed), True)
+
+    def near(read_off: float) -> bool:
+        return abs(float(contact_end(scene)) - read_off) <= NEAR * read_off
+
+    def under_some_load(printed: str) -> bool:
+        try:
+            said = read(number, printed)
+        except UnreadableError as error:
+            raise MeaninglessError(str(error)) from None
+        return any(true(scene, load, said) for load in tried(number, said))
+
+    for entry in _of(number, "contact"):
+        yield case({"said": entry.printed, "allowed": f"{NEAR:.0%}"}, partial(near, printed_end(entry)), True)
+    for entry in _of(number, "figure"):
+        yield case({"said": entry.printed}, partial(under_some_load, entry.printed), True)
 
 
-def _under_some_load(scene: Described, printed: str) -> bool:
-    try:
-        said = read(scene.figure, printed)
-    except UnreadableError as error:
-        raise MeaninglessError(str(error)) from None
-    return any(true(scene, load, said) for load in tried(scene.figure, said))
-
-
-def _near(scene: Described, entry: Entry) -> bool:
-    """Whether the contact opens near the time that is printed."""
-    read_off = printed_end(entry)
-    return abs(float(contact_end(scene)) - read_off) <= NEAR * read_off
-
-
-def end_of_contact(entry: Entry) -> Test:
+def end_of_contact(entry: PaperEntry) -> Test:
     """When the contact of Fig. 6 opens: to as many places as are printed."""
     return Test("when the contact at x = 2 opens, in ball arithmetic", lambda said: _end_cases(said.formula))
 
 
-def printed_end(entry: Entry) -> float:
+def printed_end(entry: PaperEntry) -> float:
     """The time that a record of this kind gives."""
-    return float(Scope().value(_approximate(read_formula(entry.printed))[1]))
+    return float(_approximate(read_formula(entry.printed))[1].digits)
 
 
 def _approximate(formula: Tree) -> tuple[Tree, Number]:
@@ -256,7 +255,7 @@ def _end_cases(formula: Tree) -> Iterator[Case]:
     yield Case({"x": 2, "places": places}, number.digits, opens, example=partial(_opening, float(number.digits)))
 
 
-def _opening(read_off: float) -> Example:
+def _opening(read_off: float) -> Reproduction:
     """The strain of the contact, until it is 0 again."""
     (load,) = loads(6)
     scene = figure(6)

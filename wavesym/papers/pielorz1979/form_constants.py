@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import product
 from typing import Any
 
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, span
 from wavesym.papers.exact_tables import INTERVALS as TABULATED
 from wavesym.papers.exact_tables import Exact, drive
@@ -46,7 +46,7 @@ class RateScope(Scope):
         return known(values, self.indices(symbol)[0], symbol.name)
 
 
-def rate(entry: Entry) -> Test:
+def rate(entry: PaperEntry) -> Test:
     """Adapter: gamma_i; the formulas of (4.11) together give every one once."""
     others = [corrected(other) for other in paper().entries() if other.kind == "rate" and other.id != entry.id]
     return Test(
@@ -97,7 +97,7 @@ def _later(scope: RateScope, place: Mapping[str, int], tree: Tree) -> Callable[[
     return value
 
 
-def definition(entry: Entry) -> Test:
+def definition(entry: PaperEntry) -> Test:
     """Adapter: L_0, r_0 and r_1, by what Table 3 makes of them."""
     form = Form.of("II", corrected(transcribed("(4.10)")))
 

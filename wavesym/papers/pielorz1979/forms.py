@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from flint import fmpq
 
 from wavesym.exact.increments import Increment
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sides, span
 from wavesym.papers.exact_tables import Exact, building, collision, drive
 from wavesym.papers.mutations import ends
@@ -25,9 +25,9 @@ from wavesym.papers.pielorz1979 import limits
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcript import entry as transcribed
 from wavesym.papers.pielorz1979.transcript import paper
-from wavesym.papers.pielorz1979.truth import Driven, loads
+from wavesym.papers.pielorz1979.truth import DrivenChain, loads
 from wavesym.papers.reader import read_formula, read_range
-from wavesym.papers.record import Case, Example, Reading, Test, by_size, case
+from wavesym.papers.record import Case, Reading, Reproduction, Test, by_size, case
 from wavesym.papers.tree import Call, Progression, Symbol, Tree, latex
 
 INTERVALS = {"I": 4, "II": 2, "III": 4}
@@ -45,10 +45,10 @@ Definitions = Mapping[tuple[str, tuple[int, ...]], Tree]
 
 
 @cache
-def moved(name: str, m: int) -> Driven:
+def moved(name: str, m: int) -> DrivenChain:
     """An example under loads of several pieces; the building has equal floors, as (4.12) says."""
     exact = _TABLES[name](m)
-    return Driven(exact, loads(exact))
+    return DrivenChain(exact, loads(exact))
 
 
 def rates(exact: Exact) -> dict[int, fmpq]:
@@ -91,7 +91,7 @@ class FormScope(Scope):
     nothing else is said.
     """
 
-    def __init__(self, form: Form, driven: Driven, letter: str, definitions: Definitions | None = None) -> None:
+    def __init__(self, form: Form, driven: DrivenChain, letter: str, definitions: Definitions | None = None) -> None:
         super().__init__({"m": driven.exact.m})
         self._form, self._driven, self._letter = form, driven, letter
         self._definitions = definitions or read_definitions()
@@ -232,7 +232,7 @@ def only(letters: str, ranges: Sequence[Tree]) -> Progression:
     raise MeaninglessError(f"the range of {letters} is not given")
 
 
-def form(entry: Entry) -> Test:
+def form(entry: PaperEntry) -> Test:
     """Adapter: a form whole, for all functions of its table."""
     name = entry.about["example"]
 
@@ -276,14 +276,14 @@ def starts(name: str, n: int) -> Iterator[tuple[int, int]]:
     yield from ((2 * n, 2 * n + 1), (2 * n + 1, 2 * n + 2)) if name == "II" else ((2 * n, n + 1),)
 
 
-def _compared(scope: FormScope, driven: Driven, function: tuple[str, int], number: int, z: fmpq) -> Case:
+def _compared(scope: FormScope, driven: DrivenChain, function: tuple[str, int], number: int, z: fmpq) -> Case:
     letter, rod = function
     true = driven.wave(letter, rod, z)
     at = {"m": driven.exact.m, "function": f"{letter}'_{rod}", "z": z, "interval": number}
     return case(at, lambda: scope.total(rod, number, z), true, true != 0, shown(driven.exact, letter, rod, number))
 
 
-def shown(exact: Exact, letter: str, rod: int, number: int) -> Callable[[], Example]:
+def shown(exact: Exact, letter: str, rod: int, number: int) -> Callable[[], Reproduction]:
     """The scene of a chain under its loads, and where its table has what a function gains in an interval."""
     return lambda: example(
         exact,
@@ -295,7 +295,7 @@ def shown(exact: Exact, letter: str, rod: int, number: int) -> Callable[[], Exam
     )()
 
 
-def interval(entry: Entry) -> Test:
+def interval(entry: PaperEntry) -> Test:
     """Adapter: where z lies when a form is said to hold."""
     told = transcribed(entry.about["form"])
     name = told.about["example"]
@@ -343,7 +343,7 @@ def _interval_cases(form: Form, reading: Reading) -> Iterator[Case]:
                     yield _compared(scope, driven, (letter, rod), number, z)
 
 
-def corrected(entry: Entry) -> Reading:
+def corrected(entry: PaperEntry) -> Reading:
     """A record as it holds."""
     text, ranges = (entry.slip.corrected, entry.slip.ranges) if entry.slip else (entry.printed, None)
     said = entry.ranges if ranges is None else ranges

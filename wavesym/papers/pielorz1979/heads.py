@@ -13,16 +13,16 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.exact.table import Function
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import holds
 from wavesym.papers.exact_tables import Exact
 from wavesym.papers.pielorz1979.cells import KINDS, Indices, listed, numbers, right, right_ranges, value
 from wavesym.papers.pielorz1979.transcript import entries
-from wavesym.papers.pielorz1979.truth import Driven, Step, instants
+from wavesym.papers.pielorz1979.truth import DrivenChain, LoadStep, instants
 from wavesym.papers.record import Case, Reading, Test
 
 
-def interval_or_size(entry: Entry) -> Test:
+def interval_or_size(entry: PaperEntry) -> Test:
     """A range in the head of a table: instants z and numbers n, or sizes m."""
     if entry.about.get("of") == "m":
         return Test("the functions that the derived laws tell apart, for every m", partial(_covered, entry))
@@ -32,12 +32,12 @@ def interval_or_size(entry: Entry) -> Test:
     )
 
 
-def function(entry: Entry) -> Test:
+def function(entry: PaperEntry) -> Test:
     """The functions that a row or column is about."""
     return Test("the functions that the derived laws tell apart, for every m", partial(_covered, entry))
 
 
-def _covered(entry: Entry, reading: Reading) -> Iterator[Case]:
+def _covered(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
     """Every function once; those that differ by a delay, or in the first interval alone, are one."""
     table = entry.id[:2]
     group = entry.id.rsplit(".", 1)[0] if table == "T3" else table
@@ -83,7 +83,7 @@ def _alike(exact: Exact, one: tuple[str, int], other: tuple[str, int]) -> bool:
     )
 
 
-def _intervals(entry: Entry, reading: Reading) -> Iterator[Case]:
+def _intervals(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
     """Every z from 0 on is in one interval, and what has been gained up to it is the motion."""
     table = entry.id[:2]
     kind = KINDS[table]
@@ -101,10 +101,10 @@ def _intervals(entry: Entry, reading: Reading) -> Iterator[Case]:
 
 
 @cache
-def _motion(table: str, m: int) -> Driven:
+def _motion(table: str, m: int) -> DrivenChain:
     """A chain under a unit of every source, from z = 0 on."""
     exact = KINDS[table].tables(m)
-    return Driven(exact, {source: (Step(fmpq(0), fmpq(1)),) for source in exact.responses})
+    return DrivenChain(exact, {source: (LoadStep(fmpq(0), fmpq(1)),) for source in exact.responses})
 
 
 @cache

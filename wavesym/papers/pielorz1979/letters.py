@@ -1,227 +1,235 @@
-"""What the letters of section 4 mean on a chain under loads: in exact numbers, and in symbols as in the derivation."""
+"""What the letters of sections 2 to 4 mean on a chain that moves under loads, in exact numbers."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
-from dataclasses import fields, is_dataclass, replace
-from functools import lru_cache, partial
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from flint import fmpq
-from sympy import Add, Expr, Function, IndexedBase, Integer, Sum, expand, latex
-from sympy import Symbol as Letter
+from sympy.tensor.indexed import IndexException
 
-from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
-from wavesym.derivation.delay_terms import Line
-from wavesym.model.node import Parameters
-from wavesym.papers.evaluation import MeaninglessError, Scope, sides
-from wavesym.papers.pielorz1979.truth import Driven
-from wavesym.papers.record import Case, Example, Nothing, Reading, case, shown
-from wavesym.papers.tree import Progression, Series, Symbol, Tree
-from wavesym.papers.tree import latex as latex_of
+from wavesym.model.chain import Chain
+from wavesym.papers.evaluation import MeaninglessError, Scope
+from wavesym.papers.jets import Jet
+from wavesym.papers.pielorz1979.truth import DrivenChain
+from wavesym.papers.record import shown
+from wavesym.papers.tree import Call, Derivative, Symbol, Tree, latex
 
-K, Z = Letter("k"), Letter("z")
-STEP = Function("H")
-_M, _A, _B, _T, _LAST = (IndexedBase(name) for name in ("M", "a", "b", "tau", "m"))
+Displaced = Callable[[int, Jet, Jet], Jet]
+"""The displacement of a rod at a place and an instant, without dimensions."""
+
+_C_F = Symbol("c", below=(Symbol("f"),))
+_ANY_V_0 = fmpq(7, 5)
 
 
-class Letters(Scope):
-    """Parameters and loads, by their indices as they stand."""
+def letter(symbol: Symbol) -> str:
+    """A letter with its marks, but without its indices."""
+    return symbol.accent + symbol.name + "'" * symbol.primes
 
-    parameters: Parameters
+
+class IndexedLetters(Scope):
+    """Letters as functions of their indices, functions as those of their indices and arguments; each by `letter`."""
+
+    def __init__(self, bound: Mapping[str, Any], constants: Mapping[Tree, Tree] | None = None) -> None:
+        super().__init__(bound, constants)
+        self.letters: dict[str, Callable[..., Any]] = {}
+        self.functions: dict[str, Callable[..., Any]] = {}
 
     def symbol(self, symbol: Symbol) -> Any:
+        return self.meaning(self.letters, symbol)
+
+    def call(self, call: Call) -> Any:
+        return self.meaning(self.functions, call.function, *map(self.value, call.arguments))
+
+    def meaning(self, known: Mapping[str, Callable[..., Any]], symbol: Symbol, *arguments: Any) -> Any:
+        """What a letter or function is there; MeaninglessError where it is not known, or has not these indices."""
+        if (means := known.get(letter(symbol))) is None or symbol.above:
+            raise MeaninglessError(f"{latex(symbol)} is not defined")
         index = self.indices(symbol)
-        if not (symbol.above or symbol.primes):
-            match symbol.accent + symbol.name, index:
-                case r"\kappa", (i,):
-                    return self.parameter("kappa", i)
-                case "J", (i,):
-                    return self.parameter("inertia", i)
-                case r"\barv", (i,):
-                    return self.parameter("velocity", i)
-                case r"\barA", (i,):  # in the unit of moment G J_01 theta_0 / l
-                    return self.parameter("kappa", 1) * self.parameter("inertia", 1) / self.parameter("inertia", i)
-                case r"\barM", (s, k):
-                    return self.piece("M", s, k)
-                case "a" | "b" | r"\bara" | r"\barb", (k,):
-                    return self.piece(symbol.name, None, k)
-                case r"\tau", (*s, k) if len(s) < 2:
-                    return self.start(s[0] if s else None, k)
-                case "m", (s,):
-                    return self.last(s)
-        return super().symbol(symbol)
-
-    def parameter(self, name: str, index: Any) -> Any:
-        """A parameter of the chain; MeaninglessError."""
         try:
-            return getattr(self.parameters, name)[index]
-        except (KeyError, TypeError):
-            raise MeaninglessError(f"there is no {name}_{index}") from None
-
-    @abstractmethod
-    def piece(self, source: str, number: Any, k: Any) -> Any:
-        """How much piece k of a load is: M of body `number`, a or b of the ground."""
-
-    @abstractmethod
-    def start(self, number: Any, k: Any) -> Any:
-        """When piece k begins: of the moment on body `number`, or of the ground's acceleration."""
-
-    @abstractmethod
-    def last(self, number: Any) -> Any:
-        """The number of the last piece."""
+            return means(*index, *arguments)
+        except (LookupError, TypeError, IndexException):
+            told = f"with indices {shown(index)}" if index else "without an index"
+            raise MeaninglessError(f"{latex(symbol)} is not defined {told}") from None
 
 
-class Numbers(Letters):
-    """Exact numbers on a chain under loads; `seen` tells whether anything moved where it was looked at."""
+@dataclass(frozen=True)
+class Units:
+    """The speed of sound, the length of a rod, the unit of displacement."""
 
-    def __init__(self, driven: Driven, bound: Mapping[str, Any] | None = None) -> None:
-        super().__init__({"m": driven.exact.m, **(bound or {})})
-        self.driven = driven
-        self.parameters = driven.exact.chain.parameters
-        self.seen = False
+    c_f: fmpq
+    l: fmpq  # noqa: E741 - the paper's letter
+    U_0: fmpq
 
-    def moved(self, value: Any) -> Any:
-        """The value, noted as seen where it is not 0."""
-        self.seen = self.seen or value != 0
+
+_ONES = Units(fmpq(1), fmpq(1), fmpq(1))
+
+
+class Moving(IndexedLetters):
+    """The letters on the motion of a chain; `seen` tells whether anything moved where it was looked at.
+
+    A velocity with a bar is that of a body. `most` is the highest derivative that is asked for.
+    """
+
+    def __init__(self, motion: DrivenChain, units: Units = _ONES, constants: Mapping[Tree, Tree] | None = None) -> None:
+        self.units = units
+        super().__init__({"m": motion.exact.m, "l": units.l}, constants)
+        self.motion, self.chain, self.seen, self.most = motion, motion.exact.chain, False, 2
+        parameters, late = self.chain.parameters, units.l / units.c_f
+        self.letters = {
+            r"\kappa": parameters.kappa.__getitem__,
+            "J": (parameters.inertia or {}).__getitem__,
+            # in the unit of moment G J_01 theta_0 / l
+            r"\barA": lambda i: parameters.kappa[1] * parameters.inertia[1] / parameters.inertia[i],
+            r"\barv": (parameters.velocity or {}).__getitem__,
+            "v": lambda i: self.velocity(i) * units.U_0 / late if i else _ANY_V_0,
+            "m": lambda i: len(motion.loads[self._source(i)]) - 1,
+            r"\tau": self._start,
+            "t": lambda *index: self._start(*index) * late,
+            r"\barx": lambda *index: self._first(*index).x0 if index else self.bound[r"\bar{x}"],
+            "x": lambda *index: self._first(*index).x0 * units.l,
+            "U": {0: units.U_0}.__getitem__,
+            r"\ddoty": self._ground,
+            **dict.fromkeys(("M", r"\barM"), lambda i, k: self._weight(f"M{i}", k)),
+        }
+        self.functions = {
+            "M": lambda i, t: motion.load(self._source(i), t),
+            "U": self._displaced,
+            r"\barU": lambda i, x, tau: self.displacement(i, Jet.of(x), Jet.of(tau)),
+        }
+        for source in "ab":
+            self.letters |= dict.fromkeys((source, rf"\bar{source}"), partial(self._weight, source))
+        for wave in "fg":
+            physical = rf"\mathcal{wave.upper()}"
+            self.letters[physical] = partial(self._in_physical_units, wave)
+            self.functions |= {wave: partial(self._along, wave), physical: partial(self._in_physical_units, wave)}
+            self.functions |= {wave + "'" * order: partial(self.wave, wave, order) for order in (1, 2, 3)}
+
+    def symbol(self, symbol: Symbol) -> Any:
+        return self.units.c_f if symbol == _C_F else super().symbol(symbol)
+
+    def derivative(self, derivative: Derivative) -> Any:
+        by = latex(derivative.by)
+        if by not in self.bound or derivative.order > 2:
+            raise MeaninglessError(f"{latex(derivative)} is not defined")
+        self.most = derivative.order
+        try:
+            with self.binding({by: Jet(self.bound[by], 1)}):
+                found = Jet.of(self.value(derivative.of))
+        finally:
+            self.most = 2
+        return found.first if derivative.order == 1 else found.second
+
+    def at(self, x: Any, tau: Any) -> Mapping[str, Any]:
+        """A place and an instant, in both units."""
+        units = self.units
+        return {"x": x * units.l, "t": tau * (units.l / units.c_f), r"\bar{x}": x, r"\tau": tau}
+
+    def wave(self, name: str, order: int, rod: int, z: Any) -> Any:
+        """f or g, or a derivative; MeaninglessError."""
+        value = self.motion.wave(name, rod, z, order)
+        self.seen = self.seen or (order > 0 and value != 0)
         return value
 
-    def piece(self, source: str, number: Any, k: int) -> Any:
-        return self._piece(source if number is None else f"{source}{number}", k).weight
+    def _along(self, name: str, rod: int, z: Any) -> Jet:
+        at = Jet.of(z)
+        return at.of_function(lambda order: self.wave(name, order, rod, at.value), self.most)
 
-    def start(self, number: Any, k: int) -> Any:
-        return self._piece("a" if number is None else f"M{number}", k).time
+    def _in_physical_units(self, name: str, rod: int, z: Any = None) -> Jet:
+        """F or G; where no argument is printed, of z."""
+        return self._along(name, rod, self.bound["z"] if z is None else Jet.of(z) / self.units.l) * self.units.U_0
 
-    def last(self, number: int) -> int:
-        """(3.1) has an m_i for every moment, (3.2) an m_1."""
-        source = "a" if number == 1 and "a" in self.driven.loads else f"M{number}"
-        return len(self._pieces(source)) - 1
+    def displacement(self, rod: int, x: Jet, tau: Jet) -> Jet:
+        """The motion of a rod, without dimensions; MeaninglessError outside the rod and before the start."""
+        if not rod - 1 <= x.value <= rod or not 1 <= rod <= self.chain.m:
+            raise MeaninglessError(f"rod {rod} does not reach to {x.value} l")
+        if tau.value < 0:
+            raise MeaninglessError("the motion begins at t = 0")
+        numbers = (fmpq(n) for at in (x, tau) for n in (at.value, at.first, at.second))
+        key = ("displacement", rod, self.most, *((int(n.p), int(n.q)) for n in numbers))
+        if key not in self.motion.known:
+            clock = self.chain.rod(rod)
+            f = self._along("f", rod, tau - x + (clock.x0 - clock.tau0))
+            g = self._along("g", rod, tau + x - (clock.x0 + clock.tau0))
+            changes = any(part != 0 for part in (f.first, f.second, g.first, g.second))
+            self.motion.known[key] = f + g + tau * clock.velocity, changes
+        moved: Jet
+        moved, changes = self.motion.known[key]
+        self.seen = self.seen or changes
+        return moved
 
-    def _piece(self, source: str, k: int) -> Any:
-        pieces = self._pieces(source)
-        if not 0 <= k < len(pieces):
-            raise MeaninglessError(f"load {source} has no piece {k}")
-        return pieces[k]
+    def _displaced(self, *at: Any) -> Jet:
+        """In physical units; without a number, of the rod that is there."""
+        *rod, x, t = at
+        place, tau = Jet.of(x) / self.units.l, Jet.of(t) * (self.units.c_f / self.units.l)
+        number = rod[0] if rod else -int((-place.value).floor())
+        return self.displacement(number, place, tau) * self.units.U_0
 
-    def _pieces(self, source: str) -> Any:
-        if source not in self.driven.loads:
-            raise MeaninglessError(f"there is no load {source}")
-        return self.driven.loads[source]
+    def unit(self, displacement: Symbol) -> Any:
+        """In which a displacement is counted that is called so."""
+        return 1 if displacement.accent else self.units.U_0
 
+    def velocity(self, rod: int) -> fmpq:
+        """How fast the body is at the start that a rod is fixed to; MeaninglessError."""
+        self._first(0, rod)
+        return body_velocity(self.chain, rod)
 
-class Symbols(Letters):
-    """Expressions in symbolic i and m; z is the clock."""
+    def law(self, x: int, tau: fmpq, displaced: Displaced) -> tuple[Any, Any]:
+        """What displacements mean for a node: a step of velocity, and what has to act there."""
+        node, place, time = self.chain.nodes[x], Jet(fmpq(x), 1), Jet(tau, 1)
+        moving = [displaced(rod, Jet(fmpq(x)), time) for rod in rods_at(self.chain, x)]
+        force = node.inertia * moving[0].second + node.damping * moving[0].first
+        if node.left:
+            force = force + node.alpha / 2 * displaced(x, place, Jet(tau)).first
+        if node.right:
+            force = force - node.beta / 2 * displaced(x + 1, place, Jet(tau)).first
+        return moving[-1].first - moving[0].first, force
 
-    parameters = SYMBOLS
+    def acting(self, x: int, tau: fmpq) -> Any:
+        """What acts on a node, by the exact motion."""
+        return self.law(x, tau, self.displacement)[1]
 
-    def __init__(self, bound: Mapping[str, Any] | None = None) -> None:
-        super().__init__({"i": INDEX, "m": COUNT, "z": Z, r"\tau": Z, "t": Z, "l": Integer(1), **(bound or {})})
+    def _source(self, number: int) -> str:
+        """Of a drive its moment with a number; a building has load number 1 alone. LookupError."""
+        name = "a" if number == 1 and "a" in self.motion.loads else f"M{number}"
+        if name not in self.motion.loads:
+            raise LookupError(name)
+        return name
 
-    def literal(self, value: Any) -> Any:
-        return Integer(value)
+    def _ground(self, zero: int) -> Any:
+        """The acceleration of the ground, y_0 with two dots. LookupError."""
+        if zero != 0:
+            raise LookupError(zero)
+        return self.motion.load("a", self.bound["t"]) + self.motion.load("b", self.bound["t"], 1)
 
-    def series(self, series: Series) -> Any:
-        with self.binding({series.variable.name: K}):
-            body = self.value(series.body)
-        return added(body, self.value(series.last), self.value(series.first))
+    def _weight(self, source: str, k: int) -> fmpq:
+        return self.motion.piece(source, k).weight
 
-    def whole(self, tree: Tree) -> Any:
-        return expand(self.value(tree))
+    def _start(self, *index: int) -> fmpq:
+        """tau_(s,k) and tau_k of a piece of a load, tau_(0,i) of a rod."""
+        *number, k = index
+        if number == [0]:
+            return fmpq(self._first(0, k).tau0)
+        source = f"M{number[0]}" if number else "a"
+        if source not in self.motion.loads:
+            raise LookupError(source)
+        return self.motion.piece(source, k).time
 
-    def step(self, value: Any) -> Any:
-        return STEP(expand(value))
-
-    def piece(self, source: str, number: Any, k: Any) -> Any:
-        return {"M": _M, "a": _A, "b": _B}[source][k if number is None else (number, k)]
-
-    def start(self, number: Any, k: Any) -> Any:
-        return _T[k if number is None else (number, k)]
-
-    def last(self, number: Any) -> Any:
-        return _LAST[number]
-
-
-def added(body: Expr, last: Expr, first: Expr | int = 0) -> Expr:
-    """A sum over k, each of its terms apart."""
-    return Add(*(Sum(term, (K, first, last)) for term in Add.make_args(expand(body))))
-
-
-def wave(letter: str, order: int, rod: Expr, lag: Expr) -> Expr:
-    """A derivative of f or g, as one symbol."""
-    late = "z" if lag == 0 else f"z-{latex(lag)}"
-    return Letter(rf"{letter}{chr(39) * order}_{{{latex(rod)}}}({late})")
-
-
-def expression(line: Line) -> Expr:
-    """A derived line as an expression, with all pieces of its loads."""
-    total = Integer(0)
-    for (letter, rod, lag), (a, b) in line.waves.items():
-        total += a * wave(letter, 2, rod, lag) + b * wave(letter, 1, rod, lag)
-    for (kind, number, lag, power), value in line.loads.items():
-        if kind == "impact":
-            total += value
-            continue
-        weight, start = ({"a": _A, "b": _B}[kind][K], _T[K]) if number is None else (_M[number, K], _T[number, K])
-        since = Z - lag - start
-        total += value * added(weight * since**power * STEP(expand(since)), _LAST[1 if number is None else number])
-    return total
-
-
-def told(difference: Expr) -> str:
-    """A difference as mathematics: each quantity with what stands before it."""
-    rest = expand(difference)
-    if rest == 0:
-        return "0"
-    parts = []
-    for atom in sorted(rest.atoms(Sum) | {s for s in rest.atoms(Letter) if "(" in s.name}, key=str):
-        factor = rest.coeff(atom)
-        if factor != 0:
-            parts.append(f"({latex(factor)}) {latex(atom)}")
-            rest = expand(rest - factor * atom)
-    return " + ".join(parts + ([latex(rest)] if rest != 0 else []))
+    def _first(self, zero: int, rod: int) -> Any:
+        """Where and when the first disturbance reaches a rod."""
+        if zero != 0 or not 1 <= rod <= self.chain.m:
+            raise MeaninglessError(f"there is no rod {rod}")
+        return self.chain.rod(rod)
 
 
-@lru_cache(maxsize=1000)
-def within(tree: Tree) -> tuple[Any, ...]:
-    """A tree and all its parts."""
-    return tuple(_within(tree))
+def rods_at(chain: Chain, x: int) -> tuple[int, ...]:
+    """The numbers of the rods at a node."""
+    return tuple(rod for rod in (x, x + 1) if 1 <= rod <= chain.m)
 
 
-def _within(tree: Any) -> Iterator[Any]:
-    yield tree
-    for field in fields(tree):
-        value = getattr(tree, field.name)
-        for part in value if isinstance(value, tuple) else (value,):
-            if is_dataclass(part):
-                yield from _within(part)
-
-
-def ranges_of(reading: Reading, letters: Container[str]) -> Mapping[str, Progression]:
-    """The ranges by their variables; MeaninglessError for one of something else than these letters."""
-    found = {latex_of(r.variable): r for r in reading.ranges if isinstance(r, Progression)}
-    if len(found) < len(reading.ranges) or any(letter not in letters for letter in found):
-        raise MeaninglessError("a range of something else")
-    return found
-
-
-def left_over(
-    equation: Tree,
-    at: Mapping[str, object],
-    clock: str,
-    scopes: Iterable[tuple[fmpq, Numbers]],
-    seen: Callable[[fmpq, str], Callable[[], Example] | None],
-) -> Iterator[Case]:
-    """An equation at instants: what is left of it, and where that is `seen`."""
-    left, right = sides(equation)
-    for instant, scope in scopes:
-        tried = partial(_less, scope, left, right)
-        found = case({**at, f"left less right side at {clock}": instant}, tried, 0)
-        shows = None
-        if not found.agrees and not isinstance(found.printed, Nothing):
-            shows = seen(instant, f"its left side less its right side is {shown(found.printed)}")
-        yield replace(found, telling=scope.seen, example=shows)
-
-
-def _less(scope: Scope, left: Tree, right: Tree) -> Any:
-    return scope.value(left) - scope.value(right)
+def body_velocity(chain: Chain, rod: int) -> fmpq:
+    """How fast the body is at the start that a rod is fixed to."""
+    given = chain.parameters.velocity or {}
+    return next((fmpq(given[x]) for x in (rod - 1, rod) if x in given), fmpq(0))

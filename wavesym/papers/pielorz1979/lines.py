@@ -19,9 +19,9 @@ from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sid
 from wavesym.papers.exact_tables import Exact, building
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcript import entries, entry
-from wavesym.papers.pielorz1979.truth import Step, loads
+from wavesym.papers.pielorz1979.truth import LoadStep, loads
 from wavesym.papers.reader import UnreadableError
-from wavesym.papers.record import Example, Reading, reading
+from wavesym.papers.record import Reading, Reproduction, reading
 from wavesym.papers.tree import Progression, Symbol, Tree, latex
 
 STEPS = range(3)
@@ -66,7 +66,9 @@ class Truth:
         self.exact: Exact = building(m)
         self.m = m
         self.kappa = {i: fmpq(kappa) for i, kappa in self.exact.chain.parameters.kappa.items()}
-        self.loads: Mapping[str, tuple[Step, ...]] = {name: tuple(steps) for name, steps in loads(self.exact).items()}
+        self.loads: Mapping[str, tuple[LoadStep, ...]] = {
+            name: tuple(steps) for name, steps in loads(self.exact).items()
+        }
         self._known: dict[Key, fmpq] = {}
         self._found: dict[Key, bool] = {}
 
@@ -108,7 +110,7 @@ class Truth:
             return self.exact.alive(key.letter, key.rod, key.interval)
         return 0 <= key.power <= self.exact.degree(key.letter, key.rod, key.interval, self._rate(key.family))
 
-    def example(self, key: Key) -> Example:
+    def example(self, key: Key) -> Reproduction:
         """The tables of increments for units of both sources, of which a coefficient is made."""
         place = int(key.family == "0") or key.power
         parts = " and ".join(f"{steps[key.k].weight} times source {name}" for name, steps in self.loads.items())

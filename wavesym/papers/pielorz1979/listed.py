@@ -15,7 +15,7 @@ from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.exact_tables import Exact, building, collision, drive
 from wavesym.papers.pielorz1979 import limits
 from wavesym.papers.pielorz1979.forms import INTERVALS, Form, FormScope, Words, moved, rates, right_form, shown
-from wavesym.papers.pielorz1979.truth import Driven, loads
+from wavesym.papers.pielorz1979.truth import DrivenChain, loads
 from wavesym.papers.reader import read_formula
 from wavesym.papers.record import Case, case
 from wavesym.papers.tree import Symbol, latex, symbols
@@ -32,7 +32,7 @@ AT = fmpq(43, 3)
 class Asked(FormScope):
     """A form that keeps which coefficients it asks for, all of them 0."""
 
-    def __init__(self, form: Form, driven: Driven, letter: str) -> None:
+    def __init__(self, form: Form, driven: DrivenChain, letter: str) -> None:
         super().__init__(form, driven, letter)
         self.asked: set[tuple[tuple[int, ...], tuple[int, ...]]] = set()
 
@@ -42,7 +42,7 @@ class Asked(FormScope):
         return 0
 
 
-def asked(example: str, driven: Driven, letter: str, rod: int, number: int) -> Asked:
+def asked(example: str, driven: DrivenChain, letter: str, rod: int, number: int) -> Asked:
     """What a form asks for until the interval 1, 2, ... when all loads have come."""
     scope = Asked(right_form(example), driven, letter)
     scope.total(rod, number, fmpq(100))
@@ -78,7 +78,7 @@ def listed(example: str, chains: Callable[[str], Iterator[Exact]]) -> Callable[[
 
     def cases(words: Words) -> Iterator[Case]:
         for exact in chains(words["hypothesis"]):
-            driven = Driven(exact, loads(exact))
+            driven = DrivenChain(exact, loads(exact))
             last = (INTERVALS[example] + 1) * (2 if example == "II" else 1)
             for letter, rod in limits.functions(example, exact.m):
                 at = {"m": exact.m, "kappa": dict(exact.chain.parameters.kappa), "function": f"{letter}_{rod}"}
@@ -180,7 +180,7 @@ def index_roles(example: str) -> Callable[[Words], Iterator[Case]]:
     return cases
 
 
-def _roles(example: str, driven: Driven, lower: tuple[int, ...], upper: tuple[int, ...]) -> dict[str, Any]:
+def _roles(example: str, driven: DrivenChain, lower: tuple[int, ...], upper: tuple[int, ...]) -> dict[str, Any]:
     """What the coefficient with these indices is."""
     begins = driven.exact.interval * (upper[-1] - 1)
     found = {"term": lower[0], "power": lower[1]}
@@ -194,7 +194,7 @@ def _roles(example: str, driven: Driven, lower: tuple[int, ...], upper: tuple[in
 
 
 def _said_roles(
-    words: Words, scope: FormScope, lower: tuple[int, ...], upper: tuple[int, ...], driven: Driven
+    words: Words, scope: FormScope, lower: tuple[int, ...], upper: tuple[int, ...], driven: DrivenChain
 ) -> dict[str, Any]:
     symbol = read_formula(words["symbol"])
     assert isinstance(symbol, Symbol)

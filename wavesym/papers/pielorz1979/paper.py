@@ -5,41 +5,37 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from wavesym.papers.entries import WHOLE, Entry, problems
+from wavesym.papers.entries import WHOLE, PaperEntry, problems
 from wavesym.papers.pielorz1979 import (
     cells,
     clocks,
     coefficients,
     conditions,
     constants,
-    definitions,
     delays,
     form_constants,
     forms,
     heads,
-    loads,
-    makeup,
     motion,
     prose,
     rates,
     remarks,
-    systems,
+    statements,
 )
-from wavesym.papers.pielorz1979.bodies import number_of_bodies
 from wavesym.papers.pielorz1979.figures import caption_of_figure, end_of_contact, said_of_figure
-from wavesym.papers.pielorz1979.transcript import paper
+from wavesym.papers.pielorz1979.transcript import paper as paper
 from wavesym.papers.record import Adapter, Record, judge
 
 ADAPTERS: Mapping[str, Adapter] = {
-    "base acceleration": loads.base,
-    "bodies": number_of_bodies,
+    "base acceleration": motion.base,
+    "bodies": statements.statement,
     "caption": caption_of_figure,
     "cell": cells.cell,
     "clock": clocks.cell,
     "coefficients": remarks.coefficients,
     "condition": conditions.test,
     "contact": end_of_contact,
-    "definition": definitions.definition,
+    "definition": motion.definition,
     "delay": delays.test,
     "different rates": rates.rates,
     "factor": remarks.factor,
@@ -53,9 +49,9 @@ ADAPTERS: Mapping[str, Adapter] = {
     "kappa": constants.kappa,
     "line": coefficients.coefficient,
     "load without dimensions": constants.load,
-    "loads of bodies": loads.bodies,
-    "makeup": makeup.makeup,
-    "moments": loads.moments,
+    "loads of bodies": motion.bodies,
+    "makeup": statements.statement,
+    "moments": motion.moments,
     "power": remarks.power,
     "range": heads.interval_or_size,
     "rate": form_constants.rate,
@@ -64,14 +60,14 @@ ADAPTERS: Mapping[str, Adapter] = {
     "sizes": coefficients.sizes,
     "solution": motion.solution,
     "speed": constants.speed,
-    "systems": systems.test,
+    "systems": statements.statement,
     "unit of moment": constants.moment_factor,
-    "waves": makeup.waves,
+    "waves": statements.statement,
 }
 
 
 def records(
-    wanted: Sequence[Entry] | None = None, watch: Callable[[Sequence[Entry]], Iterable[Entry]] = iter
+    wanted: Sequence[PaperEntry] | None = None, watch: Callable[[Sequence[PaperEntry]], Iterable[PaperEntry]] = iter
 ) -> tuple[Record, ...]:
     """The verdict on the `wanted` records, or all; `watch` goes through them as they are judged.
 

@@ -11,23 +11,23 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.pielorz1979 import dependence, listed
 from wavesym.papers.pielorz1979.forms import (
     Words,
 )
 from wavesym.papers.record import Case, Reading, Test
-from wavesym.papers.sentences import Pattern, sentence_reader
+from wavesym.papers.sentences import SentencePattern, sentence_reader
 
 
 @cache
-def sayings() -> Mapping[str, tuple[Pattern, str]]:
+def sayings() -> Mapping[str, tuple[SentencePattern, str]]:
     """The patterns of sentences, each with what it is compared with, by name."""
     told = tomllib.loads(Path(__file__).with_name("sayings.toml").read_text(encoding="utf-8"))
-    return {name: (Pattern(name, said["text"], said["words"]), said["against"]) for name, said in told.items()}
+    return {name: (SentencePattern(name, said["text"], said["words"]), said["against"]) for name, said in told.items()}
 
 
-def solution(entry: Entry) -> Test:
+def solution(entry: PaperEntry) -> Test:
     """Adapter: a sentence about the solutions."""
     reader = sentence_reader(pattern for pattern, _ in sayings().values())
     told = entry.slip.corrected if entry.slip else entry.printed

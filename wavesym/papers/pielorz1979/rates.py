@@ -14,7 +14,7 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.model.node import Parameters
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import Scope, holds, span
 from wavesym.papers.exact_tables import Exact, collision, gammas, with_parameters
 from wavesym.papers.mutations import ends
@@ -39,7 +39,7 @@ INTERVALS = 9
 _BUILDINGS = ((2, _A, _B), (2, _A, 2 * _A), (3, _A, _B), (3, _A, 2 * _A))  # m, kappa of floors, of the roof
 
 
-def rates(entry: Entry) -> Test:
+def rates(entry: PaperEntry) -> Test:
     """The functions of a table: for which rates its powers are theirs."""
     return Test(
         "the degrees of exact tables with equal rates, beside those with different ones: a power of the table is "

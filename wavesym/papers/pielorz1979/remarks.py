@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from flint import fmpq
 
-from wavesym.papers.entries import Entry
+from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, span
 from wavesym.papers.exact_tables import building, drive
 from wavesym.papers.exponentials import exponential
@@ -31,7 +31,7 @@ SIZES = range(1, 6)
 MOST_N = 4
 
 
-def rest(entry: Entry) -> Test:
+def rest(entry: PaperEntry) -> Test:
     """Adapter: functions of Table 4 that are 0 in some intervals; the intervals 1 ... MOST_N are tried."""
     return Test("what the functions g of Table 4 gain in exact tables with equal floors, m = 2 ... 5", _rest_cases)
 
@@ -54,7 +54,7 @@ def _rest_cases(reading: Reading) -> Iterator[Case]:
         yield Case({"m": m, "claim": "rod, interval and value of g' at rest"}, sorted(said), sorted(true))
 
 
-def group(entry: Entry) -> Test:
+def group(entry: PaperEntry) -> Test:
     """Adapter: the moments of the first group, for f in the even half."""
     return Test("the moments that act in the even half from bodies on the left of the rod, m = 1 ... 5", _group_cases)
 
@@ -81,7 +81,7 @@ def _numbers(scope: FormScope, reading: Reading, left: Tree, right: Tree) -> tup
     return tuple(found)
 
 
-def power(entry: Entry) -> Test:
+def power(entry: PaperEntry) -> Test:
     """Adapter: a highest power of the first group, for f in the even half; together they have every l once."""
     others = [corrected(other) for other in paper().entries() if other.kind == "power" and other.id != entry.id]
     return Test(
@@ -114,7 +114,7 @@ def _power_cases(reading: Reading, others: list[Reading]) -> Iterator[Case]:
                                 yield case(where, lambda: max(scope.whole(right), -1), true, true >= 0, told)  # noqa: B023
 
 
-def factor(entry: Entry) -> Test:
+def factor(entry: PaperEntry) -> Test:
     """Adapter: the exponential of example II at a power."""
 
     def cases(reading: Reading) -> Iterator[Case]:
@@ -134,7 +134,7 @@ def factor(entry: Entry) -> Test:
     return Test("the exponential of the body's rate since the interval began and the moment came", cases)
 
 
-def coefficients(entry: Entry) -> Test:
+def coefficients(entry: PaperEntry) -> Test:
     """Adapter: the list of coefficients, against those that the corrected forms have."""
 
     def cases(reading: Reading) -> Iterator[Case]:

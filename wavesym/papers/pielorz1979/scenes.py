@@ -9,7 +9,7 @@ from flint import fmpq
 from wavesym.model.chain import Chain
 from wavesym.papers.exact_tables import Exact
 from wavesym.papers.pielorz1979.truth import Loads
-from wavesym.papers.record import Example
+from wavesym.papers.record import Reproduction
 from wavesym.systems.building import BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE
@@ -17,45 +17,38 @@ from wavesym.systems.drive import DRIVE
 
 def example(
     exact: Exact, loads: Loads, until: fmpq | int, outputs: Mapping[str, Sequence[str]], command: str, look: str
-) -> Callable[[], Example]:
+) -> Callable[[], Reproduction]:
     """A case's example: the chain under its loads as a scene, the command that shows it, and what to look at.
 
     `outputs` are as in a scene, {"strain": ["1-"]}; `command` has SCENE for the file.
     """
-    return lambda: Example(written(exact.chain, loads, until, outputs), command, look)
+    return lambda: Reproduction(written(exact.chain, loads, until, outputs), command, look)
 
 
 def written(chain: Chain, loads: Loads, until: fmpq | int, outputs: Mapping[str, Sequence[str]]) -> str:
     """A chain under loads as a scene file."""
-    p = chain.parameters
-    lines = ['name = "counterexample"', "", "[system]"]
-    if chain.system is COLLISION:
-        lines += ['type = "collision"', f"m = {chain.m}", _numbers("kappa", p.kappa), _numbers("velocity", p.velocity)]
-    elif chain.system is DRIVE:
-        lines += ['type = "drive"', f"m = {chain.m}", _numbers("kappa", p.kappa), _numbers("inertia", p.inertia)]
-        for source, pieces in loads.items():
-            lines += ["", "[[load]]", f"body = {source.removeprefix('M')}"]
-            lines += [_listed("times", [x.time for x in pieces]), _listed("steps", [x.weight for x in pieces])]
-    else:
+    kind, given = _SYSTEMS.get(chain.system, ("building", ("kappa",)))
+    lines = ['name = "counterexample"', "", "[system]", f'type = "{kind}"', f"m = {chain.m}"]
+    values = {name: sorted(getattr(chain.parameters, name).items()) for name in given}
+    lines += [_listed(name, [value for _, value in numbered]) for name, numbered in values.items()]
+    if kind == "building":
         base = "ground" if chain.system is BUILDING_GROUND else "force"
-        lines += ['type = "building"', f"m = {chain.m}", _numbers("kappa", p.kappa), f'base = "{base}"']
-        for kind in "ab":
-            for piece in loads.get(kind, ()):
-                other = "b" if kind == "a" else "a"
-                lines += ["", "[[load]]", _listed("times", [piece.time])]
-                lines += [_listed(kind, [piece.weight]), _listed(other, [fmpq(0)])]
-    lines += ["", "[output]", f'until = "{until}"']
-    lines += [f"{name} = [{', '.join(_quoted(place) for place in places)}]" for name, places in outputs.items()]
+        lines.append(f'base = "{base}"')
+    for source, pieces in loads.items() if kind != "collision" else ():
+        times, weights = [piece.time for piece in pieces], [piece.weight for piece in pieces]
+        lines += ["", "[[load]]"]
+        if kind == "drive":
+            lines += [f"body = {source.removeprefix('M')}", _listed("times", times), _listed("steps", weights)]
+        else:
+            other = "b" if source == "a" else "a"
+            lines += [_listed("times", times), _listed(source, weights), _listed(other, [0] * len(times))]
+    lines += ["", "[output]", f'until = "{until}"', *(_listed(name, places) for name, places in outputs.items())]
     return "\n".join(lines) + "\n"
 
 
-def _numbers(name: str, values: Mapping[int, object]) -> str:
-    return _listed(name, [value for _, value in sorted(values.items())])
+_SYSTEMS = {COLLISION: ("collision", ("kappa", "velocity")), DRIVE: ("drive", ("kappa", "inertia"))}
 
 
 def _listed(name: str, values: Sequence[object]) -> str:
-    return f"{name} = [{', '.join(_quoted(value) for value in values)}]"
-
-
-def _quoted(value: object) -> str:
-    return f'"{value}"'
+    quoted = (f'"{value}"' for value in values)
+    return f"{name} = [{', '.join(quoted)}]"

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from wavesym.papers.entries import Entry, Paper, read_paper
+from wavesym.papers.entries import Paper, PaperEntry, read_paper
 from wavesym.papers.record import Reading, reading
 
 _DATA = Path(__file__).with_name("data")
@@ -19,12 +19,12 @@ def paper() -> Paper:
 
 
 @cache
-def entries() -> Mapping[str, Entry]:
+def entries() -> Mapping[str, PaperEntry]:
     """All records by their ids, in the order of print."""
     return {entry.id: entry for entry in paper().entries()}
 
 
-def entry(id: str) -> Entry:
+def entry(id: str) -> PaperEntry:
     """A record by its id; KeyError."""
     return entries()[id]
 

@@ -1,14 +1,15 @@
 """What formulas of this paper are compared with: named functions of the derived laws on a chain, nothing read off them.
 
-The exact tables (exact_tables.py) are the derived laws run; a `Driven` chain is their response to loads with several
+The exact tables (exact_tables.py) are the derived laws run; a `DrivenChain` is their response to loads with several
 steps, at rational instants, in numbers that are equal only if they are the same (exponentials.py).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
+from typing import Any
 
 from flint import fmpq
 
@@ -24,7 +25,7 @@ from wavesym.systems.drive import DRIVE
 
 
 @dataclass(frozen=True)
-class Example:
+class PaperExample:
     """An example: its name, its derivation, its tables, and the m that they are tried with."""
 
     name: str
@@ -33,35 +34,31 @@ class Example:
     sizes: range
 
 
-EXAMPLES: Mapping[str, Example] = {
-    "I": Example("I", COLLISION, collision, range(4, 11, 2)),
-    "II": Example("II", DRIVE, drive, range(1, 6)),
-    "III": Example("III", BUILDING_FORCE, uneven_building, range(2, 7)),
+EXAMPLES: Mapping[str, PaperExample] = {
+    "I": PaperExample("I", COLLISION, collision, range(4, 11, 2)),
+    "II": PaperExample("II", DRIVE, drive, range(1, 6)),
+    "III": PaperExample("III", BUILDING_FORCE, uneven_building, range(2, 7)),
 }
 
 
 @dataclass(frozen=True)
-class Step:
+class LoadStep:
     """A piece of a load: when it begins, and how much of its unit it is."""
 
     time: fmpq
     weight: fmpq
 
 
-Loads = Mapping[str, Sequence[Step]]
+Loads = Mapping[str, Sequence[LoadStep]]
 """The pieces of every source of a chain, number k of each from 0 on."""
 
 
 @dataclass(frozen=True)
-class Driven:
+class DrivenChain:
     """A chain under loads: the motion that the derived laws give it."""
 
     exact: Exact
     loads: Loads
-
-    @cached_property
-    def _known(self) -> dict[tuple[str, int, int, int, int], Exponentials]:
-        return {}
 
     def wave(self, letter: str, rod: int, z: fmpq, order: int = 1) -> Exponentials:
         """f or g of a rod at z, just after any jump there: itself (order 0), its derivative (1), the next (2).
@@ -70,39 +67,50 @@ class Driven:
         """
         z = fmpq(z)
         key = letter, rod, int(z.p), int(z.q), order  # which are hashed faster than z
-        if key not in self._known:
-            self._known[key] = self._computed(letter, rod, z, order)
-        return self._known[key]
+        if key not in self.known:
+            self.known[key] = self._computed(letter, rod, z, order)
+        found: Exponentials = self.known[key]
+        return found
+
+    @cached_property
+    def known(self) -> dict[Any, Any]:
+        """What was computed, by what it is."""
+        return {}
 
     def _computed(self, letter: str, rod: int, z: fmpq, order: int) -> Exponentials:
-        if not 1 <= rod <= self.exact.m:
-            raise MeaninglessError(f"there is no rod {rod}")
+        self._check(rod)
         if order > 2:
             raise MeaninglessError(f"there is no derivative of order {order} here")
-        terms = []
-        step = self.exact.interval
+        terms: list[tuple[fmpq, fmpq]] = []
+        step, function = self.exact.interval, Function(letter, rod)
         for source, pieces in self.loads.items():
-            increments = self.exact.responses[source][Function(letter, rod)]
             for piece in pieces:
                 since = z - piece.time
-                if since >= step * len(increments):
+                if since >= step * len(self.exact.responses[source][function]):
                     raise MeaninglessError(f"z = {z} is beyond the tables")
                 for number in range(int(since / step) + 1 if since >= 0 else 0):
-                    w = since - step * number
-                    for rate, powers in _ordered(source, self.exact, letter, rod, number, order).items():
-                        value = fmpq(0)
-                        for power in reversed(powers):
-                            value = value * w + power
-                        terms.append((-rate * w, piece.weight * value))
+                    terms += _terms(self._ordered(source, function, number, order), since - step * number, piece.weight)
         return Exponentials.total(terms)
+
+    def _check(self, rod: int) -> None:
+        if not 1 <= rod <= self.exact.m:
+            raise MeaninglessError(f"there is no rod {rod}")
+
+    def _ordered(self, source: str, function: Function, number: int, order: int) -> Increment:
+        """An increment, or its integral or derivative."""
+        key = source, *function, number, order
+        if key not in self.known:
+            increment = self.exact.responses[source][function][number]
+            self.known[key] = {0: integrated, 1: lambda same: same, 2: _derived}[order](increment)
+        found: Increment = self.known[key]
+        return found
 
     def waves_at(self, rod: int, x: int, tau: fmpq, order: int = 1) -> tuple[Exponentials, Exponentials]:
         """f and g of a rod at x, where (4.2) has them: g - f is the strain, f + g and v the velocity.
 
         MeaninglessError where there is no such rod.
         """
-        if not 1 <= rod <= self.exact.m:
-            raise MeaninglessError(f"there is no rod {rod}")
+        self._check(rod)
         clock = self.exact.chain.rod(rod)
         late = clock.tau0 + x - clock.x0, clock.tau0 - x + clock.x0
         return self.wave("f", rod, tau - late[0], order), self.wave("g", rod, tau - late[1], order)
@@ -112,8 +120,8 @@ class Driven:
 
         MeaninglessError where there is no such source, piece or rod, or the interval is beyond the tables.
         """
-        key = letter, rod, interval, source, piece
-        if key not in self._gains:
+        key = letter, rod, interval, source, piece, "gain"
+        if key not in self.known:
             sources = ["a", "b"] if source == "ab" else [source]
             if not 1 <= rod <= self.exact.m or not {*sources} <= self.exact.responses.keys():
                 raise MeaninglessError(f"there is no rod {rod}, or no {source}")
@@ -122,14 +130,11 @@ class Driven:
                 parts = [self.exact.increment(name, letter, rod, interval) for name in sources]
             except IndexError:
                 raise MeaninglessError(f"interval {interval} is beyond the tables") from None
-            self._gains[key] = combined(zip(weights, parts, strict=True))
-        return self._gains[key]
+            self.known[key] = combined(zip(weights, parts, strict=True))
+        found: Increment = self.known[key]
+        return found
 
-    @cached_property
-    def _gains(self) -> dict[tuple[str, int, int, str, int | None], Increment]:
-        return {}
-
-    def piece(self, source: str, number: int) -> Step:
+    def piece(self, source: str, number: int) -> LoadStep:
         """A piece of a load; MeaninglessError where there is none."""
         pieces = self.loads.get(source, ())
         if not 0 <= number < len(pieces):
@@ -145,37 +150,24 @@ class Driven:
 
         MeaninglessError where there is no such rod, or the interval is beyond the tables.
         """
-        key = source, letter, rod, number, fmpq(w)
-        if key not in self._gained:
-            self._gained[key] = self._increment(*key)
-        return self._gained[key]
-
-    @cached_property
-    def _gained(self) -> dict[tuple[str, str, int, int, fmpq], Exponentials]:
-        return {}
-
-    def _increment(self, source: str, letter: str, rod: int, number: int, w: fmpq) -> Exponentials:
-        try:
-            increment = self.exact.increment(source, letter, rod, number)
-        except (KeyError, IndexError):
-            raise MeaninglessError(f"there is no interval {number} of {letter}_{rod}") from None
-        parts: dict[fmpq, fmpq] = {}
-        for rate, powers in increment.items():
-            value = sum((power * w**k for k, power in enumerate(powers)), fmpq(0))
-            parts[-rate * w] = parts.get(-rate * w, fmpq(0)) + value
-        return Exponentials(parts)
+        w = fmpq(w)
+        key = source, letter, rod, number, int(w.p), int(w.q)
+        if key not in self.known:
+            self.known[key] = Exponentials.total(_terms(self.gain(letter, rod, number, source), w))
+        found: Exponentials = self.known[key]
+        return found
 
 
-def _ordered(source: str, exact: Exact, letter: str, rod: int, number: int, order: int) -> Increment:
-    return _derived(exact.responses[source][Function(letter, rod)], number, order)
+def _terms(increment: Increment, w: fmpq, weight: fmpq | int = 1) -> Iterator[tuple[fmpq, fmpq]]:
+    """What an increment is w after its start, as exponents and what stands before their powers of e."""
+    for rate, powers in increment.items():
+        value = fmpq(0)
+        for power in reversed(powers):
+            value = value * w + power
+        yield -rate * w, weight * value
 
 
-def _derived(increments: list[Increment], number: int, order: int) -> Increment:
-    increment = increments[number]
-    if order == 1:
-        return increment
-    if order == 0:
-        return integrated(increment)
+def _derived(increment: Increment) -> Increment:
     return {
         rate: [
             (k + 1) * above - rate * this
@@ -186,28 +178,28 @@ def _derived(increments: list[Increment], number: int, order: int) -> Increment:
 
 
 @cache
-def driven(example: str, m: int) -> Driven:
+def driven(example: str, m: int) -> DrivenChain:
     """An example under loads in which nothing coincides: every source has pieces of its own, at times of its own."""
     exact = EXAMPLES[example].tables(m)
-    return Driven(exact, loads(exact))
+    return DrivenChain(exact, loads(exact))
 
 
 def loads(exact: Exact) -> Loads:
     """Pieces for every source of a chain: moment s has 1 + (s + 1) mod 4; an impact is one, at 0."""
     if exact.chain.sources == ("impact",):
-        return {source: (Step(fmpq(0), fmpq(1)),) for source in exact.responses}
+        return {source: (LoadStep(fmpq(0), fmpq(1)),) for source in exact.responses}
     if exact.chain.system is DRIVE:
         return {
             f"M{s}": tuple(
-                Step(fmpq(k * (s + 2), 3), fmpq(2 * s + 1, k + 2) * (-1) ** k) for k in range(1 + (s + 1) % 4)
+                LoadStep(fmpq(k * (s + 2), 3), fmpq(2 * s + 1, k + 2) * (-1) ** k) for k in range(1 + (s + 1) % 4)
             )
             for s in range(1, exact.m + 2)
         }
     times = (fmpq(0), fmpq(3, 4), fmpq(7, 3))
     a, b = (fmpq(1), fmpq(-2, 3), fmpq(5, 7)), (fmpq(1, 3), fmpq(-3, 5), fmpq(2, 9))
     return {
-        "a": tuple(map(Step, times, a)),
-        "b": tuple(map(Step, times, b)),
+        "a": tuple(map(LoadStep, times, a)),
+        "b": tuple(map(LoadStep, times, b)),
     }
 
 
@@ -221,8 +213,3 @@ def instants(
         found += [z, *(z + part for part in between)]
         z += 1
     return tuple(t for t in found if t < until)
-
-
-def positions(exact: Exact) -> Sequence[fmpq]:
-    """Places inside every rod."""
-    return [fmpq(i) - fmpq(p, q) for i in range(1, exact.m + 1) for p, q in ((1, 2), (1, 7))]
