@@ -255,6 +255,20 @@ def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
     return tuple(range(shown[0], last + (1 if step > 0 else -1), step))
 
 
+def places(ranges: Iterable[Tree], scope: Scope, most: int = 0) -> list[dict[str, Any]]:
+    """The values of all running letters, range by range, for which the other ranges hold."""
+    found = [scope.bound]
+    for range_ in ranges:
+        before, found = found, []
+        for place in before:
+            with scope.binding(place):
+                if isinstance(range_, Progression) and latex(range_.variable) not in scope.bound:
+                    found += [{**place, latex(range_.variable): value} for value in span(range_, scope, most)]
+                elif holds(range_, scope):
+                    found.append(place)
+    return found
+
+
 def _switches(factor: Tree) -> bool:
     """Not H; for sorting, H first."""
     return not (isinstance(factor, Call) and factor.function.name == "H")

@@ -70,7 +70,7 @@ class Case:
         return f"With {where}, {said}" if where else said[0].upper() + said[1:]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Nothing:
     """What a formula gives where it means nothing: the reason. Equal to no value."""
 

@@ -11,15 +11,14 @@ from flint import fmpq
 
 from wavesym.exact.table import Function, Rules, unit_response
 from wavesym.model.chain import Chain
-from wavesym.model.node import Rod
 from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.exact_tables import INTERVALS, Exact, building, collision, drive
-from wavesym.papers.pielorz1979 import limits
-from wavesym.papers.pielorz1979.form_constants import moments
-from wavesym.papers.pielorz1979.forms import FORMS, FormScope, Words, form_cases, moved, rates, right_form, shown
-from wavesym.papers.pielorz1979.listed import AT
+from wavesym.papers.pielorz1979.forms import FORMS, FormScope, form_cases, moved, numbers, rates, right_form, shown
+from wavesym.papers.pielorz1979.listed import AT, Words
 from wavesym.papers.pielorz1979.meetings import most_meetings
-from wavesym.papers.pielorz1979.truth import EXAMPLES, Driven
+from wavesym.papers.pielorz1979.remarks import moments
+from wavesym.papers.pielorz1979.tabled import ALPHA, HALVES, functions
+from wavesym.papers.pielorz1979.truth import EXAMPLES
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, case
 from wavesym.papers.tree import Call, Number, Series, Tree
@@ -68,14 +67,14 @@ def acting_moments(words: Words) -> Iterator[Case]:
         exact, number = drive(m), int(z.ceil())
         if not any(_lies(where, Scope({"z": z}), n) for n in range(6)):
             continue
-        for letter, i in limits.functions("II", m):
+        for letter, i in functions("II", m):
             come = {s for s in range(1, m + 2) if _gained(exact, s, letter, i, range(1, number + 1))}
             gaining = {s for s in come if _gained(exact, s, letter, i, range(number, number + 1))}
             parity = words["odd"] if i % 2 else words["even"]
             said = {s for s in range(1, m + 2) if s % 2 == (parity == "odd")}
             true = come if words["quantity"] == "functions" else gaining
             at = {"m": m, "z": z, "function": f"{letter}'_{i}"}
-            told = shown(exact, letter, i, number)
+            told = shown(exact, (letter, i), number)
             yield Case(at, said & come if words["arrived"] else said, true, bool(true), told)
 
 
@@ -93,7 +92,7 @@ def unlisted(words: Words) -> Iterator[Case]:
     call = read_formula(words["function"])
     assert isinstance(call, Call)
     for m in (2, 3, 4):
-        missing = [(a, i) for a in "fg" for i in range(1, m + 1) if (a, i) not in limits.functions("III", m)]
+        missing = [(a, i) for a in "fg" for i in range(1, m + 1) if (a, i) not in functions("III", m)]
         scope = Scope({"m": m, "n": 0})
         yield case({"m": m}, lambda: [(call.function.name, scope.indices(call.function)[0])], missing)  # noqa: B023
 
@@ -148,13 +147,13 @@ def meetings(words: Words) -> Iterator[Case]:
                 for number, rate in rates(exact).items():
                     body = number - (exact.interval == 1)
                     count = most_meetings(exact, source, body, reflected_only=words["met"] == "reflected")
-                    for letter, rod in limits.functions(example, m):
+                    for letter, rod in functions(example, m):
                         for interval in range(1, 7):
                             true = exact.degree(letter, rod, interval, rate, source)
                             said = count(letter, rod, interval) - {"one less than": 1, "": 0}[words["less"]]
                             at = {"example": example, "m": m, "source": source, "body": number}
                             at |= {"function": f"{letter}_{rod}", "interval": interval}
-                            yield Case(at, max(said, -1), true, true >= 0, shown(exact, letter, rod, interval))
+                            yield Case(at, max(said, -1), true, true >= 0, shown(exact, (letter, rod), interval))
 
 
 def earlier(words: Words) -> Iterator[Case]:
@@ -163,7 +162,7 @@ def earlier(words: Words) -> Iterator[Case]:
         m = {"I": 4}.get(example, 2)
         driven = moved(example, m)
         step, number = driven.exact.interval, 4
-        for letter, rod in limits.functions(example, m):
+        for letter, rod in functions(example, m):
             scope = FormScope(right_form(example), driven, letter)
             z = fmpq(step * number) - fmpq(2, 7)
             first = 1 if words["which"] == "all earlier intervals" else number - 1
@@ -172,7 +171,7 @@ def earlier(words: Words) -> Iterator[Case]:
                 then = z if words["when"] == "the present z" else min(z, fmpq(step * p))
                 total = total + scope.total(rod, p, then) - scope.total(rod, p - 1, then)
             at = {"example": example, "m": m, "function": f"{letter}'_{rod}", "z": z}
-            yield Case(at, total, driven.wave(letter, rod, z), True, shown(driven.exact, letter, rod, number))
+            yield Case(at, total, driven.wave(letter, rod, z), True, shown(driven.exact, (letter, rod), number))
 
 
 def _runs(degrees: list[int]) -> set[int]:
@@ -197,17 +196,17 @@ def changes_3(words: Words) -> Iterator[Case]:
 
 
 def _stays(example: str, exact: Exact, name: str, rate: fmpq, said: int) -> Iterator[Case]:
-    for letter, rod in limits.functions(example, exact.m):
+    for letter, rod in functions(example, exact.m):
         degrees = [exact.degree(letter, rod, n, rate) for n in range(1, INTERVALS[example] + 1)]
         if lengths := {exact.interval * length for length in _runs(degrees)}:
             at = {"m": exact.m, "function": f"{letter}_{rod}", "rate": name}
-            yield Case(at, {said}, lengths, True, shown(exact, letter, rod, INTERVALS[example]))
+            yield Case(at, {said}, lengths, True, shown(exact, (letter, rod), INTERVALS[example]))
 
 
 def parts(words: Words) -> Iterator[Case]:
     """(4.10) with as many terms in its sums over alpha and beta as said."""
     form = right_form("II")
-    counts = {limits.ALPHA: words["parts"], r"\beta": words["terms"]}
+    counts = {ALPHA: words["parts"], r"\beta": words["terms"]}
     yield from form_cases(replace(form, step=_relimited(form.step, counts)))
 
 
@@ -229,49 +228,37 @@ def slopes(words: Words) -> Iterator[Case]:
     slopes = {"rise": 1, "are equal": 0, "fall": -1}
     for m in range(1, 6):
         exact, known = drive(m), rates(drive(m))
-        for half, (letter, i) in ((h, f) for h in limits.HALVES for f in limits.functions("II", m)):
+        for half, (letter, i) in ((h, f) for h in HALVES for f in functions("II", m)):
             scope = FormScope(right_form("II"), moved("II", m), letter)
-            for r, s in moments(scope, half, i, (alpha,)):
-                with scope.binding({"n": 0, "half": half, "i": i, "r": r, limits.ALPHA: alpha}):
+            for r, s in moments(scope, half, i, alpha):
+                with scope.binding({"n": 0, "half": half, "i": i, "r": r, ALPHA: alpha}):
                     ends = [0, *(scope.whole(read_formula(f"L_{beta}")) for beta in (1, 2, 3))]
                 for n in range(4):
-                    d = 2 * n + 1 + limits.HALVES.index(half)
+                    d = 2 * n + 1 + HALVES.index(half)
                     for part, (low, high) in zip(("one", "two", "three"), pairwise(ends), strict=True):
                         powers = [exact.degree(letter, i, d, known[b], f"M{s}") for b in range(low + 1, high + 1)]
                         for body, (one, other) in enumerate(pairwise(powers), low + 1):
                             if min(one, other) >= 0:
                                 at = {"m": m, "n": n, "half": half, "function": f"{letter}_{i}", "s": s, "l": body}
-                                yield Case(at, slopes[words[part]], other - one, True, shown(exact, letter, i, d))
+                                yield Case(at, slopes[words[part]], other - one, True, shown(exact, (letter, i), d))
 
 
 def by_4_2(words: Words) -> Iterator[Case]:
     """What (4.2) gives on both sides of every node, by the conditions that hold there."""
     order = {"derivatives": 1, "integrals of the derivatives": 0}[words["orders"]]
+    strained = words["quantities"] == "velocities and strains"
     for example, m in (("I", 4), ("II", 2), ("III", 3)):
         driven = moved(example, m)
         for x, tau in product(range(m + 1), (fmpq(k) + fmpq(3, 7) for k in range(5))):
             node, at = driven.exact.chain.nodes[x], {"example": example, "m": m, "x": x, "tau": tau}
-            sides = [rod for rod in (x, x + 1) if 1 <= rod <= m]
-            if words["quantities"] == "velocities and strains":
-                strains = {rod: _field(driven, rod, x, tau, order, -1) for rod in sides}
-                forces = sum(
-                    (node.alpha * -strains[rod] if rod == x else node.beta * strains[rod]) / 2 for rod in sides
-                )
+            found, forces, acceleration = [], fmpq(0), fmpq(0)
+            for rod in (rod for rod in (x, x + 1) if 1 <= rod <= m):
+                f, g = driven.waves_at(rod, x, tau, order)
+                found.append(f + g + driven.exact.chain.rod(rod).velocity * (1 if strained else tau))
+                forces += (-node.alpha if rod == x else node.beta) * (g - f) / 2
+                acceleration = sum(driven.waves_at(rod, x, tau, 2), fmpq(0))
+            if strained:
                 for load in node.loads:
                     forces += sum(c * driven.load(load.source, tau, k) for k, c in enumerate(load.coefficients) if c)
-                yield Case({**at, "claim": "forces"}, forces, node.inertia * _field(driven, sides[0], x, tau, 2, 1))
-                found = [_field(driven, rod, x, tau, order, 1) + _rod(driven, rod).velocity for rod in sides]
-            else:
-                found = [_field(driven, rod, x, tau, order, 1) + _rod(driven, rod).velocity * tau for rod in sides]
-            yield Case({**at, "claim": "both sides"}, found[0], found[-1], len(sides) > 1)
-
-
-def _rod(driven: Driven, rod: int) -> Rod:
-    return driven.exact.chain.rod(rod)
-
-
-def _field(driven: Driven, rod: int, x: int, tau: fmpq, order: int, sign: int) -> Any:
-    """g with f added or taken away, on the clocks of Table 1."""
-    clock = _rod(driven, rod)
-    since, along = tau - clock.tau0, x - clock.x0
-    return driven.wave("g", rod, since + along, order) + sign * driven.wave("f", rod, since - along, order)
+                yield Case({**at, "claim": "forces"}, forces, node.inertia * acceleration)
+            yield Case({**at, "claim": "both sides"}, found[0], found[-1], len(found) > 1)
