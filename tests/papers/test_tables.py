@@ -3,9 +3,13 @@
 import pytest
 
 from wavesym.papers import entries as data
+from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.pielorz1979 import cells
+from wavesym.papers.pielorz1979.forms import FormScope, moved, right_form
 from wavesym.papers.pielorz1979.paper import ADAPTERS
+from wavesym.papers.pielorz1979.tabled import ALPHA
 from wavesym.papers.pielorz1979.transcript import entries, paper
+from wavesym.papers.reader import read_formula
 from wavesym.papers.record import judge
 
 
@@ -79,9 +83,15 @@ def test_a_range_that_corrects_is_tried():
 
 
 def test_cells_as_they_should_be():
-    assert cells.value("T3.even.f.alpha1.s_1", i=2) == 1
-    assert cells.value("T3.odd.d", n=2) == 6
-    assert cells.value("T3.even.g.alpha2.R_2", m=5, i=3) == 2  # as printed 3
+    scope = FormScope(right_form("II"), moved("II", 5), "g")
+    with scope.binding({"i": 3, "n": 2, "half": "even", ALPHA: 2}):
+        assert scope.value(read_formula(r"R_\alpha")) == 2  # as printed 3
+        with pytest.raises(MeaninglessError, match="Q is not defined"):
+            scope.value(read_formula("Q"))
+
+
+def test_a_part_of_table_2_is_given_whole_or_not_at_all():
+    assert verdict("T2.g_1.j_0,2", printed="1") == "untested"
 
 
 def test_a_counterexample_says_where_to_look():

@@ -101,11 +101,11 @@ class Scope:
 
     def indices(self, symbol: Symbol) -> tuple[int, ...]:
         """The lower indices."""
-        return tuple(self.whole(index) for index in symbol.below)
+        return tuple([self.whole(index) for index in symbol.below])
 
     def upper(self, symbol: Symbol) -> tuple[int, ...]:
         """The upper indices."""
-        return tuple(self.whole(index) for index in symbol.above)
+        return tuple([self.whole(index) for index in symbol.above])
 
     @contextmanager
     def binding(self, names: Mapping[str, Any]) -> Iterator[None]:

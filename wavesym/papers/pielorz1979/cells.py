@@ -25,7 +25,7 @@ from wavesym.papers.pielorz1979.transcript import ids
 from wavesym.papers.pielorz1979.truth import Driven, Step
 from wavesym.papers.reader import read_range
 from wavesym.papers.record import Case, Example, Nothing, Reading, Test, by_size, case
-from wavesym.papers.tree import Blank, Call, Number, Power, Symbol, latex
+from wavesym.papers.tree import Blank, Call, Number, Power, Series, Symbol, latex
 
 EXAMPLE = {"T2": "I", "T3": "II", "T4": "III"}
 SIZES = {"I": (4, 6, 10), "II": (1, 2, 3, 5), "III": (2, 3, 4, 5)}
@@ -34,10 +34,16 @@ Indices = tuple[int, ...]
 
 
 class Asked(FormScope):
-    """A form that keeps which coefficients it asks for in one interval; all else is a factor 1."""
+    """A form that keeps which coefficients it asks for in one interval; all else is a factor 1.
 
-    def __init__(self, name: str, driven: Driven, letter: str, tried: Tried | None = None) -> None:
+    `part` is the one part of the moments, alpha, that is looked at.
+    """
+
+    def __init__(
+        self, name: str, driven: Driven, letter: str, tried: Tried | None = None, part: int | None = None
+    ) -> None:
         super().__init__(right_form(name), driven, letter, tried, MOST_N[name])
+        self._part = part
         self._asked: list[tuple[Indices, Indices]] = []
 
     def asked(self, rod: int, number: int) -> list[tuple[Indices, Indices]]:
@@ -49,6 +55,12 @@ class Asked(FormScope):
     def coefficient(self, lower: Indices, upper: Indices) -> Any:
         self._asked.append((lower, upper))
         return 0
+
+    def series(self, series: Series) -> Any:
+        if series.variable.name != tabled.ALPHA or self._part is None:
+            return super().series(series)
+        with self.binding({tabled.ALPHA: self._part}):
+            return self.value(series.body)
 
     def call(self, call: Call) -> Any:
         return 0
@@ -111,18 +123,21 @@ class Counted:
         first = 1 + tabled.HALVES.index(half)
         gains = {s: self.exact.responses[f"M{s}"] for s in range(1, self.exact.m + 2)}
         return tuple(
-            s for s in gains if any(self.exact.increment(f"M{s}", letter, rod, n) for n in range(first, INTERVALS["II"] + 1, 2))
+            s
+            for s in gains
+            if any(self.exact.increment(f"M{s}", letter, rod, n) for n in range(first, INTERVALS["II"] + 1, 2))
         )
 
     def cases(self, scope: Asked, letter: str, rod: int, number: int, at: Mapping[str, object]) -> Iterator[Case]:
         """One for every rate that a function has, or is said to have, in an interval."""
         true, at = self.true(letter, rod, number), {**at, "function": f"{letter}_{rod}"}
         try:
-            said = self.said(scope.asked(rod, number))
+            asked = scope.asked(rod, number)
         except MeaninglessError as error:
             yield Case(at, Nothing(str(error)), {" ".join(key).strip(): power for key, power in true.items()})
             return
-        for key in {**true, **said}:
+        said, sources = self.said(asked), {f"M{upper[1]}" if self.name == "II" else "" for _, upper in asked}
+        for key in {**{key: power for key, power in true.items() if key[0] in sources}, **said}:
             where = {**at, "moment": key[0], "rate": key[1]} if key[0] else {**at, "rate": key[1]}
             highest = true.get(key, -1)
             told = partial(self._example, letter, rod, number, *key, highest)
@@ -165,7 +180,9 @@ def _in_motion(id: str, reading: Reading) -> Iterator[Case]:
 
 
 def _cases(entry: Entry, name: str, reading: Reading) -> Iterator[Case]:
-    yield from counted_cases(name, {entry.id: reading}, entry.heads)
+    row = entry.about["row"]  # "alpha2.K_1", of the second part
+    part = int(row[5]) if name == "II" and row[7] in "KL" else None
+    yield from counted_cases(name, {entry.id: reading}, entry.heads, part=part)
 
 
 @cache
@@ -173,19 +190,24 @@ def _rows(table: str, m: int) -> dict[str, list[tuple[str, int]]]:
     return tabled.rows(f"{table}.", m, {})
 
 
-def counted_cases(name: str, tried: Tried, heads: Iterable[str]) -> Iterator[Case]:
-    """The functions of some rows or columns: in example II their moments, and in all their highest powers."""
+def counted_cases(
+    name: str, tried: Tried, heads: Iterable[str], most_n: int | None = None, part: int | None = None
+) -> Iterator[Case]:
+    """The functions of some rows or columns: in example II their moments, and in all their highest powers.
+
+    Of a `part` of the moments only the powers, as these do not say which moments there are.
+    """
     (table,) = (table for table, example in EXAMPLE.items() if example == name)
     scopes: dict[tuple[int, str], Asked] = {}
-    for m, n in by_size(product(SIZES[name], range(MOST_N[name] + 1))):
+    for m, n in by_size(product(SIZES[name], range((MOST_N[name] if most_n is None else most_n) + 1))):
         chain = counted(name, m)
         for head, (letter, rod) in ((id, function) for id, row in _rows(table, m).items() for function in row):
             if head not in heads:
                 continue
-            scope = scopes.setdefault((m, letter), Asked(name, chain.driven, letter, tried))
+            scope = scopes.setdefault((m, letter), Asked(name, chain.driven, letter, tried, part))
             half = head.split(".")[1]
             number = numbers(name, n)[half == "odd"]
-            if name == "II" and n == 0:
+            if name == "II" and n == 0 and part is None:
                 at = {"m": m, "function": f"{letter}_{rod}", "claim": "moments s"}
                 yield case(at, partial(_moments, scope, rod, number), chain.acting(half, letter, rod))
             yield from chain.cases(scope, letter, rod, number, {"m": m, "n": n})
@@ -214,5 +236,5 @@ def definition(entry: Entry) -> Test:
     heads = ids("function", "T3")
     return Test(
         "the moments that act, and the degrees of the exact tables, by Table 3",
-        lambda reading: counted_cases("II", {entry.id: reading}, heads),
+        lambda reading: counted_cases("II", {entry.id: reading}, heads, most_n=1),
     )

@@ -17,7 +17,7 @@ from wavesym.papers.pielorz1979.transcript import ids, settled
 from wavesym.papers.record import Case, Reading, Test, by_size, case, reading
 from wavesym.papers.tree import Addition, Group, Minus, Product, Tree, latex, symbols
 
-SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(12 - m)))
+SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(11 - m)))
 SMALL = 9
 """The m + n below which values are compared first: a wrong one says more than a wrong H or range."""
 STEP = 1
@@ -27,7 +27,7 @@ STEP = 1
 def coefficient(entry: Entry) -> Test:
     """A line of the list."""
     return Test(
-        "the exact tables with equal floors under a load of three steps, m = 3 ... 6, m + n < 12: values, the H of "
+        "the exact tables with equal floors under a load of three steps, m = 3 ... 6, m + n < 11: values, the H of "
         "every coefficient, and every coefficient given once",
         partial(_cases, entry.id),
         difference=partial(_difference, entry.id) if entry.slip else None,
@@ -124,7 +124,9 @@ def _terms(tree: Tree) -> Iterator[Tree]:
         case Product(factors):
             for chosen in product(*([*_terms(f.inner)] if _brackets(f) else [f] for f in factors)):  # type: ignore[union-attr]
                 plain = [factor.of if isinstance(factor, Minus) else factor for factor in chosen]
-                flat = [part for factor in plain for part in (factor.factors if isinstance(factor, Product) else [factor])]
+                flat = [
+                    part for factor in plain for part in (factor.factors if isinstance(factor, Product) else [factor])
+                ]
                 turned = sum(isinstance(factor, Minus) for factor in chosen) % 2
                 yield _negative(Product(tuple(flat))) if turned else Product(tuple(flat))
         case _:

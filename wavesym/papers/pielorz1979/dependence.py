@@ -251,12 +251,14 @@ def by_4_2(words: Words) -> Iterator[Case]:
         driven = moved(example, m)
         for x, tau in product(range(m + 1), (fmpq(k) + fmpq(3, 7) for k in range(5))):
             node, at = driven.exact.chain.nodes[x], {"example": example, "m": m, "x": x, "tau": tau}
-            found, forces, acceleration = [], fmpq(0), fmpq(0)
+            found: list[Any] = []
+            forces: Any = 0
+            acceleration: Any = 0
             for rod in (rod for rod in (x, x + 1) if 1 <= rod <= m):
                 f, g = driven.waves_at(rod, x, tau, order)
                 found.append(f + g + driven.exact.chain.rod(rod).velocity * (1 if strained else tau))
                 forces += (-node.alpha if rod == x else node.beta) * (g - f) / 2
-                acceleration = sum(driven.waves_at(rod, x, tau, 2), fmpq(0))
+                acceleration = sum(driven.waves_at(rod, x, tau, 2))
             if strained:
                 for load in node.loads:
                     forces += sum(c * driven.load(load.source, tau, k) for k, c in enumerate(load.coefficients) if c)

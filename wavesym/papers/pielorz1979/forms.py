@@ -155,7 +155,7 @@ class FormScope(Scope):
         limit = self._limits[key]
         if name == "w":  # depends on loads
             return self.value(limit.tree)
-        place = tuple(map(self.bound.get, limit.letters))
+        place = tuple(map(self.bound.get, tabled.LETTERS))
         if place not in limit.known:
             limit.known[place] = self.value(limit.tree)
         return limit.known[place]
@@ -272,5 +272,3 @@ def shown(exact: Exact, function: tuple[str, int], number: int) -> Callable[[], 
         "wavesym tables SCENE",
         f"{letter} of rod {rod}, interval {number}: its rates and coefficients",
     )()
-
-

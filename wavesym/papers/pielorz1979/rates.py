@@ -95,8 +95,8 @@ def _variants(table: str) -> Iterator[tuple[int, Parameters]]:
             velocity = collision(m).chain.parameters.velocity
             yield m, Parameters(kappa={2 * i + 1: kappa for i, kappa in enumerate(kappas)}, velocity=velocity)
     elif table == "T3":
-        for kappas, inertia in _DRIVES:
-            yield len(kappas), Parameters(kappa=_each(kappas), inertia=_each(inertia))
+        for shafts, discs in _DRIVES:
+            yield len(shafts), Parameters(kappa=_each(shafts), inertia=_each(discs))
     else:
         for m, floor, roof in _BUILDINGS:
             yield m, Parameters(kappa={0: _C, **dict.fromkeys(range(1, m), floor), m: roof})

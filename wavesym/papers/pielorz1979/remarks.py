@@ -106,7 +106,9 @@ def power(entry: Entry) -> Test:
                         told = shown(exact, ("f", i), 2 * n + 1)
                         yield Case({**at, "n": n, "l": body}, said, true, true >= 0, told)
 
-    return Test("highest powers of the exact tables, m = 1 ... 5, n = 0 ... 4; every l in one of the three ranges", cases)
+    return Test(
+        "highest powers of the exact tables, m = 1 ... 5, n = 0 ... 4; every l in one of the three ranges", cases
+    )
 
 
 def factor(entry: Entry) -> Test:

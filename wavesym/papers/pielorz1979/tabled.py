@@ -10,7 +10,7 @@ from typing import Any
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, places, sides
 from wavesym.papers.pielorz1979.transcript import entries, ids, settled
 from wavesym.papers.record import Reading
-from wavesym.papers.tree import Blank, Minus, Number, Progression, Symbol, Tree, latex, symbols
+from wavesym.papers.tree import Blank, Minus, Number, Progression, Symbol, Tree, latex
 
 Tried = Mapping[str, Reading]
 """Records as they are tried, by id; all others are as they are right."""
@@ -18,7 +18,11 @@ HALVES = ("even", "odd")
 """The halves of Table 3, in the order of their intervals."""
 ALPHA = r"\alpha"
 _GROUPS = {"I": "T2.", "II": "T3.even.", "III": "T4."}
-_DEFINED = {("L", (0,)): "(4.10).L_0", ("r", (0,)): "(4.11).r_0", ("r", (1,)): "(4.11).r_1"}
+_DEFINED: Mapping[tuple[str, tuple[int, ...]], str] = {
+    ("L", (0,)): "(4.10).L_0",
+    ("r", (0,)): "(4.11).r_0",
+    ("r", (1,)): "(4.11).r_1",
+}
 
 
 def as_tried(id: str, tried: Tried) -> Reading:
@@ -48,17 +52,16 @@ def functions(example: str, m: int) -> dict[tuple[str, int], str]:
     return {function: id for id, row in rows(_GROUPS[example], m, {}).items() for function in row}
 
 
+LETTERS = ("n", "i", "j", "k", "l", "r", "s")
+"""What the value of a cell may depend on."""
+
+
 @dataclass
 class Limit:
-    """What a letter of a form is: its tree, the letters in it that may be bound, and the values known for those."""
+    """What a letter of a form is: its tree, and the values that are known for some LETTERS."""
 
     tree: Tree
-    letters: tuple[str, ...]
     known: dict[tuple[Any, ...], Any] = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, tree: Tree) -> Limit:
-        return cls(tree, tuple({"i", *(symbol.name for symbol in symbols(tree))}))  # r_0 and r_1 depend on i
 
 
 def limit(example: str, letter: str, name: str, indices: tuple[int, ...], scope: Scope, tried: Tried) -> Limit:
@@ -66,10 +69,7 @@ def limit(example: str, letter: str, name: str, indices: tuple[int, ...], scope:
     bound = scope.bound
     try:
         if id := _DEFINED.get((name, indices)):
-            left, right = sides(as_tried(id, tried).formula)
-            if left != Symbol(name, below=(Number(str(indices[0])),)):
-                raise KeyError(id)
-            return Limit.of(right)
+            return _defined(name, indices[0], tried[id]) if id in tried else _right_definition(name, indices[0], id)
         place = bound.get("i", 0), bound.get("half"), bound.get(ALPHA)
         id = _id(example, bound["m"], letter, name, indices, *place)
         if tried.keys().isdisjoint({*_DEFINED.values(), *_part(id)}):
@@ -80,6 +80,18 @@ def limit(example: str, letter: str, name: str, indices: tuple[int, ...], scope:
     except KeyError:
         below = ", ".join(map(str, indices))
         raise MeaninglessError(f"{name}_({below}) is not defined" if below else f"{name} is not defined") from None
+
+
+def _defined(name: str, index: int, said: Reading) -> Limit:
+    left, right = sides(said.formula)
+    if left != Symbol(name, below=(Number(str(index)),)):
+        raise KeyError(name)
+    return Limit(right)
+
+
+@cache
+def _right_definition(name: str, index: int, id: str) -> Limit:
+    return _defined(name, index, settled(id))
 
 
 @cache
@@ -93,10 +105,10 @@ def _limit(id: str, cell: Reading, scope: Scope) -> Limit:
     if not all(holds(range_, scope) for range_ in cell.ranges if isinstance(range_, Progression)):
         if not power:
             raise MeaninglessError(f"{id} is not given for n = {scope.bound.get('n')}")
-        return Limit.of(Minus(Number("1")))
+        return Limit(Minus(Number("1")))
     if isinstance(cell.formula, Blank):
-        return Limit.of(Number("1" if ".j_0," in id else "0"))
-    return Limit.of(cell.formula)
+        return Limit(Number("1" if ".j_0," in id else "0"))
+    return Limit(cell.formula)
 
 
 def _part(id: str) -> tuple[str, ...]:
