@@ -18,7 +18,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict
 
 from wavesym.papers import tables
-from wavesym.papers.tables import Table
+from wavesym.papers.tables import PrintedTable
 
 Slipped = Literal["misprint", "unreadable", "convention", "model", "depends", "incomplete"]
 Origin = Literal["print", "scan", "unknown"]
@@ -94,7 +94,7 @@ class Passage(_Data):
     why: str = ""
     record: tuple[Entry, ...] = ()
     aside: tuple[Aside, ...] = ()
-    table: tuple[Table, ...] = ()
+    table: tuple[PrintedTable, ...] = ()
     cell: Mapping[str, Mapping[str, Any]] = {}
 
     def entries(self) -> Iterator[Entry]:

@@ -11,7 +11,7 @@ from flint import fmpq
 
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sides
-from wavesym.papers.pielorz1979.lines import STEPS, Coefficients, Key, gives, truth
+from wavesym.papers.pielorz1979.lines import STEPS, Coefficients, Key, gives, truth, unknowns
 from wavesym.papers.pielorz1979.transcript import entry as transcribed
 from wavesym.papers.pielorz1979.transcript import ids, settled
 from wavesym.papers.record import Case, Reading, Test, by_size, case, reading
@@ -85,7 +85,7 @@ def _wanted(id: str, m: int, n: int) -> frozenset[Key]:
     """The coefficients that no other line gives, of the letter and the family that this line is about."""
     about = {_family(key) for key in _given(id, m, n) or _given(id, m, n + 1)}
     others = {key for other in ids("line") if other != id for key in _given(other, m, n)}
-    return frozenset(key for key in truth(m).unknowns(n) - others if _family(key) in about)
+    return frozenset(key for key in unknowns(m, n) - others if _family(key) in about)
 
 
 def _family(key: Key) -> tuple[str, tuple[int, ...]]:
@@ -178,7 +178,7 @@ def compared(lines: Iterable[Reading], m: int, most_n: int) -> Iterator[tuple[Ke
     """Every coefficient for n = 0 ... most_n: its value by the list, and its true value; NotGivenError."""
     alone = Alone(lines, m, most_n)
     for n in range(most_n + 1):
-        for key in sorted(truth(m).unknowns(n)):
+        for key in sorted(unknowns(m, n)):
             if key.k == STEP:
                 yield key, alone(key), truth(m)(key)
 

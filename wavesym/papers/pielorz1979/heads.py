@@ -19,7 +19,7 @@ from wavesym.papers.pielorz1979.forms import SIZES, TABLES, WITHIN, FormScope, c
 from wavesym.papers.pielorz1979.tabled import as_tried, functions, rows
 from wavesym.papers.pielorz1979.transcript import ids
 from wavesym.papers.reader import read_range
-from wavesym.papers.record import Case, Reading, Test, faults
+from wavesym.papers.record import Case, Reading, Test
 
 _MOST_M = {"T2": (4, 6, 8), "T3": (1, 2, 3, 4), "T4": range(2, 7)}
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
+from itertools import product
 from typing import Any, NamedTuple
 
 from flint import fmpq
@@ -47,7 +48,7 @@ def key(symbol: Symbol, scope: Scope) -> Key:
     return Key(symbol.name, lower, *upper)
 
 
-class Truth:
+class TrueCoefficients:
     """The coefficients of (4.12) for a building of m - 1 equal floors under a load, by the exact tables."""
 
     def __init__(self, m: int) -> None:
@@ -58,12 +59,12 @@ class Truth:
 
     def __call__(self, key: Key) -> fmpq:
         """A coefficient: 0 before the first interval and where it does not exist; MeaninglessError."""
-        powers, power = self._family(key), key.lower[-1] if len(key.lower) > 1 else len(key.lower)
+        powers, power = self.family(key), key.lower[-1] if len(key.lower) > 1 else len(key.lower)
         if power < 0:
             raise MeaninglessError(f"there is no {key}")
         return powers[power] if power < len(powers) else fmpq(0)
 
-    def _family(self, key: Key) -> list[fmpq]:
+    def family(self, key: Key) -> list[fmpq]:
         """The coefficients of all powers at the rate of one."""
         one = key._replace(lower=key.lower[:1] if len(key.lower) > 1 else ())
         if one not in self._powers:
@@ -80,7 +81,7 @@ class Truth:
             return False
         if len(key.lower) < 2:
             return bool(self.driven.gain(key.letter, key.rod, key.interval, "ab", key.k))
-        return 0 <= key.lower[1] < len(self._family(key))
+        return 0 <= key.lower[1] < len(self.family(key))
 
     def example(self, key: Key) -> Example:
         """The tables of increments for units of both sources, of which a coefficient is made."""
@@ -93,24 +94,23 @@ class Truth:
         until = self.exact.interval * key.interval
         return example(self.exact, self.loads, until, {"strain": ["1-"]}, "wavesym tables SCENE", look)()
 
-    @cache
-    def unknowns(self, n: int) -> frozenset[Key]:
-        """The coefficients of interval n + 1, for all steps: those of f_1, ..., f_m and g_2, ..., g_m."""
-        functions = [("f", rod) for rod in range(1, self.m + 1)] + [("g", rod) for rod in range(2, self.m + 1)]
-        found = []
-        for (letter, rod), k in ((function, k) for function in functions for k in STEPS):
-            lower: list[tuple[int, ...]] = [(), (0,)]
-            for body in (1, self.m):
-                powers = self._family(Key(letter, (body, 0), k, rod, n + 1))
-                lower += [(body, power) for power in range(len(powers))]
-            found += [Key(letter, indices, k, rod, n + 1) for indices in lower]
-        return frozenset(found)
+
+@cache
+def truth(m: int) -> TrueCoefficients:
+    """The coefficients of a building of m - 1 floors."""
+    return TrueCoefficients(m)
 
 
 @cache
-def truth(m: int) -> Truth:
-    """The coefficients of a building of m - 1 floors."""
-    return Truth(m)
+def unknowns(m: int, n: int) -> frozenset[Key]:
+    """The coefficients of interval n + 1, for all steps: those of f_1, ..., f_m and g_2, ..., g_m."""
+    functions = [("f", rod) for rod in range(1, m + 1)] + [("g", rod) for rod in range(2, m + 1)]
+    found = []
+    for (letter, rod), k in product(functions, STEPS):
+        powers = {body: truth(m).family(Key(letter, (body, 0), k, rod, n + 1)) for body in (1, m)}
+        lower = [(), (0,), *((body, power) for body in powers for power in range(len(powers[body])))]
+        found += [Key(letter, indices, k, rod, n + 1) for indices in lower]
+    return frozenset(found)
 
 
 class Coefficients(Scope):

@@ -17,12 +17,11 @@ from wavesym.model.node import Parameters
 from wavesym.papers.entries import Entry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, places, sides
 from wavesym.papers.exact_tables import Exact, collision, drive, with_parameters
-from wavesym.papers.mutations import ends
 from wavesym.papers.pielorz1979.cells import EXAMPLE
 from wavesym.papers.pielorz1979.forms import TABLES, known, rates
 from wavesym.papers.pielorz1979.transcript import ids, settled
-from wavesym.papers.record import Case, Reading, Test, case
-from wavesym.papers.tree import Progression, Symbol, latex
+from wavesym.papers.record import Case, Reading, Test, case, faults
+from wavesym.papers.tree import Blank, Progression, Symbol, latex
 
 _A, _B, _C = fmpq(2, 3), fmpq(3, 5), fmpq(5, 7)
 _COLLISIONS = ((_A, _B), (_A, _A), (_A, 2 * _A), (2 * _A, _A), (_A, _B, _B), (_A, _B, _A), (_A, _A, _B), (_A, _B, _C))
@@ -69,16 +68,16 @@ def differing(entry: Entry) -> Test:
             found = all(_hold(said, scope, place) for place in places(running, scope))
             yield Case({**at, "claim": "powers as tabled"}, found, true)
 
-    def range_faults(right: Reading) -> Iterator[tuple[str, Reading]]:
-        for place, range_ in enumerate(right.ranges):
-            for change, wrong in ends(range_):
-                yield change, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
+    def of_ranges(right: Reading) -> Iterator[tuple[str, Reading]]:
+        """The letter names functions and is no formula."""
+        for change, wrong in faults(Reading(Blank("F"), right.ranges)):
+            yield change, Reading(right.formula, wrong.ranges)
 
     return Test(
         "the degrees of exact tables with equal rates, beside those with different ones: a power of the table is "
         "the highest of all bodies with its rate",
         cases,
-        faults=range_faults,
+        faults=of_ranges,
     )
 
 

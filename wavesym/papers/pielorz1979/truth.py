@@ -140,31 +140,6 @@ class Driven:
         """The sum of the source's pieces that have begun, each times the time since then to a power."""
         return sum((p.weight * (z - p.time) ** power for p in self.loads.get(source, ()) if z >= p.time), fmpq(0))
 
-    def increment(self, source: str, letter: str, rod: int, number: int, w: fmpq) -> Exponentials:
-        """What f' or g' of a rod gains in interval 1, 2, ... for a unit of a source, w after its start; nothing before.
-
-        MeaninglessError where there is no such rod, or the interval is beyond the tables.
-        """
-        key = source, letter, rod, number, fmpq(w)
-        if key not in self._gained:
-            self._gained[key] = self._increment(*key)
-        return self._gained[key]
-
-    @cached_property
-    def _gained(self) -> dict[tuple[str, str, int, int, fmpq], Exponentials]:
-        return {}
-
-    def _increment(self, source: str, letter: str, rod: int, number: int, w: fmpq) -> Exponentials:
-        try:
-            increment = self.exact.increment(source, letter, rod, number)
-        except (KeyError, IndexError):
-            raise MeaninglessError(f"there is no interval {number} of {letter}_{rod}") from None
-        parts: dict[fmpq, fmpq] = {}
-        for rate, powers in increment.items():
-            value = sum((power * w**k for k, power in enumerate(powers)), fmpq(0))
-            parts[-rate * w] = parts.get(-rate * w, fmpq(0)) + value
-        return Exponentials(parts)
-
 
 def _ordered(source: str, exact: Exact, letter: str, rod: int, number: int, order: int) -> Increment:
     return _derived(exact.responses[source][Function(letter, rod)], number, order)
