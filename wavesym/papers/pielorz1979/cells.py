@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
+from copy import copy
 from functools import cache, partial
-from itertools import product
+from itertools import product, tee
 from typing import Any
 
 from flint import fmpq
@@ -18,10 +19,10 @@ from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.exact_tables import INTERVALS, Exact
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.pielorz1979 import tabled
-from wavesym.papers.pielorz1979.forms import TABLES, FormScope, form_cases, numbers, rates, right_form
+from wavesym.papers.pielorz1979.forms import TABLES, FormScope, form_cases, kept_cases, numbers, rates, right_form
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.tabled import Tried
-from wavesym.papers.pielorz1979.transcript import ids
+from wavesym.papers.pielorz1979.transcript import ids, settled
 from wavesym.papers.pielorz1979.truth import Driven, Step
 from wavesym.papers.reader import read_range
 from wavesym.papers.record import Case, Example, Nothing, Reading, Test, by_size, case
@@ -176,13 +177,25 @@ def cell(entry: Entry) -> Test:
 
 
 def _in_motion(id: str, reading: Reading) -> Iterator[Case]:
-    yield from form_cases(right_form("II"), {id: reading})
+    if reading == settled(id):
+        yield from copy(kept_cases(right_form("II")))
+    else:
+        yield from form_cases(right_form("II"), {id: reading})
 
 
 def _cases(entry: Entry, name: str, reading: Reading) -> Iterator[Case]:
     row = entry.about["row"]  # "alpha2.K_1", of the second part
     part = int(row[5]) if name == "II" and row[7] in "KL" else None
-    yield from counted_cases(name, {entry.id: reading}, entry.heads, part=part)
+    if reading == settled(entry.id):
+        yield from copy(_kept(name, entry.heads, part))
+    else:
+        yield from counted_cases(name, {entry.id: reading}, entry.heads, part=part)
+
+
+@cache
+def _kept(name: str, heads: tuple[str, ...], part: int | None) -> Iterator[Case]:
+    """The cases of a row or column in which all is right; what copies of this iterator reach is kept."""
+    return tee(counted_cases(name, {}, heads, part=part), 1)[0]
 
 
 @cache

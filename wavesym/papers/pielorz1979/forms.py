@@ -216,7 +216,7 @@ def form(entry: Entry) -> Test:
     name = entry.about["example"]
 
     def cases(reading: Reading) -> Iterator[Case]:
-        yield from copy(_kept(Form.of(name, reading)))
+        yield from copy(kept_cases(Form.of(name, reading)))
 
     return Test(
         "the motion, exact, under loads with several delayed pieces; "
@@ -226,10 +226,9 @@ def form(entry: Entry) -> Test:
 
 
 @cache
-def _kept(form: Form) -> Iterator[Case]:
+def kept_cases(form: Form) -> Iterator[Case]:
     """The cases of a form; what copies of this iterator reach is kept, as some records differ only as printed."""
-    (cases,) = tee(form_cases(form), 1)
-    return cases
+    return tee(form_cases(form), 1)[0]
 
 
 def form_cases(form: Form, tried: Tried | None = None, scope: type[FormScope] = FormScope) -> Iterator[Case]:

@@ -100,15 +100,19 @@ def interval(entry: Entry) -> Test:
 def _interval_cases(name: str, heads: list[Reading], ends_too: bool) -> Iterator[Case]:
     """Every z is in one interval, for which the form gives the motion."""
     m = SIZES[name][1]
-    driven = moved(name, m)
-    scopes = {letter: FormScope(right_form(name), driven, letter) for letter in "fg"}
     for z in (start + part for start in range(6) for part in WITHIN):
         inside = [number for half, head in enumerate(heads) for number in _inside(name, head, half, z)]
         if ends_too or z.denom() != 1:
             yield Case({"z": z, "claim": "in one interval"}, len(inside), 1)
         for letter, rod in functions(name, m):
             for number in inside:
-                yield compared(scopes[letter], driven, (letter, rod), number, z)
+                yield compared(_scope(name, letter), moved(name, m), (letter, rod), number, z)
+
+
+@cache
+def _scope(name: str, letter: str) -> FormScope:
+    """The form as it is right, with what is known of it."""
+    return FormScope(right_form(name), moved(name, SIZES[name][1]), letter)
 
 
 def _inside(name: str, head: Reading, half: int, z: fmpq) -> list[int]:

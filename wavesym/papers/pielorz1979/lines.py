@@ -148,5 +148,9 @@ def gives(line: Reading, m: int, n: int, steps: Iterable[int] = STEPS) -> Iterat
             raise MeaninglessError(f"{latex(left)} is no coefficient")
         if n == 0 or Symbol("n") in symbols(left):
             for k in steps:
-                for place in places(line.ranges, Scope({"m": m, "n": n, "k": k})):
-                    yield place, key(left, Scope(place)), right
+                yield from ((place, key, right) for place, key in _keys(left, line.ranges, m, n, k))
+
+
+@cache
+def _keys(left: Symbol, ranges: tuple[Tree, ...], m: int, n: int, k: int) -> list[tuple[dict[str, int], Key]]:
+    return [(place, key(left, Scope(place))) for place in places(ranges, Scope({"m": m, "n": n, "k": k}))]

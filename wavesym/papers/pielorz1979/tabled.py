@@ -74,9 +74,7 @@ def limit(example: str, letter: str, name: str, indices: tuple[int, ...], scope:
         id = _id(example, bound["m"], letter, name, indices, *place)
         if tried.keys().isdisjoint({*_DEFINED.values(), *_part(id)}):
             return _right(id, bound["m"], place[0], bound.get("n", 0))
-        if len({isinstance(as_tried(one, tried).formula, Blank) for one in _part(id)}) > 1:
-            raise MeaninglessError("a part is given whole or not at all")
-        return _limit(id, as_tried(id, tried), scope)
+        return _limit(id, scope, tried)
     except KeyError:
         below = ", ".join(map(str, indices))
         raise MeaninglessError(f"{name}_({below}) is not defined" if below else f"{name} is not defined") from None
@@ -96,14 +94,16 @@ def _right_definition(name: str, index: int, id: str) -> Limit:
 
 @cache
 def _right(id: str, m: int, i: int, n: int) -> Limit:
-    return _limit(id, settled(id), Scope({"m": m, "i": i, "n": n}))
+    return _limit(id, Scope({"m": m, "i": i, "n": n}), {})
 
 
-def _limit(id: str, cell: Reading, scope: Scope) -> Limit:
+def _limit(id: str, scope: Scope, tried: Tried) -> Limit:
     """A cell where its ranges hold; where not, no power. A dash is an empty range."""
-    power = ".K_" in id
+    cell = as_tried(id, tried)
+    if len({isinstance(as_tried(one, tried).formula, Blank) for one in _part(id)}) > 1:
+        raise MeaninglessError("a part is given whole or not at all")
     if not all(holds(range_, scope) for range_ in cell.ranges if isinstance(range_, Progression)):
-        if not power:
+        if ".K_" not in id:
             raise MeaninglessError(f"{id} is not given for n = {scope.bound.get('n')}")
         return Limit(Minus(Number("1")))
     if isinstance(cell.formula, Blank):
