@@ -29,8 +29,13 @@ from wavesym.papers.record import Case, Example, Nothing, Reading, Test, by_size
 from wavesym.papers.tree import Blank, Call, Number, Power, Series, Symbol, latex
 
 EXAMPLE = {"T2": "I", "T3": "II", "T4": "III"}
-SIZES = {"I": (4, 6, 10), "II": (1, 2, 3, 5), "III": (2, 3, 4, 5)}
-MOST_N = {"I": 4, "II": 2, "III": 5}
+PAIRS = {
+    "I": tuple(by_size(product((4, 6, 10), range(5)))),
+    "II": tuple(by_size(product((1, 2, 3, 5), range(3)))),
+    "III": tuple(by_size(product((2, 3, 4, 5), range(6)))),
+}
+"""The m and n that are tried."""
+MOST_N = {name: max(n for _, n in pairs) for name, pairs in PAIRS.items()}
 Indices = tuple[int, ...]
 
 
@@ -169,7 +174,7 @@ def cell(entry: Entry) -> Test:
     if row in "dw":
         return Test("the motion under delayed moments, by (4.10)", partial(_in_motion, entry.id), faults=faults)
     return Test(
-        f"the degrees of the exact tables, all rates different, m = {SIZES[name][0]} ... {SIZES[name][-1]}, "
+        f"the degrees of the exact tables, all rates different, m = {PAIRS[name][0][0]} ... {PAIRS[name][-1][0]}, "
         f"n = 0 ... {MOST_N[name]}",
         partial(_cases, entry, name),
         faults=faults,
@@ -212,7 +217,7 @@ def counted_cases(
     """
     (table,) = (table for table, example in EXAMPLE.items() if example == name)
     scopes: dict[tuple[int, str], Asked] = {}
-    for m, n in by_size(product(SIZES[name], range((MOST_N[name] if most_n is None else most_n) + 1))):
+    for m, n in (pair for pair in PAIRS[name] if most_n is None or pair[1] <= most_n):
         chain = counted(name, m)
         for head, (letter, rod) in ((id, function) for id, row in _rows(table, m).items() for function in row):
             if head not in heads:

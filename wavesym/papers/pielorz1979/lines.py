@@ -146,11 +146,12 @@ def gives(line: Reading, m: int, n: int, steps: Iterable[int] = STEPS) -> Iterat
         left, right = sides(equation)
         if not isinstance(left, Symbol):
             raise MeaninglessError(f"{latex(left)} is no coefficient")
-        if n == 0 or Symbol("n") in symbols(left):
-            for k in steps:
-                yield from ((place, key, right) for place, key in _keys(left, line.ranges, m, n, k))
+        for k in steps:
+            yield from ((place, key, right) for place, key in _keys(left, line.ranges, m, n, k))
 
 
 @cache
 def _keys(left: Symbol, ranges: tuple[Tree, ...], m: int, n: int, k: int) -> list[tuple[dict[str, int], Key]]:
+    if n > 0 and Symbol("n") not in symbols(left):
+        return []
     return [(place, key(left, Scope(place))) for place in places(ranges, Scope({"m": m, "n": n, "k": k}))]
