@@ -149,7 +149,8 @@ class Scope:
             self.bound = before
         return total
 
-    def _power(self, power: Power) -> Any:
+    def raised(self, power: Power) -> Any:
+        """A base with an exponent."""
         exponent = self.value(power.exponent)
         if power.base == _E:
             return exponential(exponent)
@@ -380,7 +381,7 @@ _MAKERS: dict[type, Callable[[Any], Runner]] = {
     Addition: _addition,
     Product: _product,
     Fraction: _fraction,
-    Power: _by(Scope._power),
+    Power: _by(lambda scope, tree: scope.raised(tree)),
     Group: lambda tree: _runner(tree.inner),
     Call: _call,
     Series: _by(lambda scope, tree: scope.series(tree)),

@@ -74,7 +74,7 @@ class Asked(FormScope):
     def step(self, value: Any) -> Any:
         return 1
 
-    def _power(self, power: Power) -> Any:
+    def raised(self, power: Power) -> Any:
         return 1
 
     def symbol(self, symbol: Symbol) -> Any:
