@@ -36,6 +36,7 @@ def test_what_is_right_holds(id):
         ("T3.odd.g.alpha1.s", "2r+1"),
         ("T4.m2.f_1.K_2", "n-1"),
         ("T4.m3.f_1.K_1", r"2(n-1)/0"),
+        ("T4.m3.f_1.K_1", "F^{2}"),
         ("T4.m3", r"m \geq 2"),
         ("T2.range", r"2n \leq z \leq 2n+2"),
         ("T3.odd.range", r"2n \leq z < 2n+2"),

@@ -59,6 +59,7 @@ class Asked(FormScope):
         return self._asked
 
     def coefficient(self, lower: Indices, upper: Indices) -> Any:
+        self._where(upper)  # as many as the form's coefficients have
         self._asked.append((lower, upper))
         return 0
 

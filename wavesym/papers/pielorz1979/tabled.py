@@ -52,7 +52,7 @@ def functions(example: str, m: int) -> dict[tuple[str, int], str]:
     return {function: id for id, row in rows(_GROUPS[example], m, {}).items() for function in row}
 
 
-LETTERS = ("n", "i", "j", "k", "l", "r", "s")
+LETTERS = ("m", "n", "i", "j", "k", "l", "r", "s")
 """What the value of a cell may depend on."""
 
 
