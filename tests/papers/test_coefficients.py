@@ -2,10 +2,9 @@
 
 import pytest
 
-from wavesym.papers.pielorz1979 import alone
-from wavesym.papers.pielorz1979.lines import Line, ids, line
+from wavesym.papers.pielorz1979 import coefficients
 from wavesym.papers.pielorz1979.paper import ADAPTERS
-from wavesym.papers.pielorz1979.transcript import entries
+from wavesym.papers.pielorz1979.transcript import entries, ids, settled
 from wavesym.papers.record import judge, reading
 
 
@@ -15,8 +14,8 @@ def verdict(id, **changes):
 
 
 def test_the_list_is_whole():
-    assert ids() == tuple(f"III.{number}" for number in range(1, 23))
-    assert [id for id in ids() if entries()[id].slip] == [f"III.{n}" for n in (5, 6, 12, 13, 14, 17, 22)]
+    assert ids("line") == tuple(f"III.{number}" for number in range(1, 23))
+    assert [id for id in ids("line") if entries()[id].slip] == [f"III.{n}" for n in (5, 6, 12, 13, 14, 17, 22)]
 
 
 @pytest.mark.parametrize("id", ["III.1", "III.9", "III.16"])
@@ -64,15 +63,14 @@ def test_a_correction_is_the_whole_formula():
 
 
 def test_the_list_by_itself():
-    assert alone.complete(4, 4)
-    assert not alone.complete(2, 2)
-    assert alone.whole(3, 2).startswith("gives all ")
+    assert coefficients.complete(4, 4)
+    assert not coefficients.complete(2, 2)
 
 
 def test_every_correction_is_necessary():
-    assert not [id for id in ids() if entries()[id].slip and "without it too" in alone.consequence(id)]
-    assert "g_(1,0)^(1,4,1) is in no line's range" in alone.consequence("III.13")
-    assert "rests on itself" in alone.consequence("III.17")
+    assert not [id for id in ids("line") if entries()[id].slip and "without it too" in coefficients.consequence(id)]
+    assert "g_(1,0)^(1,4,1) is in no line's range" in coefficients.consequence("III.13")
+    assert "rests on itself" in coefficients.consequence("III.17")
 
 
 def test_what_lines_differ_in():
@@ -81,10 +79,7 @@ def test_what_lines_differ_in():
     assert difference == "-g_{m,0}^{k,m,n + 1} + g^{k,m,n + 1}"
 
 
-def test_what_the_list_lacks_is_said_in_words(monkeypatch):
-    short = Line.of(reading(entries()["III.9"].printed, [r"j = 3, 4, \dots, m"]))
-    with pytest.raises(alone.NotGivenError, match=r"f_0\^\(1,2,1\) is in no line's range"):
-        list(alone.compared([short if id == "III.9" else line(id) for id in ids()], 3, 2))
-    monkeypatch.setattr(alone, "corrected", lambda *but: [line(id) for id in ids() if id != "III.9"])
-    monkeypatch.setattr(alone, "whole", alone.whole.__wrapped__)
-    assert alone.whole(3, 2).startswith("cannot be run: f_0^(1,2,1) is in no line's range")
+def test_what_the_list_lacks_is_said_in_words():
+    short = reading(entries()["III.9"].printed, [r"j = 3, 4, \dots, m"])
+    with pytest.raises(coefficients.NotGivenError, match=r"f_0\^\(1,2,1\) is in no line's range"):
+        list(coefficients.compared([short if id == "III.9" else settled(id) for id in ids("line")], 3, 2))

@@ -88,7 +88,8 @@ def test_no_meaning_is_no_value():
         raise MeaninglessError("no rod 5")
 
     found = case({"i": 5}, printed, 0)
-    assert found.printed == Nothing("no rod 5")
+    assert str(found.printed) == "no value (no rod 5)"
+    assert found.printed != Nothing("no rod 5")
     assert not found.agrees
     assert str(found) == "With i = 5, what is printed has no value (no rod 5); it should be 0"
 

@@ -3,9 +3,13 @@
 import pytest
 
 from wavesym.papers import entries as data
+from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.pielorz1979 import cells
+from wavesym.papers.pielorz1979.forms import FormScope, moved, right_form
 from wavesym.papers.pielorz1979.paper import ADAPTERS
+from wavesym.papers.pielorz1979.tabled import ALPHA
 from wavesym.papers.pielorz1979.transcript import entries, paper
+from wavesym.papers.reader import read_formula
 from wavesym.papers.record import judge
 
 
@@ -32,6 +36,7 @@ def test_what_is_right_holds(id):
         ("T3.odd.g.alpha1.s", "2r+1"),
         ("T4.m2.f_1.K_2", "n-1"),
         ("T4.m3.f_1.K_1", r"2(n-1)/0"),
+        ("T4.m3.f_1.K_1", "F^{2}"),
         ("T4.m3", r"m \geq 2"),
         ("T2.range", r"2n \leq z \leq 2n+2"),
         ("T3.odd.range", r"2n \leq z < 2n+2"),
@@ -79,9 +84,15 @@ def test_a_range_that_corrects_is_tried():
 
 
 def test_cells_as_they_should_be():
-    assert cells.value("T3.even.f.alpha1.s_1", i=2) == 1
-    assert cells.value("T3.odd.d", n=2) == 6
-    assert cells.value("T3.even.g.alpha2.R_2", m=5, i=3) == 2  # as printed 3
+    scope = FormScope(right_form("II"), moved("II", 5), "g")
+    with scope.binding({"i": 3, "n": 2, "half": "even", ALPHA: 2}):
+        assert scope.value(read_formula(r"R_\alpha")) == 2  # as printed 3
+        with pytest.raises(MeaninglessError, match="Q is not defined"):
+            scope.value(read_formula("Q"))
+
+
+def test_a_part_of_table_2_is_given_whole_or_not_at_all():
+    assert verdict("T2.g_1.j_0,2", printed="1") == "untested"
 
 
 def test_a_counterexample_says_where_to_look():

@@ -18,7 +18,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict
 
 from wavesym.papers import tables
-from wavesym.papers.tables import Table
+from wavesym.papers.tables import PrintedTable
 
 Slipped = Literal["misprint", "unreadable", "convention", "model", "depends", "incomplete"]
 Origin = Literal["print", "scan", "unknown"]
@@ -94,7 +94,7 @@ class Passage(_Data):
     why: str = ""
     record: tuple[PaperEntry, ...] = ()
     aside: tuple[Aside, ...] = ()
-    table: tuple[Table, ...] = ()
+    table: tuple[PrintedTable, ...] = ()
     cell: Mapping[str, Mapping[str, Any]] = {}
 
     def entries(self) -> Iterator[PaperEntry]:
@@ -164,7 +164,7 @@ WHOLE = "paper"
 
 
 def problems(paper: Paper) -> Iterator[tuple[str, str]]:
-    """What does not fit: the id of a record, or `WHOLE`, and what is wrong. A passage's problems are all its records'."""
+    """What does not fit: the id of a record, or `WHOLE`, and what is wrong. A passage's are all its records'."""
     yield from _uncovered(paper)
     for passage in paper.passages:
         entries = tuple(passage.entries())

@@ -103,11 +103,11 @@ class Scope:
 
     def indices(self, symbol: Symbol) -> tuple[int, ...]:
         """The lower indices."""
-        return tuple(self.whole(index) for index in symbol.below)
+        return tuple([self.whole(index) for index in symbol.below])
 
     def upper(self, symbol: Symbol) -> tuple[int, ...]:
         """The upper indices."""
-        return tuple(self.whole(index) for index in symbol.above)
+        return tuple([self.whole(index) for index in symbol.above])
 
     @contextmanager
     def binding(self, names: Mapping[str, Any]) -> Iterator[None]:
@@ -151,7 +151,8 @@ class Scope:
             self.bound = before
         return total
 
-    def _power(self, power: Power) -> Any:
+    def raised(self, power: Power) -> Any:
+        """A base with an exponent."""
         exponent = self.value(power.exponent)
         if power.base == _E:
             return exponential(exponent)
@@ -255,6 +256,20 @@ def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
     if (last - shown[0]) % step:
         raise MeaninglessError(f"{latex(progression)}: {last} is not reached from {shown[0]} in steps of {step}")
     return tuple(range(shown[0], last + (1 if step > 0 else -1), step))
+
+
+def places(ranges: Iterable[Tree], scope: Scope, most: int = 0) -> list[dict[str, Any]]:
+    """The values of all running letters, range by range, for which the other ranges hold."""
+    found = [scope.bound]
+    for range_ in ranges:
+        before, found = found, []
+        for place in before:
+            with scope.binding(place):
+                if isinstance(range_, Progression) and latex(range_.variable) not in scope.bound:
+                    found += [{**place, latex(range_.variable): value} for value in span(range_, scope, most)]
+                elif holds(range_, scope):
+                    found.append(place)
+    return found
 
 
 def _switches(factor: Tree) -> bool:
@@ -361,7 +376,7 @@ _MAKERS: dict[type, Callable[[Any], Runner]] = {
     Addition: _addition,
     Product: _product,
     Fraction: _fraction,
-    Power: _by(Scope._power),
+    Power: _by(lambda scope, tree: scope.raised(tree)),
     Group: lambda tree: _runner(tree.inner),
     Call: _call,
     Series: _by(lambda scope, tree: scope.series(tree)),

@@ -134,8 +134,3 @@ def with_parameters(exact: Exact, parameters: Parameters) -> Exact:
     system = exact.chain.system
     example = "I" if system is COLLISION else "II" if system is DRIVE else "III"
     return _exact(example, Chain(system, exact.m, parameters))
-
-
-def gammas(exact: Exact) -> dict[int, fmpq]:
-    """The rates of a drive by body, from its node laws: half the sum of what both shafts do to it."""
-    return {x + 1: (fmpq(node.alpha) + fmpq(node.beta)) / 2 for x, node in enumerate(exact.chain.nodes)}

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Literal, Union
+from typing import Any, Literal
 
 from flint import fmpq
 
@@ -70,7 +70,7 @@ class Case:
         return f"With {where}, {said}" if where else said[0].upper() + said[1:]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Nothing:
     """What a formula gives where it means nothing: the reason. Equal to no value."""
 
@@ -106,7 +106,7 @@ class Sentence:
         return hash((self.pattern, tuple(self.words.items())))
 
 
-Formula = Union[Tree, Sentence]
+Formula = Tree | Sentence
 
 
 @dataclass(frozen=True)

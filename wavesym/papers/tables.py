@@ -1,7 +1,7 @@
 """Printed tables as data: which cells of a text are formulas, and which heads say where they hold.
 
-A text is a grid: its lines, cut where tabs are. A `Table` is a block of it with named rows and columns; every cell of
-the block becomes an entry (entries.py). Labels and heads are given as they stand and found in the grid again.
+A text is a grid: its lines, cut where tabs are. A `PrintedTable` is a block of it with named rows and columns; every
+cell of the block becomes an entry (entries.py). Labels and heads are given as they stand and found in the grid again.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import NamedTuple
 from pydantic import BaseModel, ConfigDict
 
 
-class Row(NamedTuple):
+class TableRow(NamedTuple):
     """A row: its line in the source, where in it the first cell stands, the label that it has, and its name in ids."""
 
     line: int
@@ -22,14 +22,14 @@ class Row(NamedTuple):
     name: str
 
 
-class Column(NamedTuple):
+class TableColumn(NamedTuple):
     """A column: the label that it has, and its name in ids."""
 
     label: str
     name: str
 
 
-class Table(BaseModel):
+class PrintedTable(BaseModel):
     """A block of cells, named `id`.`cell`, where `cell` puts names together, such as "{row}.{column}".
 
     `head` is the line of the columns' labels. `heads` are the ids of the records whose ranges hold in every cell; those
@@ -42,8 +42,8 @@ class Table(BaseModel):
     cell: str
     head: int
     heads: tuple[str, ...] = ()
-    columns: tuple[Column, ...]
-    rows: tuple[Row, ...]
+    columns: tuple[TableColumn, ...]
+    rows: tuple[TableRow, ...]
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Place:
     """A cell: its id, its table, row and column by name, and what stands there."""
 
     id: str
-    table: Table
+    table: PrintedTable
     row: str
     column: str
     scan: str
@@ -70,7 +70,7 @@ def grid(text: str) -> Grid:
     return [[cell.strip() for cell in line.split("\t")] for line in text.strip("\n").split("\n")]
 
 
-def places(tables: Iterable[Table], text: str, start: int) -> Iterator[Place]:
+def places(tables: Iterable[PrintedTable], text: str, start: int) -> Iterator[Place]:
     """The cells of all tables of a text whose first line is number `start`; IndexError where a line is too short."""
     cells = grid(text)
     for table in tables:
@@ -81,7 +81,7 @@ def places(tables: Iterable[Table], text: str, start: int) -> Iterator[Place]:
                 yield Place(f"{table.id}.{name}", table, row.name, column.name, scan)
 
 
-def problems(tables: Iterable[Table], text: str, start: int, others: Iterable[str]) -> Iterator[str]:
+def problems(tables: Iterable[PrintedTable], text: str, start: int, others: Iterable[str]) -> Iterator[str]:
     """Labels that do not stand where they should, and what is neither cell nor label nor among the `others`."""
     cells = grid(text)
     left = {(y, x) for y, line in enumerate(cells) for x, cell in enumerate(line) if cell}

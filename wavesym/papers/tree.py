@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, is_dataclass
-from typing import Any, Union
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -167,27 +167,27 @@ class Marked:
     sign_only: bool = False
 
 
-Tree = Union[
-    Number,
-    Symbol,
-    Blank,
-    Minus,
-    Addition,
-    Product,
-    Fraction,
-    Power,
-    Group,
-    Call,
-    Series,
-    Derivative,
-    AtValue,
-    Cases,
-    Relation,
-    Listed,
-    Progression,
-    Interval,
-    Marked,
-]
+Tree = (
+    Number
+    | Symbol
+    | Blank
+    | Minus
+    | Addition
+    | Product
+    | Fraction
+    | Power
+    | Group
+    | Call
+    | Series
+    | Derivative
+    | AtValue
+    | Cases
+    | Relation
+    | Listed
+    | Progression
+    | Interval
+    | Marked
+)
 
 _CLOSING = {"(": ")", "[": "]", "{": r"\}", r"\langle": r"\rangle"}
 

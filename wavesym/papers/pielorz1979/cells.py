@@ -1,179 +1,242 @@
-"""Tables 2 to 4, cell by cell: the highest powers of (4.9), (4.10) and (4.12).
+"""Tables 2 to 4, cell by cell, by the coefficients that the forms ask for with them: all that there are, each once.
 
-A cell is tried among the others of its row or column, which are as they should be, against the degrees of the exact
-tables; a power below 0 says that there is no such term, a dash that there is no such part.
+A cell is tried among the others, which are as they should be, against the degrees of the exact tables.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from copy import copy
 from functools import cache, partial
-from itertools import chain, product
+from itertools import product, tee
 from typing import Any
 
 from flint import fmpq
 
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, holds, sides, span
-from wavesym.papers.exact_tables import Exact, building, collision, drive, gammas
+from wavesym.papers.evaluation import MeaninglessError
+from wavesym.papers.exact_tables import INTERVALS, Exact
 from wavesym.papers.mutations import ends, mutations
+from wavesym.papers.pielorz1979 import tabled
+from wavesym.papers.pielorz1979.forms import TABLES, FormScope, form_cases, kept_cases, numbers, rates, right_form
 from wavesym.papers.pielorz1979.scenes import example
-from wavesym.papers.pielorz1979.transcript import entries
-from wavesym.papers.pielorz1979.truth import Loads, LoadStep, driven, instants
-from wavesym.papers.reader import UnreadableError, read_formula, read_range
-from wavesym.papers.record import Case, Reading, Reproduction, Test, by_size, case
-from wavesym.papers.tree import Blank, Number, Progression, Symbol, Tree, latex
+from wavesym.papers.pielorz1979.tabled import Tried
+from wavesym.papers.pielorz1979.transcript import ids, settled
+from wavesym.papers.pielorz1979.truth import DrivenChain, LoadStep
+from wavesym.papers.reader import read_range
+from wavesym.papers.record import Case, Nothing, Reading, Reproduction, Test, by_size, case
+from wavesym.papers.tree import Blank, Call, Number, Power, Series, Symbol, latex
 
-
-@dataclass(frozen=True)
-class Kind:
-    """What a table is about: its example, and the sizes and intervals that it is tried with."""
-
-    example: str
-    tables: Callable[[int], Exact]
-    sizes: Sequence[int]
-    most_n: int
-
-
-KINDS: Mapping[str, Kind] = {
-    "T2": Kind("I", collision, range(4, 11, 2), 8),
-    "T3": Kind("II", drive, range(1, 7), 5),
-    "T4": Kind("III", building, range(2, 8), 8),
+EXAMPLE = {"T2": "I", "T3": "II", "T4": "III"}
+PAIRS = {
+    "I": tuple(by_size(product((4, 6, 10), range(5)))),
+    "II": tuple(by_size(product((1, 2, 3, 5), range(3)))),
+    "III": tuple(by_size(product((2, 3, 4, 5), range(6)))),
 }
-PARTS = {"T2": (1, 2), "T3": (1, 2, 3)}
+"""The m and n that are tried."""
+MOST_N = {name: max(n for _, n in pairs) for name, pairs in PAIRS.items()}
+Indices = tuple[int, ...]
 
 
-class Indices(Scope):
-    """The letters of a cell: those bound, and r_0, r_1 as the text under (4.11) has them."""
+class Asked(FormScope):
+    """A form that keeps which coefficients it asks for in one interval; all else is a factor 1.
+
+    `part` is the one part of the moments, alpha, that is looked at.
+    """
+
+    def __init__(
+        self, name: str, driven: DrivenChain, letter: str, tried: Tried | None = None, part: int | None = None
+    ) -> None:
+        super().__init__(right_form(name), driven, letter, tried, MOST_N[name])
+        self._part = part
+        self._asked: list[tuple[Indices, Indices]] = []
+
+    def asked(self, rod: int, number: int) -> list[tuple[Indices, Indices]]:
+        """The lower and upper indices of the coefficients for a rod in interval 1, 2, ..., in their order."""
+        self._asked = []
+        self._total(rod, number, fmpq(0))
+        return self._asked
+
+    def coefficient(self, lower: Indices, upper: Indices) -> Any:
+        self._where(upper)  # as many as the form's coefficients have
+        self._asked.append((lower, upper))
+        return 0
+
+    def series(self, series: Series) -> Any:
+        if series.variable.name != tabled.ALPHA or self._part is None:
+            return super().series(series)
+        with self.binding({tabled.ALPHA: self._part}):
+            return self.value(series.body)
+
+    def call(self, call: Call) -> Any:
+        return 0
+
+    def step(self, value: Any) -> Any:
+        return 1
+
+    def raised(self, power: Power) -> Any:
+        return 1
 
     def symbol(self, symbol: Symbol) -> Any:
-        match symbol:
-            case Symbol("r", below=(Number("0" | "1" as index),)) if "i" in self.bound:
-                return _parity(index, self.bound["i"])
-        return super().symbol(symbol)
+        return 1 if symbol.accent or symbol.name == r"\tau" else super().symbol(symbol)
+
+    def last(self, source: str) -> int:
+        """Moments that do not exist are asked for, too."""
+        return len(self._driven.loads.get(source, (None,))) - 1
 
 
-@cache
-def _parity(index: str, i: int) -> Any:
-    _, cases = sides(right(f"(4.11).r_{index}"))
-    return Scope({"i": i}).value(cases)
+Powers = dict[tuple[str, str], Any]
+"""The highest powers, by source (in example II, where each has its own) and rate."""
 
 
-# the tables as they should be
+class Counted:
+    """The highest powers of a chain's functions, as a form says them and as they are."""
 
+    def __init__(self, name: str, exact: Exact) -> None:
+        self.name, self.exact = name, exact
+        self.driven = DrivenChain(exact, {source: (LoadStep(fmpq(0), fmpq(1)),) for source in exact.responses})
+        self._rates = {body: str(rate) for body, rate in rates(exact).items()}
+        self._true: dict[tuple[str, int, int], Powers] = {}
 
-@cache
-def right(id: str) -> Tree:
-    """A cell, or the formula of a head, as it should be; KeyError where there is none, MeaninglessError."""
-    entry = entries()[id]
-    try:
-        return read_formula(entry.slip.corrected if entry.slip else entry.printed)
-    except UnreadableError as error:
-        raise MeaninglessError(str(error)) from None
+    def said(self, asked: Iterable[tuple[Indices, Indices]]) -> Powers:
+        """Those of the coefficients asked for; all powers of a rate where any is asked for more than once."""
+        found: dict[tuple[str, str], list[int]] = {}
+        twice = set()
+        for (lower, upper), times in Counter(asked).items():
+            if len(lower) == 2:
+                rate = self._rates.get(lower[0], f"of no body: number {lower[0]}")
+                key = (f"M{upper[1]}" if self.name == "II" else "", rate)
+                found.setdefault(key, []).extend([lower[1]] * times)
+                if times > 1:
+                    twice.add(key)
+        return {key: tuple(sorted(powers)) if key in twice else max(powers) for key, powers in found.items()}
 
+    def true(self, letter: str, rod: int, number: int) -> Powers:
+        """Those of the exact tables."""
+        key = letter, rod, number
+        if key not in self._true:
+            found: Powers = {}
+            for source in self.exact.responses:
+                for rate, powers in self.exact.increment(source, letter, rod, number).items():
+                    if rate != 0:
+                        of = (source if self.name == "II" else "", str(rate))
+                        found[of] = max(found.get(of, 0), len(powers) - 1)
+            self._true[key] = found
+        return self._true[key]
 
-@cache
-def right_ranges(id: str) -> tuple[Tree, ...]:
-    """The ranges of a cell or a head as they should be."""
-    entry = entries()[id]
-    said = entry.ranges if entry.slip is None or entry.slip.ranges is None else entry.slip.ranges
-    return tuple(map(read_range, said))
+    def acting(self, half: str, letter: str, rod: int) -> tuple[int, ...]:
+        """The moments that change a function in some interval of a half."""
+        first = 1 + tabled.HALVES.index(half)
+        gains = {s: self.exact.responses[f"M{s}"] for s in range(1, self.exact.m + 2)}
+        return tuple(
+            s
+            for s in gains
+            if any(self.exact.increment(f"M{s}", letter, rod, n) for n in range(first, INTERVALS["II"] + 1, 2))
+        )
 
+    def cases(self, scope: Asked, letter: str, rod: int, number: int, at: Mapping[str, object]) -> Iterator[Case]:
+        """One for every rate that a function has, or is said to have, in an interval."""
+        true, at = self.true(letter, rod, number), {**at, "function": f"{letter}_{rod}"}
+        try:
+            asked = scope.asked(rod, number)
+        except MeaninglessError as error:
+            yield Case(at, Nothing(str(error)), {" ".join(key).strip(): power for key, power in true.items()})
+            return
+        said, sources = self.said(asked), {f"M{upper[1]}" if self.name == "II" else "" for _, upper in asked}
+        for key in {**{key: power for key, power in true.items() if key[0] in sources}, **said}:
+            where = {**at, "moment": key[0], "rate": key[1]} if key[0] else {**at, "rate": key[1]}
+            highest = true.get(key, -1)
+            told = partial(self._example, letter, rod, number, *key, highest)
+            yield Case(where, said.get(key, -1), highest, key in true, told)
 
-def value(id: str, **indices: int) -> Any:
-    """The value of a cell as it should be, such as value("T3.even.f.alpha1.K_1", m=4, n=2, i=3, r=1, l=2)."""
-    return _known(id, tuple(sorted(indices.items())))
-
-
-@cache
-def _known(id: str, indices: tuple[tuple[str, int], ...]) -> Any:
-    return _plain(Indices(dict(indices)).value(right(id)))
-
-
-def _plain(value: Any) -> Any:
-    """A whole number as one."""
-    return int(value.numer()) if isinstance(value, fmpq) and value.denom() == 1 else value
-
-
-# cells
-
-
-@dataclass(frozen=True)
-class Term:
-    """Where a power is: a function, an interval, a body's rate, and the source, or all of them."""
-
-    table: str
-    m: int
-    letter: str
-    rod: int
-    number: int
-    body: int
-    source: str | None = None
-
-    @property
-    def exact(self) -> Exact:
-        return KINDS[self.table].tables(self.m)
-
-    @property
-    def rate(self) -> fmpq:
-        """The rate of the body: gamma of a drive, 2 kappa, or kappa of a roof, which has columns on one side only."""
-        if self.table == "T3":
-            return gammas(self.exact)[self.body]
-        kappa = self.exact.chain.parameters.kappa
-        return fmpq(kappa[self.body]) * (1 if self.table == "T4" and self.body == self.m else 2)
-
-    def example(self) -> Reproduction:
+    def _example(self, letter: str, rod: int, number: int, source: str, rate: str, highest: int) -> Reproduction:
         """The table of the exact increments, where the highest power is read off."""
-        source = self.source or max(self.exact.responses, key=lambda source: highest(replace(self, source=source)))
-        degree = highest(replace(self, source=source))
-        what = f"its highest power is {degree}" if degree >= 0 else "there is none"
-        look = f"{self.letter} of rod {self.rod}, source {source}, interval {self.number}, rate {self.rate}: {what}"
+        gains = {s: self.exact.increment(s, letter, rod, number) for s in self.exact.responses}
+        by_source = {s: {str(r): len(powers) for r, powers in gain.items()} for s, gain in gains.items()}
+        source = source or max(by_source, key=lambda s: by_source[s].get(rate, 0))
+        what = f"its highest power is {highest}" if highest >= 0 else "there is none"
+        look = f"{letter} of rod {rod}, source {source}, interval {number}, rate {rate}: {what}"
         loads = {source: (LoadStep(fmpq(0), fmpq(1)),)}
-        until = self.exact.interval * self.number
+        until = self.exact.interval * number
         return example(self.exact, loads, until, {"strain": ["1-"]}, "wavesym tables SCENE", look)()
 
 
 @cache
-def highest(term: Term) -> int:
-    """The highest power, -1 where there is no such term; MeaninglessError where there is no such function or body."""
-    try:
-        return term.exact.degree(term.letter, term.rod, term.number, term.rate, term.source)
-    except (KeyError, IndexError):
-        raise MeaninglessError(f"there is no power of {term}") from None
-
-
-def _compared(where: Mapping[str, int], claimed: Sequence[Any], term: Term | None) -> Case:
-    """The highest powers that the ranges claim which have a body, with that of the term, where there is such a body."""
-    said = tuple(max(power, -1) for power in claimed)  # all below 0 say that there is no term
-    if term is None:
-        return Case(where, said, (), False)
-    true = highest(term)
-    if len(said) == 1:
-        return Case(where, said[0], true, true >= 0, term.example)
-    return Case(where, said, (true,), true >= 0, term.example)
+def counted(name: str, m: int) -> Counted:
+    """An example with all rates different."""
+    return Counted(name, TABLES[name](m))
 
 
 def cell(entry: PaperEntry) -> Test:
     """A cell of a table."""
-    table, row = entry.about["table"], entry.about["row"]
-    if table[:2] == "T3" and row in "dw":
-        return Test(
-            "the motion under delayed moments, interval by interval",
-            partial(_steps, entry),
-            faults=partial(_cell_faults, entry),
-        )
-    trial = {"T2": _collision, "T3": _drive, "T4": _building}[table[:2]]
-    kind = KINDS[table[:2]]
+    name, row = EXAMPLE[entry.id[:2]], entry.about["row"]
+    faults = partial(_faults, entry)
+    if row in "dw":
+        return Test("the motion under delayed moments, by (4.10)", partial(_in_motion, entry.id), faults=faults)
     return Test(
-        f"the degrees of the exact tables, all rates different, m = {kind.sizes[0]} ... {kind.sizes[-1]}, "
-        f"n = 0 ... {kind.most_n}",
-        partial(trial, entry),
-        faults=partial(_cell_faults, entry),
+        f"the degrees of the exact tables, all rates different, m = {PAIRS[name][0][0]} ... {PAIRS[name][-1][0]}, "
+        f"n = 0 ... {MOST_N[name]}",
+        partial(_cases, entry, name),
+        faults=faults,
     )
 
 
-def _cell_faults(entry: PaperEntry, right: Reading) -> Iterator[tuple[str, Reading]]:
+def _in_motion(id: str, reading: Reading) -> Iterator[Case]:
+    if reading == settled(id):
+        yield from copy(kept_cases(right_form("II")))
+    else:
+        yield from form_cases(right_form("II"), {id: reading})
+
+
+def _cases(entry: PaperEntry, name: str, reading: Reading) -> Iterator[Case]:
+    row = entry.about["row"]  # "alpha2.K_1", of the second part
+    part = int(row[5]) if name == "II" and row[7] in "KL" else None
+    if reading == settled(entry.id):
+        yield from copy(_kept(name, entry.heads, part))
+    else:
+        yield from counted_cases(name, {entry.id: reading}, entry.heads, part=part)
+
+
+@cache
+def _kept(name: str, heads: tuple[str, ...], part: int | None) -> Iterator[Case]:
+    """The cases of a row or column in which all is right; what copies of this iterator reach is kept."""
+    return tee(counted_cases(name, {}, heads, part=part), 1)[0]
+
+
+@cache
+def _rows(table: str, m: int) -> dict[str, list[tuple[str, int]]]:
+    return tabled.rows(f"{table}.", m, {})
+
+
+def counted_cases(
+    name: str, tried: Tried, heads: Iterable[str], most_n: int | None = None, part: int | None = None
+) -> Iterator[Case]:
+    """The functions of some rows or columns: in example II their moments, and in all their highest powers.
+
+    Of a `part` of the moments only the powers, as these do not say which moments there are.
+    """
+    (table,) = (table for table, example in EXAMPLE.items() if example == name)
+    scopes: dict[tuple[int, str], Asked] = {}
+    for m, n in (pair for pair in PAIRS[name] if most_n is None or pair[1] <= most_n):
+        chain = counted(name, m)
+        for head, (letter, rod) in ((id, function) for id, row in _rows(table, m).items() for function in row):
+            if head not in heads:
+                continue
+            scope = scopes.setdefault((m, letter), Asked(name, chain.driven, letter, tried, part))
+            half = head.split(".")[1]
+            number = numbers(name, n)[half == "odd"]
+            if name == "II" and n == 0 and part is None:
+                at = {"m": m, "function": f"{letter}_{rod}", "claim": "moments s"}
+                yield case(at, partial(_moments, scope, rod, number), chain.acting(half, letter, rod))
+            yield from chain.cases(scope, letter, rod, number, {"m": m, "n": n})
+
+
+def _moments(scope: Asked, rod: int, number: int) -> tuple[int, ...]:
+    return tuple(sorted(upper[1] for lower, upper in scope.asked(rod, number) if not lower))
+
+
+def _faults(entry: PaperEntry, right: Reading) -> Iterator[tuple[str, Reading]]:
     """Those of the formula, and of a range that is the cell's own: the others are faults of the heads."""
     if isinstance(right.formula, Blank):
         for digit in "01":
@@ -187,207 +250,10 @@ def _cell_faults(entry: PaperEntry, right: Reading) -> Iterator[tuple[str, Readi
                 yield change, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
 
 
-@dataclass(frozen=True)
-class _Cells:
-    """The cells of a row or column as they should be, but for the one that is tried; None for a dash."""
-
-    pattern: str
-    tried: PaperEntry
-    reading: Reading
-
-    def __call__(self, name: str, **indices: int) -> Any:
-        id = self.pattern.format(name)
-        tree = self.reading.formula if id == self.tried.id else right(id)
-        if isinstance(tree, Blank):
-            return None
-        return _plain(Indices(indices).value(tree)) if id == self.tried.id else value(id, **indices)
-
-
-def _functions(entry: PaperEntry, ranges: Iterable[Tree], table: str) -> Iterator[tuple[int, int, str, int, bool]]:
-    """m, n, and the functions that a cell is about; whether it says anything of that n."""
-    kind = KINDS[table]
-    (head,) = (id for id in entry.heads if entries()[id].kind == "function")
-    said = (*ranges, *right_ranges(head))
-    for m, n in by_size(product(kind.sizes, range(kind.most_n + 1))):
-        for letter, i in listed(right(head), said, m):
-            yield m, n, letter, i, n in numbers(said, kind.most_n)
-
-
-def listed(function: Tree, ranges: Iterable[Tree], m: int) -> Iterator[tuple[str, int]]:
-    """The functions that a head names for an m: none where a condition on m does not hold."""
-    if not isinstance(function, Symbol):
-        raise MeaninglessError(f"{latex(function)} is no function")
-    scope = Indices({"m": m})
-    if all(holds(range_, scope) for range_ in ranges if _restricts(range_)):
-        running = _progression(ranges, "i")
-        for i in span(running, scope) if running else (None,):
-            with scope.binding({} if i is None else {"i": i}):
-                yield (function.name, *scope.indices(function))  # type: ignore[misc]
-
-
-def _restricts(range_: Tree) -> bool:
-    """Whether a range is a condition on m: not on z, and no running i or n."""
-    if isinstance(range_, Progression):
-        return range_.variable == Symbol("m")
-    return "z" not in latex(range_)
-
-
-def numbers(ranges: Iterable[Tree], most: int) -> tuple[int, ...]:
-    """The n of some ranges, up to `most`."""
-    running = _progression(ranges, "n")
-    return span(running, Scope(), most) if running else ()
-
-
-def _progression(ranges: Iterable[Tree], name: str) -> Progression | None:
-    return next((r for r in ranges if isinstance(r, Progression) and r.variable == Symbol(name)), None)
-
-
-def _collision(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
-    """Table 2: kappa_1, the inner bodies j in two parts, kappa_(m-1)."""
-    column = entry.about["column"]
-    cells = _Cells(f"T2.{entry.about['row']}.{{}}", entry, reading)
-    for m, n, letter, i, said in _functions(entry, reading.ranges, "T2"):
-        if column in ("K_1", "K_m-1"):
-            yield _power(cells, Term("T2", m, letter, i, n + 1, _body(column, m)), column, said)
-        else:
-            yield from _inner_bodies(Term("T2", m, letter, i, n + 1, 0), cells)
-
-
-_LIMIT = read_formula("E(K/2)")
-"""The highest power of an inner body, by (4.9)."""
-
-
-def _inner_bodies(term: Term, cells: _Cells) -> Iterator[Case]:
-    """For every inner body: one part has it, and its highest power is right."""
-    inner = range(1, (term.m - 4) // 2 + 1)
-    where = {"m": term.m, "n": term.number - 1, "i": term.rod}
-    claimed: dict[int, list[Any]] = {j: [] for j in inner}
-    for part in PARTS["T2"]:
-        members = _whole_range(cells(f"j_0,{part}", **where), cells(f"j_{part}", **where))
-        for j in members or (1,):
-            power = cells(f"K_j,{part}", **where, j=j)
-            if (power is None) is not (members is None):
-                raise MeaninglessError("a part is given whole or not at all")
-            if members:
-                claimed.setdefault(j, []).append(_plain(Scope({"K": power}).value(_LIMIT)))
-    for j in sorted(claimed):
-        yield _compared({**where, "j": j}, claimed[j], replace(term, body=2 * j + 1) if j in inner else None)
-
-
-def _whole_range(first: Any, last: Any) -> range | None:
-    """From first to last; None where both are dashes. MeaninglessError where they are no numbers of terms."""
-    if first is None and last is None:
-        return None
-    if not (isinstance(first, int) and isinstance(last, int)):
-        raise MeaninglessError(f"from {first or '—'} to {last or '—'}")
-    return range(first, last + 1)
-
-
-def _building(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
-    """Table 4: the floors' rate 2 kappa_1 and the roof's kappa_m."""
-    column = entry.about["column"]
-    cells = _Cells(f"{entry.about['table']}.{entry.about['row']}.{{}}", entry, reading)
-    for m, n, letter, i, said in _functions(entry, reading.ranges, "T4"):
-        yield _power(cells, Term("T4", m, letter, i, n + 1, _body(column, m)), column, said)
-
-
-def _power(cells: _Cells, term: Term, column: str, said: bool) -> Case:
-    """The highest power of one body."""
-    where = {"m": term.m, "n": term.number - 1, "i": term.rod}
-    return _compared(where, [cells(column, **where) if said else -1], term)
-
-
-def _body(column: str, m: int) -> int:
-    """The body that a column's label K_(...) names."""
-    return Indices({"m": m}).whole(read_formula(column.removeprefix("K_")))
-
-
-def _drive(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
-    """Table 3: the moments s in two parts, and for each the bodies l in three ranges."""
-    half, letter = entry.about["table"], entry.about["column"]
-    alpha, name = entry.about["row"].split(".")
-    parts = [_Cells(f"{half}.{letter}.alpha{a}.{{}}", entry, reading) for a in (1, 2)]
-    tried = parts[int(alpha[-1]) - 1]
-    for m, n, _, i, said in _functions(entry, reading.ranges, "T3"):
-        at = {"m": m, "n": n, "i": i}
-        if not said:
-            raise MeaninglessError(f"says nothing of n = {n}")
-        if name[0] not in "sR":
-            yield from _bodies(tried, int(alpha[-1]), name, Term("T3", m, letter, i, value(f"{half}.d", n=n), 0), at)
-        elif n == 0:
-            true = _acting(drive(m), letter, i, value(f"{half}.d", n=KINDS["T3"].most_n))
-            yield case({"m": m, "i": i, "claim": "moments s"}, partial(_all_moments, parts, at), true)
-
-
-def _all_moments(parts: Iterable[_Cells], at: Mapping[str, int]) -> tuple[Any, ...]:
-    return tuple(sorted(s for alpha, part in enumerate(parts, 1) for _, s in _moments(part, alpha, at)))
-
-
-def _moments(part: _Cells, alpha: int, at: Mapping[str, int]) -> list[tuple[int, Any]]:
-    """The r and the s of a part, r from s_alpha to R_alpha."""
-    here = {"m": at["m"], "i": at["i"]}
-    found = _whole_range(part(f"s_{alpha}", **here), part(f"R_{alpha}", **here))
-    return [(r, part("s", **here, r=r)) for r in found or ()]
-
-
-def _acting(exact: Exact, letter: str, i: int, number: int) -> tuple[int, ...]:
-    """The moments by which a function changes in an interval; MeaninglessError where there is no such function."""
-    try:
-        return tuple(s for s in range(1, exact.m + 2) if exact.increment(f"M{s}", letter, i, number))
-    except (KeyError, IndexError):
-        raise MeaninglessError(f"there is no interval {number} of {letter}_{i}") from None
-
-
-def _bodies(part: _Cells, alpha: int, name: str, term: Term, at: Mapping[str, int]) -> Iterator[Case]:
-    """For every moment of the part, every body is in one of the three ranges, and its highest power is right."""
-    everybody = range(1, term.m + 2)
-    for r, s in _moments(part, alpha, at):
-        here = {**at, "r": r}
-        last = [0, *(part(f"L_{beta}", **here) for beta in PARTS["T3"])]
-        ranges = {beta: _whole_range(last[beta - 1] + 1, last[beta]) or () for beta in PARTS["T3"]}
-        for body in ranges[int(name[-1])] if name[0] == "K" else sorted({*everybody, *chain(*ranges.values())}):
-            claimed = [part(f"K_{beta}", **here, l=body) for beta, members in ranges.items() if body in members]
-            true = replace(term, body=body, source=f"M{s}") if body in everybody else None
-            yield _compared({**at, "s": s, "l": body}, claimed, true)
-
-
-def _steps(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
-    """F' under delayed moments is the sum of increments number d at w, each from its start on."""
-    for m, z in product((1, 2), instants(5)):
-        motion = driven("II", m)
-        begun = list(_begun(motion.loads, entry, reading, z))
-        for letter, i in product("fg", range(1, m + 1)):
-            total: Any = 0
-            for source, weight, number, w in begun:
-                total = total + weight * motion.increment(source, letter, i, number, w)
-            yield Case({"m": m, "function": f"{letter}_{i}", "z": z}, total, motion.wave(letter, i, z), total != 0)
-
-
-def _begun(loads: Loads, entry: PaperEntry, reading: Reading, z: fmpq) -> Iterator[tuple[str, fmpq, int, fmpq]]:
-    """The pieces of moments and the intervals that have begun for them: source, weight, d and w."""
-    for half in ("T3.even", "T3.odd"):
-        d, w = (reading.formula if f"{half}.{name}" == entry.id else right(f"{half}.{name}") for name in "dw")
-        for n in numbers(reading.ranges, 2):
-            number = Indices({"n": n}).whole(d)
-            for source, pieces in loads.items():
-                for k, piece in enumerate(pieces):
-                    since = _Delayed({"n": n, "z": z, "s": int(source[1:]), "k": k}, loads).value(w)
-                    if since >= 0:
-                        yield source, piece.weight, number, since
-
-
-class _Delayed(Indices):
-    """With the times tau_(s,k) at which moments change."""
-
-    def __init__(self, bound: Mapping[str, Any], loads: Loads) -> None:
-        super().__init__(bound)
-        self._loads = loads
-
-    def symbol(self, symbol: Symbol) -> Any:
-        if symbol.name == r"\tau":
-            s, k = self.indices(symbol)
-            pieces = self._loads.get(f"M{s}", ())
-            if not 0 <= k < len(pieces):
-                raise MeaninglessError(f"M_{s} has no step {k}")
-            return pieces[k].time
-        return super().symbol(symbol)
+def definition(entry: PaperEntry) -> Test:
+    """L_0, r_0 and r_1, by what Table 3 is with them."""
+    heads = ids("function", "T3")
+    return Test(
+        "the moments that act, and the degrees of the exact tables, by Table 3",
+        lambda reading: counted_cases("II", {entry.id: reading}, heads, most_n=1),
+    )

@@ -1,4 +1,4 @@
-"""III.1 ... III.22 one by one: each with the true values of the coefficients on its right, its H, and what it gives."""
+"""III.1 ... III.22 one by one, with the true values of the coefficients on their right, and the list run by itself."""
 
 from __future__ import annotations
 
@@ -10,35 +10,105 @@ from itertools import product
 from flint import fmpq
 
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, holds
-from wavesym.papers.pielorz1979 import alone
-from wavesym.papers.pielorz1979.lines import STEPS, Coefficients, Key, Line, given, ids, line, truth
-from wavesym.papers.record import Case, Reading, Test, by_size, case
-from wavesym.papers.tree import Addition, Group, Minus, Product, Tree, latex
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sides
+from wavesym.papers.pielorz1979.lines import STEPS, Coefficients, Key, gives, truth, unknowns
+from wavesym.papers.pielorz1979.transcript import entry as transcribed
+from wavesym.papers.pielorz1979.transcript import ids, settled
+from wavesym.papers.record import Case, Reading, Test, by_size, case, reading
+from wavesym.papers.tree import Addition, Group, Minus, Product, Tree, latex, symbols
 
-SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(12 - m)))
-SMALL = tuple((m, n) for m, n in SIZES if m + n < 9)
+SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(11 - m)))
+SMALL = 9
+"""The m + n below which values are compared first: a wrong one says more than a wrong H or range."""
+STEP = 1
+"""The step of the load with which the list is run by itself: both a and b change there."""
 
 
 def coefficient(entry: PaperEntry) -> Test:
     """A line of the list."""
     return Test(
-        "the exact tables with equal floors under a load of three steps, m = 3 ... 6, m + n < 12: values, the H of "
+        "the exact tables with equal floors under a load of three steps, m = 3 ... 6, m + n < 11: values, the H of "
         "every coefficient, and every coefficient given once",
         partial(_cases, entry.id),
         difference=partial(_difference, entry.id) if entry.slip else None,
-        observed=partial(alone.consequence, entry.id) if entry.slip else None,
+        observed=partial(consequence, entry.id) if entry.slip else None,
     )
 
 
+def _cases(id: str, line: Reading) -> Iterator[Case]:
+    for small, (m, n) in product((True, False), SIZES):
+        for place, key, right in gives(line, m, n, [(m + n) % len(STEPS)]):
+            if small is (m + n < SMALL):
+                value = partial(Coefficients(place, truth(m)).value, right)
+                true = truth(m)(key)
+                yield case(place, value, true, true != 0, partial(truth(m).example, key))
+            if not small:
+                yield from _lets_in(place, key, right)
+        if not small:
+            yield from _coverage(id, line, m, n)
+
+
+def _lets_in(place: dict[str, int], key: Key, right: Tree) -> Iterator[Case]:
+    """H lets in the coefficients that exist, and no others; none rests on itself."""
+    exists = truth(place["m"]).exists
+    used, behind = _asked(place, right), _asked(place, right, opened=True)
+    if key in used:
+        yield Case({**place, "claim": "does not rest on itself"}, False, True)
+    if len(behind) > len(used) or not all(map(exists, used)):
+        yield Case({**place, "claim": "H lets in"}, _names(used), _names(filter(exists, behind)))
+
+
+def _asked(place: dict[str, int], right: Tree, opened: bool = False) -> list[Key]:
+    """The coefficients that a right side asks for, in their order."""
+    found = []
+
+    def asked(key: Key) -> fmpq:
+        found.append(key)
+        return truth(place["m"])(key)
+
+    Coefficients(place, asked, opened).value(right)
+    return found
+
+
+def _coverage(id: str, line: Reading, m: int, n: int) -> Iterator[Case]:
+    """Every coefficient is given by one line, once."""
+    wanted, counts = _wanted(id, m, n), Counter(key for _, key, _ in gives(line, m, n))
+    if wanted or counts:
+        extra = (counts - Counter(wanted)).elements()
+        yield Case({"m": m, "n": n, "claim": "given twice, or no coefficient"}, _names(sorted(extra)), (), bool(counts))
+        missing = _names(sorted(wanted - counts.keys()))
+        yield Case({"m": m, "n": n, "claim": "given by no line"}, missing, (), bool(wanted))
+
+
+@cache
+def _wanted(id: str, m: int, n: int) -> frozenset[Key]:
+    """The coefficients that no other line gives, of the letter and the family that this line is about."""
+    about = {_family(key) for key in _given(id, m, n) or _given(id, m, n + 1)}
+    others = {key for other in ids("line") if other != id for key in _given(other, m, n)}
+    return frozenset(key for key in unknowns(m, n) - others if _family(key) in about)
+
+
+def _family(key: Key) -> tuple[str, tuple[int, ...]]:
+    return key.letter, key.lower[:1] if len(key.lower) == 2 else (-len(key.lower),)
+
+
+@cache
+def _given(id: str, m: int, n: int) -> frozenset[Key]:
+    return frozenset(key for _, key, _ in gives(settled(id), m, n))
+
+
+def _names(keys: Iterable[Key]) -> tuple[str, ...]:
+    return tuple(map(str, keys))
+
+
+# what is printed less what is right
+
+
 def _difference(id: str, read: Reading) -> str:
-    """What is printed less what is right: the terms in which they differ."""
-    try:
-        ((_, printed),) = Line.of(read).equations
-    except (MeaninglessError, ValueError):
+    """The terms in which they differ."""
+    if len(items(read.formula)) != 1:
         return "no line of the list"
-    ((_, right),) = line(id).equations
-    mine, theirs = list(_terms(printed)), list(_terms(right))
+    mine, theirs = (list(_terms(sides(line.formula)[1])) for line in (read, settled(id)))
     left = [term for term in mine if term not in theirs] + [_negative(term) for term in theirs if term not in mine]
     return latex(Addition(tuple(left))) if left else "0"
 
@@ -53,7 +123,10 @@ def _terms(tree: Tree) -> Iterator[Tree]:
             yield from map(_negative, _terms(of))
         case Product(factors):
             for chosen in product(*([*_terms(f.inner)] if _brackets(f) else [f] for f in factors)):  # type: ignore[union-attr]
-                flat = [part for factor in chosen for part in _factors(factor)]
+                plain = [factor.of if isinstance(factor, Minus) else factor for factor in chosen]
+                flat = [
+                    part for factor in plain for part in (factor.factors if isinstance(factor, Product) else [factor])
+                ]
                 turned = sum(isinstance(factor, Minus) for factor in chosen) % 2
                 yield _negative(Product(tuple(flat))) if turned else Product(tuple(flat))
         case _:
@@ -61,96 +134,92 @@ def _terms(tree: Tree) -> Iterator[Tree]:
 
 
 def _brackets(factor: Tree) -> bool:
-    return isinstance(factor, Group) and "^" in latex(factor)
-
-
-def _factors(factor: Tree) -> tuple[Tree, ...]:
-    """Of a term, its sign apart."""
-    plain = factor.of if isinstance(factor, Minus) else factor
-    return plain.factors if isinstance(plain, Product) else (plain,)
+    return isinstance(factor, Group) and any(symbol.above for symbol in symbols(factor))
 
 
 def _negative(term: Tree) -> Tree:
     return term.of if isinstance(term, Minus) else Minus(term)
 
 
+# the list run by itself, from nothing but the parameters
+
+
+class NotGivenError(MeaninglessError):
+    """The list does not give a coefficient that is asked for, or gives it by itself."""
+
+
+class Alone:
+    """The coefficients of one building, from a list of lines, up to some n."""
+
+    def __init__(self, lines: Iterable[Reading], m: int, most_n: int) -> None:
+        self._lines: dict[Key, tuple[dict[str, int], Tree]] = {}
+        for line, n in product(lines, range(most_n + 1)):
+            for place, key, right in gives(line, m, n, [STEP]):
+                self._lines.setdefault(key, (place, right))
+        self._known: dict[Key, fmpq | None] = {}
+
+    def __call__(self, key: Key) -> fmpq:
+        """A coefficient; NotGivenError where the list does not give it, or gives it by itself."""
+        if key.interval < 1:
+            return fmpq(0)  # F' = 0 before the first interval, by (4.12)
+        if key not in self._known:
+            if key not in self._lines:
+                raise NotGivenError(f"{key} is in no line's range")
+            place, right = self._lines[key]
+            self._known[key] = None
+            self._known[key] = Coefficients(place, self).value(right)
+        value = self._known[key]
+        if value is None:
+            raise NotGivenError(f"{key} rests on itself")
+        return value
+
+
+def compared(lines: Iterable[Reading], m: int, most_n: int) -> Iterator[tuple[Key, fmpq, fmpq]]:
+    """Every coefficient for n = 0 ... most_n: its value by the list, and its true value; NotGivenError."""
+    alone = Alone(lines, m, most_n)
+    for n in range(most_n + 1):
+        for key in sorted(unknowns(m, n)):
+            if key.k == STEP:
+                yield key, alone(key), truth(m)(key)
+
+
+def corrected(but: str = "") -> list[Reading]:
+    """The list as it should be, but for a line that is as printed."""
+    return [_printed(id) if id == but else settled(id) for id in ids("line")]
+
+
+def _printed(id: str) -> Reading:
+    told = transcribed(id)
+    return reading(told.printed, (*told.ranges, *told.inferred))
+
+
+@cache
+def complete(m: int, most_n: int) -> bool:
+    """Whether the corrected list gives every coefficient for an m."""
+    try:
+        return all(value == true for _, value, true in compared(corrected(), m, most_n))
+    except MeaninglessError:
+        return False
+
+
+@cache
+def consequence(id: str) -> str:
+    """What becomes of the list where everything but this line is corrected."""
+    for m in range(3, 6):
+        try:
+            for key, value, true in compared(corrected(id), m, 6):
+                if value != true:
+                    return f"Without it the list by itself goes wrong: {key} becomes {value}, true is {true} (m = {m})."
+        except MeaninglessError as error:
+            return f"Without it the list by itself cannot be run: {error} (m = {m})."
+    return "The list by itself gives the right values without it too."
+
+
 def sizes(entry: PaperEntry) -> Test:
     """The m for which the list is said to give the coefficients."""
-    return Test("whether the list, run by itself, gives every coefficient, m = 2 ... 6, n = 0 ... 5", _sizes)
 
+    def cases(reading: Reading) -> Iterator[Case]:
+        for m in range(2, 7):
+            yield Case({"m": m}, holds(reading.formula, Scope({"m": m})), complete(m, 5))
 
-def _sizes(reading: Reading) -> Iterator[Case]:
-    for m in range(2, 7):
-        yield Case({"m": m}, holds(reading.formula, Scope({"m": m})), alone.complete(m, 5))
-
-
-def _cases(id: str, reading: Reading) -> Iterator[Case]:
-    """Values of small buildings first: a wrong one says more than a wrong H or range."""
-    tried = Line.of(reading)
-    for m, n in SMALL:
-        for place in tried.places(m, n, (m + n) % len(STEPS)):
-            yield _value(*place)
-    for m, n in SIZES:
-        for place in tried.places(m, n, (m + n) % len(STEPS)):
-            if (m, n) not in SMALL:
-                yield _value(*place)
-            yield from _lets_in(*place)
-        yield from _coverage(id, tried, m, n)
-
-
-def _value(bound: dict[str, int], key: Key, right: Tree) -> Case:
-    known = truth(bound["m"])
-    true = known(key)
-    value = partial(Coefficients(bound, bound["m"], known).value, right)
-    return case(bound, value, true, true != 0, partial(known.example, key))
-
-
-def _lets_in(bound: dict[str, int], key: Key, right: Tree) -> Iterator[Case]:
-    """H lets in the coefficients that exist, and no others; none rests on itself."""
-    known = truth(bound["m"])
-    used, behind = _asked(bound, right), _asked(bound, right, opened=True)
-    if key in used:
-        yield Case({**bound, "claim": "does not rest on itself"}, False, True)
-    if len(behind) > len(used) or not all(map(known.exists, used)):
-        yield Case({**bound, "claim": "H lets in"}, _names(used), _names(filter(known.exists, behind)))
-
-
-def _asked(bound: dict[str, int], right: Tree, opened: bool = False) -> list[Key]:
-    """The coefficients that a right side asks for, in their order."""
-    found = []
-
-    def asked(key: Key) -> fmpq:
-        found.append(key)
-        return truth(bound["m"])(key)
-
-    Coefficients(bound, bound["m"], asked, opened).value(right)
-    return found
-
-
-def _coverage(id: str, tried: Line, m: int, n: int) -> Iterator[Case]:
-    """Every coefficient is given by one line, once."""
-    wanted = _wanted(id, m, n)
-    counts = Counter(given([tried], m, n))
-    where = {"m": m, "n": n}
-    if not wanted and not counts:
-        return
-    extra = sorted((counts - Counter(wanted)).elements())
-    yield Case({**where, "claim": "given twice, or no coefficient"}, _names(extra), (), bool(counts))
-    yield Case({**where, "claim": "given by no line"}, _names(sorted(wanted - set(counts))), (), bool(wanted))
-
-
-@cache
-def _wanted(id: str, m: int, n: int) -> frozenset[Key]:
-    """The coefficients that no other line gives, of the letter and the family that this line is about."""
-    about = {key[:2] for key in given([line(id)], m, n)} or {key[:2] for key in given([line(id)], m, n + 1)}
-    others = {key for other in ids() if other != id for key in _given(other, m, n)}
-    return frozenset(key for key in truth(m).unknowns(n) - others if key[:2] in about)
-
-
-@cache
-def _given(id: str, m: int, n: int) -> frozenset[Key]:
-    return frozenset(given([line(id)], m, n))
-
-
-def _names(keys: Iterable[Key]) -> tuple[str, ...]:
-    return tuple(map(str, keys))
+    return Test("whether the list, run by itself, gives every coefficient, m = 2 ... 6, n = 0 ... 5", cases)

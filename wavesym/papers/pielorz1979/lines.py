@@ -8,39 +8,34 @@ of that time and an exponential of rate 2 kappa_1 or kappa_m.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache
+from itertools import product
 from typing import Any, NamedTuple
 
 from flint import fmpq
 
-from wavesym.exact.increments import Increment
-from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sides, span
-from wavesym.papers.exact_tables import Exact, building
+from wavesym.papers.evaluation import MeaninglessError, Scope, items, places, sides
+from wavesym.papers.pielorz1979.forms import known, moved
 from wavesym.papers.pielorz1979.scenes import example
-from wavesym.papers.pielorz1979.transcript import entries, entry
-from wavesym.papers.pielorz1979.truth import LoadStep, loads
-from wavesym.papers.reader import UnreadableError
-from wavesym.papers.record import Reading, Reproduction, reading
-from wavesym.papers.tree import Progression, Symbol, Tree, latex
+from wavesym.papers.record import Reading, Reproduction
+from wavesym.papers.tree import Symbol, Tree, latex, symbols
 
 STEPS = range(3)
 """The k of the steps of the load that the list is tried with."""
 
 
 class Key(NamedTuple):
-    """A coefficient; `family` is "" (constant), "0" (linear), "1" or "m"."""
+    """A coefficient, by its letter, its lower indices and its upper ones."""
 
     letter: str
-    family: str
+    lower: tuple[int, ...]
+    k: int
     rod: int
     interval: int
-    power: int
-    k: int
 
     def __str__(self) -> str:
-        lower = {"": "", "0": "_0"}.get(self.family, f"_({self.family},{self.power})")
-        return f"{self.letter}{lower}^({self.k},{self.rod},{self.interval})"
+        below = {0: "", 1: "_0"}.get(len(self.lower)) or (f"_({self.lower[0]},{self.lower[1]})" if self.lower else "")
+        return f"{self.letter}{below}^({self.k},{self.rod},{self.interval})"
 
 
 def key(symbol: Symbol, scope: Scope) -> Key:
@@ -48,94 +43,74 @@ def key(symbol: Symbol, scope: Scope) -> Key:
     upper, lower = scope.upper(symbol), scope.indices(symbol)
     if symbol.name not in "fg" or symbol.accent or symbol.primes or len(upper) != 3:
         raise MeaninglessError(f"{latex(symbol)} is no coefficient")
-    k, rod, interval = upper
-    match lower:
-        case ():
-            return Key(symbol.name, "", rod, interval, 0, k)
-        case (0,):
-            return Key(symbol.name, "0", rod, interval, 0, k)
-        case (body, power) if body in (1, scope.bound["m"]):
-            return Key(symbol.name, "1" if body == 1 else "m", rod, interval, power, k)
-    raise MeaninglessError(f"{latex(symbol)} has no such lower indices")
+    if lower not in ((), (0,)) and (len(lower) != 2 or lower[0] not in (1, scope.bound["m"])):
+        raise MeaninglessError(f"{latex(symbol)} has no such lower indices")
+    return Key(symbol.name, lower, *upper)
 
 
-class Truth:
+class TrueCoefficients:
     """The coefficients of (4.12) for a building of m - 1 equal floors under a load, by the exact tables."""
 
     def __init__(self, m: int) -> None:
-        self.exact: Exact = building(m)
-        self.m = m
+        self.driven, self.m = moved("III", m), m
+        self.exact, self.loads = self.driven.exact, self.driven.loads
         self.kappa = {i: fmpq(kappa) for i, kappa in self.exact.chain.parameters.kappa.items()}
-        self.loads: Mapping[str, tuple[LoadStep, ...]] = {
-            name: tuple(steps) for name, steps in loads(self.exact).items()
-        }
-        self._known: dict[Key, fmpq] = {}
-        self._found: dict[Key, bool] = {}
+        self._powers: dict[Key, list[fmpq]] = {}
 
     def __call__(self, key: Key) -> fmpq:
         """A coefficient: 0 before the first interval and where it does not exist; MeaninglessError."""
-        if key not in self._known:
-            self._known[key] = self._computed(key)
-        return self._known[key]
-
-    def _computed(self, key: Key) -> fmpq:
-        if key.k not in STEPS or not 1 <= key.rod <= self.m or key.power < 0:
+        powers, power = self.family(key), key.lower[-1] if len(key.lower) > 1 else len(key.lower)
+        if power < 0:
             raise MeaninglessError(f"there is no {key}")
-        place = int(key.family == "0") or key.power
-        total = fmpq(0)
-        for source, steps in self.loads.items():
-            powers = self._increment(source, key).get(self._rate(key.family), [])
-            total += steps[key.k].weight * powers[place] if place < len(powers) else 0
-        return total
+        return powers[power] if power < len(powers) else fmpq(0)
 
-    def _increment(self, source: str, key: Key) -> Increment:
-        try:
-            return self.exact.increment(source, key.letter, key.rod, key.interval)
-        except IndexError:
-            raise MeaninglessError(f"{key} is beyond the tables") from None
+    def family(self, key: Key) -> list[fmpq]:
+        """The coefficients of all powers at the rate of one."""
+        one = key._replace(lower=key.lower[:1] if len(key.lower) > 1 else ())
+        if one not in self._powers:
+            increment = self.driven.gain(key.letter, key.rod, key.interval, "ab", key.k)
+            self._powers[one] = increment.get(self._rate(key.lower), [])
+        return self._powers[one]
 
-    def _rate(self, family: str) -> fmpq:
-        return {"": fmpq(0), "0": fmpq(0), "1": 2 * self.kappa[1], "m": self.kappa[self.m]}[family]
+    def _rate(self, lower: tuple[int, ...]) -> fmpq:
+        return fmpq(0) if len(lower) < 2 else self.kappa[self.m] if lower[0] == self.m else 2 * self.kappa[1]
 
     def exists(self, key: Key) -> bool:
         """Whether (4.12) has such a term there: the function has begun to move, and the power is not too high."""
-        if key not in self._found:
-            self._found[key] = self._exists(key)
-        return self._found[key]
-
-    def _exists(self, key: Key) -> bool:
         if key.interval < 1 or not 1 <= key.rod <= self.m:
             return False
-        if key.family in ("", "0"):
-            return self.exact.alive(key.letter, key.rod, key.interval)
-        return 0 <= key.power <= self.exact.degree(key.letter, key.rod, key.interval, self._rate(key.family))
+        if len(key.lower) < 2:
+            return bool(self.driven.gain(key.letter, key.rod, key.interval, "ab", key.k))
+        return 0 <= key.lower[1] < len(self.family(key))
 
     def example(self, key: Key) -> Reproduction:
         """The tables of increments for units of both sources, of which a coefficient is made."""
-        place = int(key.family == "0") or key.power
         parts = " and ".join(f"{steps[key.k].weight} times source {name}" for name, steps in self.loads.items())
+        power = key.lower[-1] if len(key.lower) > 1 else len(key.lower)
         look = (
-            f"{key.letter} of rod {key.rod}, interval {key.interval}, rate {self._rate(key.family)}, power {place}: "
+            f"{key.letter} of rod {key.rod}, interval {key.interval}, rate {self._rate(key.lower)}, power {power}: "
             f"{parts} is {self(key)}"
         )
         until = self.exact.interval * key.interval
         return example(self.exact, self.loads, until, {"strain": ["1-"]}, "wavesym tables SCENE", look)()
 
-    def unknowns(self, n: int) -> frozenset[Key]:
-        """The coefficients of interval n + 1, for all steps: those of f_1, ..., f_m and g_2, ..., g_m."""
-        found = []
-        for letter, rod in [("f", rod) for rod in range(1, self.m + 1)] + [("g", rod) for rod in range(2, self.m + 1)]:
-            found += [(letter, family, rod, n + 1, 0) for family in ("", "0")]
-            for family in "1m":
-                degree = self.exact.degree(letter, rod, n + 1, self._rate(family))
-                found += [(letter, family, rod, n + 1, power) for power in range(degree + 1)]
-        return frozenset(Key(*parts, k) for parts in found for k in STEPS)
+
+@cache
+def truth(m: int) -> TrueCoefficients:
+    """The coefficients of a building of m - 1 floors."""
+    return TrueCoefficients(m)
 
 
 @cache
-def truth(m: int) -> Truth:
-    """The coefficients of a building of m - 1 floors."""
-    return Truth(m)
+def unknowns(m: int, n: int) -> frozenset[Key]:
+    """The coefficients of interval n + 1, for all steps: those of f_1, ..., f_m and g_2, ..., g_m."""
+    functions = [("f", rod) for rod in range(1, m + 1)] + [("g", rod) for rod in range(2, m + 1)]
+    found = []
+    for (letter, rod), k in product(functions, STEPS):
+        powers = {body: truth(m).family(Key(letter, (body, 0), k, rod, n + 1)) for body in (1, m)}
+        lower = [(), (0,), *((body, power) for body in powers for power in range(len(powers[body])))]
+        found += [Key(letter, indices, k, rod, n + 1) for indices in lower]
+    return frozenset(found)
 
 
 class Coefficients(Scope):
@@ -144,92 +119,39 @@ class Coefficients(Scope):
     `opened`: every H is 1, so that all coefficients behind one are asked for.
     """
 
-    def __init__(self, bound: Mapping[str, int], m: int, given: Callable[[Key], fmpq], opened: bool = False) -> None:
+    def __init__(self, bound: Mapping[str, int], given: Callable[[Key], Any], opened: bool = False) -> None:
         super().__init__(bound)
-        self._truth, self._given, self._opened = truth(m), given, opened
+        self._truth, self._given, self._opened = truth(bound["m"]), given, opened
 
     def symbol(self, symbol: Symbol) -> Any:
         match symbol:
-            case Symbol(r"\kappa", accent="", below=(_,)):
-                (body,) = self.indices(symbol)
-                if body in self._truth.kappa:
-                    return self._truth.kappa[body]
-            case Symbol("a" | "b" as source, accent=r"\bar", below=(_,)):
-                (k,) = self.indices(symbol)
-                if k in STEPS:
-                    return self._truth.loads[source][k].weight
             case Symbol("f" | "g", above=(_, *_)):
                 return self._given(key(symbol, self))
+            case Symbol(r"\kappa", accent="", below=(_,)):
+                return known(self._truth.kappa, self.indices(symbol)[0], symbol.name)
+            case Symbol("a" | "b" as source, accent=r"\bar", below=(_,)):
+                return self._truth.driven.piece(source, self.indices(symbol)[0]).weight
         return super().symbol(symbol)
 
     def step(self, value: Any) -> Any:
         return 1 if self._opened else super().step(value)
 
 
-@dataclass(frozen=True)
-class Line:
-    """A line of the list: coefficients, what they are, and the ranges of j, i and n for which that is said."""
+def gives(line: Reading, m: int, n: int, steps: Iterable[int] = STEPS) -> Iterator[tuple[dict[str, int], Key, Tree]]:
+    """Indices, the coefficient, and what it is, for all that a line gives for an n; MeaninglessError.
 
-    equations: tuple[tuple[Tree, Tree], ...]
-    ranges: tuple[Tree, ...]
-
-    @classmethod
-    def of(cls, read: Reading) -> Line:
-        """The line that a reading is; MeaninglessError."""
-        pairs = []
-        for item in items(read.formula):
-            left, *right = sides(item)
-            if len(right) != 1 or not isinstance(left, Symbol):
-                raise MeaninglessError(f"{latex(item)} gives no coefficient")
-            pairs.append((left, right[0]))
-        return cls(tuple(pairs), read.ranges)
-
-    def places(self, m: int, n: int, k: int) -> Iterator[tuple[dict[str, int], Key, Tree]]:
-        """Indices, the coefficient, and what it is, for all coefficients that the line gives for an n.
-
-        A line in which no n stands gives its coefficients once.
-        """
-        for left, right in self.equations:
-            assert isinstance(left, Symbol)
-            if n == 0 or "n" in latex(left):
-                for bound in _bindings(self.ranges, {"m": m, "n": n, "k": k}):
-                    yield bound, key(left, Scope(bound)), right
-
-
-def _bindings(ranges: tuple[Tree, ...], bound: dict[str, int]) -> Iterator[dict[str, int]]:
-    """The values of j and i, one range after another, where the conditions hold."""
-    if not ranges:
-        yield bound
-        return
-    first, *rest = ranges
-    if isinstance(first, Progression) and isinstance(first.variable, Symbol) and first.variable.name not in bound:
-        for value in span(first, Scope(bound)):
-            yield from _bindings(tuple(rest), {**bound, first.variable.name: value})
-    elif holds(first, Scope(bound)):
-        yield from _bindings(tuple(rest), bound)
+    A line in which no n stands gives its coefficients once.
+    """
+    for equation in items(line.formula):
+        left, right = sides(equation)
+        if not isinstance(left, Symbol):
+            raise MeaninglessError(f"{latex(left)} is no coefficient")
+        for k in steps:
+            yield from ((place, key, right) for place, key in _keys(left, line.ranges, m, n, k))
 
 
 @cache
-def line(id: str, printed: bool = False) -> Line:
-    """A line of the list as it should be, or as it is printed; MeaninglessError."""
-    record = entry(id)
-    slip = None if printed else record.slip
-    ranges = record.ranges if slip is None or slip.ranges is None else slip.ranges
-    try:
-        return Line.of(reading(slip.corrected if slip else record.printed, (*ranges, *record.inferred)))
-    except UnreadableError as error:
-        raise MeaninglessError(str(error)) from None
-
-
-@cache
-def ids() -> tuple[str, ...]:
-    """The lines of the list."""
-    return tuple(id for id, record in entries().items() if record.kind == "line")
-
-
-def given(lines: Iterable[Line], m: int, n: int) -> Iterator[Key]:
-    """The coefficients that lines give for an n, for all steps."""
-    for line in lines:
-        for k in STEPS:
-            for _, key, _ in line.places(m, n, k):
-                yield key
+def _keys(left: Symbol, ranges: tuple[Tree, ...], m: int, n: int, k: int) -> list[tuple[dict[str, int], Key]]:
+    if n > 0 and Symbol("n") not in symbols(left):
+        return []
+    return [(place, key(left, Scope(place))) for place in places(ranges, Scope({"m": m, "n": n, "k": k}))]

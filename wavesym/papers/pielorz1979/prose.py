@@ -13,9 +13,7 @@ from pathlib import Path
 
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.pielorz1979 import dependence, listed
-from wavesym.papers.pielorz1979.forms import (
-    Words,
-)
+from wavesym.papers.pielorz1979.listed import Words
 from wavesym.papers.record import Case, Reading, Test
 from wavesym.papers.sentences import SentencePattern, sentence_reader
 
@@ -43,9 +41,9 @@ CASES: Mapping[str, Callable[[Words], Iterator[Case]]] = {
     "heaviside": dependence.heaviside,
     "lengths": dependence.lengths,
     "entier": dependence.entier,
-    "table_2": listed.listed("I", listed.collisions),
-    "table_3": listed.listed("II", listed.drives),
-    "table_4": listed.listed("III", listed.buildings),
+    "table_2": listed.table("I"),
+    "table_3": listed.table("II"),
+    "table_4": listed.table("III"),
     "count": listed.count,
     "others": listed.others,
     "indices_4_9": listed.index_roles("I"),

@@ -6,8 +6,8 @@ tables are tried on chains with all rates different, with every pair equal, and 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from functools import cache, partial
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from itertools import product
 from typing import Any
 
@@ -15,14 +15,14 @@ from flint import fmpq
 
 from wavesym.model.node import Parameters
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import Scope, holds, span
-from wavesym.papers.exact_tables import Exact, collision, gammas, with_parameters
-from wavesym.papers.mutations import ends
-from wavesym.papers.pielorz1979.cells import KINDS
-from wavesym.papers.record import Case, Reading, Test
-from wavesym.papers.tree import Progression, Symbol, Tree, latex
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, places, sides
+from wavesym.papers.exact_tables import Exact, collision, drive, with_parameters
+from wavesym.papers.pielorz1979.cells import EXAMPLE
+from wavesym.papers.pielorz1979.forms import TABLES, known, rates
+from wavesym.papers.pielorz1979.transcript import ids, settled
+from wavesym.papers.record import Case, Reading, Test, case, faults
+from wavesym.papers.tree import Blank, Progression, Symbol, latex
 
-Numbers = Mapping[int, fmpq]
 _A, _B, _C = fmpq(2, 3), fmpq(3, 5), fmpq(5, 7)
 _COLLISIONS = ((_A, _B), (_A, _A), (_A, 2 * _A), (2 * _A, _A), (_A, _B, _B), (_A, _B, _A), (_A, _A, _B), (_A, _B, _C))
 _DRIVES = (  # kappa, J
@@ -35,111 +35,119 @@ _DRIVES = (  # kappa, J
     ((_A, _B), (1, 2, 2 * _B / _A)),
     ((_A, _A), (1, 2, fmpq(4, 3))),
 )
-INTERVALS = 9
 _BUILDINGS = ((2, _A, _B), (2, _A, 2 * _A), (3, _A, _B), (3, _A, 2 * _A))  # m, kappa of floors, of the roof
+INTERVALS = 9
 
 
-def rates(entry: PaperEntry) -> Test:
-    """The functions of a table: for which rates its powers are theirs."""
-    return Test(
-        "the degrees of exact tables with equal rates, beside those with different ones: a power of the table is "
-        "the highest of all bodies with its rate",
-        partial(_cases, entry.id[:2]),
-        faults=_faults,
-    )
-
-
-def _faults(right: Reading) -> Iterator[tuple[str, Reading]]:
-    """Those of the ranges: the letter names functions."""
-    for place, range_ in enumerate(right.ranges):
-        for change, wrong in ends(range_):
-            yield change, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
-
-
-def _cases(table: str, reading: Reading) -> Iterator[Case]:
-    for number in range(len(_variants(table))):
-        exact, true = _tabled(table, number)
-        scope = _Rates(exact)
-        name, values = scope.shown(table)
-        yield Case({"m": exact.m, name: values, "claim": "powers as tabled"}, _all(reading.ranges, scope), true)
-
-
-def _all(ranges: tuple[Tree, ...], scope: Scope) -> bool:
-    """Whether the conditions hold for all values of i and j."""
-    if not ranges:
-        return True
-    first, *rest = ranges
-    if not isinstance(first, Progression):
-        return holds(first, scope) and _all(tuple(rest), scope)
-    results = []
-    for value in span(first, scope):
-        with scope.binding({latex(first.variable): value}):
-            results.append(_all(tuple(rest), scope))
-    return all(results)
-
-
-class _Rates(Scope):
-    """The rates of a chain: kappa and gamma."""
+class RateScope(Scope):
+    """kappa and J of a chain, and gamma, the rates of its discs."""
 
     def __init__(self, exact: Exact) -> None:
         super().__init__({"m": exact.m})
-        self._values: Mapping[str, Numbers] = {r"\kappa": exact.chain.parameters.kappa, r"\gamma": gammas(exact)}
+        parameters = exact.chain.parameters
+        self.values: Mapping[str, Mapping[int, Any]] = {r"\kappa": parameters.kappa, "J": parameters.inertia or {}}
 
     def symbol(self, symbol: Symbol) -> Any:
-        if symbol.name in self._values and len(symbol.below) == 1:
-            (body,) = self.indices(symbol)
-            if body in self._values[symbol.name]:
-                return self._values[symbol.name][body]
-        return super().symbol(symbol)
-
-    def shown(self, table: str) -> tuple[str, tuple[fmpq, ...]]:
-        """The parameters that matter to a table."""
-        name = "gamma" if table == "T3" else "kappa"
-        return name, tuple(value for _, value in sorted(self._values[f"\\{name}"].items()))
+        if symbol.name not in self.values or len(symbol.below) != 1 or symbol.accent:
+            return super().symbol(symbol)
+        return known(self.values[symbol.name], self.indices(symbol)[0], symbol.name)
 
 
-@cache
-def _variants(table: str) -> tuple[tuple[int, Parameters], ...]:
+def differing(entry: PaperEntry) -> Test:
+    """The functions of a table: for which rates its powers are theirs."""
+
+    def cases(reading: Reading) -> Iterator[Case]:
+        running = [range_ for range_ in reading.ranges if isinstance(range_, Progression)]
+        said = [range_ for range_ in reading.ranges if range_ not in running]
+        for exact, true in _tabled(entry.id[:2]):
+            scope, values = RateScope(exact), rates(exact)
+            shown = exact.chain.parameters.kappa
+            if entry.id[:2] == "T3":
+                shown, scope.values = values, {r"\gamma": values}
+            at = {"m": exact.m, "gamma" if entry.id[:2] == "T3" else "kappa": tuple(shown[i] for i in sorted(shown))}
+            found = all(_hold(said, scope, place) for place in places(running, scope))
+            yield Case({**at, "claim": "powers as tabled"}, found, true)
+
+    def of_ranges(right: Reading) -> Iterator[tuple[str, Reading]]:
+        """The letter names functions and is no formula."""
+        for change, wrong in faults(Reading(Blank("F"), right.ranges)):
+            yield change, Reading(right.formula, wrong.ranges)
+
+    return Test(
+        "the degrees of exact tables with equal rates, beside those with different ones: a power of the table is "
+        "the highest of all bodies with its rate",
+        cases,
+        faults=of_ranges,
+    )
+
+
+def _hold(said: Iterable[Any], scope: Scope, place: Mapping[str, Any]) -> bool:
+    with scope.binding(place):
+        return all(holds(range_, scope) for range_ in said)
+
+
+def _variants(table: str) -> Iterator[tuple[int, Parameters]]:
     """m and parameters."""
     if table == "T2":
-        return tuple(
-            (
-                2 * len(k),
-                Parameters(
-                    kappa={2 * i - 1: kappa for i, kappa in _each(k).items()},
-                    velocity=collision(2 * len(k)).chain.parameters.velocity,
-                ),
-            )
-            for k in _COLLISIONS
-        )
-    if table == "T3":
-        return tuple((len(k), Parameters(kappa=_each(k), inertia=_each(J))) for k, J in _DRIVES)
-    return tuple((m, Parameters(kappa={0: _C, **dict.fromkeys(range(1, m), k), m: r})) for m, k, r in _BUILDINGS)
+        for kappas in _COLLISIONS:
+            m = 2 * len(kappas)
+            velocity = collision(m).chain.parameters.velocity
+            yield m, Parameters(kappa={2 * i + 1: kappa for i, kappa in enumerate(kappas)}, velocity=velocity)
+    elif table == "T3":
+        for shafts, discs in _DRIVES:
+            yield len(shafts), Parameters(kappa=_each(shafts), inertia=_each(discs))
+    else:
+        for m, floor, roof in _BUILDINGS:
+            yield m, Parameters(kappa={0: _C, **dict.fromkeys(range(1, m), floor), m: roof})
 
 
-def _each(values: Any) -> dict[int, fmpq]:
+def _each(values: Iterable[Any]) -> dict[int, fmpq]:
     return {i: fmpq(value) for i, value in enumerate(values, 1)}
 
 
 @cache
-def _tabled(table: str, number: int) -> tuple[Exact, bool]:
-    """A chain, and whether its highest powers are those of chains with all rates different."""
-    m, parameters = _variants(table)[number]
-    usual = KINDS[table].tables(m)
-    exact = with_parameters(usual, parameters)
-    bodies: dict[fmpq, list[fmpq]] = {}
-    for rate, other in zip(_of(table, exact), _of(table, usual), strict=True):
-        bodies.setdefault(rate, []).append(other)
-    places = product("fg", range(1, m + 1), range(1, INTERVALS + 1))
-    return exact, all(
-        exact.degree(*place, rate, source) == max(usual.degree(*place, other, source) for other in others)
-        for place, source, (rate, others) in product(places, exact.responses, bodies.items())
-    )
+def _tabled(table: str) -> tuple[tuple[Exact, bool], ...]:
+    """Chains, and whether their highest powers are those of chains with all rates different."""
+    found = []
+    for m, parameters in _variants(table):
+        usual = TABLES[EXAMPLE[table]](m)
+        exact = with_parameters(usual, parameters)
+        bodies: dict[fmpq, set[fmpq]] = {}
+        for (_, rate), (_, other) in zip(rates(exact).items(), rates(usual).items(), strict=True):
+            bodies.setdefault(rate, set()).add(other)
+        functions = product("fg", range(1, m + 1), range(1, INTERVALS + 1))
+        same = all(
+            exact.degree(*place, rate, source) == max(usual.degree(*place, other, source) for other in others)
+            for place, source, (rate, others) in product(functions, exact.responses, bodies.items())
+        )
+        found.append((exact, same))
+    return tuple(found)
 
 
-def _of(table: str, exact: Exact) -> tuple[fmpq, ...]:
-    """The rates of the bodies, in their order."""
-    if table == "T3":
-        return tuple(gammas(exact).values())
-    kappa = exact.chain.parameters.kappa
-    return tuple(2 * kappa[i] for i in sorted(kappa)) if table == "T2" else (2 * kappa[1], fmpq(kappa[exact.m]))
+def rate(entry: PaperEntry) -> Test:
+    """gamma_i; the formulas of (4.11) together give every one once."""
+    others = [settled(id) for id in ids("rate") if id != entry.id]
+
+    def cases(reading: Reading) -> Iterator[Case]:
+        for m in range(1, 6):
+            exact = drive(m)
+            scope, true, parameters = RateScope(exact), rates(exact), exact.chain.parameters
+            given = [i for other in (reading, *others) for i, _, _ in _gammas(other, scope)]
+            yield Case({"m": m, "claim": "the gamma that are given"}, sorted(given), sorted(true))
+            for i, right, place in _gammas(reading, scope):
+                at = {"m": m, "i": i, "kappa": dict(parameters.kappa), "J": dict(parameters.inertia)}
+                with scope.binding(place):
+                    yield case(at, lambda: scope.value(right), true.get(i))  # noqa: B023
+
+    return Test("the rates of the discs by their derived node laws, m = 1 ... 5", cases)
+
+
+def _gammas(reading: Reading, scope: Scope) -> Iterator[tuple[int, Any, dict[str, Any]]]:
+    """The number of every gamma, and what it is where; once where the left index has no i, else for every i."""
+    for equation in items(reading.formula):
+        left, right = sides(equation)
+        if not isinstance(left, Symbol) or left.name != r"\gamma" or len(left.below) != 1:
+            raise MeaninglessError(f"{latex(left)} is no gamma")
+        for place in places(reading.ranges if Symbol("i") in left.below else (), scope):
+            with scope.binding(place):
+                yield scope.indices(left)[0], right, place

@@ -4,138 +4,131 @@ which coefficients the solutions have."""
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 
 from flint import fmpq
 
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, span
+from wavesym.papers.evaluation import MeaninglessError, Scope, items, places, sides, span
 from wavesym.papers.exact_tables import building, drive
 from wavesym.papers.exponentials import exponential
-from wavesym.papers.pielorz1979 import limits
-from wavesym.papers.pielorz1979.form_constants import acting, moments
-from wavesym.papers.pielorz1979.forms import (
-    FORMS,
-    FormScope,
-    corrected,
-    moved,
-    only,
-    rates,
-    right_form,
-    shown,
-)
-from wavesym.papers.pielorz1979.transcript import paper
+from wavesym.papers.pielorz1979.cells import counted
+from wavesym.papers.pielorz1979.forms import FORMS, FormScope, moved, only, rates, right_form, shown
+from wavesym.papers.pielorz1979.tabled import ALPHA, functions
+from wavesym.papers.pielorz1979.transcript import ids, settled
+from wavesym.papers.reader import read_formula
 from wavesym.papers.record import Case, Reading, Test, case
 from wavesym.papers.tree import Call, Number, Symbol, Tree, latex, symbols
 
-SIZES = range(1, 6)
 MOST_N = 4
 
 
 def rest(entry: PaperEntry) -> Test:
-    """Adapter: functions of Table 4 that are 0 in some intervals; the intervals 1 ... MOST_N are tried."""
-    return Test("what the functions g of Table 4 gain in exact tables with equal floors, m = 2 ... 5", _rest_cases)
+    """Functions of Table 4 that are 0 in some intervals; the intervals 1 ... MOST_N are tried."""
+
+    def cases(reading: Reading) -> Iterator[Case]:
+        left, right = sides(reading.formula)
+        if not isinstance(left, Call) or left.function.name != "g" or left.function.primes != 1:
+            raise MeaninglessError(f"{latex(left)} is no derivative of g")
+        for m in range(2, 6):
+            said = set()
+            for j in range(1, MOST_N + 1):
+                scope = Scope({"m": m, "j": j, "n": j - 1, "z": fmpq(1)})
+                for place in places([only("i", reading.ranges)], scope):
+                    with scope.binding(place):
+                        if scope.value(left.arguments[0]) == 1:
+                            said.add((*scope.indices(left.function), scope.value(right)))
+            listed = [rod for letter, rod in functions("III", m) if letter == "g"]
+            true = {(i, j, 0) for i in listed for j in range(1, MOST_N + 1) if not building(m).alive("g", i, j)}
+            yield Case({"m": m, "claim": "rod, interval and value of g' at rest"}, sorted(said), sorted(true))
+
+    return Test("what the functions g of Table 4 gain in exact tables with equal floors, m = 2 ... 5", cases)
 
 
-def _rest_cases(reading: Reading) -> Iterator[Case]:
-    left, right = sides(reading.formula)
-    if not isinstance(left, Call) or left.function.name != "g" or left.function.primes != 1:
-        raise MeaninglessError(f"{latex(left)} is no derivative of g")
-    for m in range(2, 6):
-        said = set()
-        for j in range(1, MOST_N + 1):
-            scope = Scope({"m": m, "j": j, "n": j - 1, "z": fmpq(1)})
-            for i in span(only("i", reading.ranges), scope):
-                with scope.binding({"i": i}):
-                    rod, interval = scope.indices(left.function)
-                    if scope.value(left.arguments[0]) == 1:
-                        said.add((rod, interval, scope.value(right)))
-        listed = [rod for letter, rod in limits.functions("III", m) if letter == "g"]
-        true = {(i, j, 0) for i in listed for j in range(1, MOST_N + 1) if not building(m).alive("g", i, j)}
-        yield Case({"m": m, "claim": "rod, interval and value of g' at rest"}, sorted(said), sorted(true))
+def _columns() -> Iterator[tuple[int, int, FormScope]]:
+    """f in the even half of Table 3: m, i, and the scope at i and n = 0."""
+    for m in range(1, 6):
+        for i in range(1, m + 1):
+            scope = FormScope(right_form("II"), moved("II", m), "f")
+            with scope.binding({"i": i, "n": 0, "half": "even"}):
+                yield m, i, scope
+
+
+def moments(scope: FormScope, half: str, rod: int, alpha: int) -> list[tuple[int, int]]:
+    """The r and s that Table 3 has in a part of a half."""
+    found = []
+    with scope.binding({"n": 0, "half": half, "i": rod, ALPHA: alpha}):
+        first, last = (scope.whole(read_formula(rf"{end}_\alpha")) for end in "sR")
+        for r in range(first, last + 1):
+            with scope.binding({"r": r}):
+                found.append((r, scope.whole(read_formula("s"))))
+    return found
 
 
 def group(entry: PaperEntry) -> Test:
-    """Adapter: the moments of the first group, for f in the even half."""
-    return Test("the moments that act in the even half from bodies on the left of the rod, m = 1 ... 5", _group_cases)
+    """The moments of the first group, for f in the even half."""
 
+    def cases(reading: Reading) -> Iterator[Case]:
+        left, right = sides(reading.formula)
+        if left != Symbol("s"):
+            raise MeaninglessError(f"{latex(left)} is no moment")
+        for m, i, scope in _columns():
+            before = tuple(s for s in counted("II", m).acting("even", "f", i) if s <= i)  # body s stands at x = s - 1
+            found = []
+            for place in places([only("r", reading.ranges)], scope):
+                with scope.binding(place):
+                    found.append(scope.whole(right))
+            yield Case({"m": m, "function": f"f_{i}", "claim": "moments"}, tuple(found), before)
 
-def _group_cases(reading: Reading) -> Iterator[Case]:
-    left, right = sides(reading.formula)
-    for m in SIZES:
-        exact = drive(m)
-        for i in range(1, m + 1):
-            scope = FormScope(right_form("II"), moved("II", m), "f")
-            before = tuple(s for s in acting(exact, "even", "f", i) if s - 1 <= i - 1)  # body s stands at x = s - 1
-            with scope.binding({"i": i, "n": 0, "half": "even"}):
-                at = {"m": m, "function": f"f_{i}", "claim": "moments"}
-                yield case(at, lambda: _numbers(scope, reading, left, right), before)  # noqa: B023
-
-
-def _numbers(scope: FormScope, reading: Reading, left: Tree, right: Tree) -> tuple[int, ...]:
-    if left != Symbol("s"):
-        raise MeaninglessError(f"{latex(left)} is no moment")
-    found = []
-    for r in span(only("r", reading.ranges), scope):
-        with scope.binding({"r": r}):
-            found.append(scope.whole(right))
-    return tuple(found)
+    return Test("the moments that act in the even half from bodies on the left of the rod, m = 1 ... 5", cases)
 
 
 def power(entry: PaperEntry) -> Test:
-    """Adapter: a highest power of the first group, for f in the even half; together they have every l once."""
-    others = [corrected(other) for other in paper().entries() if other.kind == "power" and other.id != entry.id]
+    """A highest power of the first group, for f in the even half; together they have every l once."""
+    others = [settled(id) for id in ids("power") if id != entry.id]
+
+    def cases(reading: Reading) -> Iterator[Case]:
+        _, right = sides(reading.formula)
+        letters = sorted(latex(sides(other.formula)[0]) for other in (reading, *others))
+        yield Case({"claim": "letters"}, letters, ["K_{1}", "K_{2}", "K_{3}"])
+        for m, i, scope in _columns():
+            exact, known = drive(m), rates(drive(m))
+            for r, s in moments(scope, "even", i, 1):
+                at = {"m": m, "function": f"f_{i}", "s": s}
+                with scope.binding({"r": r, ALPHA: 1}):
+                    own = span(only("l", reading.ranges), scope)
+                    bodies = [*own, *(body for other in others for body in span(only("l", other.ranges), scope))]
+                    yield Case({**at, "claim": "bodies l"}, sorted(bodies), sorted(known))
+                    for n, body in product(range(MOST_N + 1), sorted({*known} & {*own})):
+                        true = exact.degree("f", i, 2 * n + 1, known[body], f"M{s}")
+                        with scope.binding({"n": n, "l": body}):
+                            said = max(scope.whole(right), -1)
+                        told = shown(exact, ("f", i), 2 * n + 1)
+                        yield Case({**at, "n": n, "l": body}, said, true, true >= 0, told)
+
     return Test(
-        "highest powers of the exact tables, m = 1 ... 5, n = 0 ... 4; every l in one of the three ranges",
-        lambda reading: _power_cases(reading, others),
+        "highest powers of the exact tables, m = 1 ... 5, n = 0 ... 4; every l in one of the three ranges", cases
     )
 
 
-def _power_cases(reading: Reading, others: list[Reading]) -> Iterator[Case]:
-    _, right = sides(reading.formula)
-    letters = sorted(latex(sides(other.formula)[0]) for other in (reading, *others))
-    yield Case({"claim": "letters"}, letters, ["K_{1}", "K_{2}", "K_{3}"])
-    for m in SIZES:
-        exact, known = drive(m), rates(drive(m))
-        for i in range(1, m + 1):
-            scope = FormScope(right_form("II"), moved("II", m), "f")
-            for r, s in moments(scope, "even", i, (1,)):
-                with scope.binding({"half": "even", "i": i, "r": r, "n": 0, limits.ALPHA: 1}):
-                    bodies = sorted(
-                        body for other in (reading, *others) for body in span(only("l", other.ranges), scope)
-                    )
-                    at = {"m": m, "function": f"f_{i}", "s": s}
-                    yield Case({**at, "claim": "bodies l"}, bodies, sorted(known))
-                    for n in range(MOST_N + 1):
-                        for body in {*known} & {*span(only("l", reading.ranges), scope)}:
-                            true = exact.degree("f", i, 2 * n + 1, known[body], f"M{s}")
-                            with scope.binding({"n": n, "l": body}):
-                                where = {**at, "n": n, "l": body}
-                                told = shown(exact, "f", i, 2 * n + 1)
-                                yield case(where, lambda: max(scope.whole(right), -1), true, true >= 0, told)  # noqa: B023
-
-
 def factor(entry: PaperEntry) -> Test:
-    """Adapter: the exponential of example II at a power."""
+    """The exponential of example II at a power."""
 
     def cases(reading: Reading) -> Iterator[Case]:
-        for m in (1, 2, 3):
+        z = fmpq(9, 2)
+        for m, i, scope in _columns():
             driven = moved("II", m)
-            for i in range(1, m + 1):
-                scope = FormScope(right_form("II"), driven, "f")
-                for s, body in ((s, body) for s in range(1, m + 2) for body in range(1, m + 2)):
-                    z = fmpq(9, 2)
-                    since = z - driven.loads[f"M{s}"][0].time
-                    bound = {"half": "even", "n": 0, "i": i, "l": body, "z": z, "s": s, "k": 0}
-                    with scope.binding(bound):
-                        at = {"m": m, "function": f"f_{i}", "s": s, "l": body}
-                        true = exponential(-rates(driven.exact)[body] * since)
-                        yield case(at, lambda: scope.value(reading.formula), true)  # noqa: B023
+            for s, body in product(range(1, m + 2), repeat=2) if m < 4 else ():
+                true = exponential(-rates(driven.exact)[body] * (z - driven.loads[f"M{s}"][0].time))
+                with scope.binding({"l": body, "z": z, "s": s, "k": 0}):
+                    at = {"m": m, "function": f"f_{i}", "s": s, "l": body}
+                    yield case(at, lambda: scope.value(reading.formula), true)  # noqa: B023
 
     return Test("the exponential of the body's rate since the interval began and the moment came", cases)
 
 
 def coefficients(entry: PaperEntry) -> Test:
-    """Adapter: the list of coefficients, against those that the corrected forms have."""
+    """The list of coefficients, against those that the corrected forms have."""
 
     def cases(reading: Reading) -> Iterator[Case]:
         said = [_shape(tree) for tree in items(reading.formula)]
@@ -148,16 +141,16 @@ def coefficients(entry: PaperEntry) -> Test:
 
 
 def _shape(tree: Tree) -> tuple[str, str]:
-    """The letters above, and those below, with a dot for the body, which is a number or a letter."""
-    if not isinstance(tree, Symbol) or tree.name != "F":
-        raise MeaninglessError(f"{latex(tree)} is no coefficient")
-    match tree.below:
-        case ():
+    """The letters above, and those below, with a word for the body, which is a number or a letter."""
+    match tree:
+        case Symbol("F", below=()):
             below = "none"
-        case (Number(digits),):
+        case Symbol("F", below=(Number(digits),)):
             below = digits
-        case (_, last):
+        case Symbol("F", below=(_, last)):
             below = f"body, {latex(last)}"
-        case _:
+        case Symbol("F"):
             below = ", ".join(map(latex, tree.below))
+        case _:
+            raise MeaninglessError(f"{latex(tree)} is no coefficient")
     return ", ".join(map(latex, tree.above)), below

@@ -7,6 +7,8 @@ from functools import cache
 from pathlib import Path
 
 from wavesym.papers.entries import Paper, PaperEntry, read_paper
+from wavesym.papers.evaluation import MeaninglessError
+from wavesym.papers.reader import UnreadableError
 from wavesym.papers.record import Reading, reading
 
 _DATA = Path(__file__).with_name("data")
@@ -27,6 +29,21 @@ def entries() -> Mapping[str, PaperEntry]:
 def entry(id: str) -> PaperEntry:
     """A record by its id; KeyError."""
     return entries()[id]
+
+
+@cache
+def settled(id: str) -> Reading:
+    """A record as it is right; KeyError where there is none, MeaninglessError where it cannot be read."""
+    try:
+        return reading(*entry(id).settled)
+    except UnreadableError as error:
+        raise MeaninglessError(str(error)) from None
+
+
+@cache
+def ids(kind: str, start: str = "") -> tuple[str, ...]:
+    """The records of a kind, those whose ids begin so."""
+    return tuple(id for id, entry in entries().items() if entry.kind == kind and id.startswith(start))
 
 
 @cache

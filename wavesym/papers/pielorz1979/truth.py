@@ -145,18 +145,6 @@ class DrivenChain:
         """The sum of the source's pieces that have begun, each times the time since then to a power."""
         return sum((p.weight * (z - p.time) ** power for p in self.loads.get(source, ()) if z >= p.time), fmpq(0))
 
-    def increment(self, source: str, letter: str, rod: int, number: int, w: fmpq) -> Exponentials:
-        """What f' or g' of a rod gains in interval 1, 2, ... for a unit of a source, w after its start; nothing before.
-
-        MeaninglessError where there is no such rod, or the interval is beyond the tables.
-        """
-        w = fmpq(w)
-        key = source, letter, rod, number, int(w.p), int(w.q)
-        if key not in self.known:
-            self.known[key] = Exponentials.total(_terms(self.gain(letter, rod, number, source), w))
-        found: Exponentials = self.known[key]
-        return found
-
 
 def _terms(increment: Increment, w: fmpq, weight: fmpq | int = 1) -> Iterator[tuple[fmpq, fmpq]]:
     """What an increment is w after its start, as exponents and what stands before their powers of e."""
