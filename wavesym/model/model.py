@@ -11,6 +11,7 @@ from flint import fmpq
 from wavesym.model.chain import Chain
 from wavesym.model.light_cone import felt, light_cone
 from wavesym.model.loads import Applied
+from wavesym.model.network import Network, network_of
 from wavesym.model.probe import Probe
 from wavesym.numbers.reals import DOUBLE, Real
 
@@ -53,6 +54,22 @@ class Model:
     def light_cone(self, until: fmpq) -> range:
         """The numbers of the nodes that can influence an output by then."""
         return light_cone(self.chain, self.probes, until)
+
+    @cached_property
+    def network(self) -> Network:
+        """The chain as a graph of points and bars."""
+        return network_of(self.chain)
+
+    def reached(self, until: fmpq) -> dict[int, fmpq]:
+        """The joints of the network that can influence an output by then, and until when each can."""
+        distances = self.network.distances((probe.rod - 1, probe.place) for probe in self.probes)
+        bars = [self.network.bars[probe.rod - 1] for probe in self.probes]
+        beside = {self.network.joint_of[point] for bar in bars for point in (bar.left, bar.right)}
+        return {
+            joint: max(until - distance, fmpq(0))
+            for joint, distance in sorted(distances.items())
+            if distance <= until or joint in beside
+        }
 
     @cached_property
     def felt(self) -> dict[str, dict[int, fmpq]]:

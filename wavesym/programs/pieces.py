@@ -222,19 +222,17 @@ class _Fits:
 
     def _least(self, per_unit: int) -> int:
         """How many pieces there are at least, of all outputs."""
-        in_a_unit = 0
-        for breaks, places in self._shared.items():
-            cuts = sorted(breaks)
-            parts = (((high - low) * per_unit).ceil() for low, high in pairwise([*cuts, cuts[0] + 1]))
-            in_a_unit += len(places) * int(sum(parts))
-        return in_a_unit * int(self._motion.until.floor())
+        return sum(
+            len(places) * int(sum(((high - low) * per_unit).ceil() for low, high in pairwise(starts)))
+            for starts, places in self._shared.items()
+        )
 
     @cached_property
-    def _shared(self) -> dict[frozenset[fmpq], list[int]]:
-        """The outputs, by where in a unit of tau they may jump or bend."""
-        shared: dict[frozenset[fmpq], list[int]] = {}
+    def _shared(self) -> dict[tuple[fmpq, ...], list[int]]:
+        """The outputs, by where they may jump or bend."""
+        shared: dict[tuple[fmpq, ...], list[int]] = {}
         for k, probe in enumerate(self._motion.probes):
-            shared.setdefault(self._motion.breaks(probe), []).append(k)
+            shared.setdefault(tuple(self._motion.starts(probe)), []).append(k)
         return shared
 
     def _fit(self, per_unit: int, most: int, bits: int) -> Pieces | None:
