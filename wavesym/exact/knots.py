@@ -42,6 +42,11 @@ class Knots:
             return len(self._last) * (int((self._until / delay).floor()) + 1) * len(self._parts)
         return sum(len(times) - 1 for times in self.joints.values())
 
+    def size(self, terms: int, bits: int) -> int:
+        """About how many bytes the waves take: of each power middle and radius, and the words of the middle."""
+        ends = sum(len(self._network.joints[number].ends) for number in self._last) / max(len(self._last), 1)
+        return int(self.stretches * ends * terms * (48 + bits // 8))
+
     @property
     def told(self) -> str:
         """What is counted, in a few words."""
@@ -62,6 +67,9 @@ class Knots:
 
     def breakpoints(self, probe: Probe) -> Sequence[fmpq]:
         """Where an output may jump or bend, and 0; in order."""
+        if probe.point is not None:
+            times = self.joints[self._network.joint_of[probe.point]]
+            return sorted({fmpq(0), *(time for time in times if time <= self._until)})
         return self._breakpoints(probe.rod - 1, probe.place)
 
     @cache  # noqa: B019 - as long as this object

@@ -92,7 +92,7 @@ class Motion:
         """What needs more bits, and so more terms, costs the others nothing."""
         if bits not in self._solved:
             terms = bits // 4
-            if (size := self._knots.stretches * 2 * terms * (48 + bits // 8)) > _LARGEST:
+            if (size := self._knots.size(terms, bits)) > _LARGEST:
                 raise CostError(
                     f"output.until: the waves of {self._knots.told} with {bits} bits would take {size:.1e} bytes, at "
                     f"most {_LARGEST:.1e} expected (a shorter horizon or fewer load times help)"
@@ -123,6 +123,9 @@ def _segments(
 def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Known:
     """Strain, or velocity, from tau = `start` on: the left-going wave less, or plus, the right-going one."""
     polynomial, error = arb_poly(), arb(0)
+    if probe.point is not None:
+        known, offset = waves.velocities[probe.point].at(start)
+        return Known(known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial, known.error)
     bar = waves.network.bars[probe.rod - 1]
     right, left = probe.weights
     for factor, side, way in ((right, 0, probe.place), (left, 1, 1 - probe.place)):
@@ -134,6 +137,17 @@ def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Known:
     if probe.quantity == "strain" and bar.speed != 1:
         polynomial, error = polynomial / arb(bar.speed), (error / arb(bar.speed)).upper()
     return Known(polynomial, error)
+
+
+def waves_size(model: Model, until: fmpq) -> int:
+    """About how many bytes the waves take until then."""
+    knots = Knots(model, until)
+    try:
+        motion = Motion(model, until)
+    except CostError:
+        return _LARGEST
+    bits = max(motion.first_bits, 128)
+    return knots.size(bits // 4, bits)
 
 
 def is_zero(segments: Sequence[Segment]) -> bool:

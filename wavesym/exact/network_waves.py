@@ -42,6 +42,8 @@ class NetworkWaves:
                 held = bar.held(side)
                 constant = Known(arb_poly([arb(held)]), arb(0)) if held != 0 else STILL
                 self.sent[End(number, side)] = SentWave([-bar.delay], [constant])
+        held = {network.point_at(end) for end in self.sent}
+        self.velocities = {p: SentWave([], []) for p in range(len(network.points)) if p not in held}
         self._joints = {number: _MovingJoint(network, network.joints[number], loads) for number in knots}
         self._march()
 
@@ -67,6 +69,10 @@ class NetworkWaves:
         ):
             self.sent[end].starts.append(start)
             self.sent[end].stretches.append(wave)
+        for k, point in enumerate(joint.points):
+            if point in self.velocities:
+                self.velocities[point].starts.append(start)
+                self.velocities[point].stretches.append(self._joints[number].velocities[k])
 
 
 class _MovingJoint:
@@ -89,7 +95,7 @@ class _MovingJoint:
             k = self._place[point]
             factor = arb(2 * bar.ratios[end.side] * bar.impedance)
             forces[k] = Known(forces[k].polynomial + factor * wave.polynomial, forces[k].error + abs(factor) * wave.error)
-        velocities = self._motion.moved(forces, acting, length, terms)
+        self.velocities = velocities = self._motion.moved(forces, acting, length, terms)
         result = []
         for (end, point), wave in zip(self._joint.ends, arriving, strict=True):
             ratio = arb(self._network.bars[end.bar].ratios[end.side])

@@ -114,10 +114,13 @@ class Network:
         """The number of each point's joint."""
         return {point: number for number, joint in enumerate(self.joints) for point in joint.points}
 
-    def distances(self, places: Iterable[tuple[int, fmpq]]) -> dict[int, fmpq]:
-        """How long a wave takes from each joint to the nearest of some places (bar, part of it from its left end)."""
+    def distances(self, places: Iterable[tuple[int, fmpq]], points: Iterable[int] = ()) -> dict[int, fmpq]:
+        """How long a wave takes from each joint to the nearest of some places (bar, part of it from its left end).
+
+        Points are places too.
+        """
         nearest: dict[int, fmpq] = {}
-        coming: list[tuple[fmpq, int]] = []
+        coming = [(fmpq(0), self.joint_of[point]) for point in points]
         for number, place in places:
             bar = self.bars[number]
             coming.append((place * bar.delay, self.joint_of[bar.left]))

@@ -92,7 +92,7 @@ def integration(known: Known) -> list[Outcome]:
     model = known.model
 
     def motion(steps: int) -> Integrated:
-        return integrate(model.chain, model.loads, known.until, steps)
+        return integrate(model.named, model.loads, known.until, steps)
 
     def refined() -> list[Refinement]:
         found = []

@@ -24,7 +24,7 @@ def laws(model: Model) -> Iterator[Section]:
         "of a node's velocity q, of what arrives from the left (a) and right (b), and of what acts (s)",
         [_of_node(x, model) for x in nodes],
     )
-    rules = Rules(model.chain)
+    rules = Rules(model.named)
     functions = [Function(name, rod) for rod in nodes[1:] for name in ("f", "g")]
     yield Listing(
         "functions",
@@ -38,7 +38,7 @@ def laws(model: Model) -> Iterator[Section]:
 
 
 def _of_node(x: int, model: Model) -> dict[str, Plain]:
-    node = model.chain.nodes[x]
+    node = model.named.nodes[x]
     rule: NodeRule = node_rule(node)
     return {
         "x": x,

@@ -18,7 +18,7 @@ def modelled(model: Model) -> Iterator[Section]:
         "What is computed",
         {
             **model.labels.system,
-            "m": model.chain.m,
+            "m": model.named.m,
             "until": str(model.until),
             "tolerance": str(model.tolerance),
             "horizon_double": model.horizon(DOUBLE),
@@ -33,8 +33,8 @@ def modelled(model: Model) -> Iterator[Section]:
         "Rods: where the clocks of their waves begin, and how fast they move at tau = 0",
         [
             {"rod": i, "tau0": str(rod.tau0), "x0": str(rod.x0), "velocity": str(rod.velocity)}
-            for i in range(1, model.chain.m + 1)
-            for rod in (model.chain.rod(i),)
+            for i in range(1, model.named.m + 1)
+            for rod in (model.named.rod(i),)
         ],
     )
     yield Listing(
@@ -48,8 +48,8 @@ def modelled(model: Model) -> Iterator[Section]:
 def cone(model: Model) -> Facts:
     """The nodes that are modelled, and how many are not."""
     modelled_nodes = model.light_cone(rational(model.horizon()))
-    out = model.chain.m + 1 - len(modelled_nodes)
-    left_out = Told(out, f"{out} of {model.chain.m + 1} nodes")
+    out = model.named.m + 1 - len(modelled_nodes)
+    left_out = Told(out, f"{out} of {model.named.m + 1} nodes")
     values = {"first": modelled_nodes[0], "last": modelled_nodes[-1], "left_out": left_out}
     return Facts("light_cone", "Light cone: the nodes from which something can reach an output in time", values)
 
@@ -82,7 +82,7 @@ def rate(node: Node) -> str | None:
 
 
 def _nodes(model: Model) -> Iterator[tuple[int, Node]]:
-    yield from enumerate(model.chain.nodes)
+    yield from enumerate(model.named.nodes)
 
 
 def _node(placed: tuple[int, Node]) -> dict[str, Plain]:

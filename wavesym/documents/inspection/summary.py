@@ -18,7 +18,7 @@ def summary(model: Model) -> Iterator[Section]:
     parameters = {
         name: {str(i): str(value) for i, value in numbers.items()} for name, numbers in model.felt.items() if numbers
     }
-    values: dict[str, Plain] = {**model.labels.system, "m": model.chain.m, **parameters}
+    values: dict[str, Plain] = {**model.labels.system, "m": model.named.m, **parameters}
     yield Facts("system", "The chain, with the parameters that can matter", values)
     yield Facts(
         "horizon",
@@ -27,7 +27,7 @@ def summary(model: Model) -> Iterator[Section]:
     )
     yield cone(model)
     nodes = model.light_cone(rational(model.horizon()))
-    rows = [{"x": x, "kind": kind(node), "rate": rate(node)} for x in nodes for node in (model.chain.nodes[x],)]
+    rows = [{"x": x, "kind": kind(node), "rate": rate(node)} for x in nodes for node in (model.named.nodes[x],)]
     yield Listing("nodes", "Nodes in the light cone; a body answers a wave by exp(-rate tau)", rows)
     yield Listing("loads", "Loads", [{"load": told} for told in model.labels.loads if told], ("load",))
     yield probes(model)

@@ -19,7 +19,7 @@ def tabled(model: Model) -> Iterator[Section]:
     """The size of the table that `tables` prints, and the knots of every output."""
     try:
         _refuse_long(model)
-        made = full_table(model.chain, None, rational(model.horizon()), most=MOST_COUNTED)
+        made = full_table(model.named, None, rational(model.horizon()), most=MOST_COUNTED)
     except CostError as refusal:
         yield Facts("table", "The exact table is not made here", {"refusal": str(refusal)})
     else:

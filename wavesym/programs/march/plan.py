@@ -174,7 +174,7 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
     """
     tau_max = model.horizon(real)
     columns = model.light_cone(rational(max(tau_max, float(windows))))
-    nodes = [model.chain.nodes[x] for x in columns]
+    nodes = [model.named.nodes[x] for x in columns]
     loads = model.acting(rational(tau_max))
     panels = _panels(load.time for load in loads)
     loaded = tuple(column for column, node in enumerate(nodes) if node.loads)
@@ -189,7 +189,7 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
         tuple(_watched(probe, columns.start) for probe in model.probes),
         tau_max,
         columns.start,
-        inf if len(columns) == model.chain.m + 1 else max(tau_max, float(windows)),
+        inf if len(columns) == model.named.m + 1 else max(tau_max, float(windows)),
         nearest(max(model.tolerance, 64 * real.roundoff)),
         # no less than what the arithmetic of so many nodes loses on all windows
         nearest(max(model.tolerance / _ESTIMATED, real.roundoff * len(nodes) * (int(tau_max) + 1))),
