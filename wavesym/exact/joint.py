@@ -46,9 +46,9 @@ class JointLaw:
         for k, point in enumerate(points):
             damping[k][k] += point.damping
             stiffness[k][k] += point.stiffness
-        for end, point in joint.ends:
+        for end, number in joint.ends:
             bar = network.bars[end.bar]
-            damping[place[point]][place[point]] += bar.ratios[end.side] ** 2 * bar.impedance
+            damping[place[number]][place[number]] += bar.ratios[end.side] ** 2 * bar.impedance
         for link in network.links:
             if link.left in place:
                 a, b = place[link.left], place[link.right]
@@ -125,14 +125,11 @@ class JointMotion:
     displacement: list[arb]
     unknown: arb = field(default_factory=lambda: arb(0))
 
-    def moved(
-        self, forces: Sequence[Known], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int
-    ) -> list[Known]:
+    def moved(self, forces: Sequence[Known], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int) -> list[Known]:
         """The velocities of the points on a stretch, in so many terms; afterwards the joint is at its end.
 
         `prescribed` are the velocities of the points whose motion is given, exact.
         """
-        law = self.law
         q, u = self._series(forces, prescribed, terms)
         errors = self._errors(forces, q, u, length)
         result = [Known(arb_poly(c), e) for c, e in zip(q, errors, strict=True)]
@@ -198,9 +195,7 @@ class JointMotion:
                     u[k].append((q[k][n] / (n + 1)).mid())
         return q, u
 
-    def _errors(
-        self, forces: Sequence[Known], q: list[list[arb]], u: list[list[arb]], length: fmpq
-    ) -> list[arb]:
+    def _errors(self, forces: Sequence[Known], q: list[list[arb]], u: list[list[arb]], length: fmpq) -> list[arb]:
         """What the velocities may be off by, at most, on the stretch; and the energy of it at the end."""
         law = self.law
         h = arb(length)

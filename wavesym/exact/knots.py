@@ -15,6 +15,7 @@ from itertools import pairwise
 from flint import fmpq
 
 from wavesym.errors import CostError
+from wavesym.model.loads import Applied
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 
@@ -57,9 +58,7 @@ class Knots:
         """The starts of the stretches of every joint, and the end of the last one."""
         if len(self._delays) == 1:
             return dict.fromkeys(self._last, self._windows)
-        return {
-            number: sorted({fmpq(0), *times, self._end(number)}) for number, times in self._met().items()
-        }
+        return {number: sorted({fmpq(0), *times, self._end(number)}) for number, times in self._met().items()}
 
     def longest(self, number: int) -> fmpq:
         """The longest stretch of a joint."""
@@ -79,9 +78,7 @@ class Knots:
             return list(self._in_windows(place))
         ways = ((bar.left, place), (bar.right, 1 - place))
         found = {
-            knot + way * bar.delay
-            for point, way in ways
-            for knot in self.joints[self._network.joint_of[point]][:-1]
+            knot + way * bar.delay for point, way in ways for knot in self.joints[self._network.joint_of[point]][:-1]
         }
         return sorted({fmpq(0), *(time for time in found if 0 <= time <= self._until)})
 
@@ -115,7 +112,7 @@ class Knots:
         """Later than anything that is asked of a joint."""
         return self._last[number] + 1
 
-    def _loaded(self) -> Iterator[tuple[int, object]]:
+    def _loaded(self) -> Iterator[tuple[int, Applied]]:
         for number in self._last:
             for point in self._network.joints[number].points:
                 for unit in self._network.points[point].loads:

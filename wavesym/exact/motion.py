@@ -102,9 +102,7 @@ class Motion:
         return self._solved[bits]
 
 
-def _segments(
-    waves: NetworkWaves, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]]
-) -> Iterator[Segment]:
+def _segments(waves: NetworkWaves, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]]) -> Iterator[Segment]:
     """An output on each of these stretches, which come in order."""
     displacement = arb(0)
     for start, end in stretches:

@@ -42,8 +42,8 @@ class NetworkWaves:
                 held = bar.held(side)
                 constant = Known(arb_poly([arb(held)]), arb(0)) if held != 0 else STILL
                 self.sent[End(number, side)] = SentWave([-bar.delay], [constant])
-        held = {network.point_at(end) for end in self.sent}
-        self.velocities = {p: SentWave([], []) for p in range(len(network.points)) if p not in held}
+        shown = {network.point_at(end) for end in self.sent}
+        self.velocities = {point: SentWave() for point in range(len(network.points)) if point not in shown}
         self._joints = {number: _MovingJoint(network, network.joints[number], loads) for number in knots}
         self._march()
 
@@ -94,7 +94,9 @@ class _MovingJoint:
             bar = self._network.bars[end.bar]
             k = self._place[point]
             factor = arb(2 * bar.ratios[end.side] * bar.impedance)
-            forces[k] = Known(forces[k].polynomial + factor * wave.polynomial, forces[k].error + abs(factor) * wave.error)
+            forces[k] = Known(
+                forces[k].polynomial + factor * wave.polynomial, forces[k].error + abs(factor) * wave.error
+            )
         self.velocities = velocities = self._motion.moved(forces, acting, length, terms)
         result = []
         for (end, point), wave in zip(self._joint.ends, arriving, strict=True):
@@ -111,7 +113,8 @@ class _Acting:
         units = {unit.source: fmpq_poly(list(unit.coefficients)) for unit in network.points[point].loads}
         motion = network.points[point].motion
         self._coming = sorted(
-            ((load.time, load.weight * units[load.source]) for load in loads if load.source in units), key=lambda x: x[0]
+            ((load.time, load.weight * units[load.source]) for load in loads if load.source in units),
+            key=lambda x: x[0],
         )
         if motion == "acceleration":
             self._coming = [(time, polynomial.integral()) for time, polynomial in self._coming]

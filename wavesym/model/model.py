@@ -31,8 +31,9 @@ class Labels:
 
 @dataclass(frozen=True)
 class Model:
-    """A chain, as the paper has it (None for one that is written out) and as a network, the loads on it, what is watched until tau = `until`, and the error allowed.
+    """A chain, the loads on it, what is watched until tau = `until`, and the error allowed.
 
+    `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
     `tolerance` is relative to an output's largest value. Loads are sorted by time.
     """
 
@@ -49,7 +50,9 @@ class Model:
     def named(self) -> Chain:
         """The chain as the paper has it. CostError for one that is written out, which has no exact tables."""
         if self.chain is None:
-            raise CostError("system.type: a collision, a drive or a building expected (a chain is for pieces and `run`)")
+            raise CostError(
+                "system.type: a collision, a drive or a building expected (a chain is for pieces and `run`)"
+            )
         return self.chain
 
     def horizon(self, real: Real = DOUBLE) -> float:

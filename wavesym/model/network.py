@@ -17,6 +17,8 @@ from flint import fmpq
 from wavesym.model.chain import Chain
 from wavesym.model.node import Node, UnitLoad
 
+_ZERO, _ONE = fmpq(0), fmpq(1)
+
 
 @dataclass(frozen=True)
 class Point:
@@ -26,9 +28,9 @@ class Point:
     """
 
     mass: fmpq
-    damping: fmpq = fmpq(0)
-    stiffness: fmpq = fmpq(0)
-    velocity: fmpq = fmpq(0)
+    damping: fmpq = _ZERO
+    stiffness: fmpq = _ZERO
+    velocity: fmpq = _ZERO
     motion: Literal["velocity", "acceleration"] | None = None
     loads: tuple[UnitLoad, ...] = ()
     name: str = ""
@@ -43,9 +45,9 @@ class Bar:
     length: fmpq
     speed: fmpq
     impedance: fmpq
-    ratios: tuple[fmpq, fmpq] = (fmpq(1), fmpq(1))
-    velocity: fmpq = fmpq(0)
-    strain: fmpq = fmpq(0)
+    ratios: tuple[fmpq, fmpq] = (_ONE, _ONE)
+    velocity: fmpq = _ZERO
+    strain: fmpq = _ZERO
     name: str = ""
 
     @property
@@ -64,8 +66,8 @@ class Link:
 
     left: int
     right: int
-    stiffness: fmpq = fmpq(0)
-    damping: fmpq = fmpq(0)
+    stiffness: fmpq = _ZERO
+    damping: fmpq = _ZERO
 
 
 class End(NamedTuple):
@@ -180,7 +182,8 @@ def network_of(chain: Chain) -> Network:
 
     Each node's condition is multiplied by what makes the impedances at both ends of a rod one.
     """
-    points, bars = [], []
+    points: list[Point] = []
+    bars: list[Bar] = []
     scale = fmpq(1)
     for x, node in enumerate(chain.nodes):
         if node.left and node.alpha != 0:
@@ -195,9 +198,7 @@ def network_of(chain: Chain) -> Network:
 def _point(node: Node, scale: fmpq) -> Point:
     if (node.alpha if node.left else 0) == (node.beta if node.right else 0) == 0:
         return _prescribed(node)
-    loads = tuple(
-        UnitLoad(load.kind, load.number, tuple(scale * c for c in load.coefficients)) for load in node.loads
-    )
+    loads = tuple(UnitLoad(load.kind, load.number, tuple(scale * c for c in load.coefficients)) for load in node.loads)
     return Point(scale * node.inertia, scale * node.damping, velocity=fmpq(node.velocity), loads=loads)
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Annotated, Self
 
 from pydantic import BeforeValidator, FailFast, Field, PlainSerializer, PlainValidator, field_validator, model_validator
 
+from wavesym.fields.loads import Load
 from wavesym.fields.numbers import Exact, Positive
 from wavesym.fields.table import SceneTable, Written, listed, shown, wrong
 from wavesym.systems import SystemTable
@@ -69,7 +70,7 @@ class Output(SceneTable):
         return self
 
 
-def observables(output: Output, system: SystemTable) -> Iterator[Observable]:
+def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> Iterator[Observable]:
     """The outputs in order, checked against the chain; raises the error of `table.wrong`."""
     seen: dict[tuple[str, Place], str] = {}
     for quantity in QUANTITIES:
@@ -78,7 +79,7 @@ def observables(output: Output, system: SystemTable) -> Iterator[Observable]:
             at = "output", quantity, k
             text = shown(Written(position.written))
             try:
-                place = system.located(position, quantity)
+                place = system.located(position, quantity, loads)
             except MisplacedError as error:
                 raise wrong(str(error), *at) from None
             if (quantity, place) in seen:

@@ -114,4 +114,4 @@ class Scene(SceneTable):
     @cached_property
     def outputs(self) -> tuple[Observable, ...]:
         """The outputs: strains, velocities, displacements, each in the order of the scene."""
-        return tuple(observables(self.output, self.system))
+        return tuple(observables(self.output, self.system, self.load))

@@ -8,13 +8,10 @@ from wavesym.systems.drive import Drive
 from wavesym.systems.explicit import ExplicitChain
 from wavesym.systems.preset import Preset
 
-__all__ = ["SYSTEMS", "Building", "Collision", "Drive", "ExplicitChain", "Preset", "SystemTable"]
+__all__ = ["PRESETS", "SYSTEMS", "Building", "Collision", "Drive", "ExplicitChain", "Preset", "SystemTable"]
 
 SystemTable = Preset | ExplicitChain
-SYSTEMS: dict[str, type[SystemTable]] = {
-    "collision": Collision,
-    "drive": Drive,
-    "building": Building,
-    "chain": ExplicitChain,
-}
+PRESETS: dict[str, type[Preset]] = {"collision": Collision, "drive": Drive, "building": Building}
 """By the `type` that a scene says; one more system is one more entry."""
+SYSTEMS: dict[str, type[SystemTable]] = {**PRESETS, "chain": ExplicitChain}
+"""All that a scene's `type` may be."""

@@ -58,4 +58,3 @@ class SampledNodeLoad(SampledLoad):
     def units(self) -> Iterator[Applied]:
         """The load as unit responses."""
         return self.sampled(f"{self.at}:step", f"{self.at}:ramp")
-

@@ -11,7 +11,10 @@ from wavesym.fields.numbers import exact, written
 
 
 class Position(NamedTuple):
-    """A place as it is `written`: x (in rod lengths, or along a line) or a name; its side: -1 left, +1 right, 0 none."""
+    """A place as it is `written`: x (in rod lengths, or along a line) or a name, and its side.
+
+    -1 is the left one, +1 the right one, 0 where none is said.
+    """
 
     written: str
     x: Fraction | None

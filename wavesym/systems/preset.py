@@ -77,7 +77,7 @@ class Preset(SceneTable):
         }
         return Chain(self.system, self.m, Parameters(**numbers))
 
-    def located(self, position: Position, quantity: str) -> Place:
+    def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
         """The place of an output. MisplacedError."""
         x, text = position.x, shown(Written(position.written))
         if x is None or not 0 <= x <= self.m:

@@ -17,7 +17,7 @@ from wavesym.exact.table import Function, Table, full_table
 from wavesym.exact.walks import Letters, departures, function_walks, letters, units, walks_until
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters, System
-from wavesym.systems import SYSTEMS
+from wavesym.systems import PRESETS
 from wavesym.verification.columns import Row, table
 from wavesym.verification.expansion import expanded
 from wavesym.verification.node_law import differences
@@ -46,7 +46,7 @@ class ProvedClaim(NamedTuple):
 
 def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:
     """A line for every claim, and whether all hold. `watch` goes through the systems as they are proved."""
-    systems = [system for preset in SYSTEMS.values() for system in preset.variants]
+    systems = [system for preset in PRESETS.values() for system in preset.variants]
     claims = [claim for system in watch(systems) for claim in (*_proofs(system), *_routes(system))]
     rows: list[Row] = [
         {
