@@ -43,6 +43,11 @@ class Knots:
             return len(self._last) * (int((self._until / delay).floor()) + 1) * len(self._parts)
         return sum(len(times) - 1 for times in self.joints.values())
 
+    @property
+    def crossings(self) -> int:
+        """How often fronts meet joints, or joints go through windows."""
+        return self.stretches // len(self._parts) if len(self._delays) == 1 else self.stretches
+
     def size(self, terms: int, bits: int) -> int:
         """About how many bytes the waves take: of each power middle and radius, and the words of the middle."""
         ends = sum(len(self._network.joints[number].ends) for number in self._last) / max(len(self._last), 1)

@@ -40,7 +40,7 @@ class Motion:
         self._acting = model.acting(until)
         self._knots = Knots(model, until)
         self._solved: dict[int, NetworkWaves] = {}
-        if (kept := self._knots.stretches) > MOST_STRETCHES:
+        if (kept := self._knots.crossings) > MOST_STRETCHES:
             raise CostError(
                 f"output.until: {self._knots.told} are {kept:g} stretches to keep, at most {MOST_STRETCHES} expected "
                 "(a shorter horizon helps)"
