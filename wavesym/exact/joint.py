@@ -23,6 +23,7 @@ from math import isqrt
 
 from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 
+from wavesym.exact.node_rules import joint_rule
 from wavesym.model.network import Joint, Network
 
 
@@ -37,28 +38,30 @@ class JointLaw:
 
     @classmethod
     def of(cls, network: Network, joint: Joint) -> JointLaw:
-        """Assembled from points, links and rod ends."""
+        """Assembled from points, links and rod ends, each as it is derived."""
         size = len(joint.points)
         place = {point: k for k, point in enumerate(joint.points)}
         points = [network.points[point] for point in joint.points]
+        rule = joint_rule()
         damping = [[fmpq(0)] * size for _ in range(size)]
         stiffness = [[fmpq(0)] * size for _ in range(size)]
         for k, point in enumerate(points):
-            damping[k][k] += point.damping
+            damping[k][k] += rule.damping * point.damping
             stiffness[k][k] += point.stiffness
         for end, number in joint.ends:
             bar = network.bars[end.bar]
-            damping[place[number]][place[number]] += bar.ratios[end.side] ** 2 * bar.impedance
+            radiated = rule.radiates[1 - end.side] * bar.ratios[end.side] ** 2 * bar.impedance
+            damping[place[number]][place[number]] += radiated
         for link in network.links:
             if link.left in place:
                 a, b = place[link.left], place[link.right]
-                for matrix, value in ((damping, link.damping), (stiffness, link.stiffness)):
+                for matrix, value in ((damping, rule.damping * link.damping), (stiffness, link.stiffness)):
                     matrix[a][a] += value
                     matrix[b][b] += value
                     matrix[a][b] -= value
                     matrix[b][a] -= value
         return cls(
-            tuple(point.mass for point in points),
+            tuple(rule.inertia * point.mass for point in points),
             tuple(map(tuple, damping)),
             tuple(map(tuple, stiffness)),
             tuple(point.motion for point in points),

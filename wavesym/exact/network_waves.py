@@ -10,6 +10,7 @@ from heapq import heapify, heappop, heappush
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
 from wavesym.exact.joint import STILL, JointLaw, JointMotion, Known
+from wavesym.exact.node_rules import joint_rule
 from wavesym.model.loads import Applied
 from wavesym.model.network import End, Joint, Network
 
@@ -89,11 +90,12 @@ class _MovingJoint:
     def sends(self, arriving: Sequence[Known], start: fmpq, length: fmpq, terms: int) -> list[Known]:
         """What goes back into the ends on a stretch."""
         acting = [load.on(start) for load in self._loads]
-        forces = [Known(arb_poly([arb(c) for c in p.coeffs()]), arb(0)) for p in acting]
+        rule = joint_rule()
+        forces = [Known(arb_poly([arb(rule.load * c) for c in p.coeffs()]), arb(0)) for p in acting]
         for (end, point), wave in zip(self._joint.ends, arriving, strict=True):
             bar = self._network.bars[end.bar]
             k = self._place[point]
-            factor = arb(2 * bar.ratios[end.side] * bar.impedance)
+            factor = arb(rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance)
             forces[k] = Known(
                 forces[k].polynomial + factor * wave.polynomial, forces[k].error + abs(factor) * wave.error
             )
