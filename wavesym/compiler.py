@@ -272,16 +272,23 @@ def _contact_warnings(model: Model) -> list[str]:
     ]
 
 
-def plot(scene: Scene, path: Path) -> list[str]:
-    """Draw the histories of the outputs as .svg, .png or .pdf; what the picture leaves out, line by line.
+def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
+    """Draw a scene as .svg, .png or .pdf; what the picture leaves out, line by line.
 
-    SceneError for another suffix, before the work; ToleranceError, CostError where nothing could be generated either.
+    `kind`: "history", the outputs over tau, or "xt", place x time of all rods. SceneError for another suffix, before
+    the work; ToleranceError, CostError where nothing could be generated either.
     """
-    from wavesym.report.histories import histories
-    from wavesym.report.panels import draw, notes
     from wavesym.report.saving import picture_format, save
 
     picture_format(path)
+    if kind == "xt":
+        from wavesym.report import xt
+
+        save(xt.draw(lower(scene)), path)
+        return []
+    from wavesym.report.histories import histories
+    from wavesym.report.panels import draw, notes
+
     made = histories(lower(scene))
     save(draw(made), path)
     return notes(made)
