@@ -94,8 +94,8 @@ def _lines(network: Network) -> Iterator[Line]:
             bar = network.bars[bars[-1]]
             x += bar.length
             nodes.append((nearest(x), bar.right))
-            following = next((k for k in left if _continues(network, bar.right, network.bars[k].left)), None)
-            if following is None or following != bars[-1] + 1:
+            following = bars[-1] + 1
+            if following not in left or not _continues(network, bar.right, following):
                 break
             left.remove(following)
             if network.bars[following].left != bar.right:
@@ -104,9 +104,11 @@ def _lines(network: Network) -> Iterator[Line]:
         yield Line(f"from point {nodes[0][1]}" if bars[0] else "", tuple(bars), tuple(nodes))
 
 
-def _continues(network: Network, end: int, begin: int) -> bool:
-    """Whether a line goes on from one point at another: the same, or one that a link holds."""
-    return end == begin or any({end, begin} == {link.left, link.right} for link in network.links)
+def _continues(network: Network, end: int, following: int) -> bool:
+    """Whether a bar goes on from a point: it begins there without a gear, or at a point that a link holds."""
+    bar = network.bars[following]
+    held = any({end, bar.left} == {link.left, link.right} for link in network.links)
+    return bar.ratios[0] == 1 and (end == bar.left or held)
 
 
 def _image(field: Field, line: Line, until: float, quantity: str) -> list[tuple[Array, Array, Array]]:
