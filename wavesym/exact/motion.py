@@ -133,7 +133,7 @@ def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Known:
             polynomial += factor * later
         error += known.error
     if probe.quantity == "strain" and bar.speed != 1:
-        polynomial, error = polynomial / arb(bar.speed), (error / arb(bar.speed)).upper()
+        polynomial, error = polynomial * arb(1 / bar.speed), (error / arb(bar.speed)).upper()
     return Known(polynomial, error)
 
 
