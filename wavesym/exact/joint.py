@@ -56,10 +56,10 @@ class JointLaw:
             if link.left in place:
                 a, b = place[link.left], place[link.right]
                 for matrix, value in ((damping, rule.damping * link.damping), (stiffness, link.stiffness)):
-                    matrix[a][a] += value
+                    matrix[a][a] += link.ratio**2 * value
                     matrix[b][b] += value
-                    matrix[a][b] -= value
-                    matrix[b][a] -= value
+                    matrix[a][b] -= link.ratio * value
+                    matrix[b][a] -= link.ratio * value
         return cls(
             tuple(rule.inertia * point.mass for point in points),
             tuple(map(tuple, damping)),

@@ -62,12 +62,13 @@ class Bar:
 
 @dataclass(frozen=True)
 class Link:
-    """A spring and a dashpot between two points."""
+    """A spring and a dashpot between two points; their left end moves `ratio` times as fast as its point."""
 
     left: int
     right: int
     stiffness: fmpq = _ZERO
     damping: fmpq = _ZERO
+    ratio: fmpq = _ONE
 
 
 class End(NamedTuple):
@@ -150,10 +151,11 @@ class Network:
             pulls[point] += ratio * bar.impedance * (2 * arriving - ratio * velocities[point])
         for link in self.links:
             if link.left in velocities:
-                if velocities[link.left] != velocities[link.right] and link.stiffness != 0:
+                opening = velocities[link.right] - link.ratio * velocities[link.left]
+                if opening != 0 and link.stiffness != 0:
                     return False
-                pull = link.damping * (velocities[link.right] - velocities[link.left])
-                pulls[link.left] += pull
+                pull = link.damping * opening
+                pulls[link.left] += link.ratio * pull
                 pulls[link.right] -= pull
         return all(
             self.points[point].motion is not None

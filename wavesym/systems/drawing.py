@@ -117,13 +117,13 @@ class _Pen:
         numbers = [self._drawn(nodes, between, k, at) if k or begin is None else begin for k in range(len(nodes))]
         stations = [Station(Fraction(0), (numbers[0],), None, None)]
         for k, (part, left, right) in enumerate(zip(between, numbers, numbers[1:], strict=False)):
-            last = stations[-1]
+            last, turns = stations[-1], ratio if begin is not None and k == 0 else Fraction(1)
             if isinstance(part, RodPart):
-                bar = self._bar(part, left, right, ratio if begin is not None and k == 0 else Fraction(1))
+                bar = self._bar(part, left, right, turns)
                 stations[-1] = replace(last, right=bar)
                 stations.append(Station(last.x + part.rod, (right,), bar, None))
             else:
-                self.links.append(Link(left, right, rational(part.spring), rational(part.dashpot)))
+                self._link(part, left, right, turns)
                 stations[-1] = replace(last, points=(*last.points, right))
         self.lines[name] = tuple(stations)
 
@@ -151,8 +151,11 @@ class _Pen:
             )
         )
         if part.spring or part.dashpot:
-            self.links.append(Link(left, right, rational(part.spring), rational(part.dashpot)))
+            self._link(part, left, right, ratio)
         return len(self.bars) - 1
+
+    def _link(self, part: RodPart | LinkPart, left: int, right: int, ratio: Fraction) -> None:
+        self.links.append(Link(left, right, rational(part.spring), rational(part.dashpot), rational(ratio)))
 
     def _become(self, point: int, part: Part | str, rods: Sequence[RodPart], at: Keys) -> None:
         """Give a point what a part says of it; `rods` are those beside it."""
