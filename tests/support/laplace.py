@@ -152,7 +152,7 @@ class _Assembly:
         if "motion" in table:
             self.motion[point] = table["motion"]
         self.mass[point] = _q(table.get("mass", 0))
-        own = table.get("velocity", beside[0].get("velocity", 0) if beside else 0)
+        own = table.get("velocity", beside[0].get("velocity", 0) if beside and "mass" in table else 0)
         self.velocity[point] = _q(own)
         self.tied(_q(table.get("spring", 0)), _q(table.get("dashpot", 0)), {point: _ONE})
         if "name" in table:
@@ -214,9 +214,10 @@ class Laplace:
         points, follows = self._made.lines[line], self._made.on[line]
         x = next(x for x, point in points if point == names[at]) if at in names else Fraction(at)
         rods = [(points[k][0], rod) for k, rod in enumerate(follows) if rod is not None]
-        if quantity != "strain" and not (line and x == 0):
+        if quantity != "strain":
             there = [point for where, point in points if where == x]
-            if there:
+            # a branch begins with the end of its rod, which moves as its ratio says
+            if there and not (line and x == 0 and len(there) == 1):
                 return self._finished(self._velocity[there[-1 if side == "+" else 0]], quantity)
         inside = [(start, rod) for start, rod in rods if start <= x <= start + self._made.rods[rod].length]
         start, number = inside[0] if side == "-" or len(inside) == 1 else inside[-1]

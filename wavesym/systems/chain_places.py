@@ -66,11 +66,9 @@ def _at_node(drawing: Drawing, point: int, side: int, quantity: str, text: str, 
 
 def _moving(drawing: Drawing, line: str, station: Station, point: int) -> Place:
     """The end of a rod that moves as a point does, or the point itself."""
-    for rod, end in ((station.left, 1), (station.right, 0)):
-        if rod is not None:
-            bar = drawing.bars[rod]
-            if (bar.right if end else bar.left) == point and bar.ratios[end] == 1:
-                return Place(station.x, 0, line, rod + 1, Fraction(end))
+    for rod, end in drawing.ends(point):
+        if drawing.bars[rod].ratios[end] == 1:
+            return Place(station.x, 0, line, rod + 1, Fraction(end))
     return Place(station.x, 0, line, 0, Fraction(0), point)
 
 
