@@ -18,7 +18,7 @@ from fractions import Fraction
 from math import factorial
 from typing import Any
 
-from flint import acb, acb_poly, acb_series, arb, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly, fmpz_poly
 
 _S = fmpq_poly([0, 1])
 _ONE = fmpq(1)
@@ -394,8 +394,19 @@ def _residues(ratio: Ratio) -> list[_Pole]:
         for root, _ in factor.complex_roots():
             near = acb_poly([root, 1])
             # the first `order` coefficients of what is below are 0 there
-            rest = acb_series(below(near).coeffs()[order:], prec=order)
-            series = acb_series(above(near).coeffs(), prec=order) / rest
-            coefficients = [series[k] for k in range(order)]
-            found.append(_Pole(acb(root), [coefficients[order - 1 - k] / factorial(k) for k in range(order)]))
+            quotient = _divided(above(near).coeffs(), below(near).coeffs()[order:], order)
+            found.append(_Pole(acb(root), [quotient[order - 1 - k] / factorial(k) for k in range(order)]))
     return found
+
+
+def _divided(above: list[acb], below: list[acb], count: int) -> list[acb]:
+    """The first coefficients of the quotient of two series."""
+    if below[0].contains(0):
+        raise ValueError("poles that are not apart")
+    quotient: list[acb] = []
+    for k in range(count):
+        rest = above[k] if k < len(above) else acb(0)
+        for n in range(1, min(k, len(below) - 1) + 1):
+            rest -= below[n] * quotient[k - n]
+        quotient.append(rest / below[0])
+    return quotient
