@@ -99,7 +99,7 @@ def missed(table: dict[str, Any], tolerance: str = "1e-10") -> float:
     for each, values, largest in zip(terms, made.evaluate(np.array(taus)), everywhere.max(axis=1), strict=True):
         true = [each.value(Fraction(tau)) for tau in taus]
         if not largest:
-            assert not any(true)
+            assert all(value == 0 for value in true)
             continue
         far = max(float(abs(exact - float(value))) for exact, value in zip(true, values, strict=True))
         worst = max(worst, far / largest / made.ERROR_BOUND)

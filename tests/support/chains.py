@@ -127,7 +127,9 @@ def _places(draw, lines: dict[str, list[Any]], count: int) -> list[str]:
         line = draw(st.sampled_from(sorted(lines)))
         lengths = [Fraction(part["rod"]) for part in lines[line] if isinstance(part, dict) and "rod" in part]
         rod = draw(st.integers(0, len(lengths) - 1))
-        x = sum(lengths[:rod], Fraction(0)) + lengths[rod] * draw(st.sampled_from([Fraction(0), Fraction(1), Fraction(2, 5)]))
+        x = sum(lengths[:rod], Fraction(0)) + lengths[rod] * draw(
+            st.sampled_from([Fraction(0), Fraction(1), Fraction(2, 5)])
+        )
         found[line, x] = f"{line}{line and ':'}{x}{draw(st.sampled_from('-+'))}"
     return list(found.values())
 

@@ -170,7 +170,9 @@ def _inverse(matrix: list[list[Ratio]]) -> list[list[Ratio]]:
         rows[k] = [each * one if each else each for each in rows[k]]
         for i in range(size):
             if i != k and (factor := rows[i][k]):
-                rows[i] = [each - factor * other if other else each for each, other in zip(rows[i], rows[k], strict=True)]
+                rows[i] = [
+                    each - factor * other if other else each for each, other in zip(rows[i], rows[k], strict=True)
+                ]
     return [row[size:] for row in rows]
 
 
