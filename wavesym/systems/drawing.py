@@ -111,6 +111,7 @@ class _Pen:
         ratio: Fraction = Fraction(1),
     ) -> None:
         """Parts from left to right; a branch begins at a point that is there already."""
+        self.lines[name] = ()  # so that no node of it has its name
         nodes, between = _alternating(parts, at)
         if begin is not None and nodes[0] is not None:
             raise wrong("a node given first, what holds the branch to its node expected", *at, nodes[0][0])

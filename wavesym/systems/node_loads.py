@@ -12,6 +12,7 @@ from wavesym.fields.numbers import LONGEST, Numbers, exact, written
 from wavesym.fields.table import shown, wrong
 from wavesym.model.loads import Applied
 from wavesym.numbers.doubles import rational
+from wavesym.systems.place import position_of
 
 
 def _at(value: object) -> str:
@@ -20,6 +21,7 @@ def _at(value: object) -> str:
         text = str(exact(value))
     if len(text) > LONGEST:
         raise wrong(f"{shown(value)} given, at most {LONGEST} characters expected")
+    position_of(text)
     return str(text)
 
 
