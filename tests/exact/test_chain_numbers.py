@@ -271,14 +271,14 @@ def test_momentum_changes_by_what_loads_give() -> None:
 
 def test_energy_stays_without_dashpots_and_goes_where_they_are() -> None:
     kept = Balance(BODIES, 4).energy(MASSES)
-    assert kept.tolist() == pytest.approx([kept[0]] * 9, rel=1e-12)
+    assert kept.tolist() == pytest.approx([kept[0]] * 9, rel=1e-10)
     damped = [part | ({"dashpot": "1/3", "spring": 2} if part.get("name") == "b" else {}) for part in BODIES]
     parts = [*damped, {"rod": "1/2", "impedance": "1/5"}, "absorbing"]
     balance = Balance(parts, 4)
     energy = balance.energy(MASSES, {"1": 2.0})
     assert (np.diff(energy) < 0).all()
     taken = balance.taken({"1": 1 / 3, "3": 1 / 5})
-    assert (energy + taken).tolist() == pytest.approx([energy[0]] * 9, rel=1e-12)
+    assert (energy + taken).tolist() == pytest.approx([energy[0]] * 9, rel=1e-10)
 
 
 # ---- what changes nothing, or changes all alike
