@@ -121,7 +121,7 @@ class _Acting:
         if motion == "acceleration":
             self._coming = [(time, polynomial.integral()) for time, polynomial in self._coming]
         self._coming.reverse()
-        begin = network.points[point].velocity if motion == "acceleration" else fmpq(0)
+        begin = network.points[point].velocity if motion is not None else fmpq(0)
         self._since, self._total = fmpq(0), fmpq_poly([begin])
 
     def on(self, start: fmpq) -> fmpq_poly:
