@@ -182,13 +182,23 @@ class _Pen:
                 raise wrong(f"{shown(name)} given, a name that is not taken expected", *at, "name")
             self.names[name] = point
 
+    def _damped(self, number: int) -> bool:
+        """Whether a point has a rod, a dashpot or a motion, or others hold it that have, or a mass, by dashpots."""
+        seen, coming = {number}, [number]
+        while coming:
+            point = self.points[number := coming.pop()]
+            held = any(number in (bar.left, bar.right) for bar in self.bars)
+            if point.damping != 0 or point.mass != 0 or point.motion is not None or held:
+                return True
+            ties = [{link.left, link.right} for link in self.links if link.damping != 0]
+            beside = set().union(*(tie for tie in ties if number in tie)) - seen
+            seen |= beside
+            coming += beside
+        return False
+
     def _bearable(self, number: int, point: Point) -> None:
         """A point must have something that says how fast it is."""
-        ends = any(number in (bar.left, bar.right) for bar in self.bars)
-        damped = point.damping != 0 or any(
-            link.damping != 0 and number in (link.left, link.right) for link in self.links
-        )
-        if point.mass == 0 and point.motion is None and not ends and not damped:
+        if point.mass == 0 and not self._damped(number):
             raise wrong("a joint without mass, rod or dashpot given, one of these at it expected", "parts")
 
 
