@@ -181,7 +181,7 @@ def test_a_body_on_a_fixed_bar_until_the_bar_lets_it_go(ratio: int) -> None:
 
 # ---- energy and momentum
 
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(9)
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
 class Balance:
@@ -271,14 +271,14 @@ def test_momentum_changes_by_what_loads_give() -> None:
 
 def test_energy_stays_without_dashpots_and_goes_where_they_are() -> None:
     kept = Balance(BODIES, 4).energy(MASSES)
-    assert kept.tolist() == pytest.approx([kept[0]] * 9, rel=1e-10)
+    assert kept.tolist() == pytest.approx([kept[0]] * 9, rel=1e-12)
     damped = [part | ({"dashpot": "1/3", "spring": 2} if part.get("name") == "b" else {}) for part in BODIES]
     parts = [*damped, {"rod": "1/2", "impedance": "1/5"}, "absorbing"]
     balance = Balance(parts, 4)
     energy = balance.energy(MASSES, {"1": 2.0})
     assert (np.diff(energy) < 0).all()
     taken = balance.taken({"1": 1 / 3, "3": 1 / 5})
-    assert (energy + taken).tolist() == pytest.approx([energy[0]] * 9, rel=1e-10)
+    assert (energy + taken).tolist() == pytest.approx([energy[0]] * 9, rel=1e-12)
 
 
 # ---- what changes nothing, or changes all alike
@@ -329,13 +329,13 @@ def watched(k: Mapping[str, Any], parts: list[Any], size: int = 1) -> np.ndarray
     return values(parts, TAUS, load, velocity=["body", "held"], strain=[f"{first}-", f"{first}+"], displacement=["1/4"])
 
 
-@settings(max_examples=5)
+@settings(max_examples=4)
 @given(PARTS)
 def test_a_rod_in_two_pieces_is_one_rod(k: Mapping[str, Any]) -> None:
     assert like(watched(k, line(k, split="1/3")), watched(k, line(k)))
 
 
-@settings(max_examples=5)
+@settings(max_examples=4)
 @given(PARTS, st.sampled_from([3, 1000]))
 def test_only_ratios_of_impedances_matter(k: Mapping[str, Any], by: int) -> None:
     assert like(watched(k, line(k, by), by), watched(k, line(k)))
@@ -349,7 +349,7 @@ def mirrored(parts: list[Any]) -> list[Any]:
     ]
 
 
-@settings(max_examples=5)
+@settings(max_examples=4)
 @given(PARTS)
 def test_a_chain_in_a_mirror(k: Mapping[str, Any]) -> None:
     length = sum(map(Fraction, k["lengths"]))

@@ -54,7 +54,7 @@ FLOORS = {
         ],
     },
     "load": [{"at": "ground", "spacing": "0.3", "samples": [0, 1, "-1/2", 0]}],
-    "output": {"until": 6, "displacement": ["roof"], "strain": ["9/4", "1-"], "velocity": ["2+", "floor"]},
+    "output": {"until": 4, "displacement": ["roof"], "strain": ["9/4", "1-"], "velocity": ["2+", "floor"]},
 }
 
 
@@ -108,10 +108,10 @@ def missed(table: dict[str, Any], tolerance: str = "1e-10") -> float:
 
 @pytest.mark.parametrize("table", [STEPPED, FLOORS], ids=["stepped", "floors"])
 def test_a_chain_is_right_to_the_last_bit(table: dict[str, Any]) -> None:
-    assert wrong_values(table, most=12) == []
+    assert wrong_values(table, most=8) == []
 
 
-@settings(max_examples=24)
+@settings(max_examples=18)
 @given(chains(UNTIL))
 def test_any_chain_is_right_to_the_last_bit(table: dict[str, Any]) -> None:
     assert wrong_values(table) == []

@@ -56,6 +56,11 @@ MISTAKES = [
     (', "fixed"]', ", { spring = 1 }]", "system.parts: a spring or dashpot given at an end"),
     (', "fixed"]', ', { spring = 1 }, "absorbing"]', 'system.parts[7]: "absorbing" given, a rod beside it expected'),
     (ROD, "{ rod = 1 }, { spring = 3 }, { spring = 3 }", "system.parts: a joint without mass, rod or dashpot given"),
+    (
+        ROD,
+        "{ rod = 1 }, { spring = 3 }, { joint = true }, { dashpot = 1 }, { joint = true }, { spring = 1 }",
+        "system.parts: a joint without mass, rod or dashpot given",
+    ),
     (ROD, '{ rod = 1 }, "contact"', 'system.parts[2]: "contact" given, a chain without contacts expected'),
     (ROD, '{ rod = 1 }, { contact = "1/2" }', "system.parts[2]"),
     # parts themselves
