@@ -203,7 +203,6 @@ class Balance:
         sides = {f"{x}{'+' if k == 0 else '-'}" for k, x in enumerate((places[0], places[-1]))}
         sides |= {f"{x}{side}" for x in places[1:-1] for side in "-+"}
         wanted = sorted(sides)
-        bodies = [part["name"] for part in parts if isinstance(part, dict) and "mass" in part]
         strain = dict(zip(wanted, values(parts, taus, load, strain=wanted), strict=True))
         watched = [f"{x}" for x in places]
         velocity = dict(zip(watched, values(parts, taus, load, velocity=watched), strict=True))
@@ -216,8 +215,6 @@ class Balance:
             to_left = (velocity[f"{left}"] + strain[f"{left}+"])[:size] / 2
             to_right = (velocity[f"{right}"] - strain[f"{right}-"])[:size] / 2
             self.waves.append((to_left, to_right))
-        self.masses = [part for part in parts if isinstance(part, dict) and "rod" not in part]
-        self.still = {name: None for name in bodies}
         self.after = {x: (velocity[x][size:], moved[x][size:]) for x in watched}
 
     def _within(self, wave: np.ndarray, delay: int) -> np.ndarray:
@@ -233,14 +230,14 @@ class Balance:
             total += sum(z * self._within(wave, delay) for wave in waves)
         return total + sum(mass * self.after[x][0] for x, mass in bodies.items())
 
-    def energy(self, bodies: Mapping[str, float], springs: Mapping[str, float] = {}) -> np.ndarray:  # noqa: B006
+    def energy(self, bodies: Mapping[str, float], springs: Mapping[str, float] | None = None) -> np.ndarray:
         """At every half; `bodies` and `springs` (to ground) are by place."""
         total = np.zeros(self.count + 1)
         for rod, delay, waves in zip(self.rods, self.delays, self.waves, strict=True):
             z = float(Fraction(rod.get("impedance", 1)))
             total += sum(z * self._within(wave**2, delay) for wave in waves)
         total += sum(mass * self.after[x][0] ** 2 / 2 for x, mass in bodies.items())
-        return total + sum(k * self.after[x][1] ** 2 / 2 for x, k in springs.items())
+        return total + sum(k * self.after[x][1] ** 2 / 2 for x, k in (springs or {}).items())
 
     def taken(self, dashpots: Mapping[str, float]) -> np.ndarray:
         """What dashpots to ground have taken at every half."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from flint import arb
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 
 import wavesym
 from tests.support.chains import chains
@@ -82,7 +82,8 @@ def wrong_values(table: dict[str, Any], most: int = 5) -> list[tuple[str, float,
     for output, each, values in zip(scene.outputs, terms, Reference(lower(scene)).values(taus), strict=True):
         for tau, value in zip(taus, values, strict=True):
             true = each.value(Fraction(tau))
-            if not abs(true - value) <= abs(value) * 2.0**-53 + 1e-24:
+            allowed = abs(value) * 2.0**-53 + 1e-24 if each.series else 0
+            if not abs(true - value) <= allowed:
                 found.append((output.name, tau, value, true))
     return found
 
@@ -93,7 +94,7 @@ def missed(table: dict[str, Any], tolerance: str = "1e-10") -> float:
     terms = expected(scene, table)
     made = imported(files(lower(scene), "numpy", "pieces")[f"{scene.name}.py"], "made")
     taus = instants(terms, scene.output.until, 6)
-    assert made.ERROR_BOUND <= float(tolerance)
+    assert float(tolerance) >= made.ERROR_BOUND
     worst = 0.0
     everywhere = np.abs(made.evaluate(np.array([*taus, *np.linspace(0, float(scene.output.until), 4001)])))
     for each, values, largest in zip(terms, made.evaluate(np.array(taus)), everywhere.max(axis=1), strict=True):
@@ -111,7 +112,7 @@ def test_a_chain_is_right_to_the_last_bit(table: dict[str, Any]) -> None:
     assert wrong_values(table, most=8) == []
 
 
-@settings(max_examples=18)
+@settings(max_examples=12)
 @given(chains(UNTIL))
 def test_any_chain_is_right_to_the_last_bit(table: dict[str, Any]) -> None:
     assert wrong_values(table) == []
@@ -120,6 +121,7 @@ def test_any_chain_is_right_to_the_last_bit(table: dict[str, Any]) -> None:
 @settings(max_examples=4)
 @given(chains(UNTIL))
 def test_generated_programs_keep_their_bound(table: dict[str, Any]) -> None:
+    assume(all(each.series for each in expected(wavesym.Scene(**table), table)))
     assert missed(table) <= 1
 
 

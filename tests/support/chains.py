@@ -77,7 +77,12 @@ def _end(draw) -> list[Any]:
         case "held":
             return [{"joint": True} | draw(_held())]
         case "motion":
-            return [{"motion": draw(st.sampled_from(["velocity", "acceleration"])), "velocity": draw(st.sampled_from(BEGUN))}]
+            return [
+                {
+                    "motion": draw(st.sampled_from(["velocity", "acceleration"])),
+                    "velocity": draw(st.sampled_from(BEGUN)),
+                }
+            ]
         case "link":
             return [draw(_link()), draw(st.one_of(st.just("fixed"), _mass()))]
     return [kind]

@@ -15,6 +15,7 @@ import heapq
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import pairwise
 from math import factorial
 from typing import Any
 
@@ -180,9 +181,9 @@ def _loads(table: Mapping[str, Any]) -> Iterator[tuple[Fraction, Ratio]]:
     """The jumps and the changes of slope of a load."""
     if "samples" in table:
         spacing, samples = Fraction(str(table["spacing"])), [_q(sample) for sample in table["samples"]]
-        slopes = [fmpq(0), *((b - a) / _q(spacing) for a, b in zip(samples, samples[1:], strict=False)), fmpq(0)]
+        slopes = [fmpq(0), *((b - a) / _q(spacing) for a, b in pairwise(samples)), fmpq(0)]
         yield Fraction(0), Ratio(samples[0], _S)
-        for k, (before, after) in enumerate(zip(slopes, slopes[1:], strict=False)):
+        for k, (before, after) in enumerate(pairwise(slopes)):
             yield k * spacing, Ratio(after - before, _S**2)
         return
     for power, key in ((1, "steps"), (2, "ramps")):
