@@ -24,14 +24,14 @@ _ZERO, _ONE = fmpq(0), fmpq(1)
 class Point:
     """What moves as one: a rigid mass, or none; a dashpot and a spring to the ground; its velocity at tau = 0.
 
-    A `motion` is prescribed by the loads on the point: its velocity or its acceleration. Without loads it is at rest.
+    A `motion` is prescribed by the loads on the point: its velocity, or its acceleration. What is fixed has no loads.
     """
 
     mass: fmpq
     damping: fmpq = _ZERO
     stiffness: fmpq = _ZERO
     velocity: fmpq = _ZERO
-    motion: Literal["velocity", "acceleration"] | None = None
+    motion: Literal["fixed", "velocity", "acceleration"] | None = None
     loads: tuple[UnitLoad, ...] = ()
     name: str = ""
 

@@ -120,6 +120,9 @@ class _Pen:
         for k, (part, left, right) in enumerate(zip(between, numbers, numbers[1:], strict=False)):
             last, turns = stations[-1], ratio if begin is not None and k == 0 else Fraction(1)
             if isinstance(part, RodPart):
+                if part.name and any(part.name == bar.name for bar in self.bars):
+                    number = next(n for n, each in enumerate(parts) if each is part)
+                    raise wrong(f"{shown(part.name)} given, a name that is not taken expected", *at, number, "name")
                 bar = self._bar(part, left, right, turns)
                 stations[-1] = replace(last, right=bar)
                 stations.append(Station(last.x + part.rod, (right,), bar, None))
@@ -171,7 +174,7 @@ class _Pen:
             start = rational(part.velocity)
             self.points[point] = Point(fmpq(0), velocity=start, motion=part.motion, name=part.name or "")
         elif part == "fixed":
-            self.points[point] = Point(fmpq(0), motion="velocity")
+            self.points[point] = Point(fmpq(0), motion="fixed")
         elif part == "absorbing":
             if not rods:
                 raise wrong('"absorbing" given, a rod beside it expected', *at)

@@ -10,7 +10,7 @@ from flint import fmpq
 from pydantic import Field, model_validator
 
 from wavesym.fields.loads import Load, LoadKinds
-from wavesym.fields.table import SceneTable
+from wavesym.fields.table import SceneTable, shown
 from wavesym.model.network import Network
 from wavesym.model.node import UnitLoad
 from wavesym.systems.chain_places import node, place
@@ -52,9 +52,11 @@ class ExplicitChain(SceneTable):
     def refused(self, load: Load) -> tuple[str, str] | None:
         """What is wrong with a load, and under which key; None where nothing is."""
         try:
-            self._point(load)
+            point = self._point(load)
         except MisplacedError as error:
             return str(error), "at"
+        if self.drawing.points[point].motion == "fixed":
+            return f'{shown(_at(load))} given, a node that can move expected (a "fixed" end cannot)', "at"
         return None
 
     def made(self, loads: Sequence[Load]) -> tuple[None, Network]:

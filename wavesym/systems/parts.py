@@ -30,6 +30,20 @@ def _not_negative(value: object) -> Fraction:
     return number
 
 
+def _true(value: object) -> bool:
+    if value is not True:
+        raise wrong(f"{shown(value)} given, true expected")
+    return True
+
+
+def _moved(value: object) -> Literal["velocity", "acceleration"]:
+    if value == "velocity":
+        return "velocity"
+    if value == "acceleration":
+        return "acceleration"
+    raise wrong(f'{shown(value)} given, "velocity" or "acceleration" expected')
+
+
 PartName = Annotated[str, PlainValidator(_name)]
 NotNegative = Annotated[Fraction, PlainValidator(_not_negative), PlainSerializer(str, return_type=str)]
 
@@ -87,7 +101,7 @@ class JointPart(PointPart):
 
     key: ClassVar[str] = "joint"
 
-    joint: Literal[True] = Field(description="true")
+    joint: Annotated[bool, PlainValidator(_true)] = Field(description="true")
 
 
 class MotionPart(Part):
@@ -95,7 +109,9 @@ class MotionPart(Part):
 
     key: ClassVar[str] = "motion"
 
-    motion: Literal["velocity", "acceleration"] = Field(description='"velocity" or "acceleration"')
+    motion: Annotated[Literal["velocity", "acceleration"], PlainValidator(_moved)] = Field(
+        description='"velocity" or "acceleration"'
+    )
     velocity: Exact = Fraction(0)
     name: PartName | None = None
 
