@@ -203,10 +203,11 @@ class Balance:
         sides = {f"{x}{'+' if k == 0 else '-'}" for k, x in enumerate((places[0], places[-1]))}
         sides |= {f"{x}{side}" for x in places[1:-1] for side in "-+"}
         wanted = sorted(sides)
-        strain = dict(zip(wanted, values(parts, taus, load, strain=wanted), strict=True))
         watched = [f"{x}" for x in places]
-        velocity = dict(zip(watched, values(parts, taus, load, velocity=watched), strict=True))
-        moved = dict(zip(watched, values(parts, taus, load, displacement=watched), strict=True))
+        rows = values(parts, taus, load, strain=wanted, velocity=watched, displacement=watched)
+        strain = dict(zip(wanted, rows, strict=False))
+        velocity = dict(zip(watched, rows[len(wanted) :], strict=False))
+        moved = dict(zip(watched, rows[len(wanted) + len(watched) :], strict=True))
         self.places, self.velocity = places, velocity
         size = len(grid)
         self.waves = []
@@ -280,7 +281,7 @@ def test_energy_stays_without_dashpots_and_goes_where_they_are() -> None:
 
 # ---- what changes nothing, or changes all alike
 
-TAUS = [0.0, 0.3, 1.0, 1.7, 2.0, 2.9, 4.1, 5.0]
+TAUS = [0.0, 0.3, 1.0, 1.7, 2.0, 2.9, 4.0]
 
 
 def like(found: np.ndarray, expected: np.ndarray, error: float = EXACT) -> bool:

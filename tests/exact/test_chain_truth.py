@@ -54,7 +54,7 @@ FLOORS = {
         ],
     },
     "load": [{"at": "ground", "spacing": "0.3", "samples": [0, 1, "-1/2", 0]}],
-    "output": {"until": 4, "displacement": ["roof"], "strain": ["9/4", "1-"], "velocity": ["2+", "floor"]},
+    "output": {"until": 3, "displacement": ["roof"], "strain": ["9/4", "1-"], "velocity": ["2+", "floor"]},
 }
 
 
@@ -100,7 +100,7 @@ def missed(table: dict[str, Any], tolerance: str = "1e-10") -> float:
     for each, values, largest in zip(terms, made.evaluate(np.array(taus)), everywhere.max(axis=1), strict=True):
         true = [each.value(Fraction(tau)) for tau in taus]
         if not largest:
-            assert all(value == 0 for value in true)
+            assert all(value.contains(0) for value in true)
             continue
         far = max(float(abs(exact - float(value))) for exact, value in zip(true, values, strict=True))
         worst = max(worst, far / largest / made.ERROR_BOUND)
