@@ -200,7 +200,7 @@ def spoilt(draw) -> dict[str, Any]:
     return table
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(spoilt())
 def test_whatever_is_drawn_is_right_or_one_line(table: dict[str, Any]) -> None:
     """And what is right can be solved, or says why not."""
