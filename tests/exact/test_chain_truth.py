@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from flint import arb
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 
 import wavesym
 from tests.support.chains import chains
@@ -118,10 +118,9 @@ def test_any_chain_is_right_to_the_last_bit(table: dict[str, Any]) -> None:
     assert wrong_values(table) == []
 
 
-@settings(max_examples=4)
+@settings(max_examples=12)
 @given(chains(UNTIL))
 def test_generated_programs_keep_their_bound(table: dict[str, Any]) -> None:
-    assume(all(each.series for each in expected(wavesym.Scene(**table), table)))
     assert missed(table) <= 1
 
 

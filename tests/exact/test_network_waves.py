@@ -154,3 +154,17 @@ def test_only_what_can_be_felt_is_moved():
     model = chain([1] * 9, 3, {"velocity": [2]})
     assert sorted(Knots(model, model.until).joints) == [0, 1, 2, 3, 4, 5]
     assert model.reached(rational(3))[5] == 0
+
+
+def test_an_absorbing_end_sends_exactly_nothing():
+    """Not little: exact impedances cancel exactly, at a joint of equal rods and at the end that takes all."""
+    parts = [{"mass": 1, "name": "a"}, {"rod": 1, "impedance": "1.7"}, {"joint": True}, {"rod": 1, "impedance": "1.7"}]
+    load = [{"at": "a", "times": [0], "steps": [1]}]
+    system = {"type": "chain", "parts": [*parts, "absorbing"]}
+    model = lower(wavesym.Scene(name="ends", system=system, load=load, output={"until": 8, "velocity": ["a"]}))
+    with ctx.workprec(128):
+        waves = NetworkWaves(model.network, Knots(model, model.until).joints, model.loads, 32)
+    for bar in (0, 1):
+        for known in waves.sent[End(bar, 1)].stretches:
+            assert known.polynomial.length() == 0
+            assert known.error == 0

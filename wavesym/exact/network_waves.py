@@ -45,7 +45,11 @@ class NetworkWaves:
                 self.sent[End(number, side)] = SentWave([-bar.delay], [constant])
         shown = {network.point_at(end) for end in self.sent if network.bars[end.bar].ratios[end.side] == 1}
         self.velocities = {point: SentWave() for point in range(len(network.points)) if point not in shown}
-        self._joints = {number: _MovingJoint(network, network.joints[number], loads) for number in knots}
+        self._joints = {
+            number: _MovingJoint(network, joint, loads, any(point in self.velocities for point in joint.points))
+            for number in knots
+            for joint in (network.joints[number],)
+        }
         self._march()
 
     def _march(self) -> None:
@@ -77,7 +81,7 @@ class NetworkWaves:
 
 
 class _MovingJoint:
-    def __init__(self, network: Network, joint: Joint, loads: Sequence[Applied]) -> None:
+    def __init__(self, network: Network, joint: Joint, loads: Sequence[Applied], watched: bool) -> None:
         self._network, self._joint = network, joint
         self._place = {point: k for k, point in enumerate(joint.points)}
         self._motion = JointMotion(
@@ -86,10 +90,31 @@ class _MovingJoint:
             [arb(0)] * len(joint.points),
         )
         self._loads = [_Acting(network, point, loads) for point in joint.points]
+        self._scattering = None if watched else self._scattered()
+
+    def _scattered(self) -> list[tuple[list[fmpq], fmpq]] | None:
+        """Of one point without mass and spring: what goes into each end of what comes from each, and of the load.
+
+        Exact, so that what adds up to nothing is nothing. None for other joints.
+        """
+        law, rule = self._motion.law, joint_rule()
+        if len(law.mass) > 1 or not law.light or law.springs:
+            return None
+        bars = [(self._network.bars[end.bar], end.side) for end, _ in self._joint.ends]
+        arrives = [rule.arrives[1 - side] * bar.ratios[side] * bar.impedance / law.damping[0][0] for bar, side in bars]
+        return [
+            (
+                [bar.ratios[side] * a - (k == own) for k, a in enumerate(arrives)],
+                bar.ratios[side] * rule.load / law.damping[0][0],
+            )
+            for own, (bar, side) in enumerate(bars)
+        ]
 
     def sends(self, arriving: Sequence[Known], start: fmpq, length: fmpq, terms: int) -> list[Known]:
         """What goes back into the ends on a stretch."""
         acting = [load.on(start) for load in self._loads]
+        if self._scattering is not None:
+            return [_mixed(parts, arriving, load, acting[0]) for parts, load in self._scattering]
         rule = joint_rule()
         forces = [Known(arb_poly([arb(rule.load * c) for c in p.coeffs()]), arb(0)) for p in acting]
         for (end, point), wave in zip(self._joint.ends, arriving, strict=True):
@@ -106,6 +131,16 @@ class _MovingJoint:
             q = velocities[self._place[point]]
             result.append(Known(ratio * q.polynomial - wave.polynomial, (abs(ratio) * q.error + wave.error).upper()))
         return result
+
+
+def _mixed(parts: Sequence[fmpq], waves: Sequence[Known], load: fmpq, acting: fmpq_poly) -> Known:
+    """A sum of waves, each with its part, and of what acts."""
+    polynomial, error = arb_poly([arb(load * c) for c in acting.coeffs()]), arb(0)
+    for part, wave in zip(parts, waves, strict=True):
+        if part != 0:
+            polynomial += arb(part) * wave.polynomial
+            error += abs(arb(part)) * wave.error
+    return Known(polynomial, error.upper() if error != 0 else error)
 
 
 class _Acting:

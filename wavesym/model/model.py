@@ -50,9 +50,7 @@ class Model:
     def named(self) -> Chain:
         """The chain as the paper has it. CostError for one that is written out, which has no exact tables."""
         if self.chain is None:
-            raise CostError(
-                "system.type: a collision, a drive or a building expected (a chain is for pieces and `run`)"
-            )
+            raise CostError("a chain that is written out has no exact tables (pieces and `run` do without them)")
         return self.chain
 
     def horizon(self, real: Real = DOUBLE) -> float:

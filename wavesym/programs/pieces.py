@@ -27,13 +27,12 @@ from flint import arb, arb_poly, fmpq
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
 from wavesym.exact.motion import Motion, is_zero
+from wavesym.exact.silence import silent
 from wavesym.model.model import Model
 from wavesym.numbers import chebyshev
 from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import bound, middle, nearest, rational
 from wavesym.numbers.reals import Real
-from wavesym.programs.march.plan import plan
-from wavesym.programs.march.zero import silent
 from wavesym.programs.program import ProgramOutput
 
 # A table larger than this is for the march.
@@ -192,11 +191,8 @@ class _Fits:
 
     @cached_property
     def _silent(self) -> set[int]:
-        """The outputs that are 0 throughout though waves arrive, which no number of bits tells; as far as is known."""
-        try:
-            return {k for k, nothing in enumerate(silent(plan(self._model, self._real))) if nothing}
-        except CostError:
-            return set()
+        """The outputs that are 0 throughout though waves arrive, which no number of bits tells."""
+        return {k for k, nothing in enumerate(silent(self._model, rational(self._tau_max))) if nothing}
 
     def fitted(self, per_unit: int, most: int = MOST_BYTES) -> Pieces:
         """Pieces, about `per_unit` of them in a unit of tau. CostError where they would take more than `most` bytes."""
