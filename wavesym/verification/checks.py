@@ -18,6 +18,7 @@ from wavesym.programs.making import make
 from wavesym.running.compiled import compiled, imported
 from wavesym.targets.files import files
 from wavesym.verification.characteristics import COARSEST, Integrated, integrate
+from wavesym.verification.graph_grid import graph_grid
 from wavesym.verification.invariants import Balance, Evaluate, balances, values_per_window, watched
 from wavesym.verification.reference import Known
 from wavesym.verification.refinement import Refinement, Solutions, shown
@@ -121,7 +122,7 @@ def spacetime(known: Known) -> list[Outcome]:
     As far as they can be had; where they stay coarse that is said, but no failure: what they allow is in the table.
     """
     model = known.model
-    first = grid(model)
+    first = grid(model) if model.chain else graph_grid(model)
     until = min(known.until, _LONGEST, _MOST_MOVED / first.finer(4).cost(1.0))
     while len(first.instants(until)) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= _MOST_MOVED:
         first = first.finer(2)
@@ -129,7 +130,7 @@ def spacetime(known: Known) -> list[Outcome]:
     if not len(instants):
         note = f"{model.name}: to step between the fronts, central differences would take too long"
         return [Outcome(output.probe.name, {"to": "refused"}, True, note) for output in known.outputs]
-    truth = [np.array(values) for values in Reference(model).values([k / first.cells for k in instants.tolist()])]
+    truth = [np.array(values) for values in Reference(model).values([first.tau(k) for k in instants.tolist()])]
 
     def motion(finer: int) -> Displaced:
         return first.finer(finer).integrate(finer * instants)
