@@ -44,7 +44,11 @@ class NetworkWaves:
                 constant = Known(arb_poly([arb(held)]), arb(0)) if held != 0 else STILL
                 self.sent[End(number, side)] = SentWave([-bar.delay], [constant])
         shown = {network.point_at(end) for end in self.sent if network.bars[end.bar].ratios[end.side] == 1}
-        self.velocities = {point: SentWave() for point in range(len(network.points)) if point not in shown}
+        self.velocities = {
+            number: SentWave()
+            for number, point in enumerate(network.points)
+            if number not in shown or point.motion is not None
+        }
         self._joints = {number: _MovingJoint(network, network.joints[number], loads) for number in knots}
         self._march()
 
