@@ -90,16 +90,23 @@ class _MovingJoint:
             [arb(0)] * len(joint.points),
         )
         self._loads = [_Acting(network, point, loads) for point in joint.points]
+        law = self._motion.law
+        self._scatters = not (law.heavy or law.springs) and len(law.light) == len(joint.points)
 
     def sends(self, arriving: Sequence[Known], start: fmpq, length: fmpq, terms: int) -> list[Known]:
         """What goes back into the ends on a stretch."""
         acting = [load.on(start) for load in self._loads]
         rule = joint_rule()
         forces = [Known(arb_poly([arb(rule.load * c) for c in p.coeffs()]), arb(0)) for p in acting]
-        for (end, point), wave in zip(self._joint.ends, arriving, strict=True):
-            bar = self._network.bars[end.bar]
+        bars = [self._network.bars[end.bar] for end, _ in self._joint.ends]
+        factors = [
+            rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance
+            for bar, (end, _) in zip(bars, self._joint.ends, strict=True)
+        ]
+        if self._scatters:
+            return self._scattered(arriving, forces, factors)
+        for (_, point), wave, factor in zip(self._joint.ends, arriving, map(arb, factors), strict=True):
             k = self._place[point]
-            factor = arb(rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance)
             forces[k] = Known(
                 forces[k].polynomial + factor * wave.polynomial, forces[k].error + abs(factor) * wave.error
             )
@@ -109,6 +116,21 @@ class _MovingJoint:
             ratio = arb(self._network.bars[end.bar].ratios[end.side])
             q = velocities[self._place[point]]
             result.append(Known(ratio * q.polynomial - wave.polynomial, (abs(ratio) * q.error + wave.error).upper()))
+        return result
+
+    def _scattered(self, arriving: Sequence[Known], forces: Sequence[Known], factors: Sequence[fmpq]) -> list[Known]:
+        """Where nothing has mass or springs: sums with exact factors, so that an absorbing end sends back exactly 0."""
+        inverse, points = self._motion.law.inverse, range(len(self._joint.points))
+        places = [self._place[point] for _, point in self._joint.ends]
+        arrived = list(zip(places, factors, arriving, strict=True))
+        felt = [[(factor * inverse[k, here], wave) for here, factor, wave in arrived] for k in points]
+        pushed = [[(inverse[k, j], forces[j]) for j in points] for k in points]
+        self.velocities = [_sum([*felt[k], *pushed[k]]) for k in points]
+        result = []
+        for number, ((end, _), k) in enumerate(zip(self._joint.ends, places, strict=True)):
+            ratio = self._network.bars[end.bar].ratios[end.side]
+            sent = [(ratio * factor - (n == number), wave) for n, (factor, wave) in enumerate(felt[k])]
+            result.append(_sum([*sent, *((ratio * factor, force) for factor, force in pushed[k])]))
         return result
 
 
@@ -136,6 +158,16 @@ class _Acting:
             time, polynomial = self._coming.pop()
             self._total += polynomial(fmpq_poly([start - time, 1]))
         return self._total
+
+
+def _sum(terms: Sequence[tuple[fmpq, Known]]) -> Known:
+    """A sum with exact factors; what has the factor 0 is not in it."""
+    polynomial, error = arb_poly(), arb(0)
+    for factor, known in terms:
+        if factor != 0:
+            polynomial += arb(factor) * known.polynomial
+            error += abs(arb(factor)) * known.error
+    return Known(polynomial, error.upper())
 
 
 def _later(known: Known, by: fmpq) -> Known:
