@@ -11,7 +11,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
-from wavesym.exact.joint import JointLaw, Known
+from wavesym.exact.joint import STILL, JointLaw, Known
 from wavesym.exact.knots import Knots
 from wavesym.exact.network_waves import NetworkWaves
 from wavesym.model.model import Model
@@ -124,9 +124,12 @@ def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Known:
     if probe.point is not None:
         return _velocity(waves, probe.point, start)
     bar = waves.network.bars[probe.rod - 1]
-    if probe.quantity != "strain" and probe.place in (0, 1):
+    if probe.place in (0, 1):
         end = End(probe.rod - 1, int(probe.place))
-        if (point := waves.network.point_at(end)) in waves.velocities:  # prescribed: as exact as it is given
+        if probe.quantity == "strain":
+            if waves.network.is_free(end):
+                return STILL
+        elif (point := waves.network.point_at(end)) in waves.velocities:  # prescribed: as exact as it is given
             known, ratio = _velocity(waves, point, start), arb(bar.ratios[end.side])
             return Known(ratio * known.polynomial, (abs(ratio) * known.error).upper())
     right, left = probe.weights

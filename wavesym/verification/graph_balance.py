@@ -33,7 +33,7 @@ Evaluate = Callable[[Array], Array]
 """tau, shape (n,), to the outputs, shape (outputs, n)."""
 
 # of Gauss's rule between two fronts, where everything is an entire function; fewer say how much is missed
-_POINTS, _FEWER = 16, 12
+_POINTS, _FEWER = 24, 16
 
 # at so many instants balances are struck
 _STRUCK = 8
