@@ -51,7 +51,8 @@ class Model:
         """The chain as the paper has it. CostError for one that is written out, which has no exact tables."""
         if self.chain is None:
             raise CostError(
-                "system.type: a collision, a drive or a building expected (a chain is for pieces and `run`)"
+                "system.type: chain given, collision, drive or building expected (chains that are written out have "
+                "pieces and `run`, but no tables, derivation, closed form or march)"
             )
         return self.chain
 

@@ -122,9 +122,7 @@ def graph(model: Model) -> Graph:
         damping=damping,
         stiffness=stiffness,
         velocity=_numbers(points, "velocity"),
-        given={
-            number: 1 if point.motion == "velocity" else 2 for number, point in enumerate(points) if point.motion
-        },
+        given={number: 1 if point.motion == "velocity" else 2 for number, point in enumerate(points) if point.motion},
         ends=np.array([(bar.left, bar.right) for bar in bars]).ravel(),
         ratios=np.array([nearest(ratio) for bar in bars for ratio in bar.ratios]),
         impedance=_numbers(bars, "impedance"),
@@ -159,6 +157,3 @@ def _common(one: Fraction, other: Fraction) -> Fraction:
     return Fraction(
         gcd(one.numerator * other.denominator, other.numerator * one.denominator), one.denominator * other.denominator
     )
-
-
-

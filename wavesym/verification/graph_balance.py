@@ -188,7 +188,7 @@ class _Books:
         self._q, _, self._strain = at(self._times)
         self._end_q, self._end_u, _ = at(self._struck)
         self._end_u_all = at(self._times)[1]
-        self._v = self._q.part(made.ends).through(np.diag(made.ratios))
+        self._v = self._q.part(made.ends.tolist()).through(np.diag(made.ratios))
         self._load = Within(made.load_integral(self._times, 0).T, np.zeros((size, len(self._times))))
         impedance = np.repeat(made.impedance, 2)
         sign = np.tile([1.0, -1.0], len(made.impedance))
@@ -208,7 +208,7 @@ class _Books:
         return self._v.times(0.5) + self._strain.through(np.diag(sign))
 
     def _content(self, power: int, weights: Array) -> Within:
-        """The sum over bars of weights times the integral of the waves in them, to a power, when balances are struck."""
+        """The sum over bars of weights times the integral of their waves, to a power, when balances are struck."""
         coming = self._coming if power == 1 else self._coming * self._coming
         value, error = np.zeros(len(self._struck)), np.zeros(len(self._struck))
         for k, tau in enumerate(self._struck):
@@ -249,7 +249,9 @@ class _Books:
     def energy(self) -> Within:
         """By how much energy is not what was there and what came."""
         made, q = self._graph, self._q
-        power = (self._load * q).through(self._free) + (q * q.through(made.damping)).through(np.full(len(q.value), -1.0))
+        power = (self._load * q).through(self._free) + (q * q.through(made.damping)).through(
+            np.full(len(q.value), -1.0)
+        )
         told = (self._force * self._v).through(-(1 - self._free)[made.ends])
         lost = q.through(made.damping) + self._end_u_all.through(made.stiffness)
         power = power + told + (q * lost).through(1 - self._free)
@@ -298,9 +300,7 @@ class _Books:
         points, bars = self._counted
         counted = points * self._free
         value = self._content(1, bars * made.impedance) + self._end_q.through(counted * made.mass)
-        rate = (
-            self._load + self._q.through(-made.damping) + self._end_u_all.through(-made.stiffness)
-        ).through(counted)
+        rate = (self._load + self._q.through(-made.damping) + self._end_u_all.through(-made.stiffness)).through(counted)
         across = made.ratios * counted[made.ends] - np.repeat(bars, 2)  # 0 but at prescribed motion
         came = self._since(rate + self._force.through(across))
         moving = bars * made.impedance * np.array(self._delays)

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
-from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, nearest
+from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
 from wavesym.verification.graph import Array, Graph, graph
 from wavesym.verification.spacetime import (
     COARSEST,
@@ -210,7 +210,7 @@ class _Field:
     @property
     def beside(self) -> Array:
         """The displacements beside all ends, in their bars."""
-        return self.now[self._beside]
+        return np.asarray(self.now[self._beside])
 
     def move(self, points: Array) -> None:
         """One step, to where the points are already."""
