@@ -51,8 +51,7 @@ class Model:
         """The chain as the paper has it. CostError for one that is written out, which has no exact tables."""
         if self.chain is None:
             raise CostError(
-                "system.type: chain given, collision, drive or building expected (chains that are written out have "
-                "pieces and `run`, but no tables, derivation, closed form or march)"
+                "system.type: chain given, collision, drive or building expected (a chain has pieces and `run`)"
             )
         return self.chain
 

@@ -39,7 +39,9 @@ def modelled(model: Model) -> Iterator[Section]:
 
 
 def _named_parts(chain: Chain) -> Iterator[Section]:
-    yield Listing("nodes", "Nodes: the conditions between two rods, and at the ends", list(map(_node, enumerate(chain.nodes))))
+    yield Listing(
+        "nodes", "Nodes: the conditions between two rods, and at the ends", list(map(_node, enumerate(chain.nodes)))
+    )
     yield Listing(
         "rods",
         "Rods: where the clocks of their waves begin, and how fast they move at tau = 0",

@@ -14,7 +14,7 @@ from wavesym.model.model import Model
 from wavesym.model.network import Joint
 from wavesym.numbers.doubles import rational
 
-LAW = "M q' + C q + K u = sum over ends of 2 n Z a + F, u' = q; what goes back into an end: n q - a"
+LAW = "M q' + C q + K u = sum over ends of 2 n Z a + F, where u' = q, n q - a goes back into an end"
 
 
 def counted(model: Model) -> dict[str, Plain]:
@@ -34,7 +34,8 @@ def not_served(model: Model) -> Facts:
         refusal = str(model.named)
     except CostError as error:
         refusal = str(error)
-    return Facts("not_served", "What is not served", {"refusal": refusal})
+    words = "Tables, derivation, closed form and march are not served"
+    return Facts("not_served", words, {"refusal": refusal})
 
 
 def parts(model: Model) -> Iterator[Section]:
@@ -115,14 +116,19 @@ def joint_laws(model: Model) -> Listing:
                 "joint": number,
                 "points": Told([_named(model, point) for point in joint.points], _pointed(model, joint)),
                 "ends": len(joint.ends),
-                "M": _matrix(mass),
-                "C": _matrix(law.damping),
-                "K": _matrix(law.stiffness),
                 "knots": knots.get(number),
+                "M": _matrix("M", mass),
+                "C": _matrix("C", law.damping),
+                "K": _matrix("K", law.stiffness),
                 "refusal": refusal or Told(None, ""),
             }
         )
-    return Listing("joints", f"Joints in the light cone: {LAW}", rows, ("refusal",))
+    return Listing(
+        "joints",
+        f"Joints in the light cone, with a knot for each start of a stretch without fronts:\n{LAW}",
+        rows,
+        ("M", "C", "K", "refusal"),
+    )
 
 
 def _named(model: Model, point: int) -> Plain:
@@ -133,5 +139,7 @@ def _pointed(model: Model, joint: Joint) -> str:
     return ", ".join(str(_named(model, point)) for point in joint.points)
 
 
-def _matrix(rows: Sequence[Sequence[fmpq]]) -> Told:
-    return Told([list(map(str, row)) for row in rows], "; ".join(" ".join(map(str, row)) for row in rows))
+def _matrix(name: str, rows: Sequence[Sequence[fmpq]]) -> Told:
+    """Rows apart by semicolons, where it is not 0."""
+    words = "; ".join(" ".join(map(str, row)) for row in rows) if any(value for row in rows for value in row) else "0"
+    return Told([list(map(str, row)) for row in rows], f"{name} = {words}")

@@ -16,7 +16,9 @@ from wavesym.programs.choice import attempts
 
 def summary(model: Model) -> Iterator[Section]:
     """From the chain to the programs that were tried."""
-    yield Facts("system", "The chain, with the parameters that can matter", {**model.labels.system, **_parameters(model)})
+    yield Facts(
+        "system", "The chain, with the parameters that can matter", {**model.labels.system, **_parameters(model)}
+    )
     yield Facts(
         "horizon",
         "How long and how exactly",
@@ -37,7 +39,9 @@ def summary(model: Model) -> Iterator[Section]:
 def _parameters(model: Model) -> dict[str, Plain]:
     if model.chain is None:
         return counted(model)
-    felt = {name: {str(i): str(value) for i, value in numbers.items()} for name, numbers in model.felt.items() if numbers}
+    felt = {
+        name: {str(i): str(value) for i, value in numbers.items()} for name, numbers in model.felt.items() if numbers
+    }
     return {"m": model.chain.m, **felt}
 
 
