@@ -7,13 +7,12 @@ import pytest
 from flint import fmpq
 
 import wavesym
+from tests.support.scenes import NAMED
 from wavesym.cli import main
 from wavesym.errors import CostError
 from wavesym.model.network import Network, Point
-from wavesym.scene import Scene, builtin_names, lower
+from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text
-
-NAMED = [name for name in builtin_names() if Scene.from_toml(name).system.type != "chain"]
 
 
 def written(scene: Scene, tmp_path) -> Scene:
