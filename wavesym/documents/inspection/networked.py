@@ -106,7 +106,7 @@ def joint_laws(model: Model) -> Listing:
         refusal = ""
     except CostError as error:
         knots, refusal = {}, str(error)
-    rows = []
+    rows: list[dict[str, Plain | Told]] = []
     for number in model.reached(until):
         joint = model.network.joints[number]
         law = JointLaw.of(model.network, joint)
@@ -120,7 +120,7 @@ def joint_laws(model: Model) -> Listing:
                 "M": _matrix("M", mass),
                 "C": _matrix("C", law.damping),
                 "K": _matrix("K", law.stiffness),
-                "refusal": refusal or Told(None, ""),
+                "refusal": Told(None, "") if rows or not refusal else refusal,
             }
         )
     return Listing(
