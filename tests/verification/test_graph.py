@@ -55,24 +55,27 @@ def test_motion_that_is_prescribed() -> None:
     loads = [{"at": "base", "times": [0, 1], "steps": [1, -2]}, {"at": "top", "times": [0], "ramps": [1]}]
     output = {"until": 5, "velocity": ["base", "1-"], "displacement": ["base", "1-", "1+"]}
     moved = model(system=system, load=loads, output=output)
-    assert all(outcome.passed and not outcome.note for outcome in spacetime(known(moved)))
+    assert all(
+        outcome.passed and not outcome.note for outcome in (*spacetime(known(moved)), *integration(known(moved)))
+    )
     assert all(balance.error <= balance.allowed < 1e-10 for balance in balances(moved))
 
 
 def test_delays_without_a_reasonable_common_measure_are_refused_in_a_line() -> None:
     system = {"type": "chain", "parts": [{"mass": 1, "name": "hammer"}, {"rod": 1}, {"rod": "1.414213562"}]}
     other = model(system=system, output={"until": 5, "velocity": ["hammer"]})
-    (outcome,) = spacetime(known(other))
-    assert outcome.passed
-    assert outcome.cells == {"to": "refused"}
-    assert "a step" in outcome.note
+    for check, says in ((spacetime, "a step"), (integration, "all delays are multiples of 2e-09")):
+        (outcome,) = check(known(other))
+        assert outcome.passed
+        assert "refused" in outcome.cells.values()
+        assert says in outcome.note
     assert all(balance.error <= balance.allowed < 1e-10 for balance in balances(other))
 
 
-def test_characteristics_say_that_another_check_does_chains() -> None:
-    (outcome,) = integration(known(model()))
-    assert outcome.passed
-    assert outcome.cells == {"N": "refused"}
+def test_characteristics_are_of_order_4_and_agree() -> None:
+    outcomes = integration(known(model()))
+    assert all(outcome.passed and not outcome.note for outcome in outcomes)
+    assert {outcome.cells["order"] for outcome in outcomes} <= {"4.0", "3.9", "4.1", "-"}
 
 
 def test_a_grid_has_every_front_load_and_output_on_it() -> None:
@@ -121,6 +124,7 @@ def test_faults_of_a_network_are_found(fault: Callable[[Network], Network], monk
     assert any(balance.error > balance.allowed for balance in balances(right, wrong))
     monkeypatch.setattr("wavesym.verification.checks.Reference", lambda _: Reference(wrong))
     assert not all(outcome.passed for outcome in spacetime(known(right)))
+    assert not all(outcome.passed for outcome in integration(replace(known(wrong), model=right)))
 
 
 def test_the_sign_of_a_spring_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -135,6 +139,7 @@ def test_the_sign_of_a_spring_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     right = model()
     assert any(balance.error > balance.allowed for balance in balances(right))
     assert not all(outcome.passed for outcome in spacetime(known(right)))
+    assert not all(outcome.passed for outcome in integration(known(right)))
 
 
 def test_the_matrices_are_those_of_the_engine_less_the_bars() -> None:
