@@ -252,7 +252,7 @@ CHECKS = (
         spacetime,
     ),
     Check(
-        "Momentum less impulse and energy less work of the whole chain at tau = 1, 2, ... (type chain: at eighths of\n"
+        "Momentum less impulse and energy less work of the whole chain at tau = 1, 2, ... (type chain: at parts of\n"
         "the horizon): in the reference, and in generated NumPy. Allowed is what the errors of their values come to:",
         invariants,
     ),

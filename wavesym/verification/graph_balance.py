@@ -14,11 +14,12 @@ between bars and points cancel through gears, too. Nothing asks how long the del
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from heapq import heapify, heappop, heappush
+from itertools import product
 
 import numpy as np
 from flint import fmpq
@@ -35,8 +36,8 @@ Evaluate = Callable[[Array], Array]
 # of Gauss's rule between two fronts, where everything is an entire function; fewer say how much is missed
 _POINTS, _FEWER = 24, 16
 
-# at so many instants balances are struck
-_STRUCK = 8
+# at so many instants balances are struck, on the horizon or on what is left when it is halved less often than this
+_STRUCK, _HALVED = (8, 4, 2, 1), 6
 
 # a sum rounds no more often than this for every panel
 _ROUNDINGS = 100
@@ -86,12 +87,15 @@ class Balancing:
         ends = [(bar, side) for bar in range(len(network.bars)) for side in (0, 1)]
         seen += [Probe(f"strain@end{k}", "strain", bar + 1, fmpq(side)) for k, (bar, side) in enumerate(ends)]
         until = fraction(model.until)
-        self.struck = [until * k / _STRUCK for k in range(1, _STRUCK + 1)]
-        fronts = sorted(self._fronts(until, most // (_POINTS * len(seen))))
         limit = most // ((_POINTS + _FEWER) * len(seen))
-        while self.struck and len(self._cuts(fronts)) > limit:
-            self.struck.pop()
-        self._cut = np.array([float(cut) for cut in self._cuts(fronts)])
+        fronts, last = self._fronts(until, limit)
+        self.struck: list[Fraction] = []
+        for end, count in product([until / 2**k for k in range(_HALVED)], _STRUCK):
+            struck = [end * k / count for k in range(1, count + 1)]
+            if end <= last and len(self._cuts(fronts, struck)) <= limit:
+                self.struck = struck
+                break
+        self._cut = np.array([float(cut) for cut in self._cuts(fronts, self.struck)])
         self.model = model.watching(seen)
         if self.struck:
             self.model = self.model.shortened(rational(self.struck[-1]))
@@ -133,34 +137,34 @@ class Balancing:
                     return Probe(f"{quantity}@point{point}", quantity, bar + 1, fmpq(side))
         return Probe(f"{quantity}@point{point}", quantity, 0, fmpq(0), point)
 
-    def _cuts(self, fronts: Sequence[Fraction]) -> list[Fraction]:
-        last = self.struck[-1] if self.struck else Fraction(0)
-        struck = {time - delay for time in self.struck for delay in (Fraction(0), *self._graph.delays)}
-        return sorted({Fraction(0), *(time for time in (*fronts, *struck) if 0 < time <= last)})
+    def _cuts(self, fronts: Iterable[Fraction], struck: Sequence[Fraction]) -> list[Fraction]:
+        """Where panels end: at fronts, and where what is in a bar when a balance is struck has come in."""
+        came_in = {time - delay for time in struck for delay in (Fraction(0), *self._graph.delays)}
+        return sorted({Fraction(0), *(time for time in (*fronts, *came_in) if struck and 0 < time <= struck[-1])})
 
-    def _fronts(self, until: Fraction, most: int) -> set[Fraction]:
-        """When something not smooth can come to a point; no more than so many, the first ones."""
+    def _fronts(self, until: Fraction, most: int) -> tuple[set[Fraction], Fraction]:
+        """When something not smooth can come to a point, so often at most, and until when that is all of them."""
         made = self._graph
         coming = [(event.time, event.point) for event in made.events]
         coming += [(Fraction(0), point) for point in range(len(made.mass))]
         heapify(coming)
         met: set[tuple[Fraction, int]] = set()
         times: set[Fraction] = set()
-        while coming and len(times) <= most:
-            front = heappop(coming)
-            if front in met or front[0] > until:
+        while coming:
+            time, here = front = heappop(coming)
+            if front in met or time > until:
                 continue
             met.add(front)
-            times.add(front[0])
-            for point in self._linked(front[1]):
-                heappush(coming, (front[0], point))
+            times.add(time)
+            if len(times) > most:
+                return times, time
+            for point in self._linked(here):
+                heappush(coming, (time, point))
             for bar, ends in enumerate(made.ends.reshape(-1, 2).tolist()):
                 for side in (0, 1):
-                    if ends[side] == front[1]:
-                        heappush(coming, (front[0] + made.delays[bar], ends[1 - side]))
-        if coming and len(times) > most:  # what comes later is not known
-            self.struck = [time for time in self.struck if time < max(times)]
-        return times
+                    if ends[side] == here:
+                        heappush(coming, (time + made.delays[bar], ends[1 - side]))
+        return times, until
 
     def _linked(self, point: int) -> Iterator[int]:
         coupled = np.flatnonzero(self._graph.damping[point] + self._graph.stiffness[point])
