@@ -52,9 +52,9 @@ def test_the_model_is_told_as_it_is() -> None:
         ("9", "2", ["1", "1"]),
         ("1/2", "1", ["-2", "1"]),
     ]
-    assert [point["motion"] for point in read["points"]] == [None, None, None, "velocity", None]
+    assert [point["motion"] for point in read["points"]] == [None, None, None, "fixed", None]
     (link,) = read["links"]
-    assert link == {"left": "seat", "right": 2, "spring": "3", "dashpot": "1/4"}
+    assert link == {"left": "seat", "right": 2, "ratio": "1", "spring": "3", "dashpot": "1/4"}
 
 
 def test_the_header_lists_the_parts(tmp_path: Path) -> None:

@@ -93,11 +93,8 @@ class Graph:
     def prescribed(self, times: Array) -> Array:
         """The displacements of the points whose motion is given; 0 for the others."""
         result = np.zeros((len(times), len(self.mass)))
-        for order in (1, 2):
-            points = [point for point, integrals in self.given.items() if integrals == order]
-            result[:, points] = self.load_integral(times, order)[:, points]
-            if order == 2:
-                result[:, points] += times[:, np.newaxis] * self.velocity[points]
+        for point, integrals in self.given.items():
+            result[:, point] = self.load_integral(times, integrals)[:, point] + times * self.velocity[point]
         return result
 
     @cached_property
@@ -113,7 +110,7 @@ def graph(model: Model) -> Graph:
     damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))
     for link in network.links:
         pair = np.zeros(len(points))
-        pair[link.left], pair[link.right] = 1.0, -1.0
+        pair[link.left], pair[link.right] = nearest(link.ratio), -1.0
         damping = damping + nearest(link.damping) * np.outer(pair, pair)
         stiffness = stiffness + nearest(link.stiffness) * np.outer(pair, pair)
     return Graph(
@@ -122,7 +119,9 @@ def graph(model: Model) -> Graph:
         damping=damping,
         stiffness=stiffness,
         velocity=_numbers(points, "velocity"),
-        given={number: 1 if point.motion == "velocity" else 2 for number, point in enumerate(points) if point.motion},
+        given={
+            number: 2 if point.motion == "acceleration" else 1 for number, point in enumerate(points) if point.motion
+        },
         ends=np.array([(bar.left, bar.right) for bar in bars]).ravel(),
         ratios=np.array([nearest(ratio) for bar in bars for ratio in bar.ratios]),
         impedance=_numbers(bars, "impedance"),

@@ -143,9 +143,8 @@ class _Motion:
     def _loads(self, start: Fraction, local: Array) -> Array:
         """The loads that began by `start`, or the velocities that they prescribe: shape (points, times)."""
         result = np.zeros((len(self._made.mass), len(local)))
-        for point, integrals in self._made.given.items():
-            if integrals == 2:
-                result[point] = self._made.velocity[point]
+        for point in self._made.given:
+            result[point] = self._made.velocity[point]
         for event in self._made.events:
             if event.time <= start:
                 since = float(start - event.time) + local

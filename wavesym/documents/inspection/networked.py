@@ -82,6 +82,7 @@ def parts(model: Model) -> Iterator[Section]:
             {
                 "left": _named(model, link.left),
                 "right": _named(model, link.right),
+                "ratio": str(link.ratio),
                 "spring": str(link.stiffness),
                 "dashpot": str(link.damping),
             }
