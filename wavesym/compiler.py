@@ -261,7 +261,9 @@ def no_load(scene: Scene) -> list[str]:
 
 
 def _no_load(model: Model) -> list[str]:
-    return [] if model.loads else ["no load, so that all outputs are 0"]
+    network = model.network
+    moving = any(bar.velocity or bar.strain for bar in network.bars) or any(point.velocity for point in network.points)
+    return [] if model.loads or moving else ["no load, so that all outputs are 0"]
 
 
 def _contact_warnings(model: Model) -> list[str]:

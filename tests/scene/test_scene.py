@@ -149,7 +149,8 @@ def test_a_scene_is_what_it_is_dumped_as(name: str) -> None:
 
 
 def test_builtin_scenes() -> None:
-    assert list(builtin_names()) == ["building_half_roof", "building_m2", "collision_m4", "drive_equal", "drive_m1"]
+    named = ["building_half_roof", "building_m2", "collision_m4", "drive_equal", "drive_m1"]
+    assert sorted(builtin_names()) == sorted([*named, "damped_building", "geared_drive", "stepped_shaft"])
     for name, description in builtin_names().items():
         assert Scene.from_toml(name).name == name
         assert description.endswith(".")

@@ -11,7 +11,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
-from wavesym.exact.joint import JointLaw, Known
+from wavesym.exact.joint import STILL, JointLaw, Known
 from wavesym.exact.knots import Knots
 from wavesym.exact.network_waves import NetworkWaves
 from wavesym.model.model import Model
@@ -122,9 +122,16 @@ def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Known:
     """Strain, or velocity, from tau = `start` on: the left-going wave less, or plus, the right-going one."""
     polynomial, error = arb_poly(), arb(0)
     if probe.point is not None:
-        known, offset = waves.velocities[probe.point].at(start)
-        return Known(known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial, known.error)
+        return _velocity(waves, probe.point, start)
     bar = waves.network.bars[probe.rod - 1]
+    if probe.place in (0, 1):
+        end = End(probe.rod - 1, int(probe.place))
+        if probe.quantity == "strain":
+            if waves.network.is_free(end):
+                return STILL
+        elif (point := waves.network.point_at(end)) in waves.velocities:  # prescribed: as exact as it is given
+            known, ratio = _velocity(waves, point, start), arb(bar.ratios[end.side])
+            return Known(ratio * known.polynomial, (abs(ratio) * known.error).upper())
     right, left = probe.weights
     for factor, side, way in ((right, 0, probe.place), (left, 1, 1 - probe.place)):
         known, offset = waves.sent[End(probe.rod - 1, side)].at(start - way * bar.delay)
@@ -135,6 +142,11 @@ def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Known:
     if probe.quantity == "strain" and bar.speed != 1:
         polynomial, error = polynomial * arb(1 / bar.speed), (error / arb(bar.speed)).upper()
     return Known(polynomial, error)
+
+
+def _velocity(waves: NetworkWaves, point: int, start: fmpq) -> Known:
+    known, offset = waves.velocities[point].at(start)
+    return Known(known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial, known.error)
 
 
 def waves_size(model: Model, until: fmpq) -> int:

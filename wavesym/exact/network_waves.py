@@ -44,12 +44,12 @@ class NetworkWaves:
                 constant = Known(arb_poly([arb(held)]), arb(0)) if held != 0 else STILL
                 self.sent[End(number, side)] = SentWave([-bar.delay], [constant])
         shown = {network.point_at(end) for end in self.sent if network.bars[end.bar].ratios[end.side] == 1}
-        self.velocities = {point: SentWave() for point in range(len(network.points)) if point not in shown}
-        self._joints = {
-            number: _MovingJoint(network, joint, loads, any(point in self.velocities for point in joint.points))
-            for number in knots
-            for joint in (network.joints[number],)
+        self.velocities = {
+            number: SentWave()
+            for number, point in enumerate(network.points)
+            if number not in shown or point.motion is not None
         }
+        self._joints = {number: _MovingJoint(network, network.joints[number], loads) for number in knots}
         self._march()
 
     def _march(self) -> None:
@@ -81,7 +81,7 @@ class NetworkWaves:
 
 
 class _MovingJoint:
-    def __init__(self, network: Network, joint: Joint, loads: Sequence[Applied], watched: bool) -> None:
+    def __init__(self, network: Network, joint: Joint, loads: Sequence[Applied]) -> None:
         self._network, self._joint = network, joint
         self._place = {point: k for k, point in enumerate(joint.points)}
         self._motion = JointMotion(
@@ -90,37 +90,23 @@ class _MovingJoint:
             [arb(0)] * len(joint.points),
         )
         self._loads = [_Acting(network, point, loads) for point in joint.points]
-        self._scattering = None if watched else self._scattered()
-
-    def _scattered(self) -> list[tuple[list[fmpq], fmpq]] | None:
-        """Of one point without mass and spring: what goes into each end of what comes from each, and of the load.
-
-        Exact, so that what adds up to nothing is nothing. None for other joints.
-        """
-        law, rule = self._motion.law, joint_rule()
-        if len(law.mass) > 1 or not law.light or law.springs:
-            return None
-        bars = [(self._network.bars[end.bar], end.side) for end, _ in self._joint.ends]
-        arrives = [rule.arrives[1 - side] * bar.ratios[side] * bar.impedance / law.damping[0][0] for bar, side in bars]
-        return [
-            (
-                [bar.ratios[side] * a - (k == own) for k, a in enumerate(arrives)],
-                bar.ratios[side] * rule.load / law.damping[0][0],
-            )
-            for own, (bar, side) in enumerate(bars)
-        ]
+        law = self._motion.law
+        self._scatters = not (law.heavy or law.springs) and len(law.light) == len(joint.points)
 
     def sends(self, arriving: Sequence[Known], start: fmpq, length: fmpq, terms: int) -> list[Known]:
         """What goes back into the ends on a stretch."""
         acting = [load.on(start) for load in self._loads]
-        if self._scattering is not None:
-            return [_mixed(parts, arriving, load, acting[0]) for parts, load in self._scattering]
         rule = joint_rule()
         forces = [Known(arb_poly([arb(rule.load * c) for c in p.coeffs()]), arb(0)) for p in acting]
-        for (end, point), wave in zip(self._joint.ends, arriving, strict=True):
-            bar = self._network.bars[end.bar]
+        bars = [self._network.bars[end.bar] for end, _ in self._joint.ends]
+        factors = [
+            rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance
+            for bar, (end, _) in zip(bars, self._joint.ends, strict=True)
+        ]
+        if self._scatters:
+            return self._scattered(arriving, forces, factors)
+        for (_, point), wave, factor in zip(self._joint.ends, arriving, map(arb, factors), strict=True):
             k = self._place[point]
-            factor = arb(rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance)
             forces[k] = Known(
                 forces[k].polynomial + factor * wave.polynomial, forces[k].error + abs(factor) * wave.error
             )
@@ -132,15 +118,20 @@ class _MovingJoint:
             result.append(Known(ratio * q.polynomial - wave.polynomial, (abs(ratio) * q.error + wave.error).upper()))
         return result
 
-
-def _mixed(parts: Sequence[fmpq], waves: Sequence[Known], load: fmpq, acting: fmpq_poly) -> Known:
-    """A sum of waves, each with its part, and of what acts."""
-    polynomial, error = arb_poly([arb(load * c) for c in acting.coeffs()]), arb(0)
-    for part, wave in zip(parts, waves, strict=True):
-        if part != 0:
-            polynomial += arb(part) * wave.polynomial
-            error += abs(arb(part)) * wave.error
-    return Known(polynomial, error.upper() if error != 0 else error)
+    def _scattered(self, arriving: Sequence[Known], forces: Sequence[Known], factors: Sequence[fmpq]) -> list[Known]:
+        """Where nothing has mass or springs: sums with exact factors, so that an absorbing end sends back exactly 0."""
+        inverse, points = self._motion.law.inverse, range(len(self._joint.points))
+        places = [self._place[point] for _, point in self._joint.ends]
+        arrived = list(zip(places, factors, arriving, strict=True))
+        felt = [[(factor * inverse[k, here], wave) for here, factor, wave in arrived] for k in points]
+        pushed = [[(inverse[k, j], forces[j]) for j in points] for k in points]
+        self.velocities = [_sum([*felt[k], *pushed[k]]) for k in points]
+        result = []
+        for number, ((end, _), k) in enumerate(zip(self._joint.ends, places, strict=True)):
+            ratio = self._network.bars[end.bar].ratios[end.side]
+            sent = [(ratio * factor - (n == number), wave) for n, (factor, wave) in enumerate(felt[k])]
+            result.append(_sum([*sent, *((ratio * factor, force) for factor, force in pushed[k])]))
+        return result
 
 
 class _Acting:
@@ -167,6 +158,16 @@ class _Acting:
             time, polynomial = self._coming.pop()
             self._total += polynomial(fmpq_poly([start - time, 1]))
         return self._total
+
+
+def _sum(terms: Sequence[tuple[fmpq, Known]]) -> Known:
+    """A sum with exact factors; what has the factor 0 is not in it."""
+    polynomial, error = arb_poly(), arb(0)
+    for factor, known in terms:
+        if factor != 0:
+            polynomial += arb(factor) * known.polynomial
+            error += abs(arb(factor)) * known.error
+    return Known(polynomial, error.upper())
 
 
 def _later(known: Known, by: fmpq) -> Known:

@@ -50,7 +50,9 @@ class Model:
     def named(self) -> Chain:
         """The chain as the paper has it. CostError for one that is written out, which has no exact tables."""
         if self.chain is None:
-            raise CostError("a chain that is written out has no exact tables (pieces and `run` do without them)")
+            raise CostError(
+                "system.type: chain given, collision, drive or building expected (a chain has pieces and `run`)"
+            )
         return self.chain
 
     def horizon(self, real: Real = DOUBLE) -> float:

@@ -163,6 +163,14 @@ class Network:
             for point, pull in pulls.items()
         )
 
+    def is_free(self, end: End) -> bool:
+        """Whether nothing at all acts on an end of a bar."""
+        number = self.point_at(end)
+        point = self.points[number]
+        alone = self.joints[self.joint_of[number]] == Joint((number,), ((end, number),))
+        bare = point.mass == point.damping == point.stiffness == 0 and point.motion is None and not point.loads
+        return alone and bare and not any(number in (link.left, link.right) for link in self.links)
+
     def _ends(self, points: list[int]) -> Iterator[tuple[End, int]]:
         for number, bar in enumerate(self.bars):
             for side, point in enumerate((bar.left, bar.right)):

@@ -16,7 +16,7 @@ from wavesym.model.node import UnitLoad
 from wavesym.systems.chain_places import node, place
 from wavesym.systems.drawing import Drawing, drawn
 from wavesym.systems.node_loads import NodeLoad, SampledNodeLoad
-from wavesym.systems.parts import Branch, Parts
+from wavesym.systems.parts import Branch, Parts, told
 from wavesym.systems.place import MisplacedError, Place, Position
 
 
@@ -42,8 +42,11 @@ class ExplicitChain(SceneTable):
 
     @property
     def choices(self) -> Mapping[str, str]:
-        """What was chosen besides numbers, by key."""
-        return {}
+        """What it is made of, line by line."""
+        branches = {
+            f"branch {each.name}": f"from {each.from_}, ratio {each.ratio}: {told(each.parts)}" for each in self.branch
+        }
+        return {"parts": told(self.parts), **branches}
 
     def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
         """The place of an output. MisplacedError."""

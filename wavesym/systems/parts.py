@@ -14,6 +14,7 @@ from wavesym.fields.numbers import Exact, Positive, exact
 from wavesym.fields.table import SceneTable, first_error, listed, shown, wrong
 
 _NAMES = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
+_MOST_TOLD = 40
 MARKS = ("free", "fixed", "absorbing", "joint", "contact")
 
 
@@ -166,6 +167,19 @@ def _parts(value: object) -> tuple[Any, ...]:
 
 def _written(parts: tuple[Part | str, ...]) -> list[Any]:
     return [part if isinstance(part, str) else part.model_dump(exclude_defaults=True) for part in parts]
+
+
+def told(parts: tuple[Part | str, ...]) -> str:
+    """Parts in a line; of a long one the first."""
+    words = [part if isinstance(part, str) else _told(part) for part in parts[:_MOST_TOLD]]
+    more = [f"... and {len(parts) - _MOST_TOLD} more"] if len(parts) > _MOST_TOLD else []
+    return " | ".join([*words, *more])
+
+
+def _told(part: Part) -> str:
+    given = part.model_dump(exclude_defaults=True)
+    keys = sorted(given, key=lambda key: (key == "name", key != part.key))
+    return ", ".join(key if given[key] is True else f"{key} {given[key]}" for key in keys)
 
 
 Parts = Annotated[tuple[Any, ...], PlainValidator(_parts), PlainSerializer(_written, return_type=list[Any])]

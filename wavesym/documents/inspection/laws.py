@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from wavesym.derivation.exact_rule import Linear, LoadTerm, NodeRule, Rule, Term, Weights
 from wavesym.documents.inspection.modelled import cone, kind
+from wavesym.documents.inspection.networked import joint_laws, not_served
 from wavesym.documents.inspection.section import Listing, Plain, Section, Told
 from wavesym.exact.node_rules import node_rule
 from wavesym.exact.table import Function, Rules
@@ -14,7 +15,12 @@ from wavesym.numbers.doubles import rational
 
 
 def laws(model: Model) -> Iterator[Section]:
-    """Both ansaetze for what is in the light cone."""
+    """Both ansaetze for what is in the light cone; of a chain that is written out the law of each joint."""
+    if model.chain is None:
+        yield cone(model)
+        yield joint_laws(model)
+        yield not_served(model)
+        return
     nodes = model.light_cone(rational(model.horizon()))
     yield cone(model)
     yield Listing(
