@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -44,7 +44,7 @@ from wavesym.writing import traces, write_whole
 if TYPE_CHECKING:
     from wavesym.model.model import Model
     from wavesym.model.node import System
-    from wavesym.papers.record import Claim
+    from wavesym.papers.entries import Entry
 
 
 _AT_ONCE = 5000  # tau of `run`
@@ -304,7 +304,7 @@ def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
 
 
 def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:
-    """The proofs of the derivation and other routes to its tables, a line each, and whether all of them hold.
+    """The proofs of the derivation and other routes to its tables, with their arguments, and whether all of them hold.
 
     `watch` goes through the systems as they are proved.
     """
@@ -313,11 +313,17 @@ def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[s
     return report(watch)
 
 
-def published(format: str, watch: Callable[[list[Claim[Any]]], Iterable[Claim[Any]]] = iter) -> tuple[str, bool]:
-    """A verdict on every formula of the paper, as text, json or markdown, and whether all of them could be tested.
+def published(
+    format: str = "text",
+    names: Sequence[str] = (),
+    reproduce: bool = False,
+    watch: Callable[[Sequence[Entry]], Iterable[Entry]] = iter,
+) -> tuple[str, bool]:
+    """A verdict on every formula of the paper, or on those that `names` ask for, and whether all could be tested.
 
-    `watch` goes through the claims as they are judged.
+    As text, json, markdown, html or latex; `reproduce` adds a scene that shows each counterexample. `watch` goes
+    through the records as they are judged. WavesymError for a name that the paper does not have.
     """
-    from wavesym.papers.report import published as report
+    from wavesym.papers.published import published as report
 
-    return report(format, watch)
+    return report(names, format, reproduce, watch)

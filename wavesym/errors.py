@@ -69,6 +69,10 @@ shorter horizon helps)
     """
 
 
+class UnservedError(CostError):
+    """What one method does not do for a kind of scene, whatever the cost; others may. The message says which do."""
+
+
 class RangeError(WavesymError, OverflowError):
     """A number would be beyond the largest one of its floating-point format.
 

@@ -6,14 +6,32 @@ import os
 import sys
 import threading
 import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import pytest
 
+from tests.papers.small import Paper
 from wavesym.cli import main, progress
-from wavesym.papers.pielorz1979 import claims as everything
-from wavesym.papers.pielorz1979 import forms
+from wavesym.papers import published
+from wavesym.papers.entries import Entry
+from wavesym.papers.record import Record
 
 pty = pytest.importorskip("pty", reason="no terminals to open here")
+
+
+class Slow(Paper):
+    """A small paper, each record of which takes a while."""
+
+    @staticmethod
+    def records(
+        wanted: Sequence[Entry] | None = None, watch: Callable[[Sequence[Entry]], Iterable[Entry]] = iter
+    ) -> tuple[Record, ...]:
+        def waiting(entries: Sequence[Entry]) -> Iterator[Entry]:
+            for entry in watch(entries):
+                time.sleep(0.02)
+                yield entry
+
+        return Paper.records(wanted, waiting)
 
 
 class Terminal:
@@ -153,7 +171,8 @@ def test_commands_put_out_the_same_with_it_and_without(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr(everything, "_PARTS", (forms,))  # the others take longer, and no other way
+    monkeypatch.setattr(published, "paper", Slow)  # ours takes longer, and no other way
+    monkeypatch.setattr(published, "particulars", Slow)
     monkeypatch.chdir(tmp_path_factory.mktemp("pipe"))
     status = main(arguments)
     out, aside = capsys.readouterr()

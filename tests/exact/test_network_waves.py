@@ -138,7 +138,7 @@ def test_nearly_equal_lengths_cost_their_knots(lengths, most):
 def test_too_many_knots_are_refused_with_their_count(monkeypatch):
     monkeypatch.setattr(room, "MOST_KNOTS", 100)
     model = chain([1, "1.414213562", "1.732050808"], 20)
-    with pytest.raises(CostError, match=r"fronts meet joints more than 100 times, by tau = \d"):
+    with pytest.raises(CostError, match=r"fronts meet joints more than 100 times by tau = \d"):
         _ = Knots(model, model.until).stretches
 
 

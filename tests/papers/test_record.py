@@ -90,7 +90,7 @@ def test_no_meaning_is_no_value():
     found = case({"i": 5}, printed, 0)
     assert found.printed == Nothing("no rod 5")
     assert not found.agrees
-    assert str(found) == "i = 5: printed no value (no rod 5), true 0"
+    assert str(found) == "With i = 5, what is printed has no value (no rod 5); it should be 0"
 
 
 RISES = Pattern(

@@ -10,7 +10,9 @@ import pytest
 
 from tests.report.clear import texts_keep_clear
 from wavesym.papers.pielorz1979 import figures as section_5
-from wavesym.papers.record import Record, judge
+from wavesym.papers.pielorz1979.figure_scenes import Array, contact_end, figure, loads
+from wavesym.papers.pielorz1979.figure_sentences import Finding
+from wavesym.papers.record import Record
 from wavesym.scene import lower
 
 pytest.importorskip("matplotlib")
@@ -25,7 +27,7 @@ from wavesym.report.labels import Curve
 
 @pytest.fixture(scope="module")
 def records() -> Mapping[str, Record]:
-    return {claim.id: judge(claim) for claim in section_5.claims()}
+    return {id: record for number in figures.FIGURES for id, record in figures.judged(number).items()}
 
 
 def _in_place(axes: Axes, curves: list[Curve], size: float) -> None:
@@ -56,13 +58,18 @@ def marked(figure: Figure) -> set[str]:
     return {text for text in texts if text.isdigit()}
 
 
+def measured(number: int, statement: section_5.FigureStatement) -> Finding:
+    """What is measured under the load drawn."""
+    return section_5.finding(figure(number), figures.drawn(number), statement)
+
+
 def missing(found: Mapping[int, Figure], records: Mapping[str, Record]) -> set[str]:
     """The statements of section 5 that are not both listed and, where they have a place, marked in their figure."""
     absent = set()
     for id, record in records.items():
-        number = int(record.where.removeprefix("section 5, Fig. "))
-        said = section_5.numbered().get(id)
-        nowhere = said is not None and not said.findings[figures.drawn(number)].spots
+        number = record.entry.about["figure"]
+        said = section_5.statements(number).get(id)
+        nowhere = said is not None and not measured(number, said).spots
         if id.removeprefix("text.") not in listed(found[number]) & (
             marked(found[number]) | ({id[5:]} if nowhere else set())
         ):
@@ -76,62 +83,65 @@ def test_every_statement_is_listed_and_marked(drawn: dict[int, Figure], records:
 
 
 def test_a_statement_left_out_is_missed(monkeypatch: pytest.MonkeyPatch, records: Mapping[str, Record]) -> None:
-    all_but_one = section_5.numbered()
-    left_out, _ = all_but_one.popitem()
-    monkeypatch.setattr(section_5, "numbered", lambda: all_but_one)
-    assert missing(redrawn(records), records) == {left_out}
+    def all_but_one(number: int) -> dict[str, section_5.FigureStatement]:
+        return {id: statement for id, statement in section_5.statements(number).items() if id != "text.27"}
+
+    monkeypatch.setattr(figures, "statements", all_but_one)
+    assert missing(redrawn(records), records) == {"text.27"}
+
+
+def listing(drawn: dict[int, Figure], number: int) -> str:
+    """The lines below the panels, one after another."""
+    return " ".join(line.get_text().strip() for line in reversed(drawn[number].texts))
 
 
 def test_each_statement_is_listed_with_its_verdict_and_its_numbers(
     drawn: dict[int, Figure], records: Mapping[str, Record]
 ) -> None:
-    for id, statement in section_5.numbered().items():
-        text = " ".join(line.get_text().strip() for line in reversed(drawn[statement.figure].texts))
-        assert f"{statement.text}: {records[id].verdict}" in text
-        load = figures.drawn(statement.figure)
-        assert f"{statement.meaning}; measured: {statement.findings[load].value:.4g}" in text
+    for number in figures.FIGURES:
+        text = listing(drawn, number)
+        for id, statement in section_5.statements(number).items():
+            assert f"{records[id].entry.printed}: {records[id].verdict}" in text
+            value = measured(number, statement).value
+            assert f"{section_5.meaning(statement)}; measured: {value:.4g}" in text
 
 
 def test_each_load_is_said_to_bear_a_statement_out_or_not(
     drawn: dict[int, Figure], records: Mapping[str, Record]
 ) -> None:
     """As the record says, which was judged apart."""
-    for id, statement in section_5.numbered().items():
-        if statement.figure == 6:
-            continue
-        text = " ".join(line.get_text().strip() for line in reversed(drawn[statement.figure].texts))
-        own = text.partition(statement.text)[2].partition("false for ")
-        false = own[2].partition("  ")[0]
-        for load, finding in statement.findings.items():
-            said = f"{load} ({finding.value:.4g})"
-            refuted = "False for" in records[id].evidence and load in (
-                records[id].evidence.partition("False for ")[2].partition(".")[0].split(", ")
-            )
-            assert said in (false if refuted else own[0])
+    for number in (7, 8):
+        text = listing(drawn, number)
+        for id, statement in section_5.statements(number).items():
+            own = text.partition(records[id].entry.printed)[2].partition("false for ")
+            false = own[2].partition("  ")[0]
+            corrected = records[id].corrected
+            named = corrected.partition(section_5.ONLY)[2].split("; ") if corrected else None
+            for load, found in section_5.findings(number, statement):
+                said = f"{load.name} ({found.value:.4g})"
+                assert said in (own[0] if named is None or load.name in named else false)
 
 
 def test_the_loads_drawn_bear_most_out() -> None:
     for number in (7, 8):
-        said = [statement for statement in section_5.STATEMENTS if statement.figure == number]
+        said = section_5.statements(number).values()
         true = {
-            load: [statement.true(statement.findings[load].value) for statement in said]
-            for load in section_5.loads(number)
+            load.name: sum(section_5.true(figure(number), load, statement) for statement in said)
+            for load in loads(number)
         }
-        assert sum(true[figures.drawn(number)]) == max(map(sum, true.values()))
+        assert true[figures.drawn(number).name] == max(true.values())
 
 
 @pytest.mark.parametrize("number", figures.FIGURES)
 def test_marks_lie_on_the_curves_as_drawn(number: int) -> None:
     """The curves come from generated code, the marks from the exact motion: both sides of a jump are on the curve."""
     load = figures.drawn(number)
-    made = histories(lower(section_5.scene(number, load)))
+    made = histories(lower(figure(number).scene(load)))
     curves = {history.name: history for history in made.outputs}
     count = 0
-    for statement in section_5.STATEMENTS:
-        if statement.figure != number:
-            continue
-        finding = statement.findings[load]
-        for mark, spot in zip(figures.marks(finding, "", made, load), finding.spots, strict=True):
+    for statement in section_5.statements(number).values():
+        found = measured(number, statement)
+        for mark, spot in zip(figures.marks(number, found, "", load), found.spots, strict=True):
             for (tau, value), point in zip(mark.points, spot, strict=True):
                 points = curves[point.output].points
                 sides = np.interp([tau - 1e-9, tau, tau + 1e-9], *points.T)
@@ -150,41 +160,45 @@ def test_marks_lie_on_the_curves_as_drawn(number: int) -> None:
         ("text.23", ("displacement@0", "displacement@1")),
     ],
 )
-def test_a_distance_is_marked_where_it_is_largest(id: str, among: tuple[str, ...]) -> None:
-    """Again from the reference's values, by hand."""
-    statement = section_5.numbered()[id]
-    load = figures.drawn(statement.figure)
-    curves, finding = section_5.curves(statement.figure, load), statement.findings[load]
-    ((low, high),) = finding.spots
+def test_a_distance_is_marked_where_it_is_largest(
+    id: str, among: tuple[str, ...], records: Mapping[str, Record]
+) -> None:
+    """Again from the curves, by hand."""
+    number = records[id].entry.about["figure"]
+    found = measured(number, section_5.statements(number)[id])
+    ((low, high),) = found.spots
+    curves = {name: _curve(number, name) for name in among}
     apart = abs(curves[high.output][high.instant] - curves[low.output][low.instant])
-    largest = max(np.max(np.abs(curves[name])) for name in among)
+    largest = max(np.max(np.abs(curve)) for curve in curves.values())
     assert low.instant == high.instant
-    assert apart / largest == finding.value
+    assert apart / largest == found.value
     assert all(np.max(np.abs(curves[a] - curves[b])) <= apart for a in among for b in among)
+
+
+def _curve(number: int, output: str) -> Array:
+    return figure(number).curve(figures.drawn(number), *output.split("@"))
 
 
 def test_swings_are_marked_between_turning_points() -> None:
     """The largest marked one over the smallest is what was measured."""
-    statement = section_5.numbered()["text.26"]
-    load = figures.drawn(8)
-    curves, finding = section_5.curves(8, load), statement.findings[load]
+    found = measured(8, section_5.statements(8)["text.26"])
     ratios = []
-    for (high, low), (other_high, other_low) in zip(finding.spots[::2], finding.spots[1::2], strict=True):
-        curve = curves[high.output]
+    for (high, low), (other_high, other_low) in zip(found.spots[::2], found.spots[1::2], strict=True):
+        curve = _curve(8, high.output)
         large, small = curve[high.instant] - curve[low.instant], curve[other_high.instant] - curve[other_low.instant]
         ratios.append(abs(large / small))
         for turn in (high, low, other_high, other_low):
             before, here, after = curve[turn.instant - 1 : turn.instant + 2]
             assert (here - before) * (after - here) < 0
-    assert min(ratios) == finding.value
+    assert min(ratios) == found.value
 
 
 def test_the_end_of_the_collision_is_marked_as_printed_and_as_computed(
     drawn: dict[int, Figure], records: Mapping[str, Record]
 ) -> None:
     upright = {float(line.get_xdata()[0]) for line in drawn[6].axes[0].lines if line.get_linestyle() in ("-", "--")}
-    assert {8.85, section_5.contact_end()} <= upright
-    assert records[section_5.END].printed == "8.85"
+    assert {8.85, float(contact_end(figure(6)))} <= upright
+    assert records["text.29"].entry.printed == r"\tau \approx 8.85"
 
 
 def test_the_load_is_drawn_above(drawn: dict[int, Figure]) -> None:
@@ -192,7 +206,7 @@ def test_the_load_is_drawn_above(drawn: dict[int, Figure]) -> None:
     axes = drawn[8].axes[0]
     assert axes.get_ylabel().startswith("load (3.2)")
     lines = [np.column_stack(line.get_data()).tolist() for line in axes.lines]
-    assert figures.drawn(8) == "step"
+    assert figures.drawn(8).name == "step"
     assert [[0, 1], [20, 1]] in lines
     assert [text.get_text() for text in drawn[7].axes[0].texts] == ["M1 = M2"]
 

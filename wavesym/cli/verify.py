@@ -4,46 +4,67 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from operator import attrgetter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from wavesym.cli.parameters import SCENE, each_blamed, put
+from wavesym.cli.parameters import SceneParameter, each_blamed, put
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
 
+FORMATS = ("text", "json", "markdown", "html", "latex")
+
+
+class _SceneOrId(SceneParameter):
+    """A scene; with --published an id, which the paper's data know."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if ctx is not None and ctx.params.get("published"):
+            return value
+        return super().convert(value, param, ctx)
+
 
 @click.command()
-@click.argument("scenes", type=SCENE, nargs=-1, metavar="[SCENE]...")
-@click.option("--published", is_flag=True, help="A verdict on every formula of the paper instead.")
+@click.argument("asked", type=_SceneOrId(), nargs=-1, metavar="[SCENE|ID]...")
+@click.option(
+    "--published", is_flag=True, is_eager=True, help="A verdict on every formula of the paper, or on each ID, instead."
+)
 @click.option("--derived", is_flag=True, help="The derivation proved, and its tables by other routes, instead.")
-@click.option("--format", type=click.Choice(["text", "json", "markdown"]), help="With --published.  [default: text]")
-def verify(scenes: tuple[Scene, ...], published: bool, derived: bool, format: str | None) -> int:
+@click.option("--format", type=click.Choice(FORMATS), help="With --published.  [default: text]")
+@click.option("--reproduce", is_flag=True, help="With --published: a scene that shows each counterexample.")
+def verify(
+    asked: tuple[Scene, ...] | tuple[str, ...], published: bool, derived: bool, format: str | None, reproduce: bool
+) -> int:
     """Check evaluators against integration and invariants; exit 1 where one is out of tolerance.
 
-    Without SCENE, all built-in scenes. With --published, exit 1 only where a formula could not be tested.
+    Without SCENE, all built-in scenes. With --published, exit 1 only where a formula could not be tested. ID is a
+    formula, a table or a section: 4.12, T3, III.14, text.22, "section 2".
 
     \b
     Example:
       wavesym verify collision_m4 drive_m1
     """
-    if published + derived + bool(scenes) > 1:
+    if published + derived + (bool(asked) and not published) > 1:
         raise click.UsageError("more than one of SCENE, --published and --derived given, at most one expected")
-    if format and not published:
-        raise click.UsageError("--format given without --published; it is for --published only")
+    for option in ("--format" if format else "", "--reproduce" if reproduce else ""):
+        if option and not published:
+            raise click.UsageError(f"{option} given without --published; it is for --published only")
     with progress("verify") as line:
         from wavesym import compiler
         from wavesym.scene import Scene, builtin_names
 
         if published:
-            text, passed = compiler.published(format or "text", lambda claims: line.each(claims, attrgetter("id")))
+            names = [name for name in asked if isinstance(name, str)]
+            text, passed = compiler.published(
+                format or "text", names, reproduce, lambda entries: line.each(entries, attrgetter("id"))
+            )
         elif derived:
             text, passed = compiler.derived(lambda systems: line.each(systems, attrgetter("name")))
         else:
-            chosen = scenes or [Scene.from_toml(name) for name in builtin_names()]
-            told = line.each(chosen, attrgetter("name"))
+            scenes = [scene for scene in asked if isinstance(scene, Scene)]
+            told = line.each(scenes or [Scene.from_toml(name) for name in builtin_names()], attrgetter("name"))
             with ExitStack() as blame:
                 text, passed = compiler.verify(each_blamed(told, blame) if scenes else told)
     put(text)

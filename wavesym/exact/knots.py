@@ -140,8 +140,8 @@ class Knots:
             count += 1
             if count > MOST_KNOTS:
                 raise CostError(
-                    f"output.until: fronts meet joints more than {MOST_KNOTS} times, by tau = {float(time):g} already, "
-                    f"at most {MOST_KNOTS} expected (a shorter horizon helps, or lengths with a larger common measure)"
+                    f"output.until: fronts meet joints more than {MOST_KNOTS} times by tau = {float(time):g}, at most "
+                    f"{MOST_KNOTS} expected (a shorter horizon or lengths with a larger common measure help)"
                 )
             for end, _ in network.joints[number].ends:
                 bar = network.bars[end.bar]

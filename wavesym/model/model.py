@@ -8,7 +8,7 @@ from functools import cached_property
 
 from flint import fmpq
 
-from wavesym.errors import CostError
+from wavesym.errors import UnservedError
 from wavesym.model.chain import Chain
 from wavesym.model.light_cone import felt, light_cone
 from wavesym.model.loads import Applied
@@ -48,9 +48,9 @@ class Model:
 
     @property
     def named(self) -> Chain:
-        """The chain as the paper has it. CostError for one that is written out, which has no exact tables."""
+        """The chain as the paper has it. UnservedError for one that is written out, which has no exact tables."""
         if self.chain is None:
-            raise CostError(
+            raise UnservedError(
                 "system.type: chain given, collision, drive or building expected (a chain has pieces and `run`)"
             )
         return self.chain

@@ -17,6 +17,9 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict
 
+from wavesym.papers import tables
+from wavesym.papers.tables import Table
+
 Slipped = Literal["misprint", "unreadable", "convention", "model", "depends", "incomplete"]
 Origin = Literal["print", "scan", "unknown"]
 
@@ -43,7 +46,8 @@ class Entry(_Data):
 
     `scan` is the text of the source, verbatim; `printed` what it says, on one line, without words: it differs by
     `edits` alone (from, to, why). `ranges` are printed too, `inferred` ones are not. `equivalent` are the faults that
-    no case can turn (name, why). `about` is what the adapter of this `kind` needs to know.
+    no case can turn (name, why). `about` is what the adapter of this `kind` needs to know. The ranges of a cell of a
+    table are those of its `heads`, whose records bind them to the source.
     """
 
     id: str
@@ -60,6 +64,15 @@ class Entry(_Data):
     where: str = ""
     lines: tuple[int, int] = (0, 0)
     translated: bool = False
+    heads: tuple[str, ...] = ()
+
+    @property
+    def settled(self) -> tuple[str, tuple[str, ...]]:
+        """What is right, as printed or as corrected: the formula, and its ranges."""
+        if self.slip is None:
+            return self.printed, (*self.ranges, *self.inferred)
+        ranges = self.ranges if self.slip.ranges is None else self.slip.ranges
+        return self.slip.corrected, (*ranges, *self.inferred)
 
 
 class Aside(_Data):
@@ -70,7 +83,10 @@ class Aside(_Data):
 
 
 class Passage(_Data):
-    """Lines of the source, first to last, with their text where anything of it is judged."""
+    """Lines of the source, first to last, with their text where anything of it is judged.
+
+    Every cell of a `table` is a record too; `cell` gives what is to be said of one beyond what stands there, by its id.
+    """
 
     lines: tuple[int, int]
     where: str = ""
@@ -78,6 +94,8 @@ class Passage(_Data):
     why: str = ""
     record: tuple[Entry, ...] = ()
     aside: tuple[Aside, ...] = ()
+    table: tuple[Table, ...] = ()
+    cell: Mapping[str, Mapping[str, Any]] = {}
 
     def entries(self) -> Iterator[Entry]:
         """The records, each with its place and its scan."""
@@ -89,6 +107,26 @@ class Passage(_Data):
                     "lines": self.lines,
                 }
             )
+        yield from self._cells()
+
+    def _cells(self) -> Iterator[Entry]:
+        """The cells of tables, each with the ranges of its heads."""
+        known = {entry.id: entry for entry in self.record}
+        for place in tables.places(self.table, self.text, self.lines[0]):
+            heads = tuple(head for head in place.heads if head in known)
+            given: dict[str, Any] = {
+                "printed": place.scan.strip("$"),
+                "ranges": tuple(range_ for head in heads for range_ in _said(known[head])),
+                "about": {"table": place.table.id, "row": place.row, "column": place.column},
+                **self.cell.get(place.id, {}),
+            }
+            where = f"{self.where}, row {place.row}, column {place.column}"
+            yield Entry(id=place.id, kind="cell", scan=place.scan, where=where, lines=self.lines, heads=heads, **given)
+
+
+def _said(head: Entry) -> tuple[str, ...]:
+    """The ranges that a head gives to its cells: its own, and itself where it is one."""
+    return (head.printed, *head.ranges) if head.kind == "range" else head.ranges
 
 
 @dataclass(frozen=True)
@@ -106,7 +144,9 @@ class Paper:
 def read_paper(files: Iterable[Path], hashes: Path) -> Paper:
     """The passages of some TOML files, in the order of the source."""
     passages = [
-        Passage(**passage) for file in files for passage in tomllib.loads(file.read_text(encoding="utf-8"))["passage"]
+        Passage(**passage)
+        for file in files
+        for passage in tomllib.loads(file.read_text(encoding="utf-8")).get("passage", ())
     ]
     known = dict(line.split() for line in hashes.read_text(encoding="utf-8").splitlines())
     return Paper(tuple(sorted(passages, key=lambda passage: passage.lines)), known)
@@ -128,7 +168,13 @@ def problems(paper: Paper) -> Iterator[tuple[str, str]]:
                     yield name, f"line {number} is not the source's"
             if len(passage.text.strip("\n").split("\n")) != len(_span(passage)):
                 yield name, "has not as many lines as it says"
-            if left := _left_over(passage):
+            if passage.table:
+                others = [record.scan for record in passage.record] + [aside.scan for aside in passage.aside]
+                found = tables.problems(passage.table, passage.text, passage.lines[0], others)
+                yield from ((name, problem) for problem in found)
+                ids = {entry.id for entry in passage.entries()}
+                yield from ((name, f"has no cell {id}") for id in passage.cell if id not in ids)
+            elif left := _left_over(passage):
                 yield name, f"neither judged nor set aside: {left}"
         elif not passage.why:
             yield name, "is neither judged nor set aside"
@@ -180,13 +226,16 @@ def _unlike(entry: Entry, passage: Passage, hashes: Mapping[str, str]) -> Iterat
         if plain(before) not in text:
             yield f"nothing to edit: {before}"
         text = text.replace(plain(before), plain(after))
-    said = plain(",".join((entry.printed, *entry.ranges)))
+    said = plain(entry.printed if entry.heads else ",".join((entry.printed, *entry.ranges)))
     if text != said:
         yield f"is not what its edits make of the scan: {text} there, {said} printed"
 
 
 def plain(text: str) -> str:
-    """A formula without what only lays it out: spaces, alignment, sizes of brackets, "dla" (for) for a comma."""
+    """A formula without what only lays it out: spaces, alignment, braces of cases, sizes of brackets.
+
+    "dla" (for), and what stands for it in cases, is a comma.
+    """
     for pattern, instead in _LAYOUT:
         text = pattern.sub(instead, text)
     return text.strip(",.;")
@@ -195,6 +244,8 @@ def plain(text: str) -> str:
 _LAYOUT: Sequence[tuple[re.Pattern[str], str]] = tuple(
     (re.compile(pattern), instead)
     for pattern, instead in (
+        (r"(?s)&(?=(?:(?!\\begin\{).)*\\end\{cases\})", " , "),
+        (r"\\(?:begin|end)\{cases\}", " "),
         (r"\\begin\{aligned\}|\\end\{aligned\}|\\left\.|\\right\.|\$|&|\\\\|\\quad|\\times", " "),
         (r"\\left(?=[\W_])|\\right(?=[\W_])", " "),
         (r"\\text\{([^}]*)\}", r"\1"),

@@ -6,7 +6,7 @@ A scope is the whole meaning of a formula: an adapter writes one, and there is n
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -47,6 +47,8 @@ class MeaninglessError(Exception):
 class Scope:
     """What letters mean; `bound` are the plain ones by name: indices, sizes, variables of sums.
 
+    `constants` are those that the ranges of a formula say the value of (`given`).
+
     Subclasses give `symbol`, `call` and `derivative`. Values are what Python's operators can combine: integers, fmpq,
     `Exponentials`.
     """
@@ -54,8 +56,9 @@ class Scope:
     heaviside_at_0 = 1
     """H(0), which the paper does not give."""
 
-    def __init__(self, bound: Mapping[str, Any] | None = None) -> None:
+    def __init__(self, bound: Mapping[str, Any] | None = None, constants: Mapping[Tree, Tree] | None = None) -> None:
         self.bound: dict[str, Any] = dict(bound or {})
+        self.constants: Mapping[Tree, Tree] = dict(constants or {})
 
     # what an adapter says
 
@@ -81,12 +84,16 @@ class Scope:
 
     def value(self, tree: Tree) -> Any:
         """The value of a tree; MeaninglessError."""
-        return _RULES[type(tree)](self, tree)
+        return _runner(tree)(self)
+
+    def literal(self, value: Any) -> Any:
+        """A number as it is written."""
+        return value
 
     def whole(self, tree: Tree) -> int:
         """The value of an index or a limit."""
-        value = self.value(tree)
-        if isinstance(value, int):
+        value = _runner(tree)(self)
+        if type(value) is int:
             return value
         if isinstance(value, fmpq) and value.denom() == 1:
             return int(value.numer())
@@ -110,56 +117,47 @@ class Scope:
         finally:
             self.bound = before
 
-    def _symbol(self, symbol: Symbol) -> Any:
-        if not (symbol.below or symbol.above or symbol.primes or symbol.accent) and symbol.name in self.bound:
-            return self.bound[symbol.name]
-        return self.symbol(symbol)
-
-    def _call(self, call: Call) -> Any:
-        function = call.function
-        if function in (Symbol("H"), Symbol("E")) and len(call.arguments) == 1:
-            value = self.value(call.arguments[0])
-            return self.step(value) if function.name == "H" else fmpq(value).floor()
-        return self.call(call)
+    def _constant(self, symbol: Symbol) -> Any:
+        """Its value, in letters that are no constants themselves."""
+        constants, self.constants = self.constants, {}
+        try:
+            return self.value(constants[symbol])
+        finally:
+            self.constants = constants
 
     def step(self, value: Any) -> Any:
         """H."""
         return self.heaviside_at_0 if value == 0 else int(value > 0)
 
-    def _series(self, series: Series) -> Any:
+    def entier(self, value: Any) -> Any:
+        """E."""
+        return int(fmpq(value).floor())
+
+    def series(self, series: Series) -> Any:
+        """A sum with limits."""
         first, last = self.whole(series.first), self.whole(series.last)
         if last - first > MOST_TERMS:
             raise MeaninglessError(f"a sum from {first} to {last}")
         total: Any = 0
-        for number in range(first, last + 1):
-            with self.binding({series.variable.name: number}):
-                total = total + self.value(series.body)
+        body, name, before = _runner(series.body), series.variable.name, self.bound
+        try:
+            self.bound = dict(before)
+            for number in range(first, last + 1):
+                self.bound[name] = number
+                total = total + body(self)
+        finally:
+            self.bound = before
         return total
 
     def _power(self, power: Power) -> Any:
         exponent = self.value(power.exponent)
-        if power.base == Symbol("e"):
+        if power.base == _E:
             return exponential(exponent)
         base = self.value(power.base)
         whole = self.whole(power.exponent)
         if whole < 0 and base == 0:
             raise MeaninglessError(f"{latex(power)} divides by 0")
         return fmpq(base) ** whole if not isinstance(base, int) or whole < 0 else base**whole
-
-    def _fraction(self, fraction: Fraction) -> Any:
-        over, under = self.value(fraction.over), self.value(fraction.under)
-        if under == 0:
-            raise MeaninglessError(f"{latex(fraction)} divides by 0")
-        return fmpq(over) / under if isinstance(over, int) else over / under
-
-    def _product(self, product: Product) -> Any:
-        """A factor 0 in front (H, mostly) leaves the rest unread: what it switches off need not exist."""
-        total: Any = 1
-        for factor in sorted(product.factors, key=_switches):
-            total = total * self.value(factor)
-            if isinstance(total, int) and total == 0:
-                return 0
-        return total
 
     def _cases(self, cases: Cases) -> Any:
         found = [value for value, where in cases.branches if holds(where, self)]
@@ -172,8 +170,8 @@ class Scope:
 
 
 def sides(tree: Tree) -> tuple[Tree, ...]:
-    """The two sides of an equation; UnreadableError where it is none."""
-    if not isinstance(tree, Relation) or set(tree.signs) != {"="}:
+    """The two sides of an equation; MeaninglessError where it is none."""
+    if not isinstance(tree, Relation) or tree.signs != ("=",):
         raise MeaninglessError(f"{latex(tree)} is no equation")
     return tree.sides
 
@@ -196,6 +194,7 @@ _COMPARED: dict[str, Callable[[Any, Any], bool]] = {
     r"\le": lambda a, b: bool(a <= b),
     r"\geq": lambda a, b: bool(a >= b),
     r"\ge": lambda a, b: bool(a >= b),
+    r"\neq": lambda a, b: bool(a != b),
 }
 
 
@@ -206,12 +205,26 @@ def holds(where: Tree, scope: Scope) -> bool:
             values = [scope.value(side) for side in sides]
             return all(_COMPARED[sign](a, b) for sign, a, b in zip(signs, values, values[1:], strict=False))
         case Progression(variable):
-            return scope.value(variable) in span(where, scope)
+            value = scope.value(variable)
+            return value in span(where, scope, most=value)
         case Interval(variable, (opening, closing), low, high):
             value, first, last = scope.value(variable), scope.value(low), scope.value(high)
             after = first <= value if opening == r"\langle" else first < value
             return bool(after and (value <= last if closing == r"\rangle" else value < last))
     raise MeaninglessError(f"{latex(where)} is no range")
+
+
+def range_of(name: str, ranges: Iterable[Tree]) -> Progression:
+    """The range of a variable; MeaninglessError where it has none."""
+    for r in ranges:
+        if isinstance(r, Progression) and r.variable == Symbol(name):
+            return r
+    raise MeaninglessError(f"{name} has no range")
+
+
+def given(ranges: Iterable[Tree]) -> dict[Tree, Tree]:
+    """The constants that ranges say the value of, such as "v_0 = c_f U_0 / l"."""
+    return {r.variable: r.shown[0] for r in ranges if isinstance(r, Progression) and len(r.shown) == 1 and not r.dots}
 
 
 def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
@@ -232,7 +245,11 @@ def span(progression: Tree, scope: Scope, most: int = 0) -> tuple[int, ...]:
         if len(steps) != 1 or 0 in steps:
             raise MeaninglessError(f"{latex(progression)} has no one step")
         (step,) = steps
-    last = most if progression.last is None else scope.whole(progression.last)
+    if progression.last is None:
+        last = max(most, shown[-1])
+        last -= (last - shown[0]) % step
+    else:
+        last = scope.whole(progression.last)
     if (last - shown[0]) % step:
         raise MeaninglessError(f"{latex(progression)}: {last} is not reached from {shown[0]} in steps of {step}")
     return tuple(range(shown[0], last + (1 if step > 0 else -1), step))
@@ -250,30 +267,111 @@ def _equation(where: Tree) -> tuple[tuple[str, ...], tuple[Tree, ...]]:
     return (variable.name,), (value,)
 
 
-def _number(scope: Scope, tree: Number) -> Any:
-    if "." not in tree.digits:
-        return int(tree.digits)
-    before, after = tree.digits.split(".")
-    return fmpq(int(before + after), 10 ** len(after))
+Runner = Callable[[Scope], Any]
+"""A tree made ready: its value in a scope. Trees that share a part share its runner."""
 
 
-_RULES: dict[type, Callable[[Any, Any], Any]] = {
+def _runner(tree: Tree) -> Runner:
+    try:
+        return tree.__dict__["_runner"]  # type: ignore[no-any-return]
+    except KeyError:
+        made = _MAKERS[type(tree)](tree)
+        tree.__dict__["_runner"] = made
+        return made
+
+
+def _number(tree: Number) -> Runner:
+    before, point, after = tree.digits.partition(".")
+    value = fmpq(int(before + after), 10 ** len(after)) if point else int(before)
+    return lambda scope: scope.literal(value)
+
+
+def _symbol(tree: Symbol) -> Runner:
+    name = tree.name
+
+    def plain(scope: Scope) -> Any:
+        bound = scope.bound
+        return bound[name] if name in bound else marked(scope)
+
+    def marked(scope: Scope) -> Any:
+        if scope.constants and tree in scope.constants:
+            return scope._constant(tree)
+        return scope.symbol(tree)
+
+    return marked if tree.below or tree.above or tree.primes or tree.accent else plain
+
+
+def _minus(tree: Minus) -> Runner:
+    of = _runner(tree.of)
+    return lambda scope: -of(scope)
+
+
+def _addition(tree: Addition) -> Runner:
+    first, *others = map(_runner, tree.terms)
+
+    def run(scope: Scope) -> Any:
+        total = first(scope)
+        for term in others:
+            total = total + term(scope)
+        return total
+
+    return run
+
+
+def _product(tree: Product) -> Runner:
+    """A factor 0 in front (H, mostly) leaves the rest unread: what it switches off need not exist."""
+    factors = [_runner(factor) for factor in sorted(tree.factors, key=_switches)]
+
+    def run(scope: Scope) -> Any:
+        total: Any = 1
+        for factor in factors:
+            total = total * factor(scope)
+            if type(total) is int and total == 0:
+                return 0
+        return total
+
+    return run
+
+
+def _fraction(tree: Fraction) -> Runner:
+    above, below = _runner(tree.over), _runner(tree.under)
+
+    def run(scope: Scope) -> Any:
+        over, under = above(scope), below(scope)
+        if under == 0:
+            raise MeaninglessError(f"{latex(tree)} divides by 0")
+        return fmpq(over) / under if isinstance(over, int) else over / under
+
+    return run
+
+
+def _call(tree: Call) -> Runner:
+    if tree.function in (_H, _ENTIER) and len(tree.arguments) == 1:
+        argument = _runner(tree.arguments[0])
+        if tree.function == _H:
+            return lambda scope: scope.step(argument(scope))
+        return lambda scope: scope.entier(argument(scope))
+    return lambda scope: scope.call(tree)
+
+
+def _by(method: Callable[[Scope, Any], Any]) -> Callable[[Any], Runner]:
+    return lambda tree: lambda scope: method(scope, tree)
+
+
+_E, _H, _ENTIER = Symbol("e"), Symbol("H"), Symbol("E")
+_MAKERS: dict[type, Callable[[Any], Runner]] = {
     Number: _number,
-    Symbol: Scope._symbol,
-    Blank: Scope._nothing,
-    Minus: lambda scope, tree: -scope.value(tree.of),
-    Addition: lambda scope, tree: sum((scope.value(term) for term in tree.terms[1:]), scope.value(tree.terms[0])),
-    Product: Scope._product,
-    Fraction: Scope._fraction,
-    Power: Scope._power,
-    Group: lambda scope, tree: scope.value(tree.inner),
-    Call: Scope._call,
-    Series: Scope._series,
-    Derivative: lambda scope, tree: scope.derivative(tree),
-    AtValue: lambda scope, tree: scope.at_value(tree),
-    Cases: Scope._cases,
-    Relation: Scope._nothing,
-    Listed: Scope._nothing,
-    Progression: Scope._nothing,
-    Interval: Scope._nothing,
+    Symbol: _symbol,
+    Minus: _minus,
+    Addition: _addition,
+    Product: _product,
+    Fraction: _fraction,
+    Power: _by(Scope._power),
+    Group: lambda tree: _runner(tree.inner),
+    Call: _call,
+    Series: _by(lambda scope, tree: scope.series(tree)),
+    Derivative: _by(lambda scope, tree: scope.derivative(tree)),
+    AtValue: _by(lambda scope, tree: scope.at_value(tree)),
+    Cases: _by(Scope._cases),
+    **dict.fromkeys((Blank, Relation, Listed, Progression, Interval), _by(Scope._nothing)),
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 from flint import fmpq
@@ -10,7 +10,7 @@ from flint import fmpq
 from wavesym.exact.increments import Increment
 from wavesym.exact.table import Function, Rules, unit_response
 from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters, System
+from wavesym.model.node import Family, Node, Parameters, Quantity, System
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE
@@ -56,6 +56,24 @@ def collision(m: int) -> Exact:
 
 
 @cache
+def unequal_collision(m: int) -> Exact:
+    """Example I with unequal rods too."""
+    parameters = collision(m).chain.parameters
+    areas = {i: fmpq(i + 3, 2 * i + 1) for i in range(1, m + 1)}
+    return _exact("I", Chain(UNEQUAL_COLLISION, m, replace(parameters, inertia=areas)))
+
+
+@cache
+def meeting(velocities: tuple[int, ...]) -> Exact:
+    """Example I with equal bodies that have these velocities, falling or not."""
+    bodies = range(1, 2 * len(velocities), 2)
+    given = Parameters(
+        kappa=dict.fromkeys(bodies, fmpq(1, 2)), velocity=dict(zip(bodies, map(fmpq, velocities), strict=True))
+    )
+    return _exact("I", Chain(COLLISION, 2 * len(velocities), given))
+
+
+@cache
 def drive(m: int) -> Exact:
     """Example II with unequal shafts and discs, all rates different."""
     kappa = {i: fmpq(2 * i + 1, i + 3) for i in range(1, m + 1)}
@@ -82,6 +100,25 @@ def grounded_building(m: int) -> Exact:
     return _building(m, {i: fmpq(2 * i + 1, i + 4) for i in range(1, m)}, BUILDING_GROUND)
 
 
+def _of_unequal_rods(m: Quantity, p: Parameters) -> tuple[Family, ...]:
+    """The nodes of a collision between rods that are A_i as stiff, and as heavy, as that of kappa."""
+
+    def unequal(family: Family) -> Family:
+        def at(x: Quantity) -> Node:
+            node = family.at(x)
+            left = p.inertia[x] if node.left else 0
+            right = p.inertia[x + 1] if node.right else 0
+            return replace(node, alpha=node.alpha * left, beta=node.beta * right)
+
+        return replace(family, at=at)
+
+    return tuple(map(unequal, COLLISION.families(m, p)))
+
+
+UNEQUAL_COLLISION = replace(COLLISION, name="collision of unequal rods", families=_of_unequal_rods)
+"""Its `inertia` are the A_i of (2.4)."""
+
+
 def _building(m: int, floors: dict[int, fmpq], system: System = BUILDING_FORCE) -> Exact:
     return _exact("III", Chain(system, m, Parameters(kappa={0: fmpq(2, 7), **floors, m: fmpq(4, 11)})))
 
@@ -90,6 +127,13 @@ def _exact(example: str, chain: Chain) -> Exact:
     rules = Rules(chain)
     wanted = {Function(letter, rod): INTERVALS[example] for letter in "fg" for rod in range(1, chain.m + 1)}
     return Exact(chain, rules.interval, {source: unit_response(rules, source, wanted) for source in chain.sources})
+
+
+def with_parameters(exact: Exact, parameters: Parameters) -> Exact:
+    """The same chain with other parameters."""
+    system = exact.chain.system
+    example = "I" if system is COLLISION else "II" if system is DRIVE else "III"
+    return _exact(example, Chain(system, exact.m, parameters))
 
 
 def gammas(exact: Exact) -> dict[int, fmpq]:

@@ -7,7 +7,8 @@ estimated.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from itertools import product
 from typing import Union
 
 from flint import arb, fmpq
@@ -17,29 +18,42 @@ DIGITS_BITS = 128
 """Enough for what is shown; nothing is decided by it."""
 
 
+Key = tuple[int, int]
+"""A rational as numerator and denominator, which Python hashes ten times faster."""
+
+
 class Exponentials:
-    """sum_q parts[q] exp(q); parts that are 0 are left out."""
+    """sum_q c_q exp(q), made of a mapping from q to c_q; `parts` holds those that are not 0, by the key of q."""
 
     __slots__ = ("parts",)
 
     def __init__(self, parts: Mapping[fmpq, fmpq]) -> None:
-        self.parts = {q: c for q, c in parts.items() if c != 0}
+        self.parts: dict[Key, fmpq] = {(int(q.p), int(q.q)): c for q, c in parts.items() if c != 0}
 
     @classmethod
     def of(cls, value: Number) -> Exponentials:
         """A rational as such a sum."""
-        return value if isinstance(value, Exponentials) else cls({fmpq(0): fmpq(value)})
+        return value if isinstance(value, Exponentials) else _made({(0, 1): fmpq(value)})
+
+    @classmethod
+    def total(cls, terms: Iterable[tuple[fmpq, fmpq]]) -> Exponentials:
+        """The sum of c exp(q) for pairs (q, c), in which a q may occur again."""
+        parts: dict[Key, fmpq] = {}
+        for q, c in terms:
+            key = int(q.p), int(q.q)
+            parts[key] = parts[key] + c if key in parts else c
+        return _made(parts)
 
     def __add__(self, other: Number) -> Exponentials:
         total = dict(self.parts)
         for q, c in Exponentials.of(other).parts.items():
-            total[q] = total.get(q, fmpq(0)) + c
-        return Exponentials(total)
+            total[q] = total[q] + c if q in total else c
+        return _made(total)
 
     __radd__ = __add__
 
     def __neg__(self) -> Exponentials:
-        return Exponentials({q: -c for q, c in self.parts.items()})
+        return _made({q: -c for q, c in self.parts.items()})
 
     def __sub__(self, other: Number) -> Exponentials:
         return self + -Exponentials.of(other)
@@ -48,11 +62,10 @@ class Exponentials:
         return -self + other
 
     def __mul__(self, other: Number) -> Exponentials:
-        total: dict[fmpq, fmpq] = {}
-        for p, b in self.parts.items():
-            for q, c in Exponentials.of(other).parts.items():
-                total[p + q] = total.get(p + q, fmpq(0)) + b * c
-        return Exponentials(total)
+        if not isinstance(other, Exponentials):
+            return _made({q: c * other for q, c in self.parts.items()})
+        pairs = product(self.parts.items(), other.parts.items())
+        return Exponentials.total((fmpq(*p) + fmpq(*q), b * c) for (p, b), (q, c) in pairs)
 
     __rmul__ = __mul__
 
@@ -71,17 +84,24 @@ class Exponentials:
         from flint import ctx
 
         with ctx.workprec(DIGITS_BITS):
-            return float(sum((arb(c) * arb(q).exp() for q, c in self.parts.items()), arb(0)).mid())
+            return float(sum((arb(c) * arb(fmpq(*q)).exp() for q, c in self.parts.items()), arb(0)).mid())
 
     def __str__(self) -> str:
         if not self.parts:
             return "0"
-        if self.parts.keys() == {fmpq(0)}:
-            return str(self.parts[fmpq(0)])
+        if self.parts.keys() == {(0, 1)}:
+            return str(self.parts[0, 1])
         return f"{float(self):.6g}"
 
 
 Number = Union[int, fmpq, Exponentials]
+
+
+def _made(parts: dict[Key, fmpq]) -> Exponentials:
+    """The sum with these parts, those left out that are 0."""
+    made = Exponentials({})
+    made.parts = {q: c for q, c in parts.items() if c != 0}
+    return made
 
 
 def exponential(exponent: Exact) -> Exponentials:

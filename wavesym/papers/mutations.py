@@ -15,6 +15,7 @@ from wavesym.papers.tree import (
     Derivative,
     Fraction,
     Group,
+    Interval,
     Minus,
     Number,
     Power,
@@ -30,6 +31,7 @@ LONGEST = 60
 """Characters of a context; what is longer is told by what is around it."""
 _STRUCTURE = frozenset("e")
 """Letters that are no quantities."""
+_TURNED_BRACKETS = {"(": r"\langle", r"\langle": "(", ")": r"\rangle", r"\rangle": ")"}
 
 
 def mutations(tree: Tree) -> Iterator[tuple[str, Tree]]:
@@ -45,7 +47,15 @@ def mutations(tree: Tree) -> Iterator[tuple[str, Tree]]:
 
 
 def ends(range_: Tree) -> Iterator[tuple[str, Tree]]:
-    """A range with both its ends one step longer and shorter, by what was changed; other ranges as formulas."""
+    """A range with both its ends one step longer and shorter, by what was changed; other ranges as formulas.
+
+    An interval is opened and closed at its ends, too.
+    """
+    if isinstance(range_, Interval):
+        for end, bracket in enumerate(range_.brackets):
+            turned = _TURNED_BRACKETS[bracket]
+            brackets = (turned, range_.brackets[1]) if end == 0 else (range_.brackets[0], turned)
+            yield f"{turned} for {bracket} in {latex(range_)}", replace(range_, brackets=brackets)
     if not isinstance(range_, Progression) or not range_.dots:
         yield from mutations(range_)
         return

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lark import Lark, Token, Transformer
-from lark.exceptions import LarkError, VisitError
+from lark.exceptions import UnexpectedInput, VisitError
 
 from wavesym.papers.tree import (
     Addition,
@@ -56,10 +56,11 @@ def _read(start: str, text: str) -> Tree:
     try:
         tree: Tree = _Trees().transform(_parser().parse(text, start=start))
     except VisitError as error:
-        raise UnreadableError(f"{text}: {error.orig_exc}") from None
-    except LarkError as error:
-        first, *_ = str(error).splitlines()
-        raise UnreadableError(f"{text}: {first}") from None
+        raise UnreadableError(f"{text} cannot be read: {error.orig_exc}") from None
+    except UnexpectedInput as error:
+        place = error.pos_in_stream
+        what = f"from {text[place:]} on" if place is not None and text[max(place, 0) :].strip() else "to its end"
+        raise UnreadableError(f"{text} cannot be read {what}") from None
     return tree
 
 

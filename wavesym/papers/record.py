@@ -17,7 +17,7 @@ from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.exponentials import Exponentials
 from wavesym.papers.mutations import ends, mutations
 from wavesym.papers.reader import UnreadableError, read_formula, read_range
-from wavesym.papers.tree import Tree
+from wavesym.papers.tree import Tree, latex
 
 Verdict = Literal["holds", "misprint", "unreadable", "convention", "model", "depends", "incomplete", "untested"]
 
@@ -61,8 +61,13 @@ class Case:
 
     def __str__(self) -> str:
         where = ", ".join(f"{name} = {shown(value)}" for name, value in self.at.items())
-        said = f"printed {shown(self.printed)}, true {shown(self.true)}"
-        return f"{where}: {said}" if where else said
+        match self.printed, self.true:
+            case bool(), bool():
+                said = f"what is printed is {'' if self.agrees else 'not '}so"
+            case printed, true:
+                verb = "has" if isinstance(printed, Nothing) else "gives"
+                said = f"what is printed {verb} {shown(printed)}; it should be {shown(true)}"
+        return f"With {where}, {said}" if where else said[0].upper() + said[1:]
 
 
 @dataclass(frozen=True)
@@ -118,12 +123,16 @@ def reading(printed: str, ranges: Iterable[str]) -> Reading:
 
 
 def faults(right: Reading) -> Iterator[tuple[str, Reading]]:
-    """Every fault in the formula, and both ends of every range."""
+    """Every fault in the formula, and both ends of every range; no two have the same name."""
+    named = set()
     for change, formula in mutations(right.formula):
+        named.add(change)
         yield change, Reading(formula, right.ranges)
     for place, range_ in enumerate(right.ranges):
         for change, wrong in ends(range_):
-            yield change, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
+            name = f"{change}, in {latex(range_)}" if change in named else change
+            named.add(name)
+            yield name, Reading(right.formula, (*right.ranges[:place], wrong, *right.ranges[place + 1 :]))
 
 
 @dataclass(frozen=True)
@@ -186,7 +195,7 @@ def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
     """The verdict on an entry, with its evidence. `problems` are those of its transcription."""
     found = list(problems)
     slip = entry.slip
-    printed = _Trial.of(test, entry.printed, (*entry.ranges, *entry.inferred))
+    printed = _Trial.of(test, entry.printed, (*entry.ranges, *entry.inferred), stop=entry.slip is not None)
     settled, text, ranges = printed, entry.printed, (*entry.ranges, *entry.inferred)
     evidence: list[str] = []
     if slip:
@@ -196,27 +205,27 @@ def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
         if printed.wrong is None:
             found.append("called wrong, yet no case shows it")
         else:
-            evidence.append(f"As printed it fails: {printed.wrong}.")
+            evidence.append(f"{printed.wrong}.")
         if settled.wrong:
             found.append(f"the correction fails: {settled.wrong}")
-        evidence.append(f"As corrected it holds in {settled.telling} cases. {slip.note}".strip())
+        evidence += [f"As corrected it holds in {_all(settled.telling)}.", *([slip.note] if slip.note else [])]
         if test.mathematics:
             proved = _Trial(test.mathematics(test.read(entry.printed, (*entry.ranges, *entry.inferred))))
             if proved.wrong or not proved.telling:
                 found.append(f"does not hold as mathematics either: {proved.wrong}")
-            evidence.append(f"As mathematics it holds in {proved.telling} cases.")
+            evidence.append(f"As mathematics it holds in {_all(proved.telling)}.")
     elif printed.wrong:
         found.append(f"fails, and no correction is known: {printed.wrong}")
     else:
-        evidence.append(f"Holds in {printed.telling} cases.")
+        evidence.append(f"It holds in {_all(printed.telling)}.")
     if not settled.telling:
         found.append("no case tells anything")
     turned, unturned = _faulty(entry, test, text, ranges) if settled.wrong is None else (Mutations(), ())
     found += unturned
     difference = None
     if test.difference and not settled.wrong:
-        difference = test.difference(test.read(entry.printed, (*entry.ranges, *entry.inferred)))
-        left = test.difference(test.read(text, ranges))
+        difference = _less_derived(test, entry.printed, (*entry.ranges, *entry.inferred))
+        left = _less_derived(test, text, ranges)
         if left != "0":
             found.append(f"printed less derived is {left} where it is said to hold")
     if test.observed:
@@ -227,6 +236,14 @@ def judge(entry: Entry, test: Test, problems: Iterable[str] = ()) -> Record:
     return Record(
         entry, test.against, verdict, tuple(evidence), settled.telling, turned, printed.wrong, difference, tuple(found)
     )
+
+
+def _less_derived(test: Test, text: str, ranges: Iterable[str]) -> str | None:
+    """Printed less derived, where what is printed can be read."""
+    try:
+        return test.difference(test.read(text, ranges)) if test.difference else None
+    except (MeaninglessError, UnreadableError):
+        return None
 
 
 def _faulty(entry: Entry, test: Test, text: str, ranges: Iterable[str]) -> tuple[Mutations, tuple[str, ...]]:
@@ -267,13 +284,13 @@ class _Trial:
             self.wrong = self.wrong or Case({}, Nothing(str(error)), "a value")
 
     @classmethod
-    def of(cls, test: Test, text: str, ranges: Iterable[str]) -> _Trial:
-        """A string tried; one that cannot be read fails."""
+    def of(cls, test: Test, text: str, ranges: Iterable[str], stop: bool = False) -> _Trial:
+        """A string tried, to its end or to the first case that fails; one that cannot be read fails."""
         try:
             read = test.read(text, ranges)
         except UnreadableError as error:
             return cls(iter([Case({}, Nothing(str(error)), "a formula")]))
-        return cls(test.cases(read))
+        return cls(test.cases(read), stop)
 
     @classmethod
     def turned(cls, test: Test, read: Reading) -> bool:
@@ -299,6 +316,10 @@ def shown(value: object) -> str:
         case set() | frozenset():
             return "{" + ", ".join(sorted(map(shown, value))) + "}"
     return str(value)
+
+
+def _all(cases: int) -> str:
+    return "the one case" if cases == 1 else f"all {cases} cases"
 
 
 def by_size(sizes: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:

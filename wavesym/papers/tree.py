@@ -6,8 +6,9 @@ A tree says what stands there, not what it means: an index is an expression, a b
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Union
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, Union
 
 
 @dataclass(frozen=True)
@@ -158,6 +159,14 @@ class Interval:
     high: Tree
 
 
+@dataclass(frozen=True)
+class Marked:
+    """A part that a page shows as different; of `sign_only`, a term, just its sign. Pages alone use it."""
+
+    of: Tree
+    sign_only: bool = False
+
+
 Tree = Union[
     Number,
     Symbol,
@@ -177,6 +186,7 @@ Tree = Union[
     Listed,
     Progression,
     Interval,
+    Marked,
 ]
 
 _CLOSING = {"(": ")", "[": "]", "{": r"\}", r"\langle": r"\rangle"}
@@ -229,7 +239,25 @@ def latex(tree: Tree) -> str:
             return f"{latex(variable)} = {', '.join(ends)}"
         case Interval(variable, (low, high), start, end):
             return rf"{latex(variable)} \in {low} {latex(start)}, {latex(end)} {high}"
+        case Marked(Minus(of), True):
+            return rf"\marked{{-}}{latex(of)}"
+        case Marked(of, True):
+            return latex(of)
+        case Marked(of):
+            return rf"\marked{{{latex(of)}}}"
     raise TypeError(tree)
+
+
+def symbols(tree: Any) -> Iterator[Symbol]:
+    """All letters of a tree, those of indices included."""
+    if isinstance(tree, Symbol):
+        yield tree
+    if isinstance(tree, tuple):
+        for part in tree:
+            yield from symbols(part)
+    elif is_dataclass(tree):
+        for field in fields(tree):
+            yield from symbols(getattr(tree, field.name))
 
 
 def _symbol(symbol: Symbol) -> str:
@@ -246,6 +274,10 @@ def _term(term: Tree, place: int) -> str:
     text = latex(term)
     if place == 0:
         return text
+    if isinstance(term, Marked) and term.sign_only:
+        return f" {text}" if isinstance(term.of, Minus) else rf" \marked{{+}} {text}"
+    if isinstance(term, Marked):
+        return rf" \marked{{{_term(term.of, place)}}}"
     return f" - {text[1:]}" if isinstance(term, Minus) else f" + {text}"
 
 

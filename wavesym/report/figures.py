@@ -1,7 +1,7 @@
 """`wavesym plot --published`: Figs. 6, 7 and 8 of the paper, redrawn, with what section 5 says of them marked.
 
 A number in a panel is that of a statement, text.N in `wavesym verify --published`; it stands at the points that were
-measured for it. Below the panels is what was found. All of it comes from `papers.pielorz1979.figures`.
+measured for it. Below the panels is what was found. All of it comes from `papers.pielorz1979.figures` and its data.
 """
 
 from __future__ import annotations
@@ -18,9 +18,19 @@ from matplotlib.figure import Figure
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest
-from wavesym.papers.pielorz1979 import figures as section_5
-from wavesym.papers.pielorz1979.figures import FigureStatement, Finding
-from wavesym.papers.record import Record, judge, shown
+from wavesym.papers.pielorz1979.figure_scenes import TriedLoad, contact_end, figure, loads, section
+from wavesym.papers.pielorz1979.figure_sentences import Finding
+from wavesym.papers.pielorz1979.figures import (
+    FigureStatement,
+    finding,
+    findings,
+    meaning,
+    printed_end,
+    statements,
+    true,
+)
+from wavesym.papers.pielorz1979.paper import records
+from wavesym.papers.record import Record, shown
 from wavesym.report.histories import Histories, History, histories
 from wavesym.report.panels import CHARACTERS, Instant, Mark, PlotPanel, axis_title, stacked
 from wavesym.report.saving import save
@@ -38,71 +48,66 @@ _INDENT = " " * 4
 
 def published(directory: Path, number: int) -> list[Path]:
     """Write the figure `number` into `directory`, as .svg and .png; the paths written. OSError."""
-    figure = redrawn(number, judged(number))
+    made = redrawn(number, judged(number))
     paths = [directory / f"figure_{number}.{suffix}" for suffix in ("svg", "png")]
     for path in paths:
-        save(figure, path)
+        save(made, path)
     return paths
 
 
 def judged(number: int) -> dict[str, Record]:
     """The verdicts on what the paper says of a figure."""
-    said = {id for id, statement in section_5.numbered().items() if statement.figure == number}
-    said |= {section_5.END} if number == 6 else set()
-    return {claim.id: judge(claim) for claim in section_5.claims() if claim.id in said}
+    said = [entry for entry in section().entries() if entry.about.get("figure") == number and entry.kind != "caption"]
+    return {record.id: record for record in records(said)}
 
 
-def redrawn(number: int, records: Mapping[str, Record]) -> Figure:
+def redrawn(number: int, verdicts: Mapping[str, Record]) -> Figure:
     """A figure of the paper under the load of `drawn`, with the verdicts on its statements."""
     load = drawn(number)
-    made = histories(lower(section_5.scene(number, load)))
-    found = {id: said for id, said in section_5.numbered().items() if said.figure == number}
-    panels = [_panel(made, quantity, load, found) for quantity in FIGURES[number]]
+    made = histories(lower(figure(number).scene(load)))
+    panels = [_panel(made, number, quantity, load) for quantity in FIGURES[number]]
     if made.model.labels.loads:
         panels.insert(0, _load(made.model))
+    ends = [r for r in verdicts.values() if r.entry.kind == "contact" and r.entry.about["figure"] == number]
     return stacked(
         panels,
         nearest(made.model.until),
         list(_title(number, made.model, load)),
-        list(_list(number, load, found, records)),
-        [] if made.model.labels.loads else _ends(records[section_5.END]),
+        [*_list(number, load, verdicts), *(line for record in ends for line in _end(record))],
+        [instant for record in ends for instant in _ends(record)],
     )
 
 
-def drawn(number: int) -> str:
+def drawn(number: int) -> TriedLoad:
     """The load that a figure is drawn with: the first of those under which most of its statements are true."""
-    said = [statement for statement in section_5.STATEMENTS if statement.figure == number]
-    return max(
-        section_5.loads(number),
-        key=lambda load: sum(statement.true(statement.findings[load].value) for statement in said),
-    )
+    said = statements(number).values()
+    return max(loads(number), key=lambda load: sum(true(figure(number), load, statement) for statement in said))
 
 
-def marks(finding: Finding, text: str, made: Histories, load: str) -> Iterator[Mark]:
+def marks(number: int, found: Finding, text: str, load: TriedLoad) -> Iterator[Mark]:
     """The spots of a finding, each with the number of its statement."""
-    taus = section_5.instants(nearest(made.model.until))
-    curves = section_5.curves(int(made.model.name.removeprefix("figure_")), load)
-    for spot in finding.spots:
-        yield Mark(text, np.array([(taus[point.instant], curves[point.output][point.instant]) for point in spot]))
+    scene = figure(number)
+    for spot in found.spots:
+        points = ((scene.instants[p.instant], scene.curve(load, p.quantity, p.place)[p.instant]) for p in spot)
+        yield Mark(text, np.array(list(points)))
 
 
-def _panel(made: Histories, quantity: str, load: str, found: Mapping[str, FigureStatement]) -> PlotPanel:
+def _panel(made: Histories, number: int, quantity: str, load: TriedLoad) -> PlotPanel:
     own = tuple(history for history in made.outputs if history.output.quantity == quantity)
-    noted = [
-        mark
-        for id, statement in found.items()
-        for mark in marks(statement.findings[load], id.removeprefix("text."), made, load)
-        if statement.findings[load].spots[0][0].output.startswith(quantity)
-    ]
+    noted: list[Mark] = []
+    for id, statement in statements(number).items():
+        found = finding(figure(number), load, statement)
+        if found.spots and found.spots[0][0].quantity == quantity:
+            noted += marks(number, found, id.removeprefix("text."), load)
     return PlotPanel(axis_title(made.model, quantity), own, tuple(noted), height=3.6 if len(own) > 4 else 2.9)
 
 
 def _ends(record: Record) -> list[Instant]:
     """When the collision of Fig. 6 ends, as printed and as computed."""
-    number = record.id.removeprefix("text.")
+    number, printed = record.id.removeprefix("text."), printed_end(record.entry)
     return [
-        Instant(float(record.printed), f"{number}: {record.printed} (printed)", "--"),
-        Instant(section_5.contact_end(), f"{number}: contact opens", "-"),
+        Instant(printed, f"{number}: {printed} (printed)", "--"),
+        Instant(float(contact_end(figure(6))), f"{number}: contact opens", "-"),
     ]
 
 
@@ -126,32 +131,45 @@ def _load(model: Model) -> PlotPanel:
     return PlotPanel(unit, (History(Probe(name, "load", 1, fmpq(0)), stretches),), height=1.2)
 
 
-def _title(number: int, model: Model, load: str) -> Iterator[str]:
+def _title(number: int, model: Model, load: TriedLoad) -> Iterator[str]:
     values = ", ".join(
         f"{name}_{index} = {value}" for name, numbers in model.felt.items() for index, value in numbers.items()
     )
     yield f"Fig. {number} of the paper, redrawn: {model.labels.system['type']}, m = {model.named.m}; {values}"
     if model.labels.loads:
         yield (
-            f"The paper's load curve is not in its text. Drawn: {load}, "
+            f"The paper's load curve is not in its text. Drawn: {load.name}, "
             "the first of the shapes tried under which most of the statements are true."
         )
     yield "Numbers stand where a statement of section 5 was measured; jumps are thin and upright."
 
 
-def _list(number: int, load: str, found: Mapping[str, FigureStatement], records: Mapping[str, Record]) -> Iterator[str]:
+def _list(number: int, load: TriedLoad, verdicts: Mapping[str, Record]) -> Iterator[str]:
     """The statements, what each was taken to mean, and for which loads it is true."""
-    for id, statement in found.items():
-        yield f"{id.removeprefix('text.')}  {statement.text}: {records[id].verdict}"
-        values = {name: finding.value for name, finding in statement.findings.items()}
-        parts = [f"{statement.meaning}; measured: {shown(values[load])}"]
-        if len(values) > 1:
-            for truth in ("true", "false"):
-                those = [f"{name} ({shown(v)})" for name, v in values.items() if statement.true(v) == (truth == "true")]
-                parts.append(f"{truth} for {', '.join(those) or 'none of the loads tried'}")
-        yield from wrap("; ".join(parts), CHARACTERS, initial_indent=_INDENT, subsequent_indent=_INDENT)
-    if number == 6:
-        record = records[section_5.END]
-        text = f"the collision ends at tau = {record.printed}: {record.verdict}, {record.corrected or record.printed}"
-        yield f"{record.id.removeprefix('text.')}  {text}"
-        yield from wrap(record.evidence, CHARACTERS, initial_indent=_INDENT, subsequent_indent=_INDENT)
+    for id, statement in statements(number).items():
+        yield f"{id.removeprefix('text.')}  {verdicts[id].entry.printed}: {verdicts[id].verdict}"
+        yield from _indented("; ".join(_measured(number, load, statement)))
+
+
+def _measured(number: int, load: TriedLoad, statement: FigureStatement) -> Iterator[str]:
+    found = findings(number, statement)
+    yield f"{meaning(statement)}; measured: {shown(finding(figure(number), load, statement).value)}"
+    if len(found) > 1:
+        for truth in (True, False):
+            those = [
+                f"{other.name} ({shown(measured.value)})"
+                for other, measured in found
+                if true(figure(number), other, statement) == truth
+            ]
+            yield f"{'true' if truth else 'false'} for {', '.join(those) or 'none of the loads tried'}"
+
+
+def _end(record: Record) -> Iterator[str]:
+    yield (
+        f"{record.id.removeprefix('text.')}  the collision ends at tau = {printed_end(record.entry)}: {record.verdict}"
+    )
+    yield from _indented(" ".join(record.evidence))
+
+
+def _indented(text: str) -> list[str]:
+    return wrap(text, CHARACTERS, initial_indent=_INDENT, subsequent_indent=_INDENT)

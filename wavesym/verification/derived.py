@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from textwrap import wrap
 from typing import NamedTuple
 
 from flint import fmpq
@@ -10,7 +11,7 @@ from flint import fmpq
 from wavesym.derivation.delay import delay_equations
 from wavesym.derivation.recurrence import recurrence
 from wavesym.documents.derivation.families import solved
-from wavesym.documents.derivation.highest_powers import POWERS
+from wavesym.documents.derivation.highest_powers import POWERS as FAMILIES
 from wavesym.documents.derivation.patterns import patterns, rates
 from wavesym.exact.increments import Increment, add, trimmed
 from wavesym.exact.table import Function, Table, full_table
@@ -18,7 +19,19 @@ from wavesym.exact.walks import Letters, departures, function_walks, letters, un
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters, System
 from wavesym.systems import PRESETS
-from wavesym.verification.columns import Row, table
+from wavesym.verification.arguments import (
+    NODE_LAW,
+    PHYSICAL_TIME,
+    POWERS,
+    RECURRENCES,
+    SUBSTITUTION,
+    VELOCITIES,
+    WALKS,
+    Theorem,
+    arrangements,
+    determinants,
+    rates_met,
+)
 from wavesym.verification.expansion import expanded
 from wavesym.verification.node_law import differences
 from wavesym.verification.powers import steps
@@ -27,6 +40,9 @@ from wavesym.verification.substitution import jumps, residuals
 from wavesym.verification.theorem import residuals as left_over
 
 INTERVALS = 5
+_WIDTH = 110
+_INDENT = " " * 6
+_SHOWN = 3
 _NUMBERS: dict[str, Callable[[int], fmpq]] = {
     "kappa": lambda i: fmpq(2 * i + 1, i + 4),
     "inertia": lambda i: fmpq(i + 4, 2 * i + 3),
@@ -35,30 +51,42 @@ _NUMBERS: dict[str, Callable[[int], fmpq]] = {
 }
 
 
-class ProvedClaim(NamedTuple):
-    """A claim about a system; how often it was to hold, and how often it does."""
+class Proof(NamedTuple):
+    """A theorem for a system: of what of it, what the proof went through, how often it was asked, where it fails."""
 
-    system: str
-    claim: str
+    theorem: Theorem
+    of: str
+    through: str
     asked: int
-    held: int
+    failed: tuple[str, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether it was asked, and held each time."""
+        return self.asked > 0 and not self.failed
 
 
 def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:
-    """A line for every claim, and whether all hold. `watch` goes through the systems as they are proved."""
+    """Every theorem with its argument and its proofs, and whether all hold.
+
+    `watch` goes through the systems as they are proved.
+    """
     systems = [system for preset in PRESETS.values() for system in preset.variants]
-    claims = [claim for system in watch(systems) for claim in (*_proofs(system), *_routes(system))]
-    rows: list[Row] = [
-        {
-            "system": claim.system,
-            "claim": claim.claim,
-            "asked": str(claim.asked),
-            "held": str(claim.held),
-            "verdict": "PASS" if claim.asked == claim.held > 0 else "FAIL",
-        }
-        for claim in claims
-    ]
-    return "\n".join(table(rows, ("system", "claim", "verdict"))) + "\n", all(row["verdict"] == "PASS" for row in rows)
+    proofs = [proof for system in watch(systems) for proof in (*_proofs(system), *_routes(system))]
+    theorems = dict.fromkeys(proof.theorem for proof in proofs)
+    lines = (line for theorem in theorems for line in _told(theorem, [p for p in proofs if p.theorem is theorem]))
+    return "\n".join(lines), all(proof.holds for proof in proofs)
+
+
+def _told(theorem: Theorem, proofs: Iterable[Proof]) -> Iterator[str]:
+    yield theorem.claim
+    yield from wrap(theorem.argument, _WIDTH, initial_indent="  ", subsequent_indent="  ")
+    for proof in proofs:
+        held = proof.asked - len(proof.failed)
+        yield f"  {'PASS' if proof.holds else 'FAIL'}  {proof.of}: {held} of {proof.asked} {theorem.counted}"
+        yield from wrap(proof.through, _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT)
+        yield from (f"{_INDENT}Not so: {where}" for where in proof.failed[:_SHOWN])
+    yield ""
 
 
 def sample(system: System, m: int) -> Chain:
@@ -67,41 +95,54 @@ def sample(system: System, m: int) -> Chain:
     return Chain(system, m, Parameters(**numbers))
 
 
-def _proofs(system: System) -> Iterator[ProvedClaim]:
+def _proofs(system: System) -> Iterator[Proof]:
     """For symbolic i, m, n, k and parameters."""
     waves = list(node_law(system, delay_equations(system)))
-    right = sum(wave.difference == 0 and all(d != 0 for d in wave.determinants) for wave in waves)
-    yield ProvedClaim(system.name, "the delay equations are the node law", len(waves), right)
+    unlike = tuple(
+        f"{wave.function} of rod {wave.rod} differs by {wave.difference}"
+        for wave in waves
+        if wave.difference != 0 or 0 in wave.determinants
+    )
+    yield Proof(NODE_LAW, system.name, determinants(waves), len(waves), unlike)
     for pattern in patterns(system):
         laws = recurrence(system, pattern.parameters)
+        known = rates(laws.laws)
         left = [
-            residual
-            for found in (None, rates(laws.laws))
+            (e, residual)
+            for found in (None, known)
             for e, law in zip(delay_equations(system, pattern.parameters), laws.laws, strict=True)
             for residual in left_over(e, solved(law, found), laws.interval)
         ]
-        held = sum(residual == 0 for residual in left)
-        yield ProvedClaim(system.name, f"the recurrences solve the delay equations: {pattern.name}", len(left), held)
-    for family in POWERS.get(system.name, ()):
+        unsolved = tuple(f"the equation of {e.function} of rod {e.rod} leaves {rest}" for e, rest in left if rest != 0)
+        yield Proof(RECURRENCES, f"{system.name}, {pattern.name}", rates_met(laws, known), len(left), unsolved)
+    for family in FAMILIES.get(system.name, ()):
         made = list(steps(system, family))
-        of = family.of.replace("$", "")
-        yield ProvedClaim(system.name, f"no power is higher: {of}", len(made), sum(step.holds for step in made))
+        beyond = tuple(
+            f"{step.of}, {step.because}, {step.where}: {step.slack} is not at least 0"
+            for step in made
+            if not step.holds
+        )
+        of = f"{system.name}, {family.of.replace('$', '')}"
+        yield Proof(POWERS, of, arrangements(family, made), len(made), beyond)
 
 
-def _routes(system: System) -> Iterator[ProvedClaim]:
-    """The exact tables of small chains."""
-    for m in (system.smallest, system.smallest + system.step):
-        chain = sample(system, m)
-        made = full_table(chain, INTERVALS, fmpq(0))
-        gains = sum(len(gained) for response in made.responses.values() for gained in response.values())
-        for route, wrong in (
-            ("put back into the delay equations", residuals),
-            ("bodies' velocities without jumps", jumps),
-            ("from the node law, in physical time", differences),
-            ("from walk polynomials", _unlike_walks),
-        ):
-            name = f"tables, m = {m}, {INTERVALS} intervals: {route}"
-            yield ProvedClaim(system.name, name, gains, gains - sum(1 for _ in wrong(chain, made)))
+def _routes(system: System) -> Iterator[Proof]:
+    """The exact tables of small chains, by other routes."""
+    chains = [sample(system, m) for m in (system.smallest, system.smallest + system.step)]
+    tables = [full_table(chain, INTERVALS, fmpq(0)) for chain in chains]
+    gains = sum(len(gained) for made in tables for response in made.responses.values() for gained in response.values())
+    routes: Sequence[tuple[Theorem, Callable[[Chain, Table], Iterable[object]]]] = (
+        (SUBSTITUTION, residuals),
+        (VELOCITIES, jumps),
+        (PHYSICAL_TIME, differences),
+        (WALKS, _unlike_walks),
+    )
+    for theorem, wrong in routes:
+        found = tuple(
+            f"m = {chain.m}: {one}" for chain, made in zip(chains, tables, strict=True) for one in wrong(chain, made)
+        )
+        of = f"{system.name}, m = {chains[0].m} and {chains[1].m}, {INTERVALS} intervals"
+        yield Proof(theorem, of, "", gains, found)
 
 
 def _unlike_walks(chain: Chain, made: Table) -> Iterator[Function]:

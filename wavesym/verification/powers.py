@@ -24,8 +24,9 @@ from wavesym.derivation.recurrence import RATE, CoefficientLaw, SymbolicTerm, re
 from wavesym.documents.derivation.highest_powers import BODY, INTERVAL, SOURCE, PowerFamily, PowerRow
 from wavesym.model.node import System
 
-# numbers 0, 1, 2, ... by which i, m, l and s are written
-_PLACE, _REST, _AWAY, _FAR = (Symbol(name, integer=True, nonnegative=True) for name in "abcd")
+NUMBERS = tuple(Symbol(name, integer=True, nonnegative=True) for name in "abcd")
+"""Numbers 0, 1, 2, ... by which i, m, l and s are written."""
+_PLACE, _REST, _AWAY, _FAR = NUMBERS
 
 Region = Mapping[Symbol, Expr]
 

@@ -16,7 +16,7 @@ from functools import cache
 from math import factorial
 from typing import NamedTuple
 
-from sympy import Expr, Integer, Rational, Symbol, cancel, together
+from sympy import Expr, Integer, Rational, Symbol, cancel, exp, together
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation
 from wavesym.derivation.delay_terms import Line, Operator, exact
@@ -93,6 +93,11 @@ def _late(lag: Expr) -> Expr:
     """exp(-s lag): a power of E, times a symbol for what of the lag is symbolic, the same at all waves of a node."""
     whole, rest = exact(lag).as_coeff_Add()
     return E ** int(whole) * (Symbol(f"E^({rest})") if rest != 0 else 1)
+
+
+def timed(expression: Expr) -> Expr:
+    """An expression with the exponentials that the symbols for delays stand for."""
+    return expression.subs({E: exp(-S), **{Symbol(f"E^({place})"): exp(-S * place) for place in (INDEX, COUNT)}})
 
 
 def _power(power: int) -> Expr:

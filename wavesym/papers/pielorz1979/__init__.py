@@ -1,14 +1,15 @@
-"""What the paper prints, as data, with a verdict on every formula that is computed each time anew.
+"""What A. Pielorz's paper of 1979 prints, as data, and the adapters that say what its letters mean.
 
-claims.py           all of them, in the order of the paper
-signals.py          formulas about waves: read once, tested in numbers and in symbols
-motion.py           (2.1)-(2.5), (3.1), (3.2), (4.1), (4.2), and the constants that go with them
-table_1_clocks.py   Table 1
-node_motion.py      what conditions are written in; conditions.py has (2.3), (2.4), (4.3)-(4.5)
-delays.py           (4.6)-(4.8)
-forms.py            (4.9)-(4.12)
-powers.py           what Tables 2, 3 and 4 have in common; table_2_collision.py, table_3_drive.py, table_4_building.py
-recurrence.py       what recurrences are written in; building_lines.py has III.1 ... III.22, building_list.py tests
-                    them, building_alone.py runs them from nothing
-prose.py            statements in the text, figures.py those about the figures
+data/            passages of the text, cut into records; hashes of the lines of the source
+paper.py         every kind of record with its adapter; all verdicts. transcript.py reads the data
+truth.py         what formulas are compared with; displacements.py, dependence.py, meetings.py tell more of the motion
+conditions.py    (2.3), (2.4), (4.3)-(4.5); delays.py (4.6)-(4.8), systems.py what is said of them as systems;
+                 letters.py and at_node.py say what their letters mean
+motion.py        (2.1), (2.2), (2.5), (4.1), (4.2); definitions.py the quantities without dimensions; loads.py (3.1),
+                 (3.2); constants.py kappa, A, c_f; clocks.py Table 1; makeup.py what sections 2 and 3 say of the parts
+cells.py         Tables 2 to 4, with heads.py and rates.py; limits.py says which cell a letter of a form is
+forms.py         (4.9), (4.10), (4.12), with form_constants.py
+coefficients.py  III.1 ... III.22, with lines.py; alone.py runs them from nothing
+prose.py         sentences of section 4, with sayings.toml; remarks.py the formulas within them
+figures.py       section 5, with figure_scenes.py, figure_sentences.py and bodies.py
 """

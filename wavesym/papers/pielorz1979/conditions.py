@@ -1,430 +1,259 @@
-"""(2.3), (2.4), (4.3)-(4.5): the conditions at the nodes, on the tables and against the nodes for symbolic i and m."""
+"""(2.3), (2.4), (4.3)-(4.5): the conditions at the nodes, on chains under loads and against the nodes in symbols."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from functools import partial
+from functools import cache
 from typing import Any
 
-from sympy import Integer, Rational
+from flint import fmpq
+from sympy import Expr, IndexedBase, Rational, expand
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
-from wavesym.derivation.delay_terms import Line, Wave, exact
-from wavesym.model.node import Node
-from wavesym.papers.exact_tables import grounded_building, uneven_building
-from wavesym.papers.pielorz1979.delays import II, III, Example, I, line_text
-from wavesym.papers.pielorz1979.node_motion import (
-    Condition,
-    Formally,
-    NodeMotion,
-    PrintedCondition,
-    Stated,
-    Tabulated,
-    case,
+from wavesym.derivation.delay_terms import exact
+from wavesym.model.node import Family, Node, Parameters
+from wavesym.papers.entries import Entry
+from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
+from wavesym.papers.exact_tables import UNEQUAL_COLLISION, grounded_building, unequal_collision
+from wavesym.papers.pielorz1979.at_node import (
+    ACCELERATION,
+    COORDINATES,
+    DISPLACEMENTS,
+    LENGTH,
+    MotionAtNode,
+    SymbolsAtNode,
+    letter,
+    moment_on,
+    strain,
 )
-from wavesym.papers.pielorz1979.signals import Faulty, Place, PrintedSignal, Symbols
-from wavesym.papers.record import Case, Claim, Slip
+from wavesym.papers.pielorz1979.letters import Symbols, left_over, ranges_of, told, within
+from wavesym.papers.pielorz1979.scenes import example
+from wavesym.papers.pielorz1979.transcript import others
+from wavesym.papers.pielorz1979.truth import EXAMPLES, Driven, driven, instants, loads
+from wavesym.papers.reader import UnreadableError
+from wavesym.papers.record import Case, Example, Reading, Test, reading, shown
+from wavesym.papers.tree import Derivative, Progression, Symbol, Tree
+
+UNTIL = 6
+"""How far in tau conditions are tried: every node has moved, and every load has begun."""
+_SIZE = 8
+"""An m at which every range has more than one member."""
+_RANGES = ("i", "x", r"\bar{x}", "x_{i}")
+"""Letters that a range may be of; x_i is where body i is."""
+_CONTINUOUS, _FORCES = "the rods move together", "forces are balanced"
+
+KINDS: Mapping[str, Callable[[Node], bool]] = {
+    "a free end": lambda node: not (node.left and node.right) and not node.inertia and not node.loads,
+    "a body between rods": lambda node: bool(node.left and node.right and node.inertia),
+    "a contact": lambda node: node.contact,
+    "a body at a left end": lambda node: bool(not node.left and node.inertia),
+    "a body at a right end": lambda node: bool(not node.right and node.inertia),
+}
+"""The nodes that the words before (2.4)_1, ..., (2.4)_5 are about."""
 
 
-def _single(place: Callable[[int], int]) -> Callable[[int], Iterable[int]]:
-    return lambda m: (place(m),)
+def test(entry: Entry) -> Test:
+    """How a condition is tried: at its nodes, where it is about all the rods and nothing is said twice."""
+    names = (str(entry.about["example"]),) if "example" in entry.about else tuple(EXAMPLES)
+    kind, base = entry.about.get("at"), entry.about.get("base")
 
+    def cases(read: Reading, base: str | None = base) -> Iterator[Case]:
+        for name in names:
+            for m in EXAMPLES[name].sizes:
+                yield from _tried(entry.id, name, _moved(name, m, kind, base), read, kind)
 
-_LEFT, _RIGHT = _single(lambda m: 0), _single(lambda m: m)
-
-
-def _inside(m: int) -> range:
-    return range(1, m)
-
-
-def _contacts(m: int) -> range:
-    return range(2, m - 1, 2)
-
-
-def _continuous(y: NodeMotion, i: Place) -> Any:
-    return y.t(i) - y.t(i + 1)
-
-
-def _stiffness(y: NodeMotion, i: Place) -> Any:
-    """The A_i of (2.4) for a drive, in units in which B_i is J_i."""
-    return y.k[i] * y.J[i]
-
-
-def _force(y: NodeMotion, body: Place) -> Any:
-    """The S of (2.4) for a drive."""
-    return y.A(body) * y.J[body] * y.M(body)
-
-
-def _floor(kappa: Callable[[Place], Place]) -> Condition:
-    """(4.5).2 with the kappa of the floor given."""
-    return lambda y, i: y.x(i + 1) - y.x(i) - 1 / y.k[kappa(i)] * y.tt(i + 1)
-
-
-def _first_disc(number: int | None) -> Condition:
-    """(4.4).1 with the moment of the disc given."""
-    return lambda y, i: y.A(1) * y.M(number) - y.tt(1) + y.k[1] * y.x(1)
-
-
-def _end(sign: int) -> Condition:
-    """(2.4)_5, its moment counted along (1) positive rotation, or against it (-1, as the tables have it)."""
-    return lambda y, i: (-sign) * _force(y, y.m + 1) + _stiffness(y, y.m) * y.x(y.m) + y.J[y.m + 1] * y.tt(y.m)
-
-
-def _last_disc(sign: int) -> Condition:
-    """(4.4).4, in the same way."""
-    return lambda y, i: (
-        (-sign) * y.A(y.m + 1) * y.M(y.m + 1) + y.tt(y.m) + y.k[y.m] * y.J[y.m] / y.J[y.m + 1] * y.x(y.m)
+    in_symbols = not base and _balances(entry)
+    return Test(
+        "the exact motion of chains with all parameters different under loads of several steps"
+        + (", on a foundation that moves with the ground" if base else "")
+        + ("; the node for symbolic i and m" if in_symbols else ""),
+        cases,
+        difference=(lambda read: difference(names, kind, read)) if in_symbols else None,
+        mathematics=(lambda read: cases(read, None)) if base else None,
     )
 
 
-_AGAINST = (
-    "With the moment along positive rotation, as in the other lines, it fails; it holds where the moment on the "
-    "last body "
-    "counts against positive rotation."
-)
+def _balances(entry: Entry) -> bool:
+    """Whether what is right balances forces, which the nodes have in symbols."""
+    try:
+        return _said(reading(*entry.settled).formula) == _FORCES
+    except UnreadableError:
+        return False
 
 
-def _signed(text: str, condition: Callable[[int], Condition]) -> Slip[Stated]:
-    return Slip("convention", text, Stated(condition(-1), _RIGHT), _AGAINST)
+@cache
+def _moved(name: str, m: int, kind: str | None, base: str | None) -> Driven:
+    """A chain of an example under its loads; for (2.4), which has an A_i for each rod, with unequal rods."""
+    if base == "ground":
+        return Driven(grounded_building(m), loads(grounded_building(m)))
+    if name == "I" and kind:
+        return Driven(unequal_collision(m), loads(unequal_collision(m)))
+    return driven(name, m)
 
 
-GENERAL: tuple[PrintedCondition, ...] = (
-    PrintedCondition(
-        "(2.3)",
-        r"\frac{\partial U_i}{\partial t} = \frac{\partial U_{i+1}}{\partial t}, x = il",
-        (I, II, III),
-        Stated(_continuous, lambda m: range(1, m + 1)),
-        None,
-        step=1,
-        ranges="i = 1, 2, ..., m",
-        slip=Slip(
-            "misprint",
-            "i = 1, 2, ..., m-1",
-            Stated(_continuous, _inside),
-            "At x = ml there is no rod m+1; (4.3), (4.4), (4.5) have i = 1, ..., m-1.",
-        ),
-    ),
-    PrintedCondition(
-        "(2.4).1",
-        r"\frac{\partial U_i}{\partial x} = 0",
-        (I,),
-        Stated(lambda y, i: y.x(1) if i == 0 else y.x(y.m), lambda m: (0, m)),
-        None,
-        ranges="free ends",
-    ),
-    PrintedCondition(
-        "(2.4).2",
-        r"S_i(t) + A_i \frac{\partial U_i}{\partial x} - A_{i-1} \frac{\partial U_{i-1}}{\partial x} "
-        r"- B_i \frac{\partial^2 U_i}{\partial t^2} = 0",
-        (II,),
-        Stated(
-            lambda y, i: (
-                _force(y, i + 1)
-                + _stiffness(y, i + 1) * y.x(i + 1)
-                - _stiffness(y, i) * y.x(i)
-                - y.J[i + 1] * y.tt(i + 1)
-            ),
-            _inside,
-        ),
-        INDEX,
-        step=1,
-        ranges="bodies between two rods",
-    ),
-    PrintedCondition(
-        "(2.4).3",
-        r"A_i \frac{\partial U_i}{\partial x} = A_{i+1} \frac{\partial U_{i+1}}{\partial x}",
-        (I,),
-        Stated(lambda y, i: y.x(i) - y.x(i + 1), _contacts),
-        INDEX,
-        step=2,
-        ranges="contacts; equal A",
-    ),
-    PrintedCondition(
-        "(2.4).4",
-        r"S_i(t) + A_i \frac{\partial U_i}{\partial x} - B_i \frac{\partial^2 U_i}{\partial t^2} = 0",
-        (II,),
-        Stated(lambda y, i: _force(y, 1) + _stiffness(y, 1) * y.x(1) - y.J[1] * y.tt(1), _LEFT),
-        Integer(0),
-        ranges="a body at the left end",
-    ),
-    PrintedCondition(
-        "(2.4).5",
-        r"S_i(t) + A_i \frac{\partial U_i}{\partial x} + B_i \frac{\partial^2 U_i}{\partial t^2} = 0",
-        (II,),
-        Stated(_end(1), _RIGHT),
-        COUNT,
-        ranges="a body at the right end",
-        slip=_signed("as printed, S_i(t) counted against the positive direction", _end),
-    ),
-)
-
-DIMENSIONLESS: tuple[PrintedCondition, ...] = (
-    PrintedCondition(
-        "(4.3).1",
-        r"\frac{\partial \bar{u}_1}{\partial \bar{x}} = 0, \bar{x} = 0",
-        (I,),
-        Stated(lambda y, i: y.x(1), _LEFT),
-        Integer(0),
-    ),
-    PrintedCondition(
-        "(4.3).2",
-        r"\frac{\partial \bar{u}_i}{\partial \tau} = \frac{\partial \bar{u}_{i+1}}{\partial \tau}, \bar{x} = i",
-        (I,),
-        Stated(_continuous, _inside),
-        None,
-        step=1,
-        ranges="i = 1, 2, ..., m-1",
-    ),
-    PrintedCondition(
-        "(4.3).3",
-        r"\frac{\partial \bar{u}_i}{\partial \bar{x}} = \frac{\partial \bar{u}_{i+1}}{\partial \bar{x}}, \bar{x} = i",
-        (I,),
-        Stated(lambda y, i: y.x(i) - y.x(i + 1), _contacts),
-        INDEX,
-        step=2,
-        ranges="i = 2, 4, ..., m-2",
-    ),
-    PrintedCondition(
-        "(4.3).4",
-        r"-\frac{\partial \bar{u}_i}{\partial \bar{x}} + \frac{\partial \bar{u}_{i+1}}{\partial \bar{x}} "
-        r"- \frac{1}{\kappa_i} \frac{\partial^2 \bar{u}_i}{\partial \tau^2} = 0, \bar{x} = i",
-        (I,),
-        Stated(lambda y, i: y.x(i + 1) - y.x(i) - 1 / y.k[i] * y.tt(i), lambda m: range(1, m - 2, 2)),
-        INDEX,
-        ranges="i = 1, 3, ..., m-3",
-    ),
-    PrintedCondition(
-        "(4.3).5",
-        r"-\frac{\partial \bar{u}_{m-1}}{\partial \bar{x}} + \frac{\partial \bar{u}_m}{\partial \bar{x}} "
-        r"- \frac{1}{\kappa_{m-1}} \frac{\partial^2 \bar{u}_m}{\partial \tau^2} = 0, \bar{x} = m-1",
-        (I,),
-        Stated(
-            lambda y, i: y.x(y.m) - y.x(y.m - 1) - 1 / y.k[y.m - 1] * y.tt(y.m),
-            _single(lambda m: m - 1),
-        ),
-        COUNT - 1,
-    ),
-    PrintedCondition(
-        "(4.3).6",
-        r"\frac{\partial \bar{u}_m}{\partial \bar{x}} = 0, \bar{x} = m",
-        (I,),
-        Stated(lambda y, i: y.x(y.m), _RIGHT),
-        COUNT,
-    ),
-    PrintedCondition(
-        "(4.4).1",
-        r"\bar{A}_1 \bar{M}(\tau) - \frac{\partial^2 \bar{\theta}_1}{\partial \tau^2} "
-        r"+ \kappa_1 \frac{\partial \bar{\theta}_1}{\partial \bar{x}} = 0, \bar{x} = 0",
-        (II,),
-        Stated(_first_disc(None), _LEFT),
-        Integer(0),
-        slip=Slip(
-            "unreadable",
-            r"\bar{M}_1(\tau) for \bar{M}(\tau)",
-            Stated(_first_disc(1), _LEFT),
-            "The moment has no index; no other moment than the first holds here: beyond doubt.",
-        ),
-    ),
-    PrintedCondition(
-        "(4.4).2",
-        r"\bar{A}_{i+1} \bar{M}_{i+1}(\tau) + \kappa_{i+1} \frac{\partial \bar{\theta}_{i+1}}{\partial \bar{x}} "
-        r"- \kappa_i \frac{J_i}{J_{i+1}} \frac{\partial \bar{\theta}_i}{\partial \bar{x}} "
-        r"- \frac{\partial^2 \bar{\theta}_{i+1}}{\partial \tau^2} = 0, \bar{x} = i",
-        (II,),
-        Stated(
-            lambda y, i: (
-                y.A(i + 1) * y.M(i + 1) + y.k[i + 1] * y.x(i + 1) - y.k[i] * y.J[i] / y.J[i + 1] * y.x(i) - y.tt(i + 1)
-            ),
-            _inside,
-        ),
-        INDEX,
-        ranges="i = 1, 2, ..., m-1",
-    ),
-    PrintedCondition(
-        "(4.4).3",
-        r"\frac{\partial \bar{\theta}_i}{\partial \tau} = \frac{\partial \bar{\theta}_{i+1}}{\partial \tau}, "
-        r"\bar{x} = i",
-        (II,),
-        Stated(_continuous, _inside),
-        None,
-        step=1,
-        ranges="i = 1, 2, ..., m-1",
-    ),
-    PrintedCondition(
-        "(4.4).4",
-        r"\bar{A}_{m+1} \bar{M}_{m+1}(\tau) + \frac{\partial^2 \bar{\theta}_m}{\partial \tau^2} "
-        r"+ \kappa_m \frac{J_m}{J_{m+1}} \frac{\partial \bar{\theta}_m}{\partial \bar{x}} = 0, \bar{x} = m",
-        (II,),
-        Stated(_last_disc(1), _RIGHT),
-        COUNT,
-        slip=_signed(r"as printed, \bar{M}_{m+1} counted against positive rotation", _last_disc),
-    ),
-    PrintedCondition(
-        "(4.5).2",
-        r"\frac{\partial \bar{y}_{i+1}}{\partial \bar{x}} - \frac{\partial \bar{y}_i}{\partial \bar{x}} "
-        r"- \frac{1}{\kappa_1} \frac{\partial^2 \bar{y}_{i+1}}{\partial \tau^2} = 0, \bar{x} = i",
-        (III,),
-        Stated(_floor(lambda i: 1), _inside),
-        INDEX,
-        ranges="i = 1, 2, ..., m-1",
-        slip=Slip(
-            "convention",
-            r"as printed, with equal floors: \kappa_i = \kappa_1",
-            Stated(_floor(lambda i: i), _inside),
-            "With unequal floors kappa_i must stand for kappa_1; the text numbers the floors M_1, ..., M_(m-1), "
-            "but gives "
-            "kappa for i = 0, 1, m only.",
-        ),
-    ),
-    PrintedCondition(
-        "(4.5).3",
-        r"\frac{\partial \bar{y}_i}{\partial \tau} = \frac{\partial \bar{y}_{i+1}}{\partial \tau}, \bar{x} = i",
-        (III,),
-        Stated(_continuous, _inside),
-        None,
-        step=1,
-        ranges="i = 1, 2, ..., m-1",
-    ),
-    PrintedCondition(
-        "(4.5).4",
-        r"\frac{\partial \bar{y}_m}{\partial \bar{x}} + \frac{1}{\kappa_m} \frac{\partial^2 \bar{y}_m}{\partial "
-        r"\tau^2} "
-        r"= 0, \bar{x} = m",
-        (III,),
-        Stated(lambda y, i: y.x(y.m) + 1 / y.k[y.m] * y.tt(y.m), _RIGHT),
-        COUNT,
-    ),
-)
+# on chains
 
 
-def claims() -> Iterator[Claim[Any]]:
-    """The conditions, the base of the building in its place."""
-    for printed in (*GENERAL, *DIMENSIONLESS):
-        if printed.id == "(4.5).2":
-            yield _base()
-        yield _claim(printed)
+def _tried(id: str, name: str, driven: Driven, read: Reading, kind: str | None) -> Iterator[Case]:
+    """A condition at all its places of a chain."""
+    chain = driven.exact.chain
+    said: Counter[tuple[str, int]] = Counter()
+    nodes = [x for x, node in enumerate(chain.nodes) if KINDS[kind](node)] if kind else None
+    for bound in _places(read, chain.m, nodes):
+        at: dict[str, object] = {"example": name, **bound}
+        rods = _rods(chain.nodes[bound["x"]], bound["x"])
+        yield Case({**at, "what": "its rods"}, tuple(sorted(_mentioned(read.formula, Scope(bound)))), rods, False)
+        said[_said(read.formula), bound["x"]] += 1
+        yield from _balanced(name, driven, read, bound, at)
+    if not kind:
+        yield from _once(said, _others(id, chain.m), chain.m)
 
 
-def _claim(printed: PrintedCondition) -> Claim[Stated]:
-    slip = printed.slip
-    right = slip.reading if slip else printed.stated
-    line = printed.id.removeprefix("(")
-    return Claim(
-        printed.id,
-        f"section {line[0]}, ({line}",
-        printed.text,
-        printed.ranges,
-        "exact tables with all parameters different"
-        + (", and the node for symbolic i and m" if printed.place is not None else ""),
-        partial(_cases, printed.examples),
-        printed.stated,
-        dict(_faults(printed, right)),
-        slip,
-        partial(_difference, printed) if printed.place is not None else None,
-    )
+def _places(read: Reading, m: int, nodes: list[int] | None = None) -> Iterator[dict[str, int]]:
+    """Where a condition is said to hold: m, i and x. Where no i is given, it is the one that makes the rods right."""
+    ranges = ranges_of(read, _RANGES)
+    for i in span(ranges["i"], Scope({"m": m})) if "i" in ranges else (None,):
+        given = {"m": m} if i is None else {"m": m, "i": i}
+        for x in _where(read, given) if nodes is None else nodes:
+            if not 0 <= x <= m:
+                raise MeaninglessError(f"there is no place x = {x}")
+            if i is None and Symbol("i") in within(read.formula):
+                rods = {rod for rod in (x, x + 1) if 1 <= rod <= m}
+                fitting = (n for n in (x, x + 1) if _mentioned(read.formula, Scope({"m": m, "i": n})) == rods)
+                yield {**given, "i": next(fitting, x), "x": x}
+            else:
+                yield {**given, "x": x}
 
 
-def _cases(examples: Iterable[Example], stated: Stated) -> Iterator[Case]:
-    for example in examples:
-        for m in example.sizes:
-            table = example.tables(m)
-            for i in stated.span(m):
-                for source in table.responses:
-                    yield case(table, source, stated.condition, i)
+def _place(read: Reading) -> Progression:
+    """The place that is given, x or without dimension."""
+    ranges = ranges_of(read, _RANGES)
+    if not ranges.keys() & {"x", r"\bar{x}"}:
+        raise MeaninglessError("no place is given")
+    return ranges["x"] if "x" in ranges else ranges[r"\bar{x}"]
 
 
-def _faults(printed: PrintedCondition, right: Stated) -> Iterator[tuple[str, Stated]]:
-    if printed.step:
-        longer = replace(right, span=lambda m: [*right.span(m), *[max(right.span(m), default=0) + printed.step]])
-        yield "range one longer", longer
-    for name, factor, late in (("sign", -1, 0), ("factor", 2, 0), ("lag", 1, 1)):
-        for nth in (1, 2):
-
-            def faulty(y: Tabulated, i: int, nth: int = nth, factor: int = factor, late: int = late) -> PrintedSignal:
-                wrong = Tabulated(Faulty(y.waves, nth, factor, late), y._table, i)
-                result: PrintedSignal = right.condition(wrong, i)
-                return result
-
-            yield f"{name} of term {nth}", replace(right, condition=faulty)
+def _where(read: Reading, bound: Mapping[str, int]) -> Iterator[int]:
+    """The places that are given, in lengths of rods."""
+    place = _place(read)
+    for x in span(place, Scope({**bound, "l": LENGTH})):
+        count = x / (LENGTH if place.variable == Symbol("x") else fmpq(1))
+        if count.q != 1:
+            raise MeaninglessError(f"no rod ends at x = {x}")
+        yield int(count)
 
 
-def _difference(printed: PrintedCondition, stated: Stated) -> str:
-    """Printed less derived for symbolic i and m, both scaled to the same strain (contact: velocity)."""
-    mine: Line = stated.condition(Formally(Symbols()), printed.place).line
-    return line_text(_scaled(mine) - _scaled(_balance(_node(printed), printed.place)))
+def _rods(node: Node, x: Any) -> tuple[Any, ...]:
+    """The numbers of the rods at a node."""
+    return tuple(rod for rod, there in ((x, node.left), (x + 1, node.right)) if there)
 
 
-def _node(printed: PrintedCondition) -> Node:
-    families = printed.examples[0].system.families(COUNT, SYMBOLS)
-    place = exact(printed.place)
-    alone = [f for f in families if exact(f.first - f.last) == 0 and exact(f.first - place) == 0]
-    first = min(printed.stated.span(8))
-    family = next(iter(alone), None) or next(
-        f for f in families if exact(f.first - f.last) != 0 and (f.first - first) % 2 in (0, f.step % 2)
-    )
-    return family.at(place)
+def _mentioned(formula: Tree, scope: Scope) -> set[Any]:
+    """The rods that a condition is about."""
+    symbols = (part for part in within(formula) if isinstance(part, Symbol))
+    displaced = (symbol for symbol in symbols if letter(symbol) in ("U", *DISPLACEMENTS.values()))
+    return {rod for symbol in displaced for rod in scope.indices(symbol)}
 
 
-def _balance(node: Node, x: Place) -> Line:
-    """The node's own condition, (2.4) as `Node` has it."""
-    y = Formally(Symbols())
-    left, right = exact(x), exact(x) + 1
-    line = (-node.inertia) * y.tt(right if node.right else left)
+def _balanced(
+    name: str, driven: Driven, read: Reading, bound: Mapping[str, int], at: Mapping[str, object]
+) -> Iterator[Case]:
+    """The condition at instants."""
+    x, node = bound["x"], driven.exact.chain.nodes[bound["x"]]
+    outputs = {"strain": [f"{x}{s}" for s, rod in (("-", node.left), ("+", node.right)) if rod], "velocity": [str(x)]}
+
+    def seen(tau: fmpq, left: str) -> Callable[[], Example] | None:
+        if driven.exact.chain.system is UNEQUAL_COLLISION:  # no scene has it
+            return None
+        f, g = driven.waves_at(x if node.left else x + 1, x, tau, order=2)
+        slope = shown(f + g)
+        look = f"put strain and velocity of tau = {tau}, and its slope there, {slope}, into the condition: {left}"
+        until = tau if tau > 0 else 1
+        return example(driven.exact, driven.loads, until, outputs, "wavesym run SCENE --samples 1001", look)
+
+    numbering = ranges_of(read, _RANGES).get("x_{i}")
+    taus = instants(UNTIL, between=[fmpq(5, 6)])
+    scopes = ((tau, MotionAtNode(name, driven, bound, tau, numbering)) for tau in taus)
+    return left_over(read.formula, at, "tau", scopes, seen)
+
+
+def _said(formula: Tree) -> str:
+    """What a condition says: it compares velocities, as (2.3) does, or else forces, or how a node moves."""
+    found = [part for part in within(formula) if isinstance(part, Derivative)]
+    alike = all(COORDINATES.get(letter(part.by)) == "t" and part.order == 1 for part in found)
+    return _CONTINUOUS if alike else _FORCES
+
+
+def _once(said: Counter[tuple[str, int]], others: Counter[tuple[str, int]], m: int) -> Iterator[Case]:
+    """How often conditions say what a node needs: the balance of forces, and that its rods move together."""
+    total = said + others
+    for x in range(m + 1):
+        for what in (_FORCES, _CONTINUOUS) if 0 < x < m else (_FORCES,):
+            if all(other != what for other, _ in total):  # (2.3) alone is of continuity
+                continue
+            yield Case({"m": m, "x": x, "how often": what}, total[what, x], 1, telling=(what, x) in said)
+
+
+@cache
+def _others(id: str, m: int) -> Counter[tuple[str, int]]:
+    """What the other conditions of a group say."""
+    beside = others(id, "condition")
+    return Counter((_said(read.formula), bound["x"]) for read in beside for bound in _places(read, m))
+
+
+# in symbols
+
+
+def difference(names: tuple[str, ...], kind: str | None, read: Reading) -> str:
+    """Printed less derived for symbolic i and m, both scaled to the same strain."""
+    lines = []
+    for name in names:
+        system, letters = EXAMPLES[name].system, SYMBOLS
+        if name == "I" and kind:
+            system, letters = UNEQUAL_COLLISION, replace(SYMBOLS, inertia=IndexedBase("A"))
+        for family in system.families(COUNT, letters):
+            x = INDEX if family.first != family.last else exact(family.first)
+            if kind is None and {bound["x"] for bound in _places(read, _SIZE)} <= _of(family):
+                x = expand(Symbols().value(_place(read).shown[0]))
+            elif kind is None or not KINDS[kind](family.at(x)):
+                continue
+            over = _left_over(name, letters, family.at(x), x, read)
+            if over != "0":
+                lines.append(f"{name}: {over}" if len(names) > 1 else over)
+    return "; ".join(dict.fromkeys(lines)) or "0"
+
+
+def _of(family: Family) -> set[int]:
+    first, last = (int(exact(end).subs(COUNT, _SIZE)) for end in (family.first, family.last))
+    return set(range(first, last + 1, family.step))
+
+
+def _left_over(name: str, letters: Parameters, node: Node, place: Expr, read: Reading) -> str:
+    """What is left of a condition at one kind of node."""
+    rods = set(_rods(node, place))
+    ranges = ranges_of(read, _RANGES)
+    indices = [INDEX] if "i" in ranges else [place, expand(place + 1)]
+    scopes = [SymbolsAtNode(name, letters, index, ranges.get("x_{i}")) for index in indices]
+    scope = next((s for s in scopes if _mentioned(read.formula, s) == {expand(rod) for rod in rods}), scopes[0])
+    left, right = sides(read.formula)
+    unit = strain(expand(max(rods, key=lambda rod: expand(rod - place))))
+    printed, derived = expand(scope.value(left) - scope.value(right)), expand(_balance(node, place))
+    scaled = [expand(side / side.coeff(unit)) for side in (printed, derived) if side.coeff(unit) != 0]
+    if len(scaled) < 2:
+        raise MeaninglessError(f"it has no {unit}")
+    return told(scaled[0] - scaled[1])
+
+
+def _balance(node: Node, x: Expr) -> Expr:
+    """The node's own condition, as `Node` has it."""
+    total = -node.inertia * ACCELERATION
     if node.right:
-        line = line + Rational(1, 2) * exact(node.beta) * y.x(right)
+        total += Rational(1, 2) * node.beta * strain(expand(x + 1))
     if node.left:
-        line = line - Rational(1, 2) * exact(node.alpha) * y.x(left)
+        total -= Rational(1, 2) * node.alpha * strain(expand(x))
     for unit in node.loads:
-        for power, value in enumerate(unit.coefficients):
-            line = line + value * y.waves.load(unit.kind, unit.number, 0, power)
-    result: Line = line.line
-    return result
-
-
-def _scaled(line: Line) -> Line:
-    """With factor 1 at the last strain, and the acceleration of either rod as that of the node."""
-    strain = max((w for w in line.waves if w.function == "U_x"), key=lambda w: str(w.rod - INDEX))
-    joined = Line({}, line.loads)
-    for wave, operator in line.waves.items():
-        name = wave if wave.function == "U_x" else Wave("U_t", Integer(0), Integer(0))
-        joined = joined + Line({name: operator})
-    return joined.scaled(1 / line.waves[strain].b)
-
-
-def _base() -> Claim[str]:
-    """(4.5).1: as mathematics the base of the tables, but not what the text says of the foundation."""
-    return Claim(
-        "(4.5).1",
-        "section 4, (4.5).1",
-        r"\frac{\partial \bar{y}_i}{\partial \bar{x}} - \frac{1}{\kappa_0} \sum_{k=0}^{m_i} H(\tau - \tau_k) "
-        r"[a_k + b_k(\tau - \tau_k)] = 0, \bar{x} = 0",
-        "i = 1, the only rod at x = 0",
-        "the prose before (3.2): all points of the foundation have the acceleration of the ground",
-        _foundation_cases,
-        "force",
-        {"the printed base": "force"},
-        Slip(
-            "model",
-            r"\frac{\partial \bar{y}_1}{\partial \tau} = \int_0^\tau \ddot{\bar{y}}_0 d\tau, \bar{x} = 0",
-            "ground",
-            "The line balances the foundation's inertia against the columns; the foundation itself then moves "
-            "otherwise.",
-        ),
-        mathematics=_strain_cases,
-        note="The index i at x = 0 can only be 1, and m_i is the m_1 of (3.2).",
-    )
-
-
-def _foundation_cases(base: str) -> Iterator[Case]:
-    for m in range(2, 6):
-        table = {"force": uneven_building, "ground": grounded_building}[base](m)
-        for source in table.responses:
-            yield case(table, source, lambda y, i: y.tt(1) - y.base, 0)
-
-
-def _strain_cases(_: str) -> Iterator[Case]:
-    for m in range(2, 6):
-        table = uneven_building(m)
-        for source in table.responses:
-            yield case(table, source, lambda y, i: y.x(1) - 1 / y.k[0] * y.base, 0)
+        sign = -1 if unit.number == COUNT + 1 else 1
+        total += sign * unit.coefficients[0] * moment_on(expand(unit.number))
+    return total

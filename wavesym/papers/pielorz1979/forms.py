@@ -1,241 +1,379 @@
-"""(4.9)-(4.12): which rates occur with which powers, and the rates of a drive."""
+"""(4.9), (4.10) and (4.12): the forms of the solutions, run as recurrences and compared with the motion.
+
+A form says how a function goes on in an interval: F'_{i,n+1} from F'_{i,n}, from F'_{i,0} = 0 on. Its coefficients are
+those of the exact tables, its limits the cells of Tables 2 to 4, corrected where they need it; all else is as it reads.
+A coefficient beyond the highest power does not exist, so that a limit may be neither too low nor too high.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import tee
+from typing import Any, NamedTuple
 
 from flint import fmpq
 
-from wavesym.papers.exact_tables import Exact, building, collision, drive, gammas
-from wavesym.papers.pielorz1979.powers import Index, present
-from wavesym.papers.pielorz1979.table_2_collision import ROWS, rods
-from wavesym.papers.pielorz1979.table_3_drive import HEADS
-from wavesym.papers.record import Case, Claim, Slip
+from wavesym.exact.increments import Increment
+from wavesym.papers.entries import Entry
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, sides, span
+from wavesym.papers.exact_tables import Exact, building, collision, drive
+from wavesym.papers.mutations import ends
+from wavesym.papers.pielorz1979 import limits
+from wavesym.papers.pielorz1979.scenes import example
+from wavesym.papers.pielorz1979.transcript import entry as transcribed
+from wavesym.papers.pielorz1979.transcript import paper
+from wavesym.papers.pielorz1979.truth import Driven, loads
+from wavesym.papers.reader import read_formula, read_range
+from wavesym.papers.record import Case, Example, Reading, Test, by_size, case
+from wavesym.papers.tree import Call, Progression, Symbol, Tree, latex
 
-Rates = Callable[[Exact], Any]
+INTERVALS = {"I": 4, "II": 2, "III": 4}
+"""The numbers n = 0, 1, ... that are tried; for each, example II has two intervals."""
+SIZES = {"I": (4, 6, 8), "II": (1, 2, 3), "III": (2, 3, 4)}
+_TABLES: Mapping[str, Callable[[int], Exact]] = {"I": collision, "II": drive, "III": building}
+_WITHIN = (fmpq(0), fmpq(5, 7))
+"""Where formulas are compared, as parts of an interval: at its start and inside."""
 
-
-def claims() -> Iterator[Claim[Any]]:
-    """The forms of the solutions."""
-    yield from _collision()
-    yield from _drive()
-    yield from _rates()
-    yield from _building()
-
-
-def _collision() -> Iterator[Claim[Any]]:
-    yield Claim(
-        "(4.9)",
-        "section 4, (4.9)",
-        r"F'_{i, n+1}(z) = F'_{i, n}(z) + F^{i, n+1} + e^{-2\kappa_1(z-2n)} \sum_{k=0}^{\kappa_1} F_{1, k}^{i, "
-        r"n+1} (z-2n)^k "
-        r"+ \sum_{s=1}^2 \sum_{j=J_{0, s}}^{J_s} e^{-2\kappa_{2j+1}(z-2n)} \sum_{k=0}^{E(K_{j, s}/2)} "
-        r"F_{2j+1, k}^{i, n+1} (z-2n)^k + e^{-2\kappa_{m-1}(z-2n)} \sum_{k=0}^{K_{m-1}} F_{m-1, k}^{i, n+1} (z-2n)^k, "
-        r"F'_{i, 0}(z) = 0",
-        "the functions of Table 2; 2n <= z < 2n+2, n = 0, 1, ...",
-        "exact tables, m = 4, 6, 8: the upper limit at rate 2 kappa_1, and which rates occur",
-        _first_sum,
-        lambda table, row, at: table.chain.parameters.kappa[1],
-        {"K_1 + 1": lambda table, row, at: ROWS[row]["K_1"].right(at) + 1, "K_(m-1)": _last_limit},
-        Slip(
-            "unreadable",
-            r"\sum_{k=0}^{K_1}",
-            lambda table, row, at: ROWS[row]["K_1"].right(at),
-            "The limit is read as kappa_1, which is no whole number; the text below and Table 2 have K_1: beyond "
-            "doubt.",
-        ),
-    )
+_LIMITING = ("n", "half", "i", limits.ALPHA, "j", "r", "l")
+Words = Mapping[str, str]
+"""The words of a sentence, by their places."""
+Definitions = Mapping[tuple[str, tuple[int, ...]], Tree]
+"""L_0, r_0 and r_1, by letter and index."""
 
 
-def _drive() -> Iterator[Claim[Any]]:
-    yield Claim(
-        "(4.10)",
-        "section 4, (4.10)",
-        r"F'_{i, a}(z) = F'_{i, a-1}(z) + \sum_{\alpha=1}^2 \{ \sum_{r=s_\alpha}^{R_\alpha} [ \sum_{k=0}^{m_s} "
-        r"\bar{M}_{s, k} \{ F^{i, s, a} + \sum_{\beta=1}^3 [ \sum_{l=L_{\beta-1}+1}^{L_\beta} e^{-\gamma_l w} "
-        r"( \sum_{j=0}^{K_\beta} F_{L, j}^{i, s, a} w^j ) ] \} ] \}, F'_{i, 0}(z) = 0",
-        "d-1 <= z < d",
-        "the heads of Table 3 and the rates of the exact tables, m = 1 ... 5",
-        _drive_form,
-        ("a", "L", gammas),
-        {"gamma doubled": ("d", "l", _doubled), "a for d": ("a", "l", gammas), "L for l": ("d", "L", gammas)},
-        Slip(
-            "unreadable",
-            r"d for a, F_{l, j}^{i, s, d} for F_{L, j}^{i, s, a}",
-            ("d", "l", gammas),
-            "Table 3 and the text below have d, the sum runs over l: beyond doubt.",
-        ),
-    )
+@cache
+def moved(name: str, m: int) -> Driven:
+    """An example under loads of several pieces; the building has equal floors, as (4.12) says."""
+    exact = _TABLES[name](m)
+    return Driven(exact, loads(exact))
 
 
-def _rates() -> Iterator[Claim[Any]]:
-    yield _gamma(
-        "(4.11).1",
-        r"\gamma_1 = \kappa_1, \gamma_i = \kappa_1 + \kappa_{i-1} \frac{J_{i-1}}{J_i}",
-        "i = 2, 3, ..., m",
-        lambda m: range(1, m + 1),
-        lambda t, i: _gamma_i(t, i, 1),
-        Slip(
-            "misprint",
-            r"\gamma_i = \kappa_i + \kappa_{i-1} \frac{J_{i-1}}{J_i}",
-            lambda t, i: _gamma_i(t, i, i),
-            "Index: kappa_1 for kappa_i; (4.7).4 has kappa_i.",
-        ),
-    )
-    yield _gamma(
-        "(4.11).2",
-        r"\gamma_{m+1} = \kappa_m \frac{J_m}{J_{m+1}}",
-        "",
-        lambda m: range(m + 1, m + 2),
-        lambda t, i: _transmitted(t, i),
-        None,
-    )
-    for name, even, odd, value, parity in (
-        ("r_0", 1, 0, lambda i: 1 - i % 2, 0),
-        ("r_1", 0, 1, lambda i: i % 2, 1),
-    ):
-        yield _flag(name, even, odd, value, parity)
+def rates(exact: Exact) -> dict[int, fmpq]:
+    """The rates of the bodies, by the number that kappa or gamma has for them: half of what both rods do to a body."""
+    first = 1 if exact.interval == 1 else 0
+    return {x + first: fmpq(node.radiation) for x, node in enumerate(exact.chain.nodes) if node.inertia}
 
 
-def _building() -> Iterator[Claim[Any]]:
-    yield Claim(
-        "(4.12)",
-        "section 4, (4.12)",
-        r"F'_{i,n+1}(z) = F'_{i,n}(z) + \sum_{k=0}^{m_1} H(z-2n-\tau_k) [F^{k, \cdot, n+1} + "
-        r"F_0^{k, i, n+1}(z-2n-\tau_k) + e^{-2\kappa_1(z-2n-\tau_k)} \sum_{j=0}^{K_1} F_{1,j}^{k, i, "
-        r"n+1}(z-2n-\tau_k)^j "
-        r"+ e^{-2\kappa_m(z-2n-\tau_k)} \sum_{j=0}^{K_m} F_{m,j}^{k, i, n+1}(z-2n-\tau_k)^j], F'_{i,0}(z) = 0",
-        "2n <= z < 2n+2, n = 0, 1, ...",
-        "the rates of the exact tables with equal floors, m = 2 ... 7, and the highest power at rate 0",
-        _building_form,
-        lambda k, m: {fmpq(0): 1, 2 * k[1]: None, 2 * k[m]: None},
-        {"kappa_1 for 2 kappa_1": lambda k, m: {fmpq(0): 1, k[1]: None, k[m]: None}, "no F_0": _no_linear},
-        Slip(
-            "misprint",
-            r"e^{-\kappa_m(z-2n-\tau_k)}, F^{k, i, n+1}",
-            lambda k, m: {fmpq(0): 1, 2 * k[1]: None, k[m]: None},
-            "The roof has a column on one side only, so that its rate is kappa_m, as in (4.8).4. In the first "
-            "coefficient the "
-            "index i cannot be read.",
-        ),
-        scan=r"z \in (2n, 2n+2)",
-    )
+@dataclass(frozen=True)
+class Form:
+    """A form as it reads: the step from interval to interval, the start, and the numbers n that it is said for."""
+
+    name: str
+    step: Tree
+    start: Tree
+    numbers: Tree
+
+    @classmethod
+    def of(cls, name: str, reading: Reading) -> Form:
+        """MeaninglessError where it is none."""
+        found = items(reading.formula)
+        if len(found) != 2:
+            raise MeaninglessError("a form is two equations")
+        return cls(name, *found, only("n", reading.ranges))
 
 
-def _first_sum(limit: Callable[[Exact, str, Index], Any]) -> Iterator[Case]:
-    for m in (4, 6, 8):
-        table = collision(m)
-        kappa = table.chain.parameters.kappa
-        rates = {fmpq(0), *(2 * k for k in kappa.values())}
-        for n in range(9):
-            for row in ROWS:
-                letter, numbers = rods(row, m)
-                for i in numbers:
-                    true = table.degree(letter, i, n + 1, 2 * kappa[1])
-                    printed = present(limit(table, row, Index(m, n, i)))
-                    yield Case({"m": m, "n": n, "F": f"{letter}_{i}", "kappa_1": kappa[1]}, printed, true, true >= 0)
-                    found = set(table.increment("impact", letter, i, n + 1))
-                    yield Case(
-                        {"m": m, "n": n, "F": f"{letter}_{i}", "claim": "rates"}, found <= rates, True, bool(found)
-                    )
+class _Given(NamedTuple):
+    """An equation at a place: the indices of the F' that it gives, its argument, and what it is."""
+
+    indices: tuple[int, ...]
+    argument: Tree
+    right: Tree
+    place: Mapping[str, Any]
 
 
-def _last_limit(table: Exact, row: str, at: Index) -> Any:
-    return ROWS[row]["K_m-1"].right(at)
+class FormScope(Scope):
+    """What the letters of a form mean for the functions f or g of a chain under loads.
+
+    `definitions` are L_0, r_0 and r_1, by letter and index; `coefficient` is what F with indices is, the true one if
+    nothing else is said.
+    """
+
+    def __init__(self, form: Form, driven: Driven, letter: str, definitions: Definitions | None = None) -> None:
+        super().__init__({"m": driven.exact.m})
+        self._form, self._driven, self._letter = form, driven, letter
+        self._definitions = definitions or read_definitions()
+        self._equations: dict[int, list[_Given]] = {}
+        self._totals: dict[tuple[int, int, fmpq], Any] = {}
+        self._known: dict[tuple[Any, ...], Any] = {}
+        self._open: set[tuple[int, int, fmpq]] = set()
+        self._rates = rates(driven.exact)
+
+    def total(self, rod: int, number: int, z: fmpq) -> Any:
+        """F' of a rod at z as the form of interval 1, 2, ... has it; MeaninglessError."""
+        key = rod, number, z
+        if key in self._open:
+            raise MeaninglessError(f"F'_{{{rod}, {number}}} is given by itself")
+        if key not in self._totals:
+            self._open.add(key)
+            try:
+                self._totals[key] = self._given(rod, number, z)
+            finally:
+                self._open.discard(key)
+        return self._totals[key]
+
+    def _given(self, rod: int, number: int, z: fmpq) -> Any:
+        if rod not in self._equations:
+            self._equations[rod] = list(self._for(rod))
+        found = []
+        for given, argument, right, place in self._equations[rod]:
+            with self.binding({**place, "z": z}):
+                if given == (rod, number) and self.value(argument) == z:
+                    found.append((right, self.bound))
+        if len(found) != 1:
+            raise MeaninglessError(f"F'_{{{rod}, {number}}} is given {len(found)} times")
+        ((right, bound),) = found
+        with self.binding(bound):
+            return self.value(right)
+
+    def _for(self, rod: int) -> Iterator[_Given]:
+        """The equations for a rod."""
+        numbers = span(self._form.numbers, self, most=INTERVALS[self._form.name])
+        halves = limits.HALVES if self._form.name == "II" else (None,)
+        places: list[dict[str, Any]] = [{"i": rod, "n": n, "half": half} for n in numbers for half in halves]
+        for equation, place in ((self._form.start, {"i": rod}), *((self._form.step, place) for place in places)):
+            left, right = sides(equation)
+            call = _derivative(left)
+            with self.binding(place):
+                yield _Given(self.indices(call.function), call.arguments[0], right, place)
+
+    def call(self, call: Call) -> Any:
+        """F' itself: what the form gives for another interval."""
+        rod, number = self.indices(_derivative(call).function)
+        return self.total(rod, number, fmpq(self.value(call.arguments[0])))
+
+    def symbol(self, symbol: Symbol) -> Any:
+        """Coefficients, loads, rates, and the cells of the tables."""
+        name, indices = symbol.name, self.indices(symbol)
+        chain = self._driven.exact.chain
+        if name == "F" and symbol.above:
+            return self.coefficient(indices, self.upper(symbol))
+        if symbol.accent == r"\bar" and name == "M" and len(indices) == 2:
+            return self._driven.piece(f"M{indices[0]}", indices[1]).weight
+        if symbol.accent or symbol.above or symbol.primes:
+            return super().symbol(symbol)
+        if name == r"\kappa" and len(indices) == 1 and self._form.name != "II":
+            return known(chain.parameters.kappa, indices[0], r"\kappa")
+        if name == r"\gamma" and len(indices) == 1 and self._form.name == "II":
+            return known(self._rates, indices[0], r"\gamma")
+        if name == r"\tau" and indices:
+            return self._driven.piece(
+                *((f"M{indices[0]}", indices[1]) if len(indices) == 2 else ("a", indices[0]))
+            ).time
+        if name == "m" and len(indices) == 1:
+            return self._last(indices[0])
+        return self.value(self._cell(symbol, indices)) if name == "w" else self._limit(symbol, indices)
+
+    def _limit(self, symbol: Symbol, indices: tuple[int, ...]) -> Any:
+        """A limit of a sum or an end of a range, kept for the letters that it may depend on."""
+        key = symbol.name, indices, *map(self.bound.get, _LIMITING)
+        if key not in self._known:
+            self._known[key] = self.value(self._cell(symbol, indices))
+        return self._known[key]
+
+    def _cell(self, symbol: Symbol, indices: tuple[int, ...]) -> Tree:
+        if (symbol.name, indices) in self._definitions:
+            return self._definitions[symbol.name, indices]
+        return limits.cell(self._form.name, self._letter, symbol, self)
+
+    def _last(self, index: int) -> int:
+        """m_s and m_1: the number of the last piece of a load."""
+        source = f"M{index}" if self._form.name == "II" else "a"
+        if source not in self._driven.loads or (source == "a" and index != 1):
+            raise MeaninglessError(f"m_{index} is not defined")
+        return len(self._driven.loads[source]) - 1
+
+    def coefficient(self, lower: tuple[int, ...], upper: tuple[int, ...]) -> fmpq:
+        """The coefficient with these indices; MeaninglessError where there is none."""
+        increment = self._increment(upper)
+        if len(lower) < 2:  # of the family with rate 0, where 0 is as good as none
+            (power,) = (0,) if not lower else (1,) if lower == (0,) else (None,)
+            powers = increment.get(fmpq(0), [])
+            if power is None:
+                raise MeaninglessError(f"F_{lower[0]} is not defined")
+            return powers[power] if power < len(powers) else fmpq(0)
+        body, power = lower
+        powers = increment.get(known(self._rates, body, "the rate"), [])
+        if not 0 <= power < len(powers):
+            raise MeaninglessError(f"there is no coefficient of power {power} at the rate of body {body}")
+        return powers[power]
+
+    def _increment(self, upper: tuple[int, ...]) -> Increment:
+        name = self._form.name
+        if len(upper) != {"I": 2, "II": 3, "III": 3}[name]:
+            raise MeaninglessError(f"coefficients of example {name} do not have {len(upper)} upper indices")
+        if name == "III":
+            return self._driven.gain(self._letter, upper[1], upper[2], "ab", upper[0])
+        return self._driven.gain(self._letter, upper[0], upper[-1], "impact" if name == "I" else f"M{upper[1]}")
 
 
-def _doubled(table: Exact) -> dict[int, fmpq]:
-    return {l: 2 * rate for l, rate in gammas(table).items()}  # noqa: E741 - the paper's letter
+def _derivative(tree: Tree) -> Call:
+    """F' with two indices, of one argument."""
+    if isinstance(tree, Call) and len(tree.arguments) == 1:
+        function = tree.function
+        if function.name == "F" and function.primes == 1 and len(function.below) == 2:
+            return tree
+    raise MeaninglessError(f"{latex(tree)} is no derivative of a function")
 
 
-def _drive_form(reading: tuple[str, str, Rates]) -> Iterator[Case]:
-    interval, body, rates = reading
-    yield Case({"claim": "letter of the interval"}, interval, next(key for key in HEADS["even"] if key != "w"))
-    yield Case({"claim": "letter of the body"}, body, "l")
-    for m in range(1, 6):
-        table = drive(m)
-        found = {
-            rate for response in table.responses.values() for parts in response.values() for p in parts for rate in p
-        }
-        yield Case({"m": m, "claim": "rates"}, {fmpq(0), *rates(table).values()}, found)
+def known(values: Mapping[int, Any], index: int, name: str) -> Any:
+    """A value by its number; MeaninglessError where there is none."""
+    if index not in values:
+        raise MeaninglessError(f"{name} has no number {index}")
+    return values[index]
 
 
-def _transmitted(table: Exact, i: int) -> fmpq:
-    p = table.chain.parameters
-    return p.kappa[i - 1] * p.inertia[i - 1] / p.inertia[i]  # type: ignore[no-any-return]
+def only(letters: str, ranges: Sequence[Tree]) -> Progression:
+    """The one range that there must be, of one of some letters; MeaninglessError."""
+    if len(ranges) == 1 and isinstance(ranges[0], Progression) and latex(ranges[0].variable) in letters:
+        return ranges[0]
+    raise MeaninglessError(f"the range of {letters} is not given")
 
 
-def _gamma_i(table: Exact, i: int, own: int) -> fmpq:
-    kappa = table.chain.parameters.kappa
-    return kappa[1] if i == 1 else kappa[own] + _transmitted(table, i)  # type: ignore[no-any-return]
+def form(entry: Entry) -> Test:
+    """Adapter: a form whole, for all functions of its table."""
+    name = entry.about["example"]
 
+    def cases(reading: Reading) -> Iterator[Case]:
+        yield from copy(_kept(Form.of(name, reading)))
 
-def _gamma(
-    id: str,
-    text: str,
-    ranges: str,
-    span: Callable[[int], range],
-    value: Callable[[Exact, int], fmpq],
-    slip: Slip[Callable[[Exact, int], fmpq]] | None,
-) -> Claim[Callable[[Exact, int], fmpq]]:
-    right = slip.reading if slip else value
-
-    def cases(reading: Callable[[Exact, int], fmpq]) -> Iterator[Case]:
-        for m in range(1, 6):
-            table = drive(m)
-            p = table.chain.parameters
-            for i in span(m):
-                numbers = {"kappa": dict(p.kappa), "J": dict(p.inertia)}
-                yield Case({"m": m, "i": i, **numbers}, reading(table, i), gammas(table)[i])
-
-    return Claim(
-        id,
-        f"section 4, {id}",
-        text,
-        ranges,
-        "half the sum of what the two shafts do to a disc, by its node, m = 1 ... 5",
+    return Test(
+        "the motion, exact, under loads with several delayed pieces; "
+        f"m = {', '.join(map(str, SIZES[name]))}; coefficients of the exact tables, limits of the corrected tables",
         cases,
-        value,
-        {"twice": lambda t, i: 2 * right(t, i), "sign": lambda t, i: -right(t, i)},
-        slip,
     )
 
 
-def _flag(name: str, even: int, odd: int, value: Callable[[int], int], parity: int) -> Claim[Callable[[int], int]]:
-    def cases(reading: Callable[[int], int]) -> Iterator[Case]:
-        for i in range(1, 7):
-            first = next(s for s in (1, 2) if (s - i) % 2 == parity)
-            yield Case({"i": i, "claim": f"first moment, s = {name} + 1"}, reading(i) + 1, first)
+@cache
+def _kept(form: Form) -> Iterator[Case]:
+    """The cases of a form; what copies of this iterator reach is kept, as some records differ only as printed."""
+    (cases,) = tee(form_cases(form), 1)
+    return cases
 
-    return Claim(
-        f"(4.11).{name}",
-        "section 4, under (4.11)",
-        f"{name} = {even} for even i, {odd} for odd i",
-        "",
-        "the first moment of the right parity in Table 3, s = 2r+1 - flag with r = flag",
-        cases,
-        value,
-        {"turned": lambda i: 1 - value(i)},
-        scan=rf"{name} = {even} dla i parzystych, {odd} dla i nieparzystych",
+
+def form_cases(
+    form: Form, definitions: Definitions | None = None, scope: type[FormScope] | None = None
+) -> Iterator[Case]:
+    """All functions of the form's table at the starts of the first intervals and inside, then in the last interval.
+
+    A value there has the increments of all intervals in it, and exponentials of different exponents are independent.
+    """
+    scopes: dict[tuple[int, str], FormScope] = {}
+    most = INTERVALS[form.name]
+    for m, n in by_size((m, n) for m in SIZES[form.name] for n in (0, 1, most)):
+        driven = moved(form.name, m)
+        for letter, rod in limits.functions(form.name, m):
+            made = scopes.setdefault((m, letter), (scope or FormScope)(form, driven, letter, definitions))
+            for start, number in list(starts(form.name, n))[-1 if n == most else 0 :]:
+                for part in _WITHIN if n < most else _WITHIN[1:]:
+                    yield _compared(made, driven, (letter, rod), number, start + part * driven.exact.interval)
+
+
+def starts(name: str, n: int) -> Iterator[tuple[int, int]]:
+    """Where the intervals of a number n begin, with their own numbers 1, 2, ..."""
+    yield from ((2 * n, 2 * n + 1), (2 * n + 1, 2 * n + 2)) if name == "II" else ((2 * n, n + 1),)
+
+
+def _compared(scope: FormScope, driven: Driven, function: tuple[str, int], number: int, z: fmpq) -> Case:
+    letter, rod = function
+    true = driven.wave(letter, rod, z)
+    at = {"m": driven.exact.m, "function": f"{letter}'_{rod}", "z": z, "interval": number}
+    return case(at, lambda: scope.total(rod, number, z), true, true != 0, shown(driven.exact, letter, rod, number))
+
+
+def shown(exact: Exact, letter: str, rod: int, number: int) -> Callable[[], Example]:
+    """The scene of a chain under its loads, and where its table has what a function gains in an interval."""
+    return lambda: example(
+        exact,
+        loads(exact),
+        exact.interval * number + exact.m,
+        {"velocity": [f"{rod - 1}+" if letter == "f" else f"{rod}-"]},
+        "wavesym tables SCENE",
+        f"{letter} of rod {rod}, interval {number}: its rates and coefficients",
+    )()
+
+
+def interval(entry: Entry) -> Test:
+    """Adapter: where z lies when a form is said to hold."""
+    told = transcribed(entry.about["form"])
+    name = told.about["example"]
+    right = Form.of(name, corrected(told))
+
+    def read(text: str, ranges: Iterable[str]) -> Reading:
+        return Reading(read_range(text), tuple(map(read_range, ranges)))
+
+    return Test(
+        f"{told.id} as corrected in every interval that z is said to lie in, against the motion; inside of intervals, "
+        "every z in one of them",
+        lambda reading: _interval_cases(right, reading),
+        read,
+        lambda reading: _interval_faults(reading),
     )
 
 
-def _no_linear(k: Any, m: int) -> dict[fmpq, int | None]:
-    return {fmpq(0): 0, 2 * k[1]: None, k[m]: None}
+def _interval_faults(reading: Reading) -> Iterator[tuple[str, Reading]]:
+    for change, wrong in ends(reading.formula):
+        yield change, replace(reading, formula=wrong)
+    for change, wrong in ends(reading.ranges[0]):
+        yield change, replace(reading, ranges=(wrong,))
 
 
-def _building_form(reading: Callable[[Any, int], dict[fmpq, int | None]]) -> Iterator[Case]:
-    """All rates, and at rate 0 the constant and the linear part."""
-    for m in range(2, 8):
-        table = building(m)
-        kappa = table.chain.parameters.kappa
-        parts = [p for response in table.responses.values() for increments in response.values() for p in increments]
-        form = reading(kappa, m)
-        where = {"m": m, "kappa_1": kappa[1], "kappa_m": kappa[m]}
-        yield Case({**where, "claim": "rates"}, set(form), {rate for part in parts for rate in part})
-        yield Case(
-            {**where, "claim": "highest power at rate 0"},
-            form[fmpq(0)],
-            max(len(p.get(fmpq(0), ())) for p in parts) - 1,
-        )
+def _interval_cases(form: Form, reading: Reading) -> Iterator[Case]:
+    numbers = only("nd", reading.ranges)
+    step = items(form.step)[0]
+    left = sides(step)[0]
+    assert isinstance(left, Call)
+    for m in SIZES[form.name][1:2]:
+        driven = moved(form.name, m)
+        for letter, rod in limits.functions(form.name, m):
+            scope = FormScope(form, driven, letter)
+            until, most = (4, 6) if form.name == "II" else (6, 4)
+            for z in (start + part for start in range(until) for part in _WITHIN):
+                inside = []
+                for value in span(numbers, scope, most=most):
+                    variable = latex(numbers.variable)
+                    with scope.binding({variable: value, "z": z, "i": rod}):
+                        if holds(reading.formula, scope):
+                            inside.append(value if variable == "d" else scope.whole(left.function.below[1]))
+                if z.denom() != 1:
+                    yield Case({"z": z, "claim": "in one interval"}, len(inside), 1)
+                for number in inside:
+                    yield _compared(scope, driven, (letter, rod), number, z)
+
+
+def corrected(entry: Entry) -> Reading:
+    """A record as it holds."""
+    text, ranges = (entry.slip.corrected, entry.slip.ranges) if entry.slip else (entry.printed, None)
+    said = entry.ranges if ranges is None else ranges
+    return Reading(read_formula(text), tuple(map(read_range, (*said, *entry.inferred))))
+
+
+FORMS = {"I": "(4.9)", "II": "(4.10)", "III": "(4.12)"}
+"""The form of each example's solutions."""
+
+
+@cache
+def right_form(example: str) -> Form:
+    """The form of an example's solutions as corrected."""
+    return Form.of(example, corrected(transcribed(FORMS[example])))
+
+
+@cache
+def read_definitions() -> Definitions:
+    """L_0, r_0 and r_1 as they hold."""
+    return {
+        key: tree
+        for entry in paper().entries()
+        if entry.kind == "form constant"
+        for key, tree in defined(corrected(entry)).items()
+    }
+
+
+def defined(reading: Reading) -> Definitions:
+    """What an equation defines."""
+    left, right = sides(reading.formula)
+    if not isinstance(left, Symbol):
+        raise MeaninglessError(f"{latex(left)} is no letter")
+    return {(left.name, Scope().indices(left)): right}

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from flint import fmpq
 
+from wavesym.model.chain import Chain
 from wavesym.papers.exact_tables import Exact
 from wavesym.papers.pielorz1979.truth import Loads
 from wavesym.papers.record import Example
@@ -21,11 +22,11 @@ def example(
 
     `outputs` are as in a scene, {"strain": ["1-"]}; `command` has SCENE for the file.
     """
-    return lambda: Example(_scene(exact, loads, until, outputs), command, look)
+    return lambda: Example(written(exact.chain, loads, until, outputs), command, look)
 
 
-def _scene(exact: Exact, loads: Loads, until: fmpq | int, outputs: Mapping[str, Sequence[str]]) -> str:
-    chain = exact.chain
+def written(chain: Chain, loads: Loads, until: fmpq | int, outputs: Mapping[str, Sequence[str]]) -> str:
+    """A chain under loads as a scene file."""
     p = chain.parameters
     lines = ['name = "counterexample"', "", "[system]"]
     if chain.system is COLLISION:

@@ -1,0 +1,104 @@
+"""The conditions at the nodes: judged from their strings, places and ranges too."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+
+from wavesym.papers.pielorz1979.paper import ADAPTERS
+from wavesym.papers.pielorz1979.transcript import paper
+from wavesym.papers.record import judge
+
+ENTRIES = {entry.id: entry for entry in paper().entries() if entry.kind == "condition"}
+SLIPS = {
+    "(2.3)": "misprint",
+    "(2.4).2": "incomplete",
+    "(2.4).5": "incomplete",
+    "(4.4).1": "unreadable",
+    "(4.4).4": "convention",
+    "(4.5).1": "model",
+    "(4.5).2": "convention",
+}
+
+
+@cache
+def right(id):
+    """The record of an entry as it is."""
+    return judged(id)
+
+
+def judged(id, slip=None, **changes):
+    """The record of an entry, some of its strings falsified."""
+    entry = ENTRIES[id].model_copy(update=changes)
+    if slip:
+        entry = entry.model_copy(update={"slip": entry.slip.model_copy(update=slip)})
+    return judge(entry, ADAPTERS[entry.kind](entry))
+
+
+@pytest.mark.parametrize("id", ["(2.3)", "(2.4).2", "(2.4).5", "(4.3).5", "(4.4).1", "(4.4).4", "(4.5).1", "(4.5).2"])
+def test_verdicts(id):
+    record = right(id)
+    assert record.problems == ()
+    assert record.verdict == SLIPS.get(id, "holds")
+    assert id not in SLIPS or not record.counterexample.agrees
+
+
+def test_what_is_wrong_is_stated_beside_what_holds():
+    assert {id for id, entry in ENTRIES.items() if entry.slip} == SLIPS.keys()
+
+
+@pytest.mark.parametrize(
+    ("id", "changes"),
+    [
+        ("(4.3).5", {"ranges": (r"\bar{x} = m",)}),
+        ("(4.3).5", {"ranges": (r"\bar{x} = m+1",)}),
+        ("(4.3).5", {"ranges": ()}),
+        ("(4.3).5", {"ranges": (r"\bar{x} = m-1", r"n = 1, 2, \dots, m")}),
+        ("(4.3).3", {"ranges": (r"\bar{x} = i", r"i = 2, 4, \dots, m-4")}),
+        ("(4.3).3", {"ranges": (r"\bar{x} = i", r"i = 2, 4, \dots, m")}),
+        ("(4.3).2", {"ranges": (r"\bar{x} = i", r"i = 2, 3, \dots, m-1")}),
+        ("(4.3).3", {"printed": r"\frac{\partial \bar{u}_i(\bar{x}, \tau)}{\partial \bar{x}} = 0"}),
+        ("(4.3).6", {"printed": r"\frac{\partial \bar{u}_m(\bar{x}, \tau)}{\partial \tau} = 0"}),
+        ("(4.3).6", {"printed": r"\frac{\partial \bar{u}_m(\bar{x}, \tau)}{\partial \bar{x}}"}),
+        ("(2.4).3", {"printed": r"\frac{\partial U_i}{\partial x} = \frac{\partial U_{i+1}}{\partial x}"}),
+        ("(2.4).4", {"about": {"at": "a body at a right end"}}),
+    ],
+)
+def test_a_condition_that_is_falsified_loses_its_verdict(id, changes):
+    assert judged(id, **changes).verdict == "untested"
+
+
+@pytest.mark.parametrize(
+    ("id", "slip"),
+    [
+        ("(2.3)", {"ranges": ("x = il", r"i=1, 2, \dots, m-2")}),
+        ("(2.3)", {"ranges": ("x = i", r"i=1, 2, \dots, m-1")}),
+        ("(2.4).2", {"ranges": ("x_i = il",)}),
+        ("(2.4).5", {"ranges": ("x_i = i",)}),
+        ("(2.4).2", {"ranges": ()}),
+        ("(2.4).5", {"corrected": ENTRIES["(2.4).5"].printed}),
+        ("(4.4).4", {"corrected": ENTRIES["(4.4).4"].printed}),
+        ("(4.5).1", {"corrected": ENTRIES["(4.5).1"].printed}),
+    ],
+)
+def test_a_correction_that_is_falsified_loses_its_verdict(id, slip):
+    assert judged(id, slip=slip).verdict == "untested"
+
+
+def test_a_slip_needs_something_that_fails():
+    right = ENTRIES["(4.4).1"].slip.corrected
+    assert judged("(4.4).1", printed=right).verdict == "untested"
+
+
+def test_what_is_left_in_symbols():
+    assert right("(4.3).4").difference == "0"
+    assert r"\frac{1}{{\kappa}_{i}} - \frac{1}{{\kappa}_{1}}" in right("(4.5).2").difference
+    assert right("(4.3).2").difference is None
+
+
+def test_a_counterexample_is_a_scene():
+    shown = right("(4.4).4").counterexample.example()
+    assert 'type = "drive"' in shown.scene
+    assert "SCENE" in shown.command
+    assert "-35/8" in shown.look

@@ -1,0 +1,95 @@
+"""The delay equations: judged from their strings, every function given once."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+
+from wavesym.papers.pielorz1979.delays import given_once
+from wavesym.papers.pielorz1979.paper import ADAPTERS
+from wavesym.papers.pielorz1979.transcript import paper
+from wavesym.papers.record import judge
+
+ENTRIES = {entry.id: entry for entry in paper().entries() if entry.kind in ("delay", "systems")}
+
+
+@cache
+def right(id):
+    """The record of an entry as it is."""
+    return judged(id)
+
+
+def judged(id, slip=None, **changes):
+    """The record of an entry, some of its strings falsified."""
+    entry = ENTRIES[id].model_copy(update=changes)
+    if slip:
+        entry = entry.model_copy(update={"slip": entry.slip.model_copy(update=slip)})
+    return judge(entry, ADAPTERS[entry.kind](entry))
+
+
+@pytest.mark.parametrize(
+    ("id", "verdict"),
+    [
+        ("(4.6).contacts", "incomplete"),
+        ("(4.6).m", "incomplete"),
+        ("(4.6).1", "holds"),
+        ("(4.6).3", "holds"),
+        ("(4.7).2", "misprint"),
+        ("(4.8).2", "holds"),
+        ("(4.8).5", "misprint"),
+    ],
+)
+def test_verdicts(id, verdict):
+    record = right(id)
+    assert record.problems == ()
+    assert record.verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("id", "changes"),
+    [
+        ("(4.6).3", {"ranges": (r"i = 3, 5, \dots, m-5",)}),
+        ("(4.6).3", {"ranges": (r"i = 3, 5, \dots, m-1",)}),
+        ("(4.6).3", {"ranges": (r"i = 3, 4, \dots, m-3",)}),
+        ("(4.8).3", {"ranges": (r"i = 1, 2, \dots, m-1",)}),
+        ("(4.8).3", {"ranges": (r"i = 3, 4, \dots, m-1",)}),
+        ("(4.8).3", {"ranges": (r"j = 2, 3, \dots, m-1",)}),
+        ("(4.8).3", {"ranges": ()}),
+        ("(4.6).1", {"printed": "f'_1(z) = g'_1(z-2)"}),
+        ("(4.6).1", {"printed": "f'_1(z) = g'_1(z-2), g'_m(z) = f'_m(z-1)"}),
+        ("(4.6).1", {"printed": "f'_1(z) - g'_1(z-2) = 0, g'_m(z) = f'_m(z-2)"}),
+        ("(4.8).1", {"printed": "g_1'(z) = f_2'(z-2) + g_2'(z-2) = f_1'(z-2)"}),
+        ("(4.8).1", {"printed": "g_1'(z) = f_2'(z-2) + p_2'(z-2) - f_1'(z-2)"}),
+        ("(4.8).2", {"printed": ENTRIES["(4.8).2"].printed.replace("^{m_1}", "^{m_1-1}")}),
+        ("(4.7).3", {"printed": ENTRIES["(4.7).3"].printed.replace(r" - \tau_{1,k}", "")}),
+    ],
+)
+def test_an_equation_that_is_falsified_loses_its_verdict(id, changes):
+    assert judged(id, **changes).verdict == "untested"
+
+
+def test_a_correction_that_is_falsified_loses_its_verdict():
+    right = ENTRIES["(4.7).2"].slip.corrected
+    for wrong in (right.replace("m_{m+1}", "m_m"), right.replace(r"= -\bar", r"= \bar"), ENTRIES["(4.7).2"].printed):
+        assert judged("(4.7).2", slip={"corrected": wrong}).verdict == "untested"
+
+
+def test_what_is_left_in_symbols():
+    assert right("(4.8).2").difference == "0"
+    assert "f'_{i}(z)" in right("(4.8).5").difference
+    assert r"\sum_{k=0}^{m + 1}" in right("(4.7).2").difference
+
+
+@pytest.mark.parametrize("m", range(2, 9))
+def test_when_every_function_is_given_once(m):
+    assert given_once("(4.6)", m) == (m % 2 == 0 and m >= 4)
+    assert given_once("(4.8)", m)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"), [("faster", "slower"), ("stay closed", "are closed at first"), ("second and first", "second")]
+)
+def test_a_sentence_that_is_falsified_loses_its_verdict(before, after):
+    right = ENTRIES["(4.6).contacts"].slip.corrected
+    assert judged("(4.6).contacts", slip={"corrected": right.replace(before, after)}).verdict == "untested"

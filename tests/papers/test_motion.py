@@ -1,0 +1,75 @@
+"""What is said of the motion is judged by its strings: the equations of rods, their solution, loads and clocks."""
+
+from __future__ import annotations
+
+import pytest
+
+from wavesym.papers.pielorz1979.paper import ADAPTERS
+from wavesym.papers.pielorz1979.transcript import paper
+from wavesym.papers.record import judge
+
+ENTRIES = {entry.id: entry for entry in paper().entries()}
+
+
+def judged(id, **changes):
+    """The record of an entry whose strings are changed; those of its slip by `corrected` and `slip_ranges`."""
+    entry = ENTRIES[id]
+    slip = {key: changes.pop(name) for name, key in SLIP.items() if name in changes}
+    if slip:
+        changes["slip"] = entry.slip.model_copy(update=slip)
+    entry = entry.model_copy(update=changes)
+    return judge(entry, ADAPTERS[entry.kind](entry))
+
+
+SLIP = {"corrected": "corrected", "slip_ranges": "ranges"}
+
+
+@pytest.mark.parametrize(
+    ("id", "verdict"),
+    [
+        ("(2.1)", "misprint"),
+        ("(2.2)", "holds"),
+        ("def.v", "incomplete"),
+        ("def.f", "convention"),
+        ("T1.I.v", "unreadable"),
+    ],
+)
+def test_as_printed(id, verdict):
+    record = judged(id)
+    assert record.verdict == verdict, record.problems
+    assert record.mutations.tried == record.mutations.turned > 4
+
+
+@pytest.mark.parametrize(
+    ("id", "changes"),
+    [
+        ("(2.1)", {"corrected": ENTRIES["(2.1)"].printed}),
+        ("(2.2)", {"ranges": ("(i-1)l < x < (i+1)l",)}),
+        ("(2.5)", {"corrected": ENTRIES["(2.5)"].slip.corrected.replace("+ v_i t", "- v_i t")}),
+        ("(2.5)", {"inferred": (r"i = 2, 3, \dots, m",)}),
+        ("(2.5)", {"inferred": (r"i = 1, 2, \dots, m+1",)}),
+        ("(2.5)", {"corrected": "0 = 0 = 0"}),
+        ("(3.1)", {"ranges": (r"i = 1, 2, \dots, m",)}),
+        ("(3.1)", {"ranges": ()}),
+        ("(3.2)", {"corrected": r"\ddot{y}_0 = \sum_{k=0}^{m_2} [a_k + b_k (t - t_k)] H(t - t_k)"}),
+        ("def.tau", {"printed": r"\tau = \frac{c_f t}{2l}"}),
+        ("def.v", {"slip_ranges": (r"v_0 = \frac{c_f U_0}{2l}",)}),
+        ("def.g", {"corrected": r"g_i = \frac{\mathcal{F}_i}{U_0}"}),
+        ("T1.I.tau_0", {"printed": r"\begin{cases} 1 & i=1, m \\ 0 & i=2, 3, \dots, m-2 \end{cases}"}),
+        ("T1.II.S", {"slip_ranges": (r"i = 1, 2, \dots, m+2",)}),
+        ("(4.2)", {"printed": ENTRIES["(4.2)"].printed.replace(r"- \bar{x} +", r"+ \bar{x} -")}),
+        ("text.t_0", {"printed": ENTRIES["text.t_0"].printed.replace("first", "last")}),
+        ("text.III.masses", {"printed": ENTRIES["text.III.masses"].printed.replace("m-1,", "m,")}),
+        ("text.F", {"printed": "the functions F_i run"}),
+    ],
+)
+def test_a_wrong_string_is_a_verdict(id, changes):
+    record = judged(id, **changes)
+    assert record.verdict == "untested"
+    assert record.problems
+
+
+def test_a_counterexample_can_be_seen():
+    shown = judged("T1.II.S").counterexample.example()
+    assert "body = 2" in shown.scene
+    assert "velocity@1" in shown.look

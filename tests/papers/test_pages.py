@@ -1,0 +1,306 @@
+"""The verdicts as pages: each says all of it, in markup that its readers take."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import tomllib
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.papers.small import ENTRIES, PASSAGES, SCENE, entry, findings, records
+from wavesym.papers.pages import as_json, html, latex, markdown, text
+from wavesym.papers.pages.document import SIGNS
+from wavesym.papers.pages.findings import Findings
+from wavesym.papers.pages.reproduction import reproduction
+from wavesym.papers.pages.shown import compared, readable
+from wavesym.papers.reader import read_formula
+from wavesym.papers.record import VERDICTS
+
+PAGES = {"text": text.page, "json": as_json.page, "markdown": markdown.page, "html": html.page, "latex": latex.page}
+BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+VOID = {"meta", "br", "hr", "img", "link", "input"}
+
+
+class Elements(HTMLParser):
+    """The elements of a page, all closed in their order, and its text."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.found: list[tuple[str, dict[str, Any]]] = []
+        self.words = ""
+        self.feed(page)
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.words += data
+
+
+@pytest.mark.parametrize("format", PAGES)
+def test_every_page_has_every_record_every_reason_and_every_survivor(format: str) -> None:
+    page = PAGES[format](findings())
+    words = {"html": lambda: Elements(page).words, "latex": lambda: read_back(page)}.get(format, lambda: page)()
+    assert all(entry.id in words for entry in ENTRIES)
+    assert all(change in words and because in words for change, because in ENTRIES[4].equivalent)
+    if format != "json":
+        assert all(why in words for why in ("names <a> & b", "a title"))
+    assert {"holds", "misprint", "unreadable"} <= set(re.findall(r"\w+", words))
+
+
+def read_back(page: str) -> str:
+    """The text of LaTeX, as far as these tests need it."""
+    for written, read in latex._CHARACTERS.items():
+        page = page.replace(read, written) if len(read) > 2 else page
+    return re.sub(r"\\([#$%&_{}])", r"\1", page)
+
+
+def test_json_says_it_all_to_programs() -> None:
+    made = {each["id"]: each for each in json.loads(as_json.page(findings(reproduce=True)))}
+    wrong = made["(1.2).1"]
+    assert wrong["printed"] == "n + n = 3n"
+    assert (wrong["corrected"], wrong["origin"], wrong["note"]) == ("n + n = 2n", "print", "A factor.")
+    assert wrong["counterexample"] == "With n = 1, what is printed gives 2; it should be 3."
+    assert wrong["evidence"].startswith(wrong["counterexample"])
+    assert wrong["reproduce"]["file"] == "1.2.1.toml"
+    right = made["T1.b.x"]
+    assert (right["verdict"], right["corrected"], right["counterexample"], right["origin"]) == (
+        "holds",
+        None,
+        None,
+        None,
+    )
+    assert right["ranges"] == ["n = 1, 2"]
+    tried, turned, survived = (right["mutations"][name] for name in ("tried", "turned", "survived"))
+    assert tried == turned + len(survived)
+    assert [(each["change"], each["because"]) for each in survived] == list(ENTRIES[4].equivalent)
+    assert "reproduce" not in json.loads(as_json.page(findings()))[0]
+
+
+def test_entries_that_are_one_error_stand_together() -> None:
+    groups = [[record.id for record in group] for group in findings().errors]
+    assert groups == [["(1.2).1"], ["T1.a.x"], ["T1.a.y"], ["text.1"]]
+    same = records(ENTRIES[1], entry("(1.2).2", "2 + n = 3n", "section 1, (1.2)", ENTRIES[1].slip))
+    assert len(Findings(findings().about, same).errors) == 1
+    column = records(ENTRIES[2], entry("T1.b.x", "n = 2n", "Table 1, row b", ENTRIES[3].slip))
+    assert len(Findings(findings().about, column).errors) == 1
+
+
+def test_counts_add_up() -> None:
+    made = findings()
+    assert sum(count for _, count in made.counts) == len(ENTRIES)
+    assert [(name, dict(counts)) for name, counts in made.statistics] == [
+        ("Section 1", {"holds": 1, "misprint": 1, "unreadable": 1}),
+        ("Table 1", {"misprint": 2, "holds": 2}),
+    ]
+    assert made.faults[0] - made.faults[1] == len(made.survivors) == 2
+
+
+def test_what_could_not_be_tested_is_a_failure() -> None:
+    untested = records(entry("(9)", "n + n = 3n", "section 9"))
+    assert not Findings(findings().about, untested).passed
+    assert findings().passed
+    for page in PAGES.values():
+        assert "no correction is known" in page(Findings(findings().about, untested))
+
+
+def test_a_record_asked_for_by_name_is_shown_in_full_and_nothing_else() -> None:
+    page = text.page(Findings(findings().about, records(ENTRIES[4])))
+    assert page.startswith("T1.b.x: holds, right as printed\n")
+    assert "range      n = 1, 2" in page
+    assert "survived   2 n for n in n: 0 times n is 0" in page
+    assert "Not judged" not in page
+
+
+def test_a_counterexample_can_be_run() -> None:
+    wrong, right, unreadable = records(ENTRIES[1], ENTRIES[0], ENTRIES[5])
+    shown = reproduction(wrong)
+    assert shown is not None
+    assert shown.scene == SCENE
+    assert tomllib.loads(shown.scene)["name"] == "counterexample"
+    assert shown.command == "wavesym tables 1.2.1.toml"
+    assert reproduction(right) is None
+    words = reproduction(unreadable)
+    assert words is not None
+    assert not words.file
+    assert "no chain behind it" in words.said
+    for name, page in PAGES.items():
+        told = page(findings(reproduce=True))
+        assert "wavesym tables 1.2.1.toml" in told.replace(r"\_", "_"), name
+        assert "wavesym tables 1.2.1.toml" not in page(findings()), name
+    assert SCENE.replace("\n", "\n    ").replace("    \n", "\n").strip() in text.page(findings(reproduce=True))
+
+
+def test_every_verdict_has_a_sign_and_a_colour_on_each_page() -> None:
+    assert SIGNS.keys() == VERDICTS.keys()
+    assert len(set(SIGNS.values())) == len(SIGNS)
+    page, document = html.page(findings()), latex.page(findings())
+    for verdict in VERDICTS:
+        assert re.search(rf"^\.{verdict} {{ background", page, re.MULTILINE)
+        assert rf"\definecolor{{{verdict}}}" in document
+
+
+def test_html_is_one_file_that_asks_for_nothing() -> None:
+    page = html.page(findings(reproduce=True))
+    found = Elements(page).found
+    assert not {tag for tag, _ in found} & {"script", "link", "img", "iframe", "object", "form"}
+    assert not [attributes for _, attributes in found if "src" in attributes]
+    links = [attributes["href"] for tag, attributes in found if tag == "a"]
+    anchors = [attributes["id"] for _, attributes in found if "id" in attributes]
+    assert len(anchors) == len(set(anchors))
+    assert {link.removeprefix("#") for link in links} <= set(anchors)
+    assert "url(" not in page
+    assert "@import" not in page
+    assert "Sumy &amp; &lt;iloczyny&gt;" in page
+
+
+def test_html_marks_what_differs_and_lays_tables_out() -> None:
+    page = html.page(findings())
+    assert '<mrow class="marked"><mn>3</mn></mrow>' in page
+    assert '<mrow class="marked"><mn>2</mn></mrow>' in page
+    table = page[page.index('<table class="paper">') :].split("</table>")[0]
+    assert len(re.findall("<tr>", table)) == 3
+    assert 'class="misprint"' in table
+    assert "✗ misprint" in table
+    assert "<mi>U</mi>" in table
+    assert '<th class="holds"> b_1<span class="label">✓ holds</span></th>' in table
+    assert 'href="#T1.a.x"' in table
+
+
+@pytest.mark.skipif(not BROWSER, reason="no browser")
+def test_a_browser_shows_the_formulas_without_a_network(tmp_path: Path) -> None:
+    file = tmp_path / "errata.html"
+    measure = (
+        "<script>document.title = [...document.querySelectorAll('math')]"
+        ".map(m => Math.round(m.getBoundingClientRect().height)).join(' ') + ' requests: '"
+        " + performance.getEntriesByType('resource').length</script></body>"
+    )
+    file.write_text(html.page(findings()).replace("</body>", measure), encoding="utf-8")
+    flags = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}"]
+    done = subprocess.run(
+        [str(BROWSER), *flags, "--dump-dom", file.as_uri()], capture_output=True, text=True, check=True, timeout=120
+    )
+    title = re.search("<title>(.*?)</title>", done.stdout)
+    assert title is not None
+    heights, requests = title[1].split(" requests: ")
+    assert len(heights.split()) == html.page(findings()).count("<math")
+    assert all(int(height) > 5 for height in heights.split())
+    assert requests == "0"
+
+
+def test_latex_is_ascii_and_closes_what_it_opens() -> None:
+    page = latex.page(findings(reproduce=True))
+    assert page.isascii()
+    depth = 0
+    for brace in re.findall(r"(?<!\\)[{}]", re.sub(r"\\\\", "", page)):
+        depth += 1 if brace == "{" else -1
+        assert depth >= 0
+    assert depth == 0
+    opened: list[str] = []
+    for kind, name in re.findall(r"\\(begin|end)\{(\w+)\}", page):
+        if kind == "begin":
+            opened.append(name)
+        else:
+            assert opened.pop() == name
+    assert opened == []
+    assert page.count("$") % 2 == 0
+
+
+def macros(page: str) -> Iterator[str]:
+    yield from re.findall(r"\\([A-Za-z]+)", re.sub(r"\\\\", " ", page))
+
+
+KNOWN = """
+documentclass usepackage definecolor newcommand IfFileExists begin end title author date maketitle section subsection
+textcolor underline colorbox cellcolor strut rule setlength parindent parskip raggedbottom emergencystretch linewidth
+tabcolsep dimexpr relax hspace medskip mbox par noindent raggedright newline tabularnewline arraybackslash hline endhead
+emph texttt textbf textsf ttfamily small footnotesize displaystyle ensuremath marked markedtext verdict room
+textbackslash textasciitilde textasciicircum textquotedbl textless textgreater textbar textquotesingle textasciigrave
+textendash textemdash ldots quotedblbase l L k surd times langle rangle leq geq approx neq pm cdot
+bar dots frac sum kappa alpha
+"""
+
+
+def test_latex_has_no_command_that_nobody_defines() -> None:
+    assert set(macros(latex.page(findings(reproduce=True)))) <= set(KNOWN.split())
+
+
+@pytest.mark.parametrize(
+    ("plain", "written"),
+    [
+        ("50% of a_1 & #2", r"50\% of a\_1 \& \#2"),
+        (r"\frac{a}{b}~^", r"\textbackslash{}frac\{a\}\{b\}\textasciitilde{}\textasciicircum{}"),
+        ("Piełorz, żółć", r"Pie\l{}orz, \.{z}\'{o}\l{}\'{c}"),
+        ("wavesym --x", "wavesym -{}-x"),
+        ("\N{GREEK SMALL LETTER ALPHA} ≤ 1", r"\ensuremath{\alpha} \ensuremath{\leq} 1"),
+        ("Ш", "[cyrillic capital letter sha]"),
+    ],
+)
+def test_text_is_escaped_in_latex(plain: str, written: str) -> None:
+    assert latex.tex(plain) == written
+
+
+@pytest.mark.skipif(not shutil.which("pdflatex"), reason="no LaTeX")
+def test_latex_compiles(tmp_path: Path) -> None:
+    (tmp_path / "errata.tex").write_text(latex.page(findings(reproduce=True)))
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "errata.tex"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, errors="replace", check=False)
+    assert done.returncode == 0, done.stdout[-2000:]
+
+
+def test_markdown_keeps_its_tables_whole() -> None:
+    page = markdown.page(findings(reproduce=True))
+    widths: list[int] = []
+    for line in page.splitlines():
+        if line.startswith("|"):
+            widths.append(len(re.split(r"(?<!\\)\|", line)))
+        else:
+            assert len(set(widths)) <= 1
+            widths = []
+    assert page.count("```") % 2 == 0
+
+
+@pytest.mark.parametrize(
+    ("said", "read"),
+    [
+        (r"floors equal, \kappa_i = \kappa_1", "floors equal, κ_i = κ_1"),
+        (r"i = 1, 2, \dots, m", "i = 1, 2, ..., m"),
+        (r"z \in \langle 2n, m)", r"z \in ⟨ 2n, m)"),
+        (r"m \geq 3, and \tau is 0", "m ≥ 3, and τ is 0"),
+    ],
+)
+def test_letters_within_a_sentence_are_written_out(said: str, read: str) -> None:
+    assert readable(said) == read
+
+
+def test_sentences_are_compared_word_by_word_and_their_formulas_are_read() -> None:
+    said = "There are $m + 1$ bars, four in all."
+    slip = ENTRIES[1].slip.model_copy(update={"corrected": "There are $m - 1$ bars, in all."})
+    wrong = entry("text.2", said, "section 1", slip, translated=True)
+    one, other = compared(records(wrong)[0]) or (None, None)
+    assert one is not None
+    assert other is not None
+    assert [part for part, differs in one.formula.parts if differs] == [read_formula("m + 1"), "four"]
+    assert [part for part, differs in other.formula.parts if differs] == [read_formula("m - 1")]
+    found = Findings(findings().about, records(wrong))
+    assert '<mark><math displaystyle="true">' in html.page(found)
+    assert r"\markedtext{$m + 1$}" in latex.page(found)
+
+
+def test_passages_without_text_are_told_by_their_lines() -> None:
+    assert [part.why for part in findings().unjudged] == [PASSAGES[0].aside[0].why, PASSAGES[1].why]
+    assert "line 4" in text.page(findings())

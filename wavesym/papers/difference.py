@@ -1,0 +1,152 @@
+"""Where two formulas differ: both trees with the parts marked that are not in the other.
+
+The cheapest way to make one of the other is found, node by node: parts in a row (terms, factors, indices) may be left
+out or put in, and what can neither be kept nor mended part by part is marked as a whole. What it costs is how many
+letters and numbers are marked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields, is_dataclass, replace
+from functools import cache
+from typing import Any
+
+from wavesym.papers.tree import Addition, Group, Marked, Minus, Number, Power, Product, Symbol, Tree
+
+
+def marked(before: Tree, after: Tree) -> tuple[Tree, Tree]:
+    """Both formulas, with `Marked` around what differs; around nothing where they share nothing."""
+    _, one, other = _compared(before, after)
+    return (before, after) if isinstance(one, Marked) and isinstance(other, Marked) else (one, other)
+
+
+def marked_ranges(before: Sequence[Tree], after: Sequence[Tree]) -> tuple[tuple[Tree, ...], tuple[Tree, ...]]:
+    """Both lists of ranges, with what differs marked."""
+    _, one, other = _rows(tuple(before), tuple(after))
+    return one, other
+
+
+_Pair = tuple[int, Any, Any]
+
+
+@cache
+def _compared(a: Any, b: Any) -> _Pair:
+    if a == b:
+        return 0, a, b
+    whole = _size(a) + _size(b), _marked(a), _marked(b)
+    return min((whole, *_mended(a, b)), key=lambda pair: pair[0])
+
+
+def _mended(a: Any, b: Any) -> list[_Pair]:
+    """Ways to mark less than the whole."""
+    found = []
+    if isinstance(a, Minus) != isinstance(b, Minus):
+        cost, one, other = _compared(_unsigned(a), _unsigned(b))
+        found.append((cost + 1, _signed(one, a), _signed(other, b)))
+    for kind, part in ((Addition, "terms"), (Product, "factors")):
+        if isinstance(a, kind) or isinstance(b, kind):
+            cost, one, other = _rows(_parts(a, kind, part), _parts(b, kind, part))
+            found.append((cost, _joined(one, kind), _joined(other, kind)))
+    if isinstance(a, Power) != isinstance(b, Power):
+        found.append(_raised(a, b))
+    if isinstance(a, Group) != isinstance(b, Group):
+        found.append(_bracketed(a, b))
+    if type(a) is type(b) and not isinstance(a, (Addition, Product, Number)) and is_dataclass(a):
+        found += _by_field(a, b)
+    return found
+
+
+def _by_field(a: Any, b: Any) -> list[_Pair]:
+    """Part by part; no way where what is no tree differs: a name, a bracket, a sign."""
+    total, one, other = 0, {}, {}
+    for field in fields(a):
+        x, y = getattr(a, field.name), getattr(b, field.name)
+        if x == y:
+            continue
+        if _is_tree(x) and _is_tree(y):
+            cost, one[field.name], other[field.name] = _compared(x, y)
+        elif isinstance(x, tuple) and isinstance(y, tuple) and all(map(_is_tree, x + y)):
+            cost, one[field.name], other[field.name] = _rows(x, y)
+        else:
+            return []
+        total += cost
+    if isinstance(a, Symbol) and a.name == b.name and total >= _size(a) + _size(b):
+        return []
+    return [(total, replace(a, **one), replace(b, **other))]
+
+
+def _raised(a: Any, b: Any) -> _Pair:
+    """One side has an exponent more."""
+    if isinstance(a, Power):
+        cost, base, other = _compared(a.base, b)
+        return cost + _size(a.exponent), Power(base, _marked(a.exponent)), other
+    cost, one, base = _compared(a, b.base)
+    return cost + _size(b.exponent), one, Power(base, _marked(b.exponent))
+
+
+def _bracketed(a: Any, b: Any) -> _Pair:
+    """One side has a pair of brackets more; they are seen without a mark."""
+    if isinstance(a, Group):
+        cost, inner, other = _compared(a.inner, b)
+        return cost + 1, Group(a.bracket, inner), other
+    cost, one, inner = _compared(a, b.inner)
+    return cost + 1, one, Group(b.bracket, inner)
+
+
+@cache
+def _rows(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[int, tuple[Any, ...], tuple[Any, ...]]:
+    """Two rows of parts, aligned as cheaply as can be."""
+    if not a or not b:
+        return sum(map(_size, a + b)), tuple(map(_marked, a)), tuple(map(_marked, b))
+    if a[0] == b[0]:
+        cost, one, other = _rows(a[1:], b[1:])
+        return cost, (a[0], *one), (b[0], *other)
+    ways = []
+    pair, (rest, one, other) = _compared(a[0], b[0]), _rows(a[1:], b[1:])
+    ways.append((pair[0] + rest, (pair[1], *one), (pair[2], *other)))
+    rest, one, other = _rows(a[1:], b)
+    ways.append((_size(a[0]) + rest, (_marked(a[0]), *one), other))
+    rest, one, other = _rows(a, b[1:])
+    ways.append((_size(b[0]) + rest, one, (_marked(b[0]), *other)))
+    return min(ways, key=lambda way: way[0])
+
+
+def _size(tree: Any) -> int:
+    """How many letters, numbers and signs it has."""
+    if isinstance(tree, tuple):
+        return sum(map(_size, tree))
+    if not is_dataclass(tree):
+        return 0
+    own = 1 if isinstance(tree, (Symbol, Minus)) or not any(_is_part(tree, field.name) for field in fields(tree)) else 0
+    return own + sum(_size(getattr(tree, field.name)) for field in fields(tree))
+
+
+def _is_tree(value: Any) -> bool:
+    return is_dataclass(value)
+
+
+def _is_part(tree: Any, name: str) -> bool:
+    value = getattr(tree, name)
+    return _is_tree(value) or isinstance(value, tuple)
+
+
+def _marked(tree: Any) -> Any:
+    return tuple(map(_marked, tree)) if isinstance(tree, tuple) else Marked(tree)
+
+
+def _unsigned(tree: Any) -> Any:
+    return tree.of if isinstance(tree, Minus) else tree
+
+
+def _signed(body: Any, before: Any) -> Marked:
+    """A body with the sign that it had, which is marked."""
+    return Marked(Minus(body) if isinstance(before, Minus) else body, sign_only=True)
+
+
+def _parts(tree: Any, kind: type, part: str) -> tuple[Any, ...]:
+    return getattr(tree, part) if isinstance(tree, kind) else (tree,)
+
+
+def _joined(parts: tuple[Any, ...], kind: type) -> Any:
+    return parts[0] if len(parts) == 1 else kind(parts)

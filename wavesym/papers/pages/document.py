@@ -1,0 +1,209 @@
+"""The verdicts as a document to read and cite, before its markup: what the templates of HTML and LaTeX go through."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from math import sqrt
+from operator import attrgetter
+
+from wavesym import __version__
+from wavesym.papers.about import About, Heading, PrintedTable
+from wavesym.papers.pages.findings import Findings, Survivor, Unjudged, by_place, faults_tried, lines, origin, titles
+from wavesym.papers.pages.reproduction import Reproduction, reproduction
+from wavesym.papers.pages.shown import Shown, Stated, compared, formula, inferred, printed, readable
+from wavesym.papers.record import VERDICTS, Record
+
+SIGNS = {
+    "holds": "✓",
+    "misprint": "✗",
+    "unreadable": "?",
+    "convention": "≈",
+    "model": "≠",
+    "depends": "±",
+    "incomplete": "…",
+    "untested": "!",
+}
+"""Of verdicts, beside their colours: nothing is said by colour alone."""
+
+LONGEST = 90
+"""Characters of a formula that may stand beside another one."""
+SHORTEST = 16
+"""Characters that every column of a table has room for."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A record as it is shown; `right` where what is printed does not hold, below it where both are `wide`."""
+
+    id: str
+    anchor: str
+    verdict: str
+    sign: str
+    where: str
+    lines: str
+    printed: Stated
+    right: Stated | None
+    wide: bool
+    size: int
+    inferred: tuple[Shown, ...]
+    scan: str
+    edits: tuple[tuple[str, str, str], ...]
+    note: str
+    evidence: str
+    origin: str
+    against: str
+    faults: str
+    problems: tuple[str, ...]
+    reproduction: Reproduction | None
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """One error, in all places where it is printed."""
+
+    number: int
+    title: str
+    verdict: str
+    sign: str
+    note: str
+    records: tuple[Judged, ...]
+
+
+@dataclass(frozen=True)
+class Head:
+    """The head of a row or column: a formula, or words, or both; `judged` where it is a record."""
+
+    formula: Shown | None
+    words: str
+    judged: Judged | None = None
+
+
+@dataclass(frozen=True)
+class Laid:
+    """A table as the paper prints it; a cell that is no record is what it names, or None.
+
+    `widths` are parts of the whole, of the heads of rows and of each column.
+    """
+
+    name: str
+    caption: str
+    columns: tuple[Head, ...]
+    rows: tuple[tuple[Head, tuple[Judged | Head | None, ...]], ...]
+    widths: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Document:
+    """All of it, in the order in which it is read."""
+
+    about: About
+    version: str
+    command: str
+    records: int
+    counts: Sequence[tuple[str, str, int, str]]
+    statistics: Sequence[tuple[str, Sequence[int]]]
+    tried: int
+    turned: int
+    mistakes: Sequence[Mistake]
+    tables: Sequence[Laid]
+    holding: Mapping[str, Sequence[tuple[str, Sequence[Judged]]]]
+    unjudged: Sequence[tuple[str, Unjudged]]
+    survivors: Sequence[Survivor]
+
+
+def document(findings: Findings, format: str) -> Document:
+    """The document of some findings."""
+    judged = {record.id: _judged(record, findings.reproduce) for record in findings.records}
+    mistakes = [
+        Mistake(
+            number,
+            titles(group),
+            group[0].verdict,
+            SIGNS[group[0].verdict],
+            _note(group),
+            tuple(judged[record.id] for record in group),
+        )
+        for number, group in enumerate(findings.errors, 1)
+    ]
+    tried, turned = findings.faults
+    used = [verdict for verdict, _ in findings.counts]
+    return Document(
+        findings.about,
+        __version__,
+        f"wavesym verify --published --format {format}",
+        len(findings.records),
+        [(verdict, SIGNS[verdict], count, VERDICTS[verdict]) for verdict, count in findings.counts],
+        [(name, [counts[verdict] for verdict in used]) for name, counts in findings.statistics],
+        tried,
+        turned,
+        mistakes,
+        [_laid(table, judged) for table in findings.about.table if table.ids() & judged.keys()],
+        {name: _by_test([judged[record.id] for record in group]) for name, group in by_place(findings.holding).items()},
+        [(lines(part.lines), part) for part in findings.unjudged],
+        findings.survivors,
+    )
+
+
+def _judged(record: Record, reproduce: bool) -> Judged:
+    entry = record.entry
+    one, other = compared(record) or (printed(record), None)
+    note = entry.slip.note if entry.slip else entry.note
+    return Judged(
+        record.id,
+        re.sub(r"[^\w.-]+", "_", record.id.strip("(")),
+        record.verdict,
+        SIGNS[record.verdict],
+        entry.where.removesuffix(f", {record.id}"),
+        lines(entry.lines),
+        one,
+        other,
+        max(len(entry.printed), len(record.corrected or "")) > LONGEST,
+        len(entry.printed),
+        inferred(record),
+        entry.scan if entry.scan != entry.printed else "",
+        entry.edits,
+        readable(note),
+        readable(" ".join(sentence for sentence in record.evidence if sentence != note)),
+        origin(record),
+        record.against,
+        faults_tried(record),
+        record.problems,
+        reproduction(record) if reproduce else None,
+    )
+
+
+def _by_test(records: Sequence[Judged]) -> list[tuple[str, list[Judged]]]:
+    """Records one after another, put together where they are compared with the same."""
+    return [(against, list(group)) for against, group in groupby(records, attrgetter("against"))]
+
+
+def _note(group: Sequence[Record]) -> str:
+    """The note that an error's records share, if they do."""
+    notes = {record.entry.slip.note if record.entry.slip else "" for record in group}
+    return readable(notes.pop()) if len(notes) == 1 else ""
+
+
+def _laid(table: PrintedTable, judged: Mapping[str, Judged]) -> Laid:
+    columns = tuple(_head(column, judged.get(table.column_head.format(column=column.key))) for column in table.columns)
+    named = {id: _head(Heading(key=id, formula=name)) for id, name in table.names.items()}
+    rows = []
+    for row in table.rows:
+        ids = [table.id(row, column) for column in table.columns]
+        head = _head(row, judged.get(table.row_head.format(row=row.key)))
+        rows.append((head, tuple(judged.get(id) or named.get(id) for id in ids)))
+    return Laid(table.name, table.caption, columns, tuple(rows), _widths(table, judged))
+
+
+def _widths(table: PrintedTable, judged: Mapping[str, Judged]) -> tuple[float, ...]:
+    """By the longest cell of a column; a cell twice as long takes two lines of a column that is not twice as wide."""
+    columns = [[table.id(row, column) for row in table.rows] for column in table.columns]
+    longest = [max(judged[id].size if id in judged else 0 for id in ids) for ids in columns]
+    sizes = [sqrt(max(SHORTEST, size)) for size in (max(len(row.words) for row in table.rows), *longest)]
+    return tuple(round(size / sum(sizes), 3) for size in sizes)
+
+
+def _head(heading: Heading, judged: Judged | None = None) -> Head:
+    return Head(formula(heading.formula) if heading.formula else None, heading.words, judged)

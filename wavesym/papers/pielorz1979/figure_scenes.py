@@ -1,0 +1,261 @@
+"""Figs. 6, 7 and 8: the scenes that their captions describe, the loads tried on them, and the curves that come of it.
+
+The numbers come from the captions' strings, in the data. Curves are the exact motion, rounded last: a load's curve is
+that of unit steps and ramps, shifted and added.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from flint import fmpq
+from numpy.typing import NDArray
+
+from wavesym.errors import SceneError
+from wavesym.exact.contact import contact_ends
+from wavesym.exact.reference import Reference
+from wavesym.model.chain import Chain
+from wavesym.model.node import Parameters
+from wavesym.papers.entries import Paper, read_paper
+from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, ungrouped
+from wavesym.papers.pielorz1979.truth import Loads, Step
+from wavesym.papers.reader import read_formula
+from wavesym.papers.record import shown
+from wavesym.papers.tree import Number, Product, Symbol, Tree, latex
+from wavesym.scene import Scene, lower
+from wavesym.systems.drive import DRIVE
+
+Array = NDArray[np.float64]
+
+SAMPLES = 201
+UNTIL = 20
+"""Until when Figs. 7 and 8 are looked at; Fig. 6 ends with the contact."""
+
+PLOTTED: Mapping[int, Mapping[str, Sequence[str]]] = {
+    6: {"strain": ("1-", "2", "3+"), "displacement": ("0", "1", "1.5", "2", "2.5", "3", "4")},
+    7: {"strain": ("0", "0.5", "1"), "displacement": ("0", "1")},
+    8: {"velocity": ("0.5", "1.5"), "strain": ("0.5", "1.5"), "displacement": ("0.5", "1.5")},
+}
+"""The curves of each figure."""
+
+
+class TriedLoad(NamedTuple):
+    """A shape of load: what each source does, piece by piece."""
+
+    name: str
+    pieces: Loads
+
+
+def _pieces(*pieces: tuple[int | fmpq, int | fmpq]) -> tuple[Step, ...]:
+    return tuple(Step(fmpq(time), fmpq(weight)) for time, weight in pieces)
+
+
+_STEP = _pieces((0, 1))
+_PULSE = _pieces((0, 1), (2, -1))
+_HALF, _QUARTER = fmpq(1, 2), fmpq(1, 4)
+_MOMENTS: Mapping[str, Sequence[Step]] = {
+    "step": _STEP,
+    "pulse of length 1/2": _pieces((0, 1), (_HALF, -1)),
+    "pulse of length 1": _pieces((0, 1), (1, -1)),
+    "pulse of length 2": _PULSE,
+    "pulse of length 10": _pieces((0, 1), (10, -1)),
+    "stairs up": _pieces((0, _QUARTER), (1, _QUARTER), (2, _QUARTER), (3, _QUARTER)),
+    "stairs down": _pieces((0, 1), (1, -_QUARTER), (2, -_QUARTER), (3, -_HALF)),
+}
+"""(3.1): a moment changes in steps."""
+_QUAKES: Mapping[str, Loads] = {
+    "step": {"a": _STEP},
+    "ramp": {"b": _STEP},
+    "slow rise": {"b": _pieces((0, fmpq(1, 8)), (8, fmpq(-1, 8)))},
+    "pulse of length 2": {"a": _PULSE},
+    "triangle of length 4": {"b": _pieces((0, 1), (2, -2), (4, 1))},
+    "one slow swing": {"b": _pieces((0, _HALF), (2, -1), (6, 1), (8, -_HALF))},
+    "fast zigzag": {
+        "b": _pieces((0, 1), (1, -2), (2, 5 * _HALF), (3, -3), (4, 5 * _HALF), (5, -3 * _HALF), (6, _HALF))
+    },
+}
+"""(3.2): an acceleration jumps (a) and bends (b)."""
+SENSES: Mapping[str, int] = {"M_1 = M_2": 1, "M_1 = -M_2": -1}
+"""Equal moments are opposed, as (4.4) counts the last one against positive rotation."""
+
+
+def loads(figure: int, sense: int = 1) -> tuple[TriedLoad, ...]:
+    """The loads that a figure is tried with."""
+    if figure == 6:
+        return (TriedLoad("impact", {"impact": _STEP}),)
+    if figure == 8:
+        return tuple(TriedLoad(name, pieces) for name, pieces in _QUAKES.items())
+    return tuple(
+        TriedLoad(name, {"M1": steps, "M2": [Step(step.time, sense * step.weight) for step in steps]})
+        for name, steps in _MOMENTS.items()
+    )
+
+
+Quantities = tuple[tuple[str, int, fmpq], ...]
+"""What a caption gives: letter, index (0 where there is none), value."""
+
+
+@dataclass(frozen=True)
+class Described:
+    """What a caption describes: a figure, and its quantities."""
+
+    figure: int
+    quantities: Quantities
+
+    def curve(self, load: TriedLoad, quantity: str, place: str) -> Array:
+        """An output under a load at the instants. MeaninglessError where there is none."""
+        total = np.zeros(SAMPLES)
+        for source, steps in load.pieces.items():
+            unit = _unit(self, source, quantity, place)
+            for step in steps:
+                late = int(step.time * (SAMPLES - 1) / UNTIL)
+                total[late:] += float(step.weight) * unit[: SAMPLES - late]
+        return total
+
+    @property
+    def instants(self) -> Array:
+        """The tau of a curve."""
+        return np.linspace(0, float(contact_end(self)) if self.figure == 6 else UNTIL, SAMPLES)
+
+    def scene(
+        self, load: TriedLoad, plotted: Mapping[str, Sequence[str]] | None = None, until: str | None = None
+    ) -> Scene:
+        """The scene under a load, with the curves of its figure or others. MeaninglessError where it is none."""
+        end = until or (contact_end(self) if self.figure == 6 else str(UNTIL))
+        acting: list[Mapping[str, object]] = []
+        for source, steps in load.pieces.items():
+            times, weights = [str(step.time) for step in steps], [str(step.weight) for step in steps]
+            if self.figure == 7:
+                acting.append({"body": int(source.removeprefix("M")), "times": times, "steps": weights})
+            elif self.figure == 8:
+                none = ["0"] * len(steps)
+                acting.append({"times": times, **{kind: weights if kind == source else none for kind in "ab"}})
+        try:
+            return Scene(
+                name=f"figure_{self.figure}",
+                system=_system(self),
+                load=acting,
+                output={"until": end, **(plotted or PLOTTED[self.figure])},
+            )
+        except SceneError as error:
+            raise MeaninglessError(str(error)) from None
+
+
+def _unit(described: Described, source: str, quantity: str, place: str) -> Array:
+    """An output under a unit of one source."""
+    plotted = PLOTTED[described.figure]
+    known = place in plotted.get(quantity, ())
+    return _units(described, source, None if known else (quantity, place))[f"{quantity}@{place}"]
+
+
+@cache
+def _units(described: Described, source: str, other: tuple[str, str] | None) -> Mapping[str, Array]:
+    """The plotted outputs under a unit of one source, at once as they have much in common; or one that is not plotted.
+
+    MeaninglessError where it is no output.
+    """
+    outputs = None if other is None else {other[0]: (other[1],)}
+    try:
+        reference = Reference(lower(described.scene(TriedLoad("unit", {source: _STEP}), outputs)))
+    except SceneError as error:
+        raise MeaninglessError(str(error)) from None
+    values = reference.values(np.linspace(0, reference.tau_max, SAMPLES).tolist())
+    return {output.name: np.array(row) for output, row in zip(reference.model.probes, values, strict=True)}
+
+
+@cache
+def contact_end(described: Described) -> str:
+    """When the contact at x = 2 of Fig. 6 opens, to 20 digits. MeaninglessError where it does not."""
+    ends = contact_ends(lower(described.scene(loads(6)[0], {"strain": ("2",)}, str(UNTIL))))
+    if not ends:
+        raise MeaninglessError("the contact does not open")
+    return ends[0].digits
+
+
+def described(figure: int, formula: Tree) -> Described:
+    """What equations such as kappa_1 = 0.1 describe; m, where it is not given, is as large as the indices need.
+
+    MeaninglessError where they are no quantities.
+    """
+    found: dict[tuple[str, int], fmpq] = {}
+    scope = Scope()
+    for equation in items(formula):
+        left, right = sides(equation)
+        factor, symbol = _factor(ungrouped(left))
+        name = symbol.accent + symbol.name, (*scope.indices(symbol), 0)[0]
+        if name in found:
+            raise MeaninglessError(f"{latex(symbol)} is given twice")
+        found[name] = fmpq(scope.value(right)) / scope.value(factor)
+    last = max((index for _, index in found), default=0)
+    found.setdefault(("m", 0), fmpq(last + {6: 1, 7: -1, 8: 0}[figure]))
+    return Described(figure, tuple((letter, index, value) for (letter, index), value in sorted(found.items())))
+
+
+def _factor(left: Tree) -> tuple[Tree, Symbol]:
+    match left:
+        case Symbol():
+            return Number("1"), left
+        case Product((Number() as factor, Symbol() as symbol)):
+            return factor, symbol
+    raise MeaninglessError(f"{latex(left)} is no quantity")
+
+
+def _system(described: Described) -> Mapping[str, object]:
+    """The system of a scene. MeaninglessError where quantities are missing, or are too many."""
+    values = {(letter, index): value for letter, index, value in described.quantities}
+
+    def taken(letter: str, indices: Iterable[int]) -> list[fmpq]:
+        try:
+            return [values.pop((letter, index)) for index in indices]
+        except KeyError as error:
+            raise MeaninglessError(f"no {letter}_{error.args[0][1]}") from None
+
+    (size,) = taken("m", (0,))
+    if size.denom() != 1 or size < 1:
+        raise MeaninglessError(f"m = {size}")
+    m = int(size.numer())
+    made: dict[str, object] = {"m": m}
+    if described.figure == 6:
+        bodies = range(1, m, 2)
+        made |= {"type": "collision", "kappa": _texts(taken(r"\kappa", bodies))}
+        made |= {"velocity": _texts(taken(r"\barv", bodies))}
+    elif described.figure == 7:
+        made |= {"type": "drive", **_drive(taken(r"\gamma", range(1, m + 2)))}
+    else:
+        made |= {"type": "building", "kappa": _texts(taken(r"\kappa", range(m + 1))), "base": "force"}
+    if values:
+        raise MeaninglessError(f"m = {m} has no {', no '.join(f'{letter}_{index}' for letter, index in values)}")
+    return made
+
+
+def _drive(rates: Sequence[fmpq]) -> Mapping[str, object]:
+    """One shaft with bodies of these rates: a body's rate goes with kappa_1, and against its inertia."""
+    if len(rates) != 2 or not all(rates):
+        raise MeaninglessError(f"rates {shown(tuple(rates))} for the two bodies of one shaft")
+    equal = Chain(DRIVE, 1, Parameters(kappa={1: fmpq(1)}, inertia={1: fmpq(1), 2: fmpq(1)}))
+    first, second = (fmpq(node.alpha + node.beta) / 2 for node in equal.nodes)
+    kappa = rates[0] / first
+    return {"kappa": [str(kappa)], "inertia": ["1", str(kappa * second / rates[1])]}
+
+
+def _texts(values: Iterable[fmpq]) -> list[str]:
+    return [str(value) for value in values]
+
+
+@cache
+def section() -> Paper:
+    """The data of section 5."""
+    data = Path(__file__).with_name("data")
+    return read_paper([data / "section_5.toml"], data / "hashes.txt")
+
+
+@cache
+def figure(number: int) -> Described:
+    """What the caption of a figure describes."""
+    (entry,) = (entry for entry in section().entries() if entry.id == f"Fig.{number}.caption")
+    return described(number, read_formula(entry.printed))
