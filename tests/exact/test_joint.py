@@ -9,7 +9,7 @@ from flint import arb, arb_mat, arb_poly, ctx, fmpq, fmpq_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wavesym.exact.joint import STILL, JointLaw, JointMotion, Known
+from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
 from wavesym.model.network import Bar, Link, Network, Point
 
 SMALL = st.fractions(0, 4, max_denominator=6).map(lambda x: fmpq(x.numerator, x.denominator))
@@ -39,7 +39,7 @@ def moving(joint, velocity=None, displacement=None):
 
 
 def wave(powers, error=0):
-    return Known(arb_poly(powers), arb(error))
+    return Enclosed(arb_poly(powers), arb(error))
 
 
 def driven(gamma, powers, start, u):

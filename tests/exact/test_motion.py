@@ -13,7 +13,7 @@ from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import motion as room
 from wavesym.exact.ball import Balls
-from wavesym.exact.joint import Known
+from wavesym.exact.joint import Enclosed
 from wavesym.exact.motion import Motion, is_zero
 from wavesym.exact.network_waves import SentWave
 from wavesym.model.loads import Applied
@@ -68,7 +68,7 @@ def by_hand(scene, right, left):
     waves = motion._waves(53)
     for side, known in ((0, right), (1, left)):
         for x, stretches in known.items():
-            held = Known(arb_poly(), arb(0))
+            held = Enclosed(arb_poly(), arb(0))
             starts = [fmpq(n) for n in range(-1, len(stretches))]
             waves.sent[End(x if side == 0 else x - 1, side)] = SentWave(starts, [held, *stretches])
     motion._solved = dict.fromkeys((53, *(2**k for k in range(6, 14))), waves)  # at every precision
@@ -76,7 +76,7 @@ def by_hand(scene, right, left):
 
 
 def waves(count, *powers, error=0):
-    return [Known(arb_poly([fmpq(c) for c in powers]), arb(error))] * count
+    return [Enclosed(arb_poly([fmpq(c) for c in powers]), arb(error))] * count
 
 
 @pytest.mark.parametrize(
@@ -93,7 +93,7 @@ def test_strain_is_the_difference_of_the_waves_and_velocity_their_sum(output, ex
     """One polynomial in tau for the whole of a wave: as each panel has its own start, the waves are cut to it here."""
     sides = {}
     for name, (start, slope) in {"right": (3, 5), "left": (7, 11)}.items():
-        sides[name] = [Known(arb_poly([start + slope * n, slope]), arb(0)) for n in range(4)]
+        sides[name] = [Enclosed(arb_poly([start + slope * n, slope]), arb(0)) for n in range(4)]
     motion = by_hand(drive(3, **output), {1: sides["right"]}, {2: sides["left"]})
     (place,) = motion.probes
     for tau in (fmpq(1), fmpq(5, 4), fmpq(3, 2), fmpq(7, 4), fmpq(2), fmpq(13, 5)):
@@ -130,7 +130,7 @@ def test_errors_of_velocity_pile_up_in_displacement():
 
 
 def test_a_displacement_begins_at_0_and_goes_on_where_it_was():
-    steady = [Known(arb_poly([1, 2 + n]), arb(0)) for n in range(4)]
+    steady = [Enclosed(arb_poly([1, 2 + n]), arb(0)) for n in range(4)]
     motion = by_hand(drive(3, displacement=["5/4"]), {1: steady}, {2: steady})
     segments = motion.segments(motion.probes[0], ctx.prec)
     assert Balls(segments).at(fmpq(0)) == 0

@@ -11,7 +11,7 @@ import wavesym
 from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import knots as room
-from wavesym.exact.joint import Known
+from wavesym.exact.joint import Enclosed
 from wavesym.exact.knots import Knots
 from wavesym.exact.network_waves import NetworkWaves, SentWave
 from wavesym.model.network import Bar, End, Link, Network, Point
@@ -71,14 +71,14 @@ def test_waves_are_where_they_are_said_to_be(name, terms):
 
 @pytest.mark.parametrize("error", [fmpq(1), fmpq(1, 8)])
 def test_a_wave_is_anywhere_within_its_error(error):
-    value = Known(arb_poly([3, 2]), arb(error)).at(fmpq(5))
+    value = Enclosed(arb_poly([3, 2]), arb(error)).at(fmpq(5))
     assert value.contains(13 + arb(error))
     assert value.contains(13 - arb(error))
-    assert Known(arb_poly([3, 2]), arb(0)).at(fmpq(5)) == 13
+    assert Enclosed(arb_poly([3, 2]), arb(0)).at(fmpq(5)) == 13
 
 
 def test_the_wave_at_a_stretchs_start_is_the_one_that_begins_there():
-    stretches = [Known(arb_poly([k]), arb(0)) for k in range(3)]
+    stretches = [Enclosed(arb_poly([k]), arb(0)) for k in range(3)]
     wave = SentWave([fmpq(-1), fmpq(0), fmpq(1, 3)], stretches)
     for tau, place, offset in ((fmpq(-1, 2), 0, fmpq(1, 2)), (fmpq(0), 1, fmpq(0)), (fmpq(1, 3), 2, fmpq(0))):
         assert wave.at(tau) == (stretches[place], offset)

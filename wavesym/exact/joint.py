@@ -104,7 +104,7 @@ class JointLaw:
 
 
 @dataclass(frozen=True)
-class Known:
+class Enclosed:
     """A function on a stretch: |function - polynomial| <= error."""
 
     polynomial: arb_poly
@@ -116,7 +116,7 @@ class Known:
         return value + arb(0, self.error) if self.error != 0 else value
 
 
-STILL = Known(arb_poly(), arb(0))
+STILL = Enclosed(arb_poly(), arb(0))
 
 
 @dataclass
@@ -128,14 +128,16 @@ class JointMotion:
     displacement: list[arb]
     unknown: arb = field(default_factory=lambda: arb(0))
 
-    def moved(self, forces: Sequence[Known], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int) -> list[Known]:
+    def moved(
+        self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int
+    ) -> list[Enclosed]:
         """The velocities of the points on a stretch, in so many terms; afterwards the joint is at its end.
 
         `prescribed` are the velocities of the points whose motion is given, exact.
         """
         q, u = self._series(forces, prescribed, terms)
         errors = self._errors(forces, q, u, length)
-        result = [Known(arb_poly(c), e) for c, e in zip(q, errors, strict=True)]
+        result = [Enclosed(arb_poly(c), e) for c, e in zip(q, errors, strict=True)]
         self._move_on(q, u, arb(length))
         return result
 
@@ -154,7 +156,7 @@ class JointMotion:
         self.unknown = (root * root).upper()
 
     def _series(
-        self, forces: Sequence[Known], prescribed: Sequence[fmpq_poly], terms: int
+        self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int
     ) -> tuple[list[list[arb]], list[list[arb]]]:
         """The coefficients of q and u: middles, whatever rounding made of them."""
         law = self.law
@@ -198,7 +200,7 @@ class JointMotion:
                     u[k].append((q[k][n] / (n + 1)).mid())
         return q, u
 
-    def _errors(self, forces: Sequence[Known], q: list[list[arb]], u: list[list[arb]], length: fmpq) -> list[arb]:
+    def _errors(self, forces: Sequence[Enclosed], q: list[list[arb]], u: list[list[arb]], length: fmpq) -> list[arb]:
         """What the velocities may be off by, at most, on the stretch; and the energy of it at the end."""
         law = self.law
         h = arb(length)

@@ -11,7 +11,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
-from wavesym.exact.joint import STILL, JointLaw, Known
+from wavesym.exact.joint import STILL, Enclosed, JointLaw
 from wavesym.exact.knots import Knots
 from wavesym.exact.network_waves import NetworkWaves
 from wavesym.model.model import Model
@@ -118,7 +118,7 @@ def _segments(waves: NetworkWaves, probe: Probe, stretches: Iterable[tuple[fmpq,
         yield Segment(start, {fmpq(0): polynomial})
 
 
-def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Known:
+def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Enclosed:
     """Strain, or velocity, from tau = `start` on: the left-going wave less, or plus, the right-going one."""
     polynomial, error = arb_poly(), arb(0)
     if probe.point is not None:
@@ -131,7 +131,7 @@ def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Known:
                 return STILL
         elif (point := waves.network.point_at(end)) in waves.velocities:  # prescribed: as exact as it is given
             known, ratio = _velocity(waves, point, start), arb(bar.ratios[end.side])
-            return Known(ratio * known.polynomial, (abs(ratio) * known.error).upper())
+            return Enclosed(ratio * known.polynomial, (abs(ratio) * known.error).upper())
     right, left = probe.weights
     for factor, side, way in ((right, 0, probe.place), (left, 1, 1 - probe.place)):
         known, offset = waves.sent[End(probe.rod - 1, side)].at(start - way * bar.delay)
@@ -141,12 +141,12 @@ def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Known:
         error += known.error
     if probe.quantity == "strain" and bar.speed != 1:
         polynomial, error = polynomial * arb(1 / bar.speed), (error / arb(bar.speed)).upper()
-    return Known(polynomial, error)
+    return Enclosed(polynomial, error)
 
 
-def _velocity(waves: NetworkWaves, point: int, start: fmpq) -> Known:
+def _velocity(waves: NetworkWaves, point: int, start: fmpq) -> Enclosed:
     known, offset = waves.velocities[point].at(start)
-    return Known(known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial, known.error)
+    return Enclosed(known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial, known.error)
 
 
 def waves_size(model: Model, until: fmpq) -> int:

@@ -9,7 +9,7 @@ from heapq import heapify, heappop, heappush
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
-from wavesym.exact.joint import STILL, JointLaw, JointMotion, Known
+from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
 from wavesym.exact.node_rules import joint_rule
 from wavesym.model.loads import Applied
 from wavesym.model.network import End, Joint, Network
@@ -20,9 +20,9 @@ class SentWave:
     """The wave sent into a bar from one of its ends, stretch by stretch."""
 
     starts: list[fmpq] = field(default_factory=list)
-    stretches: list[Known] = field(default_factory=list)
+    stretches: list[Enclosed] = field(default_factory=list)
 
-    def at(self, tau: fmpq) -> tuple[Known, fmpq]:
+    def at(self, tau: fmpq) -> tuple[Enclosed, fmpq]:
         """The stretch that tau is in, and how long after its start."""
         place = bisect_right(self.starts, tau) - 1
         return self.stretches[place], tau - self.starts[place]
@@ -41,7 +41,7 @@ class NetworkWaves:
         for number, bar in enumerate(network.bars):
             for side in (0, 1):
                 held = bar.held(side)
-                constant = Known(arb_poly([arb(held)]), arb(0)) if held != 0 else STILL
+                constant = Enclosed(arb_poly([arb(held)]), arb(0)) if held != 0 else STILL
                 self.sent[End(number, side)] = SentWave([-bar.delay], [constant])
         shown = {network.point_at(end) for end in self.sent if network.bars[end.bar].ratios[end.side] == 1}
         self.velocities = {
@@ -93,11 +93,11 @@ class _MovingJoint:
         law = self._motion.law
         self._scatters = not (law.heavy or law.springs) and len(law.light) == len(joint.points)
 
-    def sends(self, arriving: Sequence[Known], start: fmpq, length: fmpq, terms: int) -> list[Known]:
+    def sends(self, arriving: Sequence[Enclosed], start: fmpq, length: fmpq, terms: int) -> list[Enclosed]:
         """What goes back into the ends on a stretch."""
         acting = [load.on(start) for load in self._loads]
         rule = joint_rule()
-        forces = [Known(arb_poly([arb(rule.load * c) for c in p.coeffs()]), arb(0)) for p in acting]
+        forces = [Enclosed(arb_poly([arb(rule.load * c) for c in p.coeffs()]), arb(0)) for p in acting]
         bars = [self._network.bars[end.bar] for end, _ in self._joint.ends]
         factors = [
             rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance
@@ -107,7 +107,7 @@ class _MovingJoint:
             return self._scattered(arriving, forces, factors)
         for (_, point), wave, factor in zip(self._joint.ends, arriving, map(arb, factors), strict=True):
             k = self._place[point]
-            forces[k] = Known(
+            forces[k] = Enclosed(
                 forces[k].polynomial + factor * wave.polynomial, forces[k].error + abs(factor) * wave.error
             )
         self.velocities = velocities = self._motion.moved(forces, acting, length, terms)
@@ -115,10 +115,12 @@ class _MovingJoint:
         for (end, point), wave in zip(self._joint.ends, arriving, strict=True):
             ratio = arb(self._network.bars[end.bar].ratios[end.side])
             q = velocities[self._place[point]]
-            result.append(Known(ratio * q.polynomial - wave.polynomial, (abs(ratio) * q.error + wave.error).upper()))
+            result.append(Enclosed(ratio * q.polynomial - wave.polynomial, (abs(ratio) * q.error + wave.error).upper()))
         return result
 
-    def _scattered(self, arriving: Sequence[Known], forces: Sequence[Known], factors: Sequence[fmpq]) -> list[Known]:
+    def _scattered(
+        self, arriving: Sequence[Enclosed], forces: Sequence[Enclosed], factors: Sequence[fmpq]
+    ) -> list[Enclosed]:
         """Where nothing has mass or springs: sums with exact factors, so that an absorbing end sends back exactly 0."""
         inverse, points = self._motion.law.inverse, range(len(self._joint.points))
         places = [self._place[point] for _, point in self._joint.ends]
@@ -160,17 +162,17 @@ class _Acting:
         return self._total
 
 
-def _sum(terms: Sequence[tuple[fmpq, Known]]) -> Known:
+def _sum(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
     """A sum with exact factors; what has the factor 0 is not in it."""
     polynomial, error = arb_poly(), arb(0)
     for factor, known in terms:
         if factor != 0:
             polynomial += arb(factor) * known.polynomial
             error += abs(arb(factor)) * known.error
-    return Known(polynomial, error.upper())
+    return Enclosed(polynomial, error.upper())
 
 
-def _later(known: Known, by: fmpq) -> Known:
+def _later(known: Enclosed, by: fmpq) -> Enclosed:
     if by == 0 or known.polynomial.length() <= 1:
         return known
-    return Known(known.polynomial(arb_poly([arb(by), 1])), known.error)
+    return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error)

@@ -34,7 +34,7 @@ _NAMED = {"velocity": "velocity", "force": "force (impedance times strain), pull
 
 
 @dataclass(frozen=True)
-class Line:
+class ChainLine:
     """Bars one after another: the main line of a chain, or a branch; where each of its nodes is along it."""
 
     name: str
@@ -83,7 +83,7 @@ def draw(model: Model) -> Figure:
     return figure
 
 
-def _lines(network: Network) -> Iterator[Line]:
+def _lines(network: Network) -> Iterator[ChainLine]:
     """The bars in chains: each goes on where the last one ended; what begins at an inner point is a branch."""
     left = list(range(len(network.bars)))
     while left:
@@ -101,7 +101,7 @@ def _lines(network: Network) -> Iterator[Line]:
             if network.bars[following].left != bar.right:
                 nodes.append((nearest(x), network.bars[following].left))
             bars.append(following)
-        yield Line(f"from point {nodes[0][1]}" if bars[0] else "", tuple(bars), tuple(nodes))
+        yield ChainLine(f"from point {nodes[0][1]}" if bars[0] else "", tuple(bars), tuple(nodes))
 
 
 def _continues(network: Network, end: int, following: int) -> bool:
@@ -111,7 +111,7 @@ def _continues(network: Network, end: int, following: int) -> bool:
     return bar.ratios[0] == 1 and (end == bar.left or held)
 
 
-def _image(field: Field, line: Line, until: float, quantity: str) -> list[tuple[Array, Array, Array]]:
+def _image(field: Field, line: ChainLine, until: float, quantity: str) -> list[tuple[Array, Array, Array]]:
     """The cells of every bar of a line: their edges, and the values in them, (rows, columns)."""
     edges = np.linspace(0.0, until, _ROWS + 1)
     tau = edges[:-1] + _OFF * (edges[1] - edges[0])
@@ -127,7 +127,7 @@ def _image(field: Field, line: Line, until: float, quantity: str) -> list[tuple[
     return images
 
 
-def _frame(axes: Axes, network: Network, line: Line, until: float, first: bool) -> None:
+def _frame(axes: Axes, network: Network, line: ChainLine, until: float, first: bool) -> None:
     masses: Sequence[float] = [nearest(network.points[point].mass) for _, point in line.nodes]
     for (x, point), mass in zip(line.nodes, masses, strict=True):
         axes.axvline(x, color="black", linewidth=_THICK if mass else _THIN)

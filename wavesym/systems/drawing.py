@@ -12,16 +12,16 @@ from wavesym.fields.table import shown, wrong
 from wavesym.model.network import Bar, Link, Network, Point
 from wavesym.model.node import UnitLoad
 from wavesym.numbers.doubles import rational
-from wavesym.systems.parts import Branch, LinkPart, MotionPart, Part, PointPart, RodPart
+from wavesym.systems.parts import Branch, ChainPart, LinkPart, MotionPart, PointPart, RodPart
 
 Keys = tuple[str | int, ...]
-Placed = tuple[int, Part | str]
+Placed = tuple[int, ChainPart | str]
 """A node of a line, and which of the parts it is."""
 MAIN = ""
 """The name of the line that is no branch."""
 
 
-def drawn(parts: Sequence[Part | str], branches: Sequence[Branch]) -> Drawing:
+def drawn(parts: Sequence[ChainPart | str], branches: Sequence[Branch]) -> Drawing:
     """A chain and its branches. Raises the error of `table.wrong`."""
     pen = _Pen()
     pen.line(MAIN, parts, ("parts",))
@@ -105,7 +105,7 @@ class _Pen:
     def line(
         self,
         name: str,
-        parts: Sequence[Part | str],
+        parts: Sequence[ChainPart | str],
         at: Keys,
         begin: int | None = None,
         ratio: Fraction = Fraction(1),
@@ -161,7 +161,7 @@ class _Pen:
     def _link(self, part: RodPart | LinkPart, left: int, right: int, ratio: Fraction) -> None:
         self.links.append(Link(left, right, rational(part.spring), rational(part.dashpot), rational(ratio)))
 
-    def _become(self, point: int, part: Part | str, rods: Sequence[RodPart], at: Keys) -> None:
+    def _become(self, point: int, part: ChainPart | str, rods: Sequence[RodPart], at: Keys) -> None:
         """Give a point what a part says of it; `rods` are those beside it."""
         if isinstance(part, PointPart):
             velocities = {rod.velocity for rod in rods}
@@ -205,7 +205,7 @@ class _Pen:
             raise wrong("a joint without mass, rod or dashpot given, one of these at it expected", "parts")
 
 
-def _alternating(parts: Sequence[Part | str], at: Keys) -> tuple[list[Placed | None], list[RodPart | LinkPart]]:
+def _alternating(parts: Sequence[ChainPart | str], at: Keys) -> tuple[list[Placed | None], list[RodPart | LinkPart]]:
     """A line as nodes and what is between them; None for a node that is not written: a joint, or a free end."""
     nodes: list[Placed | None] = [None]
     between: list[RodPart | LinkPart] = []

@@ -49,13 +49,13 @@ PartName = Annotated[str, PlainValidator(_name)]
 NotNegative = Annotated[Fraction, PlainValidator(_not_negative), PlainSerializer(str, return_type=str)]
 
 
-class Part(SceneTable):
+class ChainPart(SceneTable):
     """Something between the ends of a chain."""
 
     key: ClassVar[str]
 
 
-class RodPart(Part):
+class RodPart(ChainPart):
     """An elastic rod; a spring and a dashpot in parallel to it go from end to end."""
 
     key: ClassVar[str] = "rod"
@@ -70,7 +70,7 @@ class RodPart(Part):
     name: PartName | None = None
 
 
-class PointPart(Part):
+class PointPart(ChainPart):
     """What moves as one: a rigid mass or a massless joint, with a dashpot and a spring to the ground."""
 
     velocity: Exact | None = None
@@ -105,7 +105,7 @@ class JointPart(PointPart):
     joint: Annotated[bool, PlainValidator(_true)] = Field(description="true")
 
 
-class MotionPart(Part):
+class MotionPart(ChainPart):
     """An end that moves as its load says."""
 
     key: ClassVar[str] = "motion"
@@ -117,7 +117,7 @@ class MotionPart(Part):
     name: PartName | None = None
 
 
-class LinkPart(Part):
+class LinkPart(ChainPart):
     """A spring and a dashpot between the parts on its two sides."""
 
     key: ClassVar[str] = "spring"
@@ -132,11 +132,11 @@ class LinkPart(Part):
         return self
 
 
-KINDS: tuple[type[Part], ...] = (RodPart, MassPart, JointPart, MotionPart)
+KINDS: tuple[type[ChainPart], ...] = (RodPart, MassPart, JointPart, MotionPart)
 
 
-def _part(value: object) -> Part | str:
-    if isinstance(value, Part):
+def _part(value: object) -> ChainPart | str:
+    if isinstance(value, ChainPart):
         return value
     if isinstance(value, str):
         if value not in MARKS:
@@ -144,7 +144,7 @@ def _part(value: object) -> Part | str:
         return value
     if not isinstance(value, Mapping):
         raise wrong(f"{shown(value)} given, a table, or one of {', '.join(MARKS)}, expected")
-    kind: type[Part] = next((kind for kind in KINDS if kind.key in value), LinkPart)
+    kind: type[ChainPart] = next((kind for kind in KINDS if kind.key in value), LinkPart)
     if kind is LinkPart and not value.keys() & {"spring", "dashpot"}:
         raise wrong("no kind given, rod, mass, joint, motion, spring or dashpot expected")
     try:
@@ -165,18 +165,18 @@ def _parts(value: object) -> tuple[Any, ...]:
     return tuple(found)
 
 
-def _written(parts: tuple[Part | str, ...]) -> list[Any]:
+def _written(parts: tuple[ChainPart | str, ...]) -> list[Any]:
     return [part if isinstance(part, str) else part.model_dump(exclude_defaults=True) for part in parts]
 
 
-def told(parts: tuple[Part | str, ...]) -> str:
+def told(parts: tuple[ChainPart | str, ...]) -> str:
     """Parts in a line; of a long one the first."""
     words = [part if isinstance(part, str) else _told(part) for part in parts[:_MOST_TOLD]]
     more = [f"... and {len(parts) - _MOST_TOLD} more"] if len(parts) > _MOST_TOLD else []
     return " | ".join([*words, *more])
 
 
-def _told(part: Part) -> str:
+def _told(part: ChainPart) -> str:
     given = part.model_dump(exclude_defaults=True)
     keys = sorted(given, key=lambda key: (key == "name", key != part.key))
     return ", ".join(key if given[key] is True else f"{key} {given[key]}" for key in keys)

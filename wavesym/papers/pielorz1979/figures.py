@@ -192,7 +192,7 @@ def _example(scene: Described, load: TriedLoad, found: Finding) -> Example:
 
 def _shown(scene: Described, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Example:
     model = lower(scene.scene(load))
-    text = written(model.chain, load.pieces, model.until, outputs)
+    text = written(model.named, load.pieces, model.until, outputs)
     return Example(text, f"wavesym run SCENE --samples {SAMPLES}", look)
 
 

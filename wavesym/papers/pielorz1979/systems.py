@@ -11,6 +11,7 @@ from wavesym.derivation.delay import delay_equations
 from wavesym.exact.contact import contact_ends
 from wavesym.model.loads import Applied
 from wavesym.model.model import Labels, Model
+from wavesym.model.network import network_of
 from wavesym.model.probe import Probe
 from wavesym.papers.entries import Entry
 from wavesym.papers.exact_tables import meeting
@@ -115,5 +116,5 @@ def _first_opening(velocities: tuple[int, ...]) -> arb:
     probes = tuple(Probe(f"strain@{x}", "strain", x, fmpq(1)) for x in range(2, exact.m, 2))
     labels = Labels({}, (), "")
     impact = (Applied("impact", fmpq(0), fmpq(1)),)
-    ends = contact_ends(Model("meeting", exact.chain, impact, probes, fmpq(UNTIL), fmpq(1), labels))
+    ends = contact_ends(Model("meeting", exact.chain, network_of(exact.chain), impact, probes, fmpq(UNTIL), fmpq(1), labels))
     return min((end.tau for end in ends), default=arb.pos_inf(), key=float)
