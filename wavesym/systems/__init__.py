@@ -8,10 +8,18 @@ from wavesym.systems.drive import Drive
 from wavesym.systems.explicit import ExplicitChain
 from wavesym.systems.preset import Preset
 
-__all__ = ["PRESETS", "SYSTEMS", "Building", "Collision", "Drive", "ExplicitChain", "Preset", "SystemTable"]
+__all__ = ["SYSTEMS", "Building", "Collision", "Drive", "ExplicitChain", "Preset", "SystemTable", "presets"]
 
 SystemTable = Preset | ExplicitChain
-PRESETS: dict[str, type[Preset]] = {"collision": Collision, "drive": Drive, "building": Building}
+SYSTEMS: dict[str, type[SystemTable]] = {
+    "collision": Collision,
+    "drive": Drive,
+    "building": Building,
+    "chain": ExplicitChain,
+}
 """By the `type` that a scene says; one more system is one more entry."""
-SYSTEMS: dict[str, type[SystemTable]] = {**PRESETS, "chain": ExplicitChain}
-"""All that a scene's `type` may be."""
+
+
+def presets() -> dict[str, type[Preset]]:
+    """Those of them that are derived for any m."""
+    return {name: table for name, table in SYSTEMS.items() if issubclass(table, Preset)}
