@@ -20,6 +20,7 @@ import wavesym
 
 ROOT = Path(wavesym.__file__).parents[1]
 SCENES = ("building_half_roof", "building_m2", "collision_m4", "drive_equal", "drive_m1")
+CHAINS = ("damped_building", "geared_drive", "stepped_shaft")
 HEAVY = {"sympy", "numpy", "scipy", "flint", "pydantic", "jinja2"}
 
 
@@ -103,7 +104,7 @@ def test_a_checkout_finds_its_templates_and_scenes(checkout: Path, here: dict[st
     found = python("-c", "import wavesym; print(wavesym.__file__)", cwd=tmp_path, path=(checkout,))
     assert Path(found.strip()).is_relative_to(checkout)
     listed = python("-m", "wavesym", "scenes", cwd=tmp_path, path=(checkout,)).splitlines()
-    assert [line.split()[0] for line in listed] == list(SCENES)
+    assert [line.split()[0] for line in listed] == sorted([*SCENES, *CHAINS])
     assert len(here) == len(SCENES) * 5
     assert generated(tmp_path / "out", path=(checkout,)) == here
 
@@ -124,7 +125,7 @@ def contents(project: Path) -> set[str]:
     return {
         *modules,
         *(f"wavesym/{template}" for template in templates),
-        *(f"wavesym/scene/builtin/{scene}.toml" for scene in SCENES),
+        *(f"wavesym/scene/builtin/{scene}.toml" for scene in (*SCENES, *CHAINS)),
         *(f"wavesym/scene/first/{system}.toml" for system in ("building", "collision", "drive")),
         "wavesym/rivals/characteristics.c",
         "wavesym/py.typed",

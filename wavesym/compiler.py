@@ -88,7 +88,7 @@ def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
 def table(scene: Scene, intervals: int | None = None) -> Table:
     """The unit responses of all sources of the scene's system."""
     model = lower(scene)
-    return full_table(model.chain, intervals, rational(model.horizon()))
+    return full_table(model.named, intervals, rational(model.horizon()))
 
 
 def tables_text(scene: Scene, intervals: int | None, format: str) -> Iterator[str]:
@@ -102,7 +102,7 @@ def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tu
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """
     model = lower(scene)
-    symbols = in_rates(symbolic(model.chain))
+    symbols = in_rates(symbolic(model.named))
     until = rational(model.horizon())
     refuse_costly(symbols.chain, intervals, until)
     made = full_table(symbols.chain, intervals, until, most=MOST_FACTORED)
@@ -129,7 +129,7 @@ def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
 
     if isinstance(source, str):
         return derivation(source, m, format)
-    return scene_derivation(source.name, symbolic(lower(source).chain), format)
+    return scene_derivation(source.name, symbolic(lower(source).named), format)
 
 
 def walks(source: str | Scene, m: int | None, intervals: int, format: str = "text") -> str:
@@ -143,7 +143,7 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
     if isinstance(source, str):
         assert m is not None  # polynomials are those of one chain
         return walk_polynomials((generic(system, m) for system in systems(source, m)), intervals, format)
-    return walk_polynomials([symbolic(lower(source).chain)], intervals, format)
+    return walk_polynomials([symbolic(lower(source).named)], intervals, format)
 
 
 def generate(
@@ -261,7 +261,9 @@ def no_load(scene: Scene) -> list[str]:
 
 
 def _no_load(model: Model) -> list[str]:
-    return [] if model.loads else ["no load, so that all outputs are 0"]
+    network = model.network
+    moving = any(bar.velocity or bar.strain for bar in network.bars) or any(point.velocity for point in network.points)
+    return [] if model.loads or moving else ["no load, so that all outputs are 0"]
 
 
 def _contact_warnings(model: Model) -> list[str]:
@@ -272,16 +274,23 @@ def _contact_warnings(model: Model) -> list[str]:
     ]
 
 
-def plot(scene: Scene, path: Path) -> list[str]:
-    """Draw the histories of the outputs as .svg, .png or .pdf; what the picture leaves out, line by line.
+def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
+    """Draw a scene as .svg, .png or .pdf; what the picture leaves out, line by line.
 
-    SceneError for another suffix, before the work; ToleranceError, CostError where nothing could be generated either.
+    `kind`: "history", the outputs over tau, or "xt", place x time of all rods. SceneError for another suffix, before
+    the work; ToleranceError, CostError where nothing could be generated either.
     """
-    from wavesym.report.histories import histories
-    from wavesym.report.panels import draw, notes
     from wavesym.report.saving import picture_format, save
 
     picture_format(path)
+    if kind == "xt":
+        from wavesym.report import xt
+
+        save(xt.draw(lower(scene)), path)
+        return []
+    from wavesym.report.histories import histories
+    from wavesym.report.panels import draw, notes
+
     made = histories(lower(scene))
     save(draw(made), path)
     return notes(made)

@@ -64,9 +64,13 @@ class CostError(WavesymError):
     ...     wavesym.evaluator(scene)([1.0])
     ... except wavesym.CostError as error:
     ...     print(error)
-    output.until: 3 nodes times 1e+06 units of tau are 3e+06 windows to keep, at most 20000 expected (a \
+    output.until: 3 nodes times 1e+06 units of tau are 3e+06 stretches to keep, at most 20000 expected (a \
 shorter horizon helps)
     """
+
+
+class UnservedError(CostError):
+    """What one method does not do for a kind of scene, whatever the cost; others may. The message says which do."""
 
 
 class RangeError(WavesymError, OverflowError):

@@ -73,7 +73,7 @@ class Compiler(SimpleNamespace):
             raise ValueError("--m: 0 given, at least 1 expected")
         return f"{system} {m}"
 
-    def plot(self, scene: object, path: Path) -> list[str]:
+    def plot(self, scene: object, path: Path, kind: str) -> list[str]:
         self.asked.append(path)
         return ["1 of 2 outputs is drawn"]
 

@@ -16,6 +16,7 @@ import pytest
 from flint import fmpq
 
 import wavesym
+from tests.support.scenes import NAMED
 from wavesym.cli import inspect as command
 from wavesym.cli import main
 from wavesym.derivation.exact_rule import Linear
@@ -95,7 +96,7 @@ def test_the_rates_are_those_of_the_paper() -> None:
     assert builtin("building_half_roof")["nodes"][0]["kind"] == "prescribed velocity"
 
 
-@pytest.mark.parametrize("name", builtin_names())
+@pytest.mark.parametrize("name", NAMED)
 def test_the_model_is_told_as_it_is(name: str) -> None:
     model, read = lower(Scene.from_toml(name)), builtin(name, "model")
     assert read["model"]["sha256"] == model.labels.sha256
@@ -142,7 +143,7 @@ def value(linear: dict[str, str], at: Fraction | int) -> Fraction:
     return Fraction(linear["constant"]) + Fraction(linear["slope"]) * at
 
 
-@pytest.mark.parametrize("name", builtin_names())
+@pytest.mark.parametrize("name", NAMED)
 def test_the_recurrences_hold_for_the_table(name: str) -> None:
     """Every coefficient that `tables` prints fits the recurrences in numbers, and so do the jumps."""
     given = Scene.from_toml(name)
@@ -171,7 +172,7 @@ def begins(load: dict[str, Any], source: str, n: int, k: int) -> bool:
     return (load["source"], load["back"] + 1, load["power"]) == (source, n, k)
 
 
-@pytest.mark.parametrize("name", builtin_names())
+@pytest.mark.parametrize("name", NAMED)
 def test_the_size_of_the_table(name: str) -> None:
     rows = wavesym.tables(Scene.from_toml(name))
     read = builtin(name, "table")

@@ -10,8 +10,8 @@ from tests.support.generated import files
 from wavesym.derivation import node_law as derived
 from wavesym.derivation.delay import _at_node, delay_equations
 from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, node_law
+from wavesym.derivation.recurrence import joint_rule, recurrence, stretch_law
 from wavesym.derivation.recurrence import node_rule as numbers_of
-from wavesym.derivation.recurrence import recurrence, stretch_law
 from wavesym.exact import node_rules
 from wavesym.model.node import Node, Rod
 from wavesym.scene import Scene, lower
@@ -27,7 +27,7 @@ KINDS = ("closed", "pieces", "march")
 
 
 def forget() -> None:
-    for cached in (node_law, delay_equations, recurrence, node_rules._derived):
+    for cached in (node_law, delay_equations, recurrence, joint_rule, node_rules._derived):
         cached.cache_clear()
 
 
@@ -66,6 +66,11 @@ def test_a_node_knows_its_rate_as_it_is_derived():
     for node in (*lower(SCENE).chain.nodes, *lower(Scene.from_toml("drive_equal")).chain.nodes):
         rule = numbers_of(node)
         assert (rule.same, rule.raised.constant, rule.load) == (node.radiation, node.inertia, 1)
+
+
+def test_a_rod_end_is_a_dashpot_and_a_force():
+    """Seen from its end a rod is a dashpot Z and a force 2 Z a, on either side."""
+    assert joint_rule() == (1, 1, 1, (1, 1), (2, 2))
 
 
 def test_a_rod_that_is_not_there_brings_nothing():

@@ -7,10 +7,11 @@ import subprocess
 
 import pytest
 
+from tests.support.scenes import NAMED
 from wavesym.documents.derivation.document import derivation, scene_derivation
 from wavesym.errors import WavesymError
 from wavesym.model.symbolic import symbolic
-from wavesym.scene import Scene, builtin_names
+from wavesym.scene import Scene
 
 SYSTEMS = ("collision", "drive", "building")
 PARTS = ("legend", "conditions", "rods", "nodes", "equations", "recurrences", "displacements", "stretches")
@@ -82,7 +83,7 @@ def test_the_smallest_written_out(system, m):
         assert len(statement["families"]) == 2
 
 
-@pytest.mark.parametrize("source", [*SYSTEMS, *builtin_names()])
+@pytest.mark.parametrize("source", [*SYSTEMS, *NAMED])
 @pytest.mark.parametrize("m", [None, 4])
 def test_latex_and_text_say_as_much(source, m):
     if source in SYSTEMS:

@@ -13,10 +13,12 @@ from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import motion as room
 from wavesym.exact.ball import Balls
+from wavesym.exact.joint import Enclosed
 from wavesym.exact.motion import Motion, is_zero
-from wavesym.exact.windows import PanelWave, WindowPanel, Windows
+from wavesym.exact.network_waves import SentWave
 from wavesym.model.loads import Applied
-from wavesym.numbers.doubles import fraction, rational
+from wavesym.model.network import End
+from wavesym.numbers.doubles import rational
 from wavesym.scene import lower
 
 DRIVE = {"type": "drive", "m": 3, "kappa": ["1/2", 2, "1/3"], "inertia": [1, 2, 3, "1/2"]}
@@ -60,19 +62,21 @@ def test_outputs_are_where_they_are_said_to_be(drawn):
             assert ball.rad() < fmpq(1, 10**9)
 
 
-def by_hand(scene, right, left, panels=1):
-    """The motion of a scene whose waves are given: those that nodes send right, and left, `panels` in a window."""
+def by_hand(scene, right, left):
+    """The motion of a scene whose waves are given: those that nodes send right, and left, a list of one a unit."""
     motion = made(scene)
-    length = fmpq(1, panels)
-    parts = tuple(WindowPanel(k * length, length) for k in range(panels))
-    motion.__dict__["_panels"] = parts
-    waves = Windows(motion._chain, motion._nodes, parts, left, right)
-    motion._marched = dict.fromkeys((53, *(2**k for k in range(6, 14))), waves)  # at every precision
+    waves = motion._waves(53)
+    for side, known in ((0, right), (1, left)):
+        for x, stretches in known.items():
+            held = Enclosed(arb_poly(), arb(0))
+            starts = [fmpq(n) for n in range(-1, len(stretches))]
+            waves.sent[End(x if side == 0 else x - 1, side)] = SentWave(starts, [held, *stretches])
+    motion._solved = dict.fromkeys((53, *(2**k for k in range(6, 14))), waves)  # at every precision
     return motion
 
 
 def waves(count, *powers, error=0):
-    return [PanelWave(arb_poly([fmpq(c) for c in powers]), arb(error))] * count
+    return [Enclosed(arb_poly([fmpq(c) for c in powers]), arb(error))] * count
 
 
 @pytest.mark.parametrize(
@@ -89,7 +93,7 @@ def test_strain_is_the_difference_of_the_waves_and_velocity_their_sum(output, ex
     """One polynomial in tau for the whole of a wave: as each panel has its own start, the waves are cut to it here."""
     sides = {}
     for name, (start, slope) in {"right": (3, 5), "left": (7, 11)}.items():
-        sides[name] = [PanelWave(arb_poly([start + slope * n, slope]), arb(0)) for n in range(4)]
+        sides[name] = [Enclosed(arb_poly([start + slope * n, slope]), arb(0)) for n in range(4)]
     motion = by_hand(drive(3, **output), {1: sides["right"]}, {2: sides["left"]})
     (place,) = motion.probes
     for tau in (fmpq(1), fmpq(5, 4), fmpq(3, 2), fmpq(7, 4), fmpq(2), fmpq(13, 5)):
@@ -126,7 +130,7 @@ def test_errors_of_velocity_pile_up_in_displacement():
 
 
 def test_a_displacement_begins_at_0_and_goes_on_where_it_was():
-    steady = [PanelWave(arb_poly([1, 2 + n]), arb(0)) for n in range(4)]
+    steady = [Enclosed(arb_poly([1, 2 + n]), arb(0)) for n in range(4)]
     motion = by_hand(drive(3, displacement=["5/4"]), {1: steady}, {2: steady})
     segments = motion.segments(motion.probes[0], ctx.prec)
     assert Balls(segments).at(fmpq(0)) == 0
@@ -145,7 +149,6 @@ def test_places_with_sides_lie_in_the_rod_on_that_side():
 def test_segments_start_where_an_output_can_bend():
     motion = made(drive("7/2", strain=["4/3"]))
     (place,) = motion.probes  # a load at 0 and at 1/3, seen 1/3 and 2/3 later
-    assert motion.breaks(place) == {fmpq(0), fmpq(1, 3), fmpq(2, 3)}
     assert motion.starts(place) == [fmpq(k, 3) for k in range(11)]
     motion = made(drive(1, [{"body": 2, "times": ["1/2"], "steps": [1]}], strain=["5/4"]))
     (place,) = motion.probes
@@ -182,7 +185,7 @@ def test_of_what_begins_at_the_end_only_the_first_value_is_seen():
 def test_loads_after_the_horizon_are_not_there():
     late = [{"body": 2, "times": ["1/2", "29/10", "31/10"], "steps": [1, 2, 3]}]
     motion = made(drive(3, late, strain=["1/2"]))
-    assert [panel.start for panel in motion._panels] == [fmpq(0), fmpq(1, 2), fmpq(9, 10)]
+    assert motion._knots.joints[0][:4] == [fmpq(0), fmpq(1, 2), fmpq(9, 10), fmpq(1)]
     at_the_end = made(drive(3, [{"body": 2, "times": [3], "steps": [1]}], velocity=[1]))
     assert at_the_end._acting == (Applied("M2", fmpq(3), fmpq(1)),)
 
@@ -206,72 +209,22 @@ def test_nothing_is_zero_but_what_has_no_terms():
     assert not is_zero(moving.segments(moving.probes[0], ctx.prec))
 
 
-def stiff(kappa, until, **load):
-    """A shaft between two light discs, watched in the middle of it."""
-    given = {"body": 1, "times": [0], "steps": [1], **load}
-    system = {"type": "drive", "m": 1, "kappa": [kappa], "inertia": [1, 1]}
-    return wavesym.Scene(name="stiff", system=system, load=[given], output={"until": until, "velocity": ["1/2"]})
-
-
-@pytest.mark.parametrize(("kappa", "until"), [(5, 20), (20, 12)])
-def test_with_fewer_than_the_first_bits_nothing_is_left_at_the_end(kappa, until):
-    scene = stiff(kappa, until)
-    bits = made(scene).first_bits
-    assert bits == 1 << (bits.bit_length() - 1) >= 256
-    told = []
-    for precision in (bits // 2, 2 * bits):
-        with ctx.workprec(precision):
-            motion = made(scene)
-            (ball,) = enclosures(motion, motion.probes[0], [motion.until])
-            told.append(float(ball.rad()) < 1)
-    assert told == [False, True]
-
-
-def test_first_bits_are_those_of_what_is_felt():
-    """The rate is 5; a disc loaded late moves for less long, and one half a rod away is felt that much later."""
-    lost = {
-        (20, 0): 5 * Fraction(39, 2),
-        (20, 15): 5 * Fraction(9, 2),
-        (20, 20): 0,
-    }
-    for (until, time), expected in lost.items():
-        motion = made(stiff(5, until, times=[time]))
-        assert fraction(motion._lost(0)) == expected
-        assert fraction(motion._lost(1)) == max(expected - 5, 0)
-    collision = wavesym.Scene(
-        name="begins",
-        system={"type": "collision", "m": 4, "kappa": [3, 3], "velocity": [1, 0]},
-        output={"until": 9, "strain": [2]},
-    )
-    # a body moves otherwise from tau = 1 on, when what begins at the contacts has come
-    assert [fraction(made(collision)._lost(x)) for x in (0, 1, 2)] == [0, 6 * 7, 0]
-    assert [made(one).first_bits for one in (collision, stiff(5, 20), stiff(5, 20, times=[19]))] == [128, 256, 128]
-
-
-def test_a_body_moves_from_the_first_of_its_loads_and_is_felt_at_the_nearest_place():
-    """Loads on the discs at 1, from tau = 1 on, and at 3, at once; seen at 1/2 and 3."""
-    load = [{"body": 2, "times": [1, 2], "steps": [1, 1]}, {"body": 4, "times": [0], "steps": [1]}]
-    motion = made(drive(10, load, strain=["1/2", 3]))
-    for x, (away, begins) in enumerate([("1/2", 2), ("1/2", 1), (1, 1), (0, 0)]):
-        assert motion._lost(x) == motion._chain.nodes[x].radiation * (10 - rational(Fraction(away)) - begins)
-
-
 def test_too_many_windows_are_refused_before_the_first(monkeypatch):
     def begun(*_, **__):
-        raise AssertionError("windows were begun")
+        raise AssertionError("waves were begun")
 
-    monkeypatch.setattr(room, "windows", begun)
-    why = r"^output.until: 4 nodes times 5001 units of tau are 20004 windows to keep, at most 20000 expected"
+    monkeypatch.setattr(room, "NetworkWaves", begun)
+    why = r"^output.until: 4 nodes times 5000 units of tau are 20004 stretches to keep, at most 20000 expected"
     with pytest.raises(CostError, match=why):
-        made(drive("5001", strain=["1/2"]))
-    made(drive(5000, strain=["1/2"]))
+        made(drive(5000, strain=["1/2"]))
+    made(drive("4999.9", strain=["1/2"]))
 
 
 def test_values_that_would_take_minutes_are_refused_before_the_first(monkeypatch):
     def begun(*_, **__):
-        raise AssertionError("windows were begun")
+        raise AssertionError("waves were begun")
 
-    monkeypatch.setattr(room, "windows", begun)
+    monkeypatch.setattr(room, "NetworkWaves", begun)
     motion = made(drive(2000, strain=["1/2"]))
     motion.refuse_long(1)
     with pytest.raises(
@@ -285,7 +238,7 @@ def test_values_that_would_take_minutes_are_refused_before_the_first(monkeypatch
 def test_the_seconds_told_are_those_of_segments_and_values(quantity, taus, monkeypatch):
     """Counted apart, a second for each: of a displacement all segments are needed for any value."""
     motion = made(drive("39/10", [{"body": 2, "times": [0, "1/2"], "steps": [1, 1]}], **{quantity: ["1/2", "3/2"]}))
-    terms = motion._waves(ctx.prec).left[1][0].polynomial.length()
+    terms = motion._waves(ctx.prec).sent[End(0, 1)].stretches[1].polynomial.length()
     made_for = sum(len(motion.segments(place, ctx.prec)) for place in motion.probes)
     expected = made_for if quantity == "displacement" else min(made_for, 2 * taus)
     assert terms == motion.first_bits // 4 == 32

@@ -95,7 +95,7 @@ def refused(*_, **__):
 
 def test_values_that_would_take_long_are_refused_before_work(monkeypatch):
     monkeypatch.setattr(reference, "_MODERATE", 0)
-    monkeypatch.setattr(motion, "windows", refused)
+    monkeypatch.setattr(motion, "NetworkWaves", refused)
     with pytest.raises(CostError, match=r"^output: 10000000 values of 4 outputs to tau = .* \(fewer outputs, samples"):
         Reference(lower(scene())).values([1.0] * 10**7)
 
@@ -119,7 +119,7 @@ def test_a_beginning_is_as_much_of_the_horizon_as_is_known_soon(monkeypatch):
     assert beginning(short) == short
     begun = beginning(long)
     assert 8 <= begun.until < 5000
-    assert reference._size(long, begun.until) <= reference._QUICK < reference._size(long, 2 * begun.until)
+    assert reference.waves_size(long, begun.until) <= reference._QUICK < reference.waves_size(long, 2 * begun.until)
     assert begun.chain is long.chain
     monkeypatch.setattr(reference, "_QUICK", 0)
     assert beginning(long).until == 8

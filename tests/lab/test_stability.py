@@ -13,7 +13,7 @@ from flint import arb, ctx, fmpq
 from wavesym.cli import main
 from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.ball import Balls, segments
-from wavesym.exact.motion import MOST_WINDOWS, Motion
+from wavesym.exact.motion import MOST_STRETCHES, Motion
 from wavesym.exact.reference import Reference
 from wavesym.exact.signal import signals
 from wavesym.lab import stability
@@ -21,7 +21,7 @@ from wavesym.lab.atlas import endurance, extremes, fronts, gaps, limits, reflect
 from wavesym.lab.atlas import twisted_shaft as twist
 from wavesym.lab.atlas.attempts import ROUNDED, truth
 from wavesym.lab.atlas.drawing import draw
-from wavesym.lab.atlas.family import Axis, CurveFamily, Point, to_csv
+from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, to_csv
 from wavesym.lab.atlas.lumped import strains
 from wavesym.lab.atlas.scenes import TOLERANCE, aimed, drive, made
 from wavesym.programs import pieces
@@ -255,10 +255,10 @@ def test_guards_that_know_their_bound(name, scene, why):
     ("name", "scene", "why"),
     [
         ("closed", guarded(10**7), "coefficients"),  # of the tables
-        ("pieces", guarded(MOST_WINDOWS), "windows"),
+        ("pieces", guarded(MOST_STRETCHES), "stretches"),
         ("march", guarded(1000, kappa="1e7"), "degree"),
     ],
-    ids=["tables", "windows", "march"],
+    ids=["tables", "stretches", "march"],
 )
 def test_guards_that_count_the_cost_first(name, scene, why):
     with pytest.raises(CostError, match=why):
@@ -281,11 +281,11 @@ FAMILY = CurveFamily(
     Axis("gap", zero=1e-5, falling=True),
     "error",
     (
-        Point("one", "closed", 1.0, 1e-12, 1e-11),
-        Point("one", "closed", 0.1, 1e3, math.inf, "closed: loses all digits"),
-        Point("one", "closed", 0.01, math.nan, math.inf, "too costly"),
-        Point("one", "closed", 0.0, 1e-15, 1e-14),
-        Point("two", "pieces", 1.0, 0.0, 1e-15),
+        AtlasPoint("one", "closed", 1.0, 1e-12, 1e-11),
+        AtlasPoint("one", "closed", 0.1, 1e3, math.inf, "closed: loses all digits"),
+        AtlasPoint("one", "closed", 0.01, math.nan, math.inf, "too costly"),
+        AtlasPoint("one", "closed", 0.0, 1e-15, 1e-14),
+        AtlasPoint("two", "pieces", 1.0, 0.0, 1e-15),
     ),
 )
 

@@ -37,7 +37,7 @@ TESTS = ("programs", "numbers", "verification/test_properties.py")
 TESTS += tuple(
     f"exact/test_{name}.py" for name in ("ball", "contact", "contact_search", "motion", "reference", "signal")
 )
-TESTS += ("exact/test_windows.py",)
+TESTS += ("exact/test_joint.py", "exact/test_network_waves.py", "exact/test_silence.py")
 TESTS += tuple(f"targets/test_{name}.py" for name in ("march_c", "march_hand", "march_short_panels", "selftest"))
 COPIED = ("wavesym", "templates", "tests", "pyproject.toml")
 PYTEST = f"""ulimit -v {4 << 20}; exec "$0" -m pytest -x -q --tb=short -p no:cacheprovider --basetemp=tmp/pytest \

@@ -52,7 +52,7 @@ def long_numbers(count):
 @pytest.fixture
 def idle(monkeypatch):
     """Nothing that takes long may begin."""
-    monkeypatch.setattr(motion, "windows", begun)
+    monkeypatch.setattr(motion, "NetworkWaves", begun)
     monkeypatch.setattr("wavesym.exact.signal.unit_response", begun)
 
 
@@ -104,19 +104,19 @@ def test_a_building_watched_for_20_is_refused_nothing(idle):
 @pytest.mark.parametrize("until", [1000, 3000])
 def test_values_far_out_are_refused_or_known_soon(until, idle, monkeypatch):
     """Three unequal shafts lose bits in proportion to the time: their waves would fill the memory."""
-    monkeypatch.setattr(motion, "windows", real_windows)
-    monkeypatch.setattr("wavesym.exact.windows._Body.moved", begun)
+    monkeypatch.setattr(motion, "NetworkWaves", real_waves)
+    monkeypatch.setattr("wavesym.exact.joint.JointMotion.moved", begun)
     with pytest.raises(CostError, match=r"^output"):
         Reference(lower(drive([1, "1/2", "1/3"], [1, 2, 3, 4], until))).values([1.0 * k for k in range(1001)])
 
 
-real_windows = motion.windows
+real_waves = motion.NetworkWaves
 
 
 def test_a_heavy_shaft_for_long_is_refused_by_all_but_the_tables(monkeypatch):
     """Rates of 10000 until tau = 200: millions of bits for windows, and polynomials of thousands of powers to march."""
     scene = drive([10000], [1, 1], 200)
-    monkeypatch.setattr(motion, "windows", begun)
+    monkeypatch.setattr(motion, "NetworkWaves", begun)
     for name, why in (("pieces", r"\d+ bits would be needed for pieces"), ("march", r"polynomials of degree")):
         with pytest.raises(CostError, match=rf"^output.until: .*{why}"):
             choose(lower(scene), name)
@@ -124,9 +124,7 @@ def test_a_heavy_shaft_for_long_is_refused_by_all_but_the_tables(monkeypatch):
         choose(lower(scene))
     assert Reference(lower(scene)).signals is not None
     three = drive([10000] * 3, [1] * 4, 200)
-    with pytest.raises(
-        CostError, match=r"^output: 11 values of 1 outputs to tau = 200 would take about \d+ s, at most"
-    ):
+    with pytest.raises(CostError, match=r"^output.until: the waves of .* with 65536 bits would take .* bytes, at most"):
         Reference(lower(three)).values([20.0 * k for k in range(11)])
 
 

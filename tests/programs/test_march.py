@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 
 from tests.support.generated import assemble, numpy_text
 from wavesym.errors import CostError, ToleranceError
+from wavesym.exact.silence import silent
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march.bound import judge
 from wavesym.programs.march.evaluator import march, marched
 from wavesym.programs.march.operator import operator
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.run import LEFT, RIGHT, Run
-from wavesym.programs.march.zero import silent
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
 from wavesym.verification.characteristics import integrate
@@ -225,7 +225,7 @@ def test_what_is_zero_by_symmetry_is_exactly_zero():
     assert [output.bound == 0 for output in made.outputs] == [True, False, True, False, True]
     values = program(scene, made)(np.linspace(0, 12, 1001))
     assert np.any(values != 0, axis=1).tolist() == [False, True, False, True, False]
-    assert silent(made.plan) == [True, False, True, False, True]
+    assert silent(lower(scene), fmpq(12)) == [True, False, True, False, True]
 
 
 def test_what_cannot_be_had_is_refused():

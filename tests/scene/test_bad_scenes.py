@@ -76,8 +76,8 @@ MISTAKES = [
     (BUILDING, 'spacing = "1/5"', "times = [0]", "load[1].times: unknown key, spacing or samples expected"),
     (BUILDING, "times = [0,", "body = 1\ntimes = [0,", "load[0].body: unknown key, times, a or b expected"),
     # the system
-    (DRIVE, '"drive"', '"train"', 'system.type: "train" given, "collision", "drive" or "building" expected'),
-    (DRIVE, 'type = "drive"', "", 'system.type: missing, "collision", "drive" or "building" expected'),
+    (DRIVE, '"drive"', '"train"', 'system.type: "train" given, "collision", "drive", "building" or "chain" expected'),
+    (DRIVE, 'type = "drive"', "", 'system.type: missing, "collision", "drive", "building" or "chain" expected'),
     (DRIVE, 'type = "drive"', "type = []", "system.type: a list given"),
     (COLLISION, "m = 4", "m = 5", "system.m: 5 given, an even integer of at least 4 expected"),
     (COLLISION, "m = 4", "m = 2", "system.m: 2 given, an even integer of at least 4 expected"),

@@ -12,10 +12,13 @@ import numpy as np
 from hypothesis import strategies as st
 
 from wavesym.fields.loads import SampledLoad
-from wavesym.scene import Scene
+from wavesym.scene import Scene, builtin_names
 from wavesym.systems.building import Acceleration, Building
 from wavesym.systems.collision import Collision
 from wavesym.systems.drive import Moment
+
+NAMED = [name for name in builtin_names() if Scene.from_toml(name).system.type != "chain"]
+"""The built-in scenes of the paper's systems, which have tables, derivation and every program."""
 
 BESIDE = [Fraction(1, 10**6), Fraction(1, 10**9), Fraction(1, 10**12)]
 """What separates the nearly equal."""

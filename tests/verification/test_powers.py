@@ -25,13 +25,13 @@ from wavesym.exact.walks import Unit, departures, function_walks, letters, units
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
 from wavesym.model.symbolic import generic
-from wavesym.systems import SYSTEMS
+from wavesym.systems import presets
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE
 from wavesym.verification.powers import steps
 
-BY_NAME = {system.name: system for preset in SYSTEMS.values() for system in preset.variants}
+BY_NAME = {system.name: system for preset in presets().values() for system in preset.variants}
 FAMILIES = [
     pytest.param(BY_NAME[name], family, id=f"{name}-{family.rate}")
     for name, families in POWERS.items()

@@ -43,9 +43,9 @@ class _Source(click.ParamType[Any]):
 
 def system_names() -> tuple[str, ...]:
     """The systems that there are."""
-    from wavesym.systems import SYSTEMS
+    from wavesym.systems import presets
 
-    return tuple(SYSTEMS)
+    return tuple(presets())
 
 
 @click.command()

@@ -18,9 +18,16 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("scene", type=SCENE, required=False)
 @click.option("--published", is_flag=True, help="Figs. 6, 7 and 8 of the paper instead, as .svg and .png into DIR.")
+@click.option(
+    "--kind",
+    type=click.Choice(["history", "xt"]),
+    default="history",
+    show_default=True,
+    help="The outputs over tau, or place x time of all rods.",
+)
 @click.option("-o", "out", type=PATH, metavar="FILE|DIR", required=True, help="The picture: .svg, .png or .pdf.")
-def plot(scene: Scene | None, published: bool, out: Path) -> None:
-    """Draw the histories of a scene's outputs: what jumps is drawn as a jump.
+def plot(scene: Scene | None, published: bool, kind: str, out: Path) -> None:
+    """Draw the histories of a scene's outputs: what jumps is drawn as a jump. Or all rods over place and time.
 
     With --published, the figures of section 5 of the paper, with what it says of them marked and judged; takes half a
     minute, and prints the paths of what it wrote.
@@ -41,7 +48,7 @@ def plot(scene: Scene | None, published: bool, out: Path) -> None:
         with progress(f"plot {scene.name}"):
             from wavesym import compiler
 
-            lines = [*compiler.warnings(scene), *compiler.plot(scene, out)]
+            lines = [*compiler.warnings(scene), *compiler.plot(scene, out, kind)]
         for line in lines:
             click.echo(f"{scene.name}: {line}", err=True)
     elif published:

@@ -78,5 +78,19 @@ class NodeRule(NamedTuple):
     load: fmpq
 
 
+class JointRule(NamedTuple):
+    """What points of a joint have from (2.4), as factors: `inertia` of M, `damping` of dashpots, `load` of what acts.
+
+    A rod end of impedance Z that moves n times as fast as its point, and to which a wave a comes, is a dashpot
+    `radiates` n^2 Z and a force `arrives` n Z a; the pairs are for rods on the left and on the right of the point.
+    """
+
+    inertia: fmpq
+    damping: fmpq
+    load: fmpq
+    radiates: tuple[fmpq, fmpq]
+    arrives: tuple[fmpq, fmpq]
+
+
 DERIVATIVE = Weights(Linear(fmpq(0), fmpq(-1)), Linear(fmpq(1), fmpq(1)), fmpq(1))
 """The weights of D alone: with them on the left, a rule integrates."""

@@ -19,7 +19,7 @@ from sympy import Expr, Symbol, exp
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation, delay_equations
 from wavesym.derivation.delay_terms import Operator
-from wavesym.derivation.exact_rule import Linear, LoadTerm, NodeRule, Rule, Term, Weights
+from wavesym.derivation.exact_rule import JointRule, Linear, LoadTerm, NodeRule, Rule, Term, Weights
 from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, NodeLaw, node_law
 from wavesym.derivation.numbers import number
 from wavesym.model.chain import Chain
@@ -153,6 +153,28 @@ def node_rule(node: Node) -> NodeRule:
 
     return NodeRule(
         value(law.own.same), _linear(law.own.raised, POWER, value), *map(value, (law.left, law.right, law.load))
+    )
+
+
+@cache
+def joint_rule() -> JointRule:
+    """What rods and points bring to a joint: the law of a node with alpha = 2 Z_left, beta = 2 Z_right, taken apart.
+
+    A rod end that moves n times as fast as its point has n of its velocity, and n of its force acts on the point.
+    """
+    law = node_law()
+
+    def factor(expression: Expr, *symbols: Symbol) -> fmpq:
+        for symbol in symbols:
+            expression = expression.expand().coeff(symbol)
+        return number(expression, {}, None)
+
+    return JointRule(
+        factor(law.own.a, INERTIA),
+        factor(law.own.b, DAMPING),
+        factor(law.load),
+        (2 * factor(law.own.b, ALPHA), 2 * factor(law.own.b, BETA)),
+        (2 * factor(law.left, ALPHA), 2 * factor(law.right, BETA)),
     )
 
 

@@ -54,11 +54,13 @@ def contact_ends(model: Model, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
 
     CostError where that takes more than some seconds to know.
     """
+    if model.chain is None:
+        return ()
     until = rational(model.horizon(real))
-    contacts = [x for x in model.light_cone(until) if model.chain.nodes[x].contact]
+    contacts = [x for x in model.light_cone(until) if model.named.nodes[x].contact]
     if not contacts:
         return ()
-    ruled = RuledChain(model.chain)
+    ruled = RuledChain(model.named)
     ends = []
     for x in contacts:
         # to matter, the opening must have the time to reach the nearest output

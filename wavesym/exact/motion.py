@@ -1,4 +1,4 @@
-"""Outputs from waves on windows: between two breakpoints each is one polynomial, in balls."""
+"""Outputs from the waves of a network: between two breakpoints each is one polynomial, in balls."""
 
 from __future__ import annotations
 
@@ -11,51 +11,58 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
-from wavesym.exact.windows import PanelWave, WindowPanel, Windows, panels_of, windows
+from wavesym.exact.joint import STILL, Enclosed, JointLaw
+from wavesym.exact.knots import Knots
+from wavesym.exact.network_waves import NetworkWaves
 from wavesym.model.model import Model
+from wavesym.model.network import End
 from wavesym.model.probe import Probe
 
-MOST_WINDOWS = 20_000
+MOST_STRETCHES = 20_000
 MOST_SECONDS = 60
 # measured: seconds for a segment, times its terms to the power of 3/2, and for each term of a value
 _COMPOSED, _EVALUATED = 2.5e-7, 6e-7
+# bits that a crossing of a bar takes from what is known of its wave
+_CROSSING = 2
+_LARGEST = 5 << 27  # bytes
 
 
 class Motion:
     """The outputs of a model until tau = `until` (a number of its horizon), at any precision.
 
-    CostError where there would be too many windows.
+    CostError where there would be too many stretches.
     """
 
     def __init__(self, model: Model, until: fmpq) -> None:
         self.until = until
         self.probes = model.probes
-        self._chain = model.chain
-        self._nodes = model.light_cone(until)
+        self._network = model.network
         self._acting = model.acting(until)
-        self._marched: dict[int, Windows] = {}
-        if (kept := len(self._nodes) * until) > MOST_WINDOWS:
+        self._knots = Knots(model, until)
+        self._solved: dict[int, NetworkWaves] = {}
+        if (kept := self._knots.crossings) > MOST_STRETCHES:
             raise CostError(
-                f"output.until: {len(self._nodes)} nodes times {float(until):g} units of tau are {float(kept):g} "
-                f"windows to keep, at most {MOST_WINDOWS} expected (a shorter horizon helps)"
+                f"output.until: {self._knots.told} are {kept:g} stretches to keep, at most {MOST_STRETCHES} expected "
+                "(a shorter horizon helps)"
             )
-
-    @cached_property
-    def _panels(self) -> tuple[WindowPanel, ...]:
-        return panels_of(self._chain, self._nodes, self._acting)
 
     @cached_property
     def first_bits(self) -> int:
         """With fewer bits nothing would be left at the end of the horizon; a power of 2, up to more than is had."""
-        lost = int(max(map(self._lost, self._nodes)) * 36 / 25)  # not more than 1/log(2)
+        shortest = min(bar.delay for bar in self._network.bars)
+        lost = 64 + int(_CROSSING * self.until / shortest + max(map(self._swing, self._knots.joints)))
         return 1 << min(max(lost.bit_length(), 7), 20)
+
+    def _swing(self, number: int) -> fmpq:
+        """The bits that cancel in the series of a joint on its longest stretch."""
+        law = JointLaw.of(self._network, self._network.joints[number])
+        return law.fastest * self._knots.longest(number) * 3
 
     def refuse_long(self, taus: int) -> None:
         """CostError where values of all outputs at so many tau would take minutes."""
         terms = self.first_bits // 4
-        windows = int(self.until.floor()) + 1
         sums = any(probe.order < 0 for probe in self.probes)
-        segments = sum(min(len(self.breaks(probe)) * windows, inf if sums else taus) for probe in self.probes)
+        segments = sum(min(len(self.starts(probe)), inf if sums else taus) for probe in self.probes)
         seconds = segments * terms**1.5 * _COMPOSED + taus * len(self.probes) * terms * _EVALUATED
         if seconds > MOST_SECONDS:
             raise CostError(
@@ -63,34 +70,9 @@ class Motion:
                 f"{seconds:.0f} s, at most {MOST_SECONDS} expected (fewer outputs, samples or load times help)"
             )
 
-    def _lost(self, x: int) -> fmpq:
-        """The logarithm of what a body makes of radii: exp(g) in each unit of tau in which it moves and is felt."""
-        node = self._chain.nodes[x]
-        if not node.inertia:
-            return fmpq(0)
-        felt = self.until - min(abs(probe.x - x) for probe in self.probes)
-        moves = min((time + abs(x - at) for at, time in self._loaded), default=fmpq(1))  # collisions begin at contacts
-        lost: fmpq = node.radiation * (felt - moves)
-        return max(lost, fmpq(0))
-
-    @cached_property
-    def _loaded(self) -> list[tuple[int, fmpq]]:
-        """The nodes on which loads act, and when the first of them does."""
-        first = {load.source: load.time for load in reversed(self._acting)}
-        of_nodes = ((x, load.source) for x in self._nodes for load in self._chain.nodes[x].loads)
-        return [(x, first[source]) for x, source in of_nodes if source in first]
-
-    def breaks(self, probe: Probe) -> frozenset[fmpq]:
-        """The parts of a unit of tau at which an output may jump or bend."""
-        starts = (panel.start for panel in self._panels)
-        moments = (moment for start in starts for moment in (start + probe.place, start + 1 - probe.place))
-        return frozenset(moment - moment.floor() for moment in moments)
-
-    def starts(self, probe: Probe) -> list[fmpq]:
-        """Where its segments start."""
-        parts = sorted(self.breaks(probe))
-        times = [n + part for n in range(int(self.until.floor()) + 1) for part in parts]
-        return [fmpq(0)] * (parts[0] != 0) + [time for time in times if time <= self.until]
+    def starts(self, probe: Probe) -> Sequence[fmpq]:
+        """Where its segments start: where it may jump or bend, and 0."""
+        return self._knots.breakpoints(probe)
 
     def segments(self, probe: Probe, bits: int, taus: Sequence[fmpq] | None = None) -> list[Segment]:
         """An output between its breakpoints, with so many bits, as polynomials (rate 0) in balls.
@@ -106,15 +88,21 @@ class Motion:
         with ctx.workprec(bits):
             return list(_segments(waves, probe, [(starts[k], ends[k]) for k in wanted]))
 
-    def _waves(self, bits: int) -> Windows:
+    def _waves(self, bits: int) -> NetworkWaves:
         """What needs more bits, and so more terms, costs the others nothing."""
-        if bits not in self._marched:
-            count = int(self.until.floor()) + 1
-            self._marched[bits] = windows(self._chain, self._nodes, self._acting, count, bits // 4, bits)
-        return self._marched[bits]
+        if bits not in self._solved:
+            terms = bits // 4
+            if (size := self._knots.size(terms, bits)) > _LARGEST:
+                raise CostError(
+                    f"output.until: the waves of {self._knots.told} with {bits} bits would take {size:.1e} bytes, at "
+                    f"most {_LARGEST:.1e} expected (a shorter horizon or fewer load times help)"
+                )
+            with ctx.workprec(bits):
+                self._solved[bits] = NetworkWaves(self._network, self._knots.joints, self._acting, terms)
+        return self._solved[bits]
 
 
-def _segments(waves: Windows, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]]) -> Iterator[Segment]:
+def _segments(waves: NetworkWaves, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]]) -> Iterator[Segment]:
     """An output on each of these stretches, which come in order."""
     displacement = arb(0)
     for start, end in stretches:
@@ -130,19 +118,46 @@ def _segments(waves: Windows, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq
         yield Segment(start, {fmpq(0): polynomial})
 
 
-def _value(waves: Windows, probe: Probe, start: fmpq) -> PanelWave:
+def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Enclosed:
     """Strain, or velocity, from tau = `start` on: the left-going wave less, or plus, the right-going one."""
     polynomial, error = arb_poly(), arb(0)
+    if probe.point is not None:
+        return _velocity(waves, probe.point, start)
+    bar = waves.network.bars[probe.rod - 1]
+    if probe.place in (0, 1):
+        end = End(probe.rod - 1, int(probe.place))
+        if probe.quantity == "strain":
+            if waves.network.is_free(end):
+                return STILL
+        elif (point := waves.network.point_at(end)) in waves.velocities:  # prescribed: as exact as it is given
+            known, ratio = _velocity(waves, point, start), arb(bar.ratios[end.side])
+            return Enclosed(ratio * known.polynomial, (abs(ratio) * known.error).upper())
     right, left = probe.weights
-    for factor, wave, offset in (
-        (right, *waves.sent("right", probe.rod - 1, start - probe.place)),
-        (left, *waves.sent("left", probe.rod, start - 1 + probe.place)),
-    ):
-        if wave.polynomial.length():
-            later = wave.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else wave.polynomial
+    for factor, side, way in ((right, 0, probe.place), (left, 1, 1 - probe.place)):
+        known, offset = waves.sent[End(probe.rod - 1, side)].at(start - way * bar.delay)
+        if known.polynomial.length():
+            later = known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial
             polynomial += factor * later
-        error += wave.error
-    return PanelWave(polynomial, error)
+        error += known.error
+    if probe.quantity == "strain" and bar.speed != 1:
+        polynomial, error = polynomial * arb(1 / bar.speed), (error / arb(bar.speed)).upper()
+    return Enclosed(polynomial, error)
+
+
+def _velocity(waves: NetworkWaves, point: int, start: fmpq) -> Enclosed:
+    known, offset = waves.velocities[point].at(start)
+    return Enclosed(known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial, known.error)
+
+
+def waves_size(model: Model, until: fmpq) -> int:
+    """About how many bytes the waves take until then."""
+    knots = Knots(model, until)
+    try:
+        motion = Motion(model, until)
+    except CostError:
+        return _LARGEST
+    bits = max(motion.first_bits, 128)
+    return knots.size(bits // 4, bits)
 
 
 def is_zero(segments: Sequence[Segment]) -> bool:

@@ -1,11 +1,11 @@
-"""The laws of a chain's nodes in exact numbers, each derived when it is first asked for."""
+"""The laws of nodes and joints in exact numbers, each derived when it is first asked for."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
 
-from wavesym.derivation.exact_rule import NodeRule
+from wavesym.derivation.exact_rule import JointRule, NodeRule
 from wavesym.model.node import Node
 
 
@@ -20,3 +20,10 @@ def _derived(node: Node) -> NodeRule:
     from wavesym.derivation.recurrence import node_rule
 
     return node_rule(node)
+
+
+def joint_rule() -> JointRule:
+    """What rods and points bring to a joint."""
+    from wavesym.derivation.recurrence import joint_rule
+
+    return joint_rule()

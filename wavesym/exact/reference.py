@@ -13,9 +13,8 @@ from flint import arb, fmpq
 
 from wavesym.errors import CostError, RangeError
 from wavesym.exact.ball import Source, largest, segments, values
-from wavesym.exact.motion import Motion
+from wavesym.exact.motion import Motion, waves_size
 from wavesym.exact.signal import Signal, refuse_many, signals
-from wavesym.exact.windows import stored
 from wavesym.model.model import Model
 from wavesym.numbers.balls import FIRST_BITS
 from wavesym.numbers.doubles import not_below, rational
@@ -31,18 +30,9 @@ _SHORTEST = fmpq(8)
 def beginning(model: Model) -> Model:
     """The model, or as much of its horizon as takes little time to know exactly."""
     until = model.until
-    while until > _SHORTEST and _size(model, until) > _QUICK:
+    while until > _SHORTEST and waves_size(model, until) > _QUICK:
         until = max(_SHORTEST, fmpq((3 * until / 4).floor()))
     return model.shortened(until)
-
-
-def _size(model: Model, until: fmpq) -> int:
-    """About how many bytes the waves take until then: a window costs two bits, and e**(2 rate) where a body swings."""
-    nodes = model.light_cone(until)
-    rates = [node.radiation for x in nodes if (node := model.chain.nodes[x]).inertia]
-    bits = 128 + int((3 * until * (1 + max(rates, default=fmpq(0)))).floor())
-    panels = len({load.time - load.time.floor() for load in model.acting(until)} | {fmpq(0)})
-    return stored(2 * len(nodes) * (int(until.floor()) + 1) * panels, bits // 4, bits)
 
 
 class Reference:

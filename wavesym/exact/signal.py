@@ -56,7 +56,7 @@ def signals(model: Model, most: float = inf, real: Real = DOUBLE) -> tuple[Signa
 
     CostError where the tables would have more than `most` numbers.
     """
-    return observed(RuledChain(model.chain), model.probes, model.loads, rational(model.horizon(real)), most)
+    return observed(RuledChain(model.named), model.probes, model.loads, rational(model.horizon(real)), most)
 
 
 def refuse_many(model: Model, most: float) -> None:

@@ -6,7 +6,6 @@ from abc import abstractmethod
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
-from typing import ClassVar
 
 from pydantic import Field, ValidationInfo, field_validator
 
@@ -71,13 +70,7 @@ class TimedLoad(Load):
 
 
 class SampledLoad(Load):
-    """A load that is linear between its samples at tau = 0, spacing, ... and constant after the last.
-
-    `step` and `ramp` are the sources that a system has for it.
-    """
-
-    step: ClassVar[str]
-    ramp: ClassVar[str]
+    """A load that is linear between its samples at tau = 0, spacing, ... and constant after the last."""
 
     spacing: Positive = Field(description="the time between samples")
     samples: Numbers = Field(description="a list of numbers")
@@ -89,13 +82,13 @@ class SampledLoad(Load):
             raise wrong("no numbers given, at least 1 expected")
         return samples
 
-    def units(self) -> Iterator[Applied]:
+    def sampled(self, step: str, ramp: str) -> Iterator[Applied]:
         """The load as unit responses: the first sample, and the changes of slope."""
-        yield Applied(self.step, rational(Fraction(0)), rational(self.samples[0]))
+        yield Applied(step, rational(Fraction(0)), rational(self.samples[0]))
         slope = Fraction(0)
         for k, (left, right) in enumerate(pairwise((*self.samples, self.samples[-1]))):
             before, slope = slope, (right - left) / self.spacing
-            yield Applied(self.ramp, rational(k * self.spacing), rational(slope - before))
+            yield Applied(ramp, rational(k * self.spacing), rational(slope - before))
 
     @property
     def told(self) -> str:

@@ -79,14 +79,14 @@ def listed(value: object) -> tuple[object, ...]:
 class SceneTable(BaseModel):
     """A table of a scene: every key is known, none that is needed is missing; a field's description says what it is."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, serialize_by_alias=True)
 
     @model_validator(mode="before")
     @classmethod
     def _keys(cls, value: object) -> object:
         if not isinstance(value, Mapping):
             raise wrong(f"{shown(value)} given, a table expected")
-        fields = cls.model_fields
+        fields = {field.alias or name: field for name, field in cls.model_fields.items()}
         for key in value:
             if key not in fields:
                 *others, last = fields

@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from wavesym.lab.measure import NEAR, ChartRow, Measured
 from wavesym.report.labels import Curve, label
 from wavesym.scene import Scene
+from wavesym.systems import Preset, SystemTable
 
 # below half a unit in the last place an error is a matter of luck; no error at all is drawn there too
 _LEAST_ERROR = 5e-17
@@ -77,11 +78,15 @@ def _title(scene: Scene, measured: Measured) -> str:
     parts = scene.system
     outputs = len(scene.outputs)
     return (
-        f"{scene.name}: {parts.type}, m = {parts.m}, "
+        f"{scene.name}: {parts.type}, {_rods(parts)}, "
         f"{outputs} output{'s' * (outputs > 1)}, tau to {float(scene.output.until):g}\n"
         f"Speed against accuracy, {measured.samples} equally spaced samples of each output, one thread; "
         "lower left is better. Black: wavesym, grey: rivals."
     )
+
+
+def _rods(system: SystemTable) -> str:
+    return f"m = {system.m}" if isinstance(system, Preset) else f"{len(system.drawing.bars)} rods"
 
 
 def _curves(rows: Sequence[ChartRow]) -> list[tuple[_Style, list[ChartRow]]]:

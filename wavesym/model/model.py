@@ -8,9 +8,11 @@ from functools import cached_property
 
 from flint import fmpq
 
+from wavesym.errors import UnservedError
 from wavesym.model.chain import Chain
 from wavesym.model.light_cone import felt, light_cone
 from wavesym.model.loads import Applied
+from wavesym.model.network import Network
 from wavesym.model.probe import Probe
 from wavesym.numbers.reals import DOUBLE, Real
 
@@ -31,16 +33,27 @@ class Labels:
 class Model:
     """A chain, the loads on it, what is watched until tau = `until`, and the error allowed.
 
+    `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
     `tolerance` is relative to an output's largest value. Loads are sorted by time.
     """
 
     name: str
-    chain: Chain
+    chain: Chain | None
+    network: Network
     loads: tuple[Applied, ...]
     probes: tuple[Probe, ...]
     until: fmpq
     tolerance: fmpq
     labels: Labels
+
+    @property
+    def named(self) -> Chain:
+        """The chain as the paper has it. UnservedError for one that is written out, which has no exact tables."""
+        if self.chain is None:
+            raise UnservedError(
+                "system.type: chain given, collision, drive or building expected (a chain has pieces and `run`)"
+            )
+        return self.chain
 
     def horizon(self, real: Real = DOUBLE) -> float:
         """The last tau in `real` numbers: the smallest of them that is not below `until`."""
@@ -52,11 +65,27 @@ class Model:
 
     def light_cone(self, until: fmpq) -> range:
         """The numbers of the nodes that can influence an output by then."""
-        return light_cone(self.chain, self.probes, until)
+        return light_cone(self.named, self.probes, until)
+
+    def reached(self, until: fmpq) -> dict[int, fmpq]:
+        """The joints of the network that can influence an output by then, and until when each can."""
+        network = self.network
+        places = [(probe.rod - 1, probe.place) for probe in self.probes if probe.point is None]
+        points = [probe.point for probe in self.probes if probe.point is not None]
+        distances = network.distances(places, points)
+        bars = [network.bars[bar] for bar, _ in places]
+        beside = {network.joint_of[point] for bar in bars for point in (bar.left, bar.right)}
+        return {
+            joint: max(until - distance, fmpq(0))
+            for joint, distance in sorted(distances.items())
+            if distance <= until or joint in beside
+        }
 
     @cached_property
     def felt(self) -> dict[str, dict[int, fmpq]]:
         """The parameters that can matter to an output within the horizon, by name and index."""
+        if self.chain is None:
+            return {}
         return felt(self.chain, self.probes, self.until)
 
     def shortened(self, until: fmpq) -> Model:

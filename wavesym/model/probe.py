@@ -12,12 +12,14 @@ class Probe:
     """An output: `quantity` on rod `rod`, `place` rod lengths from its left node (0 <= place <= 1).
 
     The right-going wave has come so far from that node, the left-going one 1 - place from the other.
+    A `point` that no rod shows is watched itself (`rod` is 0 then).
     """
 
     name: str
     quantity: str
     rod: int
     place: fmpq
+    point: int | None = None
 
     @property
     def x(self) -> fmpq:

@@ -27,13 +27,12 @@ from flint import arb, arb_poly, fmpq
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
 from wavesym.exact.motion import Motion, is_zero
+from wavesym.exact.silence import silent
 from wavesym.model.model import Model
 from wavesym.numbers import chebyshev
 from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import bound, middle, nearest, rational
 from wavesym.numbers.reals import Real
-from wavesym.programs.march.plan import plan
-from wavesym.programs.march.zero import silent
 from wavesym.programs.program import ProgramOutput
 
 # A table larger than this is for the march.
@@ -192,11 +191,8 @@ class _Fits:
 
     @cached_property
     def _silent(self) -> set[int]:
-        """The outputs that are 0 throughout though waves arrive, which no number of bits tells; as far as is known."""
-        try:
-            return {k for k, nothing in enumerate(silent(plan(self._model, self._real))) if nothing}
-        except CostError:
-            return set()
+        """The outputs that are 0 throughout though waves arrive, which no number of bits tells."""
+        return {k for k, nothing in enumerate(silent(self._model, rational(self._tau_max))) if nothing}
 
     def fitted(self, per_unit: int, most: int = MOST_BYTES) -> Pieces:
         """Pieces, about `per_unit` of them in a unit of tau. CostError where they would take more than `most` bytes."""
@@ -222,19 +218,17 @@ class _Fits:
 
     def _least(self, per_unit: int) -> int:
         """How many pieces there are at least, of all outputs."""
-        in_a_unit = 0
-        for breaks, places in self._shared.items():
-            cuts = sorted(breaks)
-            parts = (((high - low) * per_unit).ceil() for low, high in pairwise([*cuts, cuts[0] + 1]))
-            in_a_unit += len(places) * int(sum(parts))
-        return in_a_unit * int(self._motion.until.floor())
+        return sum(
+            len(places) * int(sum(((high - low) * per_unit).ceil() for low, high in pairwise(starts)))
+            for starts, places in self._shared.items()
+        )
 
     @cached_property
-    def _shared(self) -> dict[frozenset[fmpq], list[int]]:
-        """The outputs, by where in a unit of tau they may jump or bend."""
-        shared: dict[frozenset[fmpq], list[int]] = {}
+    def _shared(self) -> dict[tuple[fmpq, ...], list[int]]:
+        """The outputs, by where they may jump or bend."""
+        shared: dict[tuple[fmpq, ...], list[int]] = {}
         for k, probe in enumerate(self._motion.probes):
-            shared.setdefault(self._motion.breaks(probe), []).append(k)
+            shared.setdefault(tuple(self._motion.starts(probe)), []).append(k)
         return shared
 
     def _fit(self, per_unit: int, most: int, bits: int) -> Pieces | None:

@@ -136,7 +136,7 @@ def _title(number: int, model: Model, load: TriedLoad) -> Iterator[str]:
     values = ", ".join(
         f"{name}_{index} = {value}" for name, numbers in model.felt.items() for index, value in numbers.items()
     )
-    yield f"Fig. {number} of the paper, redrawn: {model.labels.system['type']}, m = {model.chain.m}; {values}"
+    yield f"Fig. {number} of the paper, redrawn: {model.labels.system['type']}, m = {model.named.m}; {values}"
     if model.labels.loads:
         yield (
             f"The paper's load curve is not in its text. Drawn: {load.name}, "

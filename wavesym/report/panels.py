@@ -83,7 +83,8 @@ def draw(histories: Histories) -> Figure:
     """The outputs of a scene; the same bytes from the same scene when it is written by `saving.save`."""
     model = histories.model
     until = nearest(model.until)
-    title = [f"{model.name}: {model.labels.system['type']}, m = {model.chain.m}, tau to {until:g}"]
+    size = f"m = {model.chain.m}" if model.chain else f"{len(model.network.bars)} rods"
+    title = [f"{model.name}: {model.labels.system['type']}, {size}, tau to {until:g}"]
     title += [line for note in notes(histories) for line in wrap(note, CHARACTERS)]
     opened = [
         Instant(end.double, f"contact at x = {end.x} opens, tau = {end.double:.4g}") for end in histories.contacts

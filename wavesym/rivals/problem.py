@@ -155,7 +155,7 @@ def problem(chain: Chain, loads: Sequence[Applied], probes: Sequence[Probe], unt
 
 def stated(model: Model) -> Problem:
     """The problem of a model."""
-    return problem(model.chain, model.loads, model.probes, nearest(model.until))
+    return problem(model.named, model.loads, model.probes, nearest(model.until))
 
 
 def _coefficients(unit: UnitLoad, weight: fmpq) -> tuple[float, float, float]:

@@ -8,23 +8,23 @@ from pydantic import ValidationError
 
 from wavesym.fields.loads import Load
 from wavesym.fields.table import first_error, listed, wrong
-from wavesym.systems import Preset
+from wavesym.systems import SystemTable
 
 
-def loads(tables: object, system: Preset) -> tuple[Load, ...]:
+def loads(tables: object, system: SystemTable) -> tuple[Load, ...]:
     """The loads on a system. Which keys a table has depends on the system, so pydantic is told here."""
     if isinstance(tables, Sequence) and tables and not system.load_kinds:
         raise wrong(f"loads given, none expected ({system.no_loads})")
     return tuple(_load(table, k, system) for k, table in enumerate(listed(tables)))
 
 
-def _load(table: object, k: int, system: Preset) -> Load:
+def _load(table: object, k: int, system: SystemTable) -> Load:
     try:
         load = _kind(table, system.load_kinds).model_validate(table)
     except ValidationError as error:
         what, path = first_error(error)
         raise wrong(what, k, *path) from None
-    if refused := load.refused(system.m):
+    if refused := system.refused(load):
         what, key = refused
         raise wrong(what, k, key)
     return load

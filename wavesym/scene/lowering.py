@@ -18,11 +18,13 @@ from wavesym.scene.scene import Scene
 def lower(scene: Scene) -> Model:
     """The model of a scene; every number in it is an fmpq."""
     output = scene.output
+    chain, network = scene.system.made(scene.load)
     return Model(
         name=scene.name,
-        chain=scene.system.chain,
+        chain=chain,
+        network=network,
         loads=_loads(scene),
-        probes=tuple(_probe(each, scene.system.m) for each in scene.outputs),
+        probes=tuple(map(_probe, scene.outputs)),
         until=rational(output.until),
         tolerance=rational(output.tolerance),
         labels=_labels(scene),
@@ -45,9 +47,6 @@ def _loads(scene: Scene) -> tuple[Applied, ...]:
     return merged(unit for load in scene.load for unit in load.units())
 
 
-def _probe(output: Observable, m: int) -> Probe:
-    """At a node the rod is the one on its left, where no side is asked for."""
-    x = rational(output.x)
-    after = int(x.ceil())
-    rod = min(max(1, after + 1 if output.side > 0 else after), m)
-    return Probe(output.name, output.quantity, rod, x - (rod - 1))
+def _probe(output: Observable) -> Probe:
+    place = output.place
+    return Probe(output.name, output.quantity, place.rod, rational(place.part), place.point)

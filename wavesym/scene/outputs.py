@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Annotated, Self
 
 from pydantic import BeforeValidator, FailFast, Field, PlainSerializer, PlainValidator, field_validator, model_validator
 
-from wavesym.fields.numbers import Exact, Positive, exact, written
+from wavesym.fields.loads import Load
+from wavesym.fields.numbers import Exact, Positive
 from wavesym.fields.table import SceneTable, Written, listed, shown, wrong
-from wavesym.systems import Preset
+from wavesym.systems import SystemTable
+from wavesym.systems.place import MisplacedError, Place, Position, position_of
 
 # Beyond it even the integer part of an argument costs a double most of its digits.
 LONGEST_HORIZON = 10**9
 QUANTITIES = ("strain", "velocity", "displacement")
-
-
-@dataclass(frozen=True)
-class Position:
-    """A place x (in rod lengths) as it is `written`, and the side of it: -1 left, +1 right, 0 not said."""
-
-    written: str
-    x: Fraction
-    side: int
 
 
 @dataclass(frozen=True)
@@ -38,18 +31,11 @@ class Observable:
     x: Fraction
     side: int
     name: str
+    place: Place = field(compare=False)
 
 
-def _position(value: object) -> Position:
-    text = written(value)
-    if text is None:
-        return Position(str(exact(value)), exact(value), 0)
-    side = {"-": -1, "+": 1}.get(text[-1:], 0)
-    return Position(str(value) if isinstance(value, str) else text, exact(text[:-1] if side else value), side)
-
-
-Place = Annotated[Position, PlainValidator(_position), PlainSerializer(lambda place: place.written, return_type=str)]
-Positions = Annotated[tuple[Place, ...], FailFast(), BeforeValidator(listed)]
+Positioned = Annotated[Position, PlainValidator(position_of), PlainSerializer(lambda at: at.written, return_type=str)]
+Positions = Annotated[tuple[Positioned, ...], FailFast(), BeforeValidator(listed)]
 
 
 class Output(SceneTable):
@@ -84,21 +70,20 @@ class Output(SceneTable):
         return self
 
 
-def observables(output: Output, system: Preset) -> Iterator[Observable]:
+def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> Iterator[Observable]:
     """The outputs in order, checked against the chain; raises the error of `table.wrong`."""
-    seen: dict[Observable, str] = {}
+    seen: dict[tuple[str, Place], str] = {}
     for quantity in QUANTITIES:
         positions: tuple[Position, ...] = getattr(output, quantity)
         for k, position in enumerate(positions):
             at = "output", quantity, k
-            x, text = position.x, shown(Written(position.written))
-            if not 0 <= x <= system.m:
-                raise wrong(f"{text} given, a position from 0 to {system.m} expected", *at)
-            side = position.side if quantity == "strain" and system.divided_at(x) else 0
-            if quantity == "strain" and system.divided_at(x) and not side:
-                raise wrong(f'{text} given, a side of the body there expected: "{text}-" or "{text}+"', *at)
-            place = Observable(quantity, x, side, "")
-            if place in seen:
-                raise wrong(f"{text} given, another place than {seen[place]} expected (both are the same)", *at)
-            seen[place] = text
-            yield replace(place, name=f"{quantity}@{position.written}")
+            text = shown(Written(position.written))
+            try:
+                place = system.located(position, quantity, loads)
+            except MisplacedError as error:
+                raise wrong(str(error), *at) from None
+            if (quantity, place) in seen:
+                taken = seen[quantity, place]
+                raise wrong(f"{text} given, another place than {taken} expected (both are the same)", *at)
+            seen[quantity, place] = text
+            yield Observable(quantity, place.x, place.side, f"{quantity}@{position.written}", place)

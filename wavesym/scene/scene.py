@@ -17,7 +17,7 @@ from wavesym.scene.names import Name
 from wavesym.scene.outputs import Observable, Output, observables
 from wavesym.scene.paths import changed
 from wavesym.scene.reading import read_toml
-from wavesym.systems import SYSTEMS, Preset
+from wavesym.systems import SYSTEMS, ExplicitChain, Preset, SystemTable
 
 
 class Scene(SceneTable):
@@ -39,7 +39,7 @@ class Scene(SceneTable):
     """
 
     name: Name = Field(description="an identifier of C")
-    system: SerializeAsAny[Preset] = Field(description="a table")
+    system: SerializeAsAny[Preset | ExplicitChain] = Field(description="a table")
     load: tuple[SerializeAsAny[Load], ...] = ()
     output: Output = Field(description="a table")
 
@@ -83,8 +83,8 @@ class Scene(SceneTable):
 
     @field_validator("system", mode="wrap")
     @classmethod
-    def _known_system(cls, table: object, _: object) -> Preset:
-        if isinstance(table, Preset):
+    def _known_system(cls, table: object, _: object) -> SystemTable:
+        if isinstance(table, SystemTable):
             return table
         *others, last = (f'"{name}"' for name in SYSTEMS)
         expected = f"{', '.join(others)} or {last} expected"
@@ -114,4 +114,4 @@ class Scene(SceneTable):
     @cached_property
     def outputs(self) -> tuple[Observable, ...]:
         """The outputs: strains, velocities, displacements, each in the order of the scene."""
-        return tuple(observables(self.output, self.system))
+        return tuple(observables(self.output, self.system, self.load))

@@ -70,8 +70,9 @@ class Acceleration(TimedLoad):
 class SampledAcceleration(SampledLoad):
     """A base acceleration that is linear between its samples."""
 
-    step: ClassVar[str] = "a"
-    ramp: ClassVar[str] = "b"
+    def units(self) -> Iterator[Applied]:
+        """The load as unit responses."""
+        return self.sampled("a", "b")
 
 
 class Building(Preset):

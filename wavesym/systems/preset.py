@@ -5,19 +5,21 @@ Nothing of size m is built before as many numbers are seen to be given.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import ClassVar
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from wavesym.fields.loads import LoadKinds
+from wavesym.fields.loads import Load, LoadKinds
 from wavesym.fields.numbers import Integer
-from wavesym.fields.table import SceneTable, shown, wrong
+from wavesym.fields.table import SceneTable, Written, shown, wrong
 from wavesym.model.chain import Chain
+from wavesym.model.network import Network, network_of
 from wavesym.model.node import Parameters, System
 from wavesym.numbers.doubles import rational
+from wavesym.systems.place import MisplacedError, Place, Position
 
 
 class Preset(SceneTable):
@@ -75,9 +77,31 @@ class Preset(SceneTable):
         }
         return Chain(self.system, self.m, Parameters(**numbers))
 
-    def divided_at(self, x: Fraction) -> bool:
+    def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
+        """The place of an output. MisplacedError."""
+        x, text = position.x, shown(Written(position.written))
+        if x is None or not 0 <= x <= self.m:
+            raise MisplacedError(f"{text} given, a position from 0 to {self.m} expected")
+        divided = quantity == "strain" and self._divided_at(x)
+        if divided and not position.side:
+            raise MisplacedError(f'{text} given, a side of the body there expected: "{text}-" or "{text}+"')
+        side = position.side if divided else 0
+        # at a node the rod is the one on its left, where no side is asked for
+        after = -(-x.numerator // x.denominator)
+        rod = min(max(1, after + 1 if side > 0 else after), self.m)
+        return Place(x, side, "", rod, x - (rod - 1))
+
+    def _divided_at(self, x: Fraction) -> bool:
         """Whether the strain has two sides at x (in rod lengths), strictly inside the chain: mostly at rigid bodies."""
         if not (0 < x < self.m and x.denominator == 1):
             return False
         node = self.chain.nodes[int(x)]
         return bool(node.inertia or node.damping or node.loads) or node.alpha != node.beta
+
+    def refused(self, load: Load) -> tuple[str, str] | None:
+        """What is wrong with a load, and under which key; None where nothing is."""
+        return load.refused(self.m)
+
+    def made(self, loads: Sequence[Load]) -> tuple[Chain | None, Network]:
+        """The chain as the paper has it, and as a network."""
+        return self.chain, network_of(self.chain)

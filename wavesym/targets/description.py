@@ -52,6 +52,7 @@ class Description:
     real: str
     numpy_real: str
     reason: str
+    units: str
     tolerance: str
     outputs: tuple[NamedOutput, ...]
     output_count: str
@@ -78,6 +79,7 @@ def describe(program: Program) -> Description:
         real=called.c_type,
         numpy_real=called.numpy_type,
         reason=origin.reason,
+        units="x in rod lengths, tau = c t / l" if model.chain else "places in lengths, tau in lengths at speed 1",
         tolerance=_tolerance(model),
         outputs=tuple(
             NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)))

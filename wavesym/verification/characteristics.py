@@ -42,7 +42,7 @@ LEFT, RIGHT = 0, 1  # which way a wave goes
 MOST_DOUBLES = 50_000_000
 
 # Lobatto IIIA: the integral over a step, up to its middle and up to its end, from the values at 0, 1/2 and 1
-_LOBATTO = np.array([[5 / 24, 1 / 3, -1 / 24], [1 / 6, 2 / 3, 1 / 6]])
+LOBATTO = np.array([[5 / 24, 1 / 3, -1 / 24], [1 / 6, 2 / 3, 1 / 6]])
 
 # interpolation is from the ends of steps: the middles are of order 4 too, but with errors of their own, which a
 # polynomial through both would make larger; a panel has enough ends for it
@@ -87,7 +87,7 @@ def integrate(chain: Chain, loads: Sequence[Applied], until: float, steps: int) 
     memory.
     """
     windows = int(rational(until).floor()) + 1
-    panels = _panels((load.time for load in loads), steps)
+    panels = stepped_panels((load.time for load in loads), steps)
     shape = windows + 1, 2, len(chain.nodes), panels[-1].points.stop
     if prod(shape) > MOST_DOUBLES:
         raise CostError(
@@ -116,12 +116,13 @@ def integrate(chain: Chain, loads: Sequence[Applied], until: float, steps: int) 
 class Integrated:
     """What an integration found: `waves[1 + n, direction, x]` is sent by the node at x, at the points of window n.
 
-    Window -1 holds the waves that are in the rods at tau = 0.
+    Window -1 (all of them `before` the first) holds the waves that are in the rods at tau = 0.
     """
 
     panels: tuple[SteppedPanel, ...]
     waves: Array
     until: float
+    before: int = 1
 
     @cached_property
     def integrals(self) -> Array:
@@ -131,7 +132,7 @@ class Integrated:
         for n in range(len(self.waves)):
             for panel in self.panels:
                 values = self.waves[n, :, :, panel.points]
-                middles, ends = np.moveaxis(panel.step * _stages(values) @ _LOBATTO.T, -1, 0)
+                middles, ends = np.moveaxis(panel.step * stages(values) @ LOBATTO.T, -1, 0)
                 sums = total[..., np.newaxis] + np.cumsum(ends, axis=-1)
                 here = result[n, :, :, panel.points]
                 here[..., 0] = total
@@ -176,7 +177,7 @@ class Integrated:
         return _ROUNDINGS * steps * float(UNIT_ROUNDOFF) * largest
 
     def _sampled(self, field: Array, instants: Sequence[fmpq]) -> Array:
-        """A field of one node at instants >= -1, by a polynomial of degree 7 inside the panel of each.
+        """A field of one node at instants (in windows), by a polynomial of degree 7 inside the panel of each.
 
         Which panel that is, is decided exactly.
         """
@@ -187,7 +188,7 @@ class Integrated:
             panel = self.panels[bisect_right(starts, instant - n) - 1]
             position = (instant - n - panel.start) / panel.length * panel.steps
             first = min(max(int(position.floor()) - _STENCIL // 2 + 1, 0), panel.steps + 1 - _STENCIL)
-            windows.append(int(n) + 1)
+            windows.append(int(n) + self.before)
             firsts.append(panel.first + 2 * first)
             offsets.append(nearest(position - first))
         points = np.add.outer(np.array(firsts, dtype=int), 2 * np.arange(_STENCIL))
@@ -220,9 +221,9 @@ class _NodeSteps:
     def _carried(self, right: Array, step: float) -> Array:
         """q' + rate q = right from the present q on, by Lobatto IIIA; exact in q, as the equation is linear."""
         z = self.gamma[self.massive] / self.inertia * step
-        system = np.eye(2) + z[..., np.newaxis] * _LOBATTO[:, 1:]
-        kept = np.linalg.solve(system, 1 - z[..., np.newaxis] * _LOBATTO[:, :1])[..., 0]
-        gained = np.linalg.solve(system, step * _LOBATTO @ np.swapaxes(_stages(right), 1, 2))
+        system = np.eye(2) + z[..., np.newaxis] * LOBATTO[:, 1:]
+        kept = np.linalg.solve(system, 1 - z[..., np.newaxis] * LOBATTO[:, :1])[..., 0]
+        gained = np.linalg.solve(system, step * LOBATTO @ np.swapaxes(stages(right), 1, 2))
         result = np.empty_like(right)
         q = self.q
         result[:, 0] = q
@@ -261,7 +262,8 @@ class _NodeForces:
         return result
 
 
-def _panels(times: Iterable[fmpq], steps: int) -> tuple[SteppedPanel, ...]:
+def stepped_panels(times: Iterable[fmpq], steps: int) -> tuple[SteppedPanel, ...]:
+    """A window cut where loads begin, at these times in windows."""
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     panels: list[SteppedPanel] = []
     for low, high in pairwise(cuts):
@@ -274,7 +276,7 @@ def _column(values: Iterable[fmpq]) -> Array:
     return np.array([[nearest(value)] for value in values])
 
 
-def _stages(values: Array) -> Array:
+def stages(values: Array) -> Array:
     """The values at the start, middle and end of every step; (..., points) -> (..., steps, 3)."""
     return np.stack([values[..., :-1:2], values[..., 1::2], values[..., 2::2]], axis=-1)
 

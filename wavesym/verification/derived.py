@@ -18,7 +18,7 @@ from wavesym.exact.table import Function, Table, full_table
 from wavesym.exact.walks import Letters, departures, function_walks, letters, units, walks_until
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters, System
-from wavesym.systems import SYSTEMS
+from wavesym.systems import presets
 from wavesym.verification.arguments import (
     NODE_LAW,
     PHYSICAL_TIME,
@@ -71,7 +71,7 @@ def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[s
 
     `watch` goes through the systems as they are proved.
     """
-    systems = [system for preset in SYSTEMS.values() for system in preset.variants]
+    systems = [system for preset in presets().values() for system in preset.variants]
     proofs = [proof for system in watch(systems) for proof in (*_proofs(system), *_routes(system))]
     theorems = dict.fromkeys(proof.theorem for proof in proofs)
     lines = (line for theorem in theorems for line in _told(theorem, [p for p in proofs if p.theorem is theorem]))

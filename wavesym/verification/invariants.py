@@ -75,9 +75,9 @@ def watched(model: Model, until: int) -> Model:
 
     A contact has one strain.
     """
-    left_ends, right_ends = _ends(model.chain)
+    left_ends, right_ends = _ends(model.named)
     strains = {probe.name: probe for probe in left_ends + right_ends}.values()
-    return model.watching([*strains, *_velocities(model.chain)]).shortened(fmpq(until))
+    return model.watching([*strains, *_velocities(model.named)]).shortened(fmpq(until))
 
 
 def values_per_window(model: Model) -> tuple[int, int]:
@@ -117,7 +117,7 @@ class _Books:
     """Momentum and energy from what happens at the nodes, with so many points between two fronts."""
 
     def __init__(self, model: Model, evaluate: Evaluate, errors: Array, points: int) -> None:
-        self._chain = model.chain
+        self._chain = model.named
         self._windows = int(model.until.floor())
         self._loads = [load for load in model.loads if load.source != "impact"]
         times, self._gauss = _quadrature(_cuts(model.loads), self._windows, points)

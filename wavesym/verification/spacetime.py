@@ -36,16 +36,16 @@ COARSEST = 16
 """Cells per rod of the coarsest grid, at least."""
 
 # load times and places with larger denominators than this do not become points of the grid
-_FINEST_ALIGNED = 128
+FINEST_ALIGNED = 128
 
 # between points of the grid outputs are read off a polynomial through so many
-_STENCIL = 6
+STENCIL = 6
 
 # what a step costs besides its points, and besides a load's, in points
 _STEP, _EVENT = 5000, 20
 
 # a point rounds three sums, a node and what is read off a little more
-_ROUNDINGS = 8
+ROUNDINGS = 8
 
 
 @dataclass(frozen=True)
@@ -66,11 +66,15 @@ class SpaceTimeGrid:
     @property
     def aligned(self) -> bool:
         """Whether all loads begin on the grid. All fronts are on it then, and errors are a series in h^2."""
-        return all(_whole(float(cut) * self.cells) for cut in self.problem.cuts)
+        return all(whole(float(cut) * self.cells) for cut in self.problem.cuts)
 
     def finer(self, times: int) -> SpaceTimeGrid:
         """The grid with that many cells for one."""
         return SpaceTimeGrid(self.problem, self.cells * times)
+
+    def tau(self, instant: int) -> float:
+        """When an instant is."""
+        return instant / self.cells
 
     def cost(self, until: float) -> float:
         """What it takes to come to tau = `until`: points moved, roughly."""
@@ -80,14 +84,14 @@ class SpaceTimeGrid:
     def instants(self, until: float) -> Instants:
         """Those up to `until` at which what every output is read from has no front inside."""
         # one step around an output on the grid, as far as the polynomial may reach around others
-        reaches = [1 if _whole(watch.offset * self.cells) else _STENCIL for watch in self.problem.watches]
+        reaches = [1 if whole(watch.offset * self.cells) else STENCIL for watch in self.problem.watches]
         instants = np.arange(1, int(until * self.cells) - max(reaches) + 1)
         free = np.ones(len(instants), dtype=bool)
         for watch, reach in zip(self.problem.watches, reaches, strict=True):
             for cut in self.problem.cuts:
                 for way in (watch.offset, -watch.offset):
                     passed = (instants / self.cells - float(cut) - way + 0.5) % 1 - 0.5
-                    free &= np.abs(passed) * self.cells > reach - _SAME
+                    free &= np.abs(passed) * self.cells > reach - SAME
         return instants[free]
 
     def integrate(self, instants: Instants) -> Displaced:
@@ -123,7 +127,7 @@ class SpaceTimeGrid:
         amplifies it): a displacement sees all those of its past, a difference those on whose fronts it lies.
         """
         seen = {"displacement": steps * steps, "velocity": steps * self.cells, "strain": steps * self.cells}
-        unit = _ROUNDINGS * float(UNIT_ROUNDOFF)
+        unit = ROUNDINGS * float(UNIT_ROUNDOFF)
         return np.array([unit * seen[watch.quantity] for watch in self.problem.watches])
 
     @cached_property
@@ -151,7 +155,7 @@ def grid(model: Model) -> SpaceTimeGrid:
     """The coarsest grid for a model: its loads and outputs are on it where their denominators are small."""
     common = 1
     for place in (*(load.time for load in model.loads), *(probe.x for probe in model.probes)):
-        if lcm(common, int(place.q)) <= _FINEST_ALIGNED:
+        if lcm(common, int(place.q)) <= FINEST_ALIGNED:
             common = lcm(common, int(place.q))
     fewest = max(COARSEST, int((COARSEST / min(fmpq(1), model.until)).ceil()))
     return SpaceTimeGrid(stated(model), common * ceil(fewest / common))
@@ -184,25 +188,25 @@ Term = tuple[int, int, float]
 
 
 def _terms(watch: Watch, cells: int) -> Iterator[Term]:
-    for j, weight in _between(watch.offset * cells, cells):
-        for later, point, factor in _read(watch.quantity, j, cells):
+    for j, weight in between(watch.offset * cells, cells):
+        for later, point, factor in read(watch.quantity, j, cells, cells):
             yield later, (watch.rod - 1) * cells + point, weight * factor
 
 
-def _between(place: float, cells: int) -> Iterator[tuple[int, float]]:
+def between(place: float, cells: int) -> Iterator[tuple[int, float]]:
     """Points of a rod, and the weights with which they stand for a place between them."""
-    if _whole(place):
+    if whole(place):
         yield round(place), 1.0
         return
-    first = min(max(int(place) - _STENCIL // 2 + 1, 0), cells + 1 - _STENCIL)
-    points = range(first, first + _STENCIL)
+    first = min(max(int(place) - STENCIL // 2 + 1, 0), cells + 1 - STENCIL)
+    points = range(first, first + STENCIL)
     for j in points:
         yield j, float(np.prod([(place - k) / (j - k) for k in points if k != j]))
 
 
-def _read(quantity: str, j: int, cells: int) -> list[Term]:
-    """A quantity at point j of a rod."""
-    half = cells / 2
+def read(quantity: str, j: int, cells: int, rate: float) -> list[Term]:
+    """A quantity at point j of a rod of so many cells; `rate` is 1 over the step of what it is the slope in."""
+    half = rate / 2
     if quantity == "displacement":
         return [(0, j, 1.0)]
     if quantity == "velocity":
@@ -215,8 +219,8 @@ def _read(quantity: str, j: int, cells: int) -> list[Term]:
 
 
 # points and instants are told apart in doubles
-_SAME = 1e-6
+SAME = 1e-6
 
 
-def _whole(place: float) -> bool:
-    return abs(place - round(place)) < _SAME
+def whole(place: float) -> bool:
+    return abs(place - round(place)) < SAME

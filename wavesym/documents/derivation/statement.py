@@ -21,7 +21,7 @@ from wavesym.documents.derivation.patterns import Pattern, pattern_laws, pattern
 from wavesym.documents.derivation.writer import Place, Writer
 from wavesym.errors import WavesymError
 from wavesym.model.node import Node, System
-from wavesym.systems import SYSTEMS
+from wavesym.systems import presets
 
 if TYPE_CHECKING:
     from wavesym.model.symbolic import SymbolicChain
@@ -92,7 +92,7 @@ class Statement:
 
 def systems(name: str, m: int | None) -> tuple[System, ...]:
     """ "collision", "drive" or "building" (both bases). WavesymError for an m that these do not have or none reads."""
-    variants = SYSTEMS[name].variants
+    variants = presets()[name].variants
     for system in variants:
         if m is not None and m not in range(system.smallest, LARGEST_WRITTEN_OUT + 1, system.step):
             even = "even, " if system.step == 2 else ""

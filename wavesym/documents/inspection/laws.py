@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from wavesym.derivation.exact_rule import Linear, LoadTerm, NodeRule, Rule, Term, Weights
 from wavesym.documents.inspection.modelled import cone, kind
+from wavesym.documents.inspection.networked import joint_laws, not_served
 from wavesym.documents.inspection.section import Listing, Plain, Section, Told
 from wavesym.exact.node_rules import node_rule
 from wavesym.exact.table import Function, Rules
@@ -14,7 +15,12 @@ from wavesym.numbers.doubles import rational
 
 
 def laws(model: Model) -> Iterator[Section]:
-    """Both ansaetze for what is in the light cone."""
+    """Both ansaetze for what is in the light cone; of a chain that is written out the law of each joint."""
+    if model.chain is None:
+        yield cone(model)
+        yield joint_laws(model)
+        yield not_served(model)
+        return
     nodes = model.light_cone(rational(model.horizon()))
     yield cone(model)
     yield Listing(
@@ -24,7 +30,7 @@ def laws(model: Model) -> Iterator[Section]:
         "of a node's velocity q, of what arrives from the left (a) and right (b), and of what acts (s)",
         [_of_node(x, model) for x in nodes],
     )
-    rules = Rules(model.chain)
+    rules = Rules(model.named)
     functions = [Function(name, rod) for rod in nodes[1:] for name in ("f", "g")]
     yield Listing(
         "functions",
@@ -38,7 +44,7 @@ def laws(model: Model) -> Iterator[Section]:
 
 
 def _of_node(x: int, model: Model) -> dict[str, Plain]:
-    node = model.chain.nodes[x]
+    node = model.named.nodes[x]
     rule: NodeRule = node_rule(node)
     return {
         "x": x,

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from wavesym.documents.inspection.networked import counted, graph_cone, parts
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
+from wavesym.model.chain import Chain
 from wavesym.model.model import Model
 from wavesym.model.node import Node, UnitLoad
 from wavesym.numbers.doubles import rational
@@ -18,7 +20,7 @@ def modelled(model: Model) -> Iterator[Section]:
         "What is computed",
         {
             **model.labels.system,
-            "m": model.chain.m,
+            **(counted(model) if model.chain is None else {"m": model.chain.m}),
             "until": str(model.until),
             "tolerance": str(model.tolerance),
             "horizon_double": model.horizon(DOUBLE),
@@ -27,16 +29,7 @@ def modelled(model: Model) -> Iterator[Section]:
         },
     )
     yield cone(model)
-    yield Listing("nodes", "Nodes: the conditions between two rods, and at the ends", list(map(_node, _nodes(model))))
-    yield Listing(
-        "rods",
-        "Rods: where the clocks of their waves begin, and how fast they move at tau = 0",
-        [
-            {"rod": i, "tau0": str(rod.tau0), "x0": str(rod.x0), "velocity": str(rod.velocity)}
-            for i in range(1, model.chain.m + 1)
-            for rod in (model.chain.rod(i),)
-        ],
-    )
+    yield from parts(model) if model.chain is None else _named_parts(model.chain)
     yield Listing(
         "loads",
         "Loads: unit responses, each from its time on and times its weight",
@@ -45,11 +38,28 @@ def modelled(model: Model) -> Iterator[Section]:
     yield probes(model)
 
 
+def _named_parts(chain: Chain) -> Iterator[Section]:
+    yield Listing(
+        "nodes", "Nodes: the conditions between two rods, and at the ends", list(map(_node, enumerate(chain.nodes)))
+    )
+    yield Listing(
+        "rods",
+        "Rods: where the clocks of their waves begin, and how fast they move at tau = 0",
+        [
+            {"rod": i, "tau0": str(rod.tau0), "x0": str(rod.x0), "velocity": str(rod.velocity)}
+            for i in range(1, chain.m + 1)
+            for rod in (chain.rod(i),)
+        ],
+    )
+
+
 def cone(model: Model) -> Facts:
     """The nodes that are modelled, and how many are not."""
+    if model.chain is None:
+        return graph_cone(model)
     modelled_nodes = model.light_cone(rational(model.horizon()))
-    out = model.chain.m + 1 - len(modelled_nodes)
-    left_out = Told(out, f"{out} of {model.chain.m + 1} nodes")
+    out = model.named.m + 1 - len(modelled_nodes)
+    left_out = Told(out, f"{out} of {model.named.m + 1} nodes")
     values = {"first": modelled_nodes[0], "last": modelled_nodes[-1], "left_out": left_out}
     return Facts("light_cone", "Light cone: the nodes from which something can reach an output in time", values)
 
@@ -79,10 +89,6 @@ def kind(node: Node) -> str:
 def rate(node: Node) -> str | None:
     """The rate of a body; a node without inertia has none."""
     return str(node.rate) if node.inertia else None
-
-
-def _nodes(model: Model) -> Iterator[tuple[int, Node]]:
-    yield from enumerate(model.chain.nodes)
 
 
 def _node(placed: tuple[int, Node]) -> dict[str, Plain]:

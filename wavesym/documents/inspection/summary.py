@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from wavesym.documents.inspection.modelled import cone, kind, probes, rate
+from wavesym.documents.inspection.networked import counted, joint_laws, not_served
 from wavesym.documents.inspection.programmed import chosen, contacts
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section
 from wavesym.documents.inspection.variants import variants
@@ -15,23 +16,36 @@ from wavesym.programs.choice import attempts
 
 def summary(model: Model) -> Iterator[Section]:
     """From the chain to the programs that were tried."""
-    parameters = {
-        name: {str(i): str(value) for i, value in numbers.items()} for name, numbers in model.felt.items() if numbers
-    }
-    values: dict[str, Plain] = {**model.labels.system, "m": model.chain.m, **parameters}
-    yield Facts("system", "The chain, with the parameters that can matter", values)
+    yield Facts(
+        "system", "The chain, with the parameters that can matter", {**model.labels.system, **_parameters(model)}
+    )
     yield Facts(
         "horizon",
         "How long and how exactly",
         {"until": str(model.until), "tau_max": model.horizon(), "tolerance": str(model.tolerance)},
     )
     yield cone(model)
-    nodes = model.light_cone(rational(model.horizon()))
-    rows = [{"x": x, "kind": kind(node), "rate": rate(node)} for x in nodes for node in (model.chain.nodes[x],)]
-    yield Listing("nodes", "Nodes in the light cone; a body answers a wave by exp(-rate tau)", rows)
+    yield joint_laws(model) if model.chain is None else _nodes(model)
     yield Listing("loads", "Loads", [{"load": told} for told in model.labels.loads if told], ("load",))
     yield probes(model)
     tried = attempts(model)
     yield chosen(model, tried)
     yield contacts(model)
     yield variants(model, tried)
+    if model.chain is None:
+        yield not_served(model)
+
+
+def _parameters(model: Model) -> dict[str, Plain]:
+    if model.chain is None:
+        return counted(model)
+    felt = {
+        name: {str(i): str(value) for i, value in numbers.items()} for name, numbers in model.felt.items() if numbers
+    }
+    return {"m": model.chain.m, **felt}
+
+
+def _nodes(model: Model) -> Listing:
+    nodes = model.light_cone(rational(model.horizon()))
+    rows = [{"x": x, "kind": kind(node), "rate": rate(node)} for x in nodes for node in (model.named.nodes[x],)]
+    return Listing("nodes", "Nodes in the light cone; a body answers a wave by exp(-rate tau)", rows)

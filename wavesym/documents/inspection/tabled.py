@@ -12,6 +12,7 @@ from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
 
 MOST_COUNTED = 30_000  # coefficients, which take a second or two to make
+MOST_SHOWN = 8  # knots of an output of a chain that is written out
 LONGEST = 10_000  # tau; to estimate the size of longer tables takes seconds, too
 
 
@@ -19,16 +20,16 @@ def tabled(model: Model) -> Iterator[Section]:
     """The size of the table that `tables` prints, and the knots of every output."""
     try:
         _refuse_long(model)
-        made = full_table(model.chain, None, rational(model.horizon()), most=MOST_COUNTED)
+        made = full_table(model.named, None, rational(model.horizon()), most=MOST_COUNTED)
     except CostError as refusal:
         yield Facts("table", "The exact table is not made here", {"refusal": str(refusal)})
     else:
         yield from _sizes(made)
+    where = "at 0 and at n + part, for each n = 0, 1, ... and each part of a unit of tau"
+    if model.chain is None:
+        where = f"at `count` instants; here are the first {MOST_SHOWN}"
     yield Listing(
-        "knots",
-        "Knots: an output may jump or bend at 0 and at n + part, for each n = 0, 1, ... and each part of a unit of tau",
-        list(_knots(model)),
-        ("parts", "refusal"),
+        "knots", f"Knots: an output may jump or bend {where}", list(_knots(model)), ("parts", "first", "refusal")
     )
 
 
@@ -64,15 +65,18 @@ def _sizes(table: Table) -> Iterator[Section]:
 
 
 def _knots(model: Model) -> Iterator[dict[str, Plain]]:
+    shown = "first" if model.chain is None else "parts"
     try:
         motion = Motion(model, rational(model.horizon()))
     except CostError as refusal:
         for probe in model.probes:
-            yield {"name": probe.name, "count": None, "parts": Told(None, ""), "refusal": str(refusal)}
+            yield {"name": probe.name, "count": None, shown: Told(None, ""), "refusal": str(refusal)}
         return
     for probe in model.probes:
-        parts = sorted(motion.breaks(probe))
-        whole = int(motion.until.floor())
-        count = whole * len(parts) + sum(whole + part <= motion.until for part in parts) + (parts[0] != 0)
-        listed = list(map(str, parts))
-        yield {"name": probe.name, "count": count, "parts": listed, "refusal": Told(None, "")}
+        starts = motion.starts(probe)
+        row: dict[str, Plain] = {"name": probe.name, "count": len(starts)}
+        if model.chain is None:
+            yield {**row, "first": list(map(str, starts[:MOST_SHOWN])), "refusal": Told(None, "")}
+        else:
+            parts = sorted({start - start.floor() for start in starts[len(starts) > 1 :]})
+            yield {**row, "parts": list(map(str, parts)), "refusal": Told(None, "")}

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from wavesym.errors import CostError
 from wavesym.exact.ball import largest, segments, values
 from wavesym.exact.signal import signals
-from wavesym.lab.atlas.family import Point
+from wavesym.lab.atlas.family import AtlasPoint
 from wavesym.lab.atlas.scenes import AIM
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
@@ -54,10 +54,10 @@ class Attempt:
     bounds: Array
     refused: str
 
-    def point(self, panel: str, curve: str, x: float) -> Point:
+    def point(self, panel: str, curve: str, x: float) -> AtlasPoint:
         """The largest error as a point of a curve."""
         error = math.nan if self.errors is None else float(np.max(self.errors))
-        return Point(panel, curve, x, error, float(self.bounds[-1]), self.refused)
+        return AtlasPoint(panel, curve, x, error, float(self.bounds[-1]), self.refused)
 
 
 def truth(scene: Scene, per_unit: int, around: Sequence[float] = ()) -> Truth:

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
 from numpy.typing import NDArray
 
-from wavesym.lab.atlas.family import CurveFamily, Point
+from wavesym.lab.atlas.family import AtlasPoint, CurveFamily
 from wavesym.report.labels import Curve, label
 
 Places = NDArray[np.float64]
@@ -91,26 +91,26 @@ def _panel(axes: Axes, family: CurveFamily, panel: str, named: bool) -> None:
         axes.invert_xaxis()
 
 
-def _parts(points: Sequence[Point]) -> tuple[list[Point], list[Point], list[Point]]:
+def _parts(points: Sequence[AtlasPoint]) -> tuple[list[AtlasPoint], list[AtlasPoint], list[AtlasPoint]]:
     """Those with a value, those without, and those of the first for which something is proved."""
     valued = [point for point in points if not math.isnan(point.error)]
     missing = [point for point in points if math.isnan(point.error)]
     return valued, missing, [point for point in valued if math.isfinite(point.bound)]
 
 
-def _line(axes: Axes, places: Places, points: Sequence[Point], **style: Any) -> None:
+def _line(axes: Axes, places: Places, points: Sequence[AtlasPoint], **style: Any) -> None:
     """A line through points; between the smallest x and exactly 0 nothing is known."""
     joined = [k for k, point in enumerate(points) if point.x]
     axes.plot(places[joined, 0], places[joined, 1], **style)
 
 
-def _places(family: CurveFamily, points: Sequence[Point], values: Sequence[float]) -> Places:
+def _places(family: CurveFamily, points: Sequence[AtlasPoint], values: Sequence[float]) -> Places:
     """Where points are drawn: inside the axes."""
     heights = np.clip(values, family.least * 1.5, family.most / 1.5)
     return np.column_stack([[point.x or family.x.zero or 0.0 for point in points], heights])
 
 
-def _missing(family: CurveFamily, panel: str, name: str, points: Sequence[Point]) -> Places:
+def _missing(family: CurveFamily, panel: str, name: str, points: Sequence[AtlasPoint]) -> Places:
     """Where points without a value are drawn: near the top, each curve's on a line of its own."""
     depth = (1.5 + family.curves(panel).index(name)) / _CROSSES
     height = family.most * (family.least / family.most) ** depth

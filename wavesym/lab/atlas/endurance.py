@@ -13,7 +13,7 @@ from fractions import Fraction
 import numpy as np
 
 from wavesym.lab.atlas import twisted_shaft as twist
-from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
+from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.model.model import Model
 from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import MarchEvaluator, marched
@@ -72,8 +72,8 @@ def family(
             found = follow(kappa, replace(chosen, degree=degree))
             bound = chosen.error_bound if degree == chosen.degree else float("inf")
             refused = f"the program reports that degree {degree} is too low" if found.alarm else ""
-            points.append(Point(panel, "error", degree, found.error, bound, refused))
-            points.append(Point(panel, "energy drift", degree, found.drift, refused=refused))
+            points.append(AtlasPoint(panel, "error", degree, found.error, bound, refused))
+            points.append(AtlasPoint(panel, "energy drift", degree, found.drift, refused=refused))
     return CurveFamily(
         "march",
         f"March to tau = {horizon:g}: error and energy drift reach rounding at the degree it takes (the last point)",

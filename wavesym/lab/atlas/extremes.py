@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from wavesym.lab.atlas.attempts import EVALUATORS, attempt, not_tried, truth
-from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
+from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import LEGEND, drive
 
 # at 1e4 the march may take a minute, as degrees up to the largest are tried before it refuses
@@ -20,7 +20,7 @@ _WHY = "a fit to so light a body takes minutes"
 
 def family(progress: Progress, exponents: Sequence[int] = EXPONENTS) -> CurveFamily:
     """Two equal discs and their shaft, kappa from 1e-6 to 1e6."""
-    points: list[Point] = []
+    points: list[AtlasPoint] = []
     for exponent in exponents:
         kappa = Fraction(10) ** exponent
         progress(f"kappa = 1e{exponent}")

@@ -12,7 +12,7 @@ Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Point:
+class AtlasPoint:
     """The `error` of a curve at x, NaN where there is no value; all dimensionless.
 
     `bound` is what the error is proved to stay below, infinite where nothing is proved; `refused` says why the method
@@ -48,12 +48,12 @@ class CurveFamily:
     title: str
     x: Axis
     y: str
-    points: tuple[Point, ...]
+    points: tuple[AtlasPoint, ...]
     note: str = ""
     least: float = 1e-17
     most: float = 1e2
 
-    def curve(self, panel: str, name: str) -> list[Point]:
+    def curve(self, panel: str, name: str) -> list[AtlasPoint]:
         """The points of one curve, in order."""
         return [point for point in self.points if (point.panel, point.curve) == (panel, name)]
 

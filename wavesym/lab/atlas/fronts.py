@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from wavesym.lab.atlas.attempts import Truth, truth
-from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
+from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import made
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.peers import PEERS
@@ -44,7 +44,7 @@ def family(progress: Progress) -> CurveFamily:
             progress(f"{rival.name}, {resolution:g} {rival.unit}")
             at, away = errors(rival, resolution, known)
             finer = refinement(rival, resolution)
-            points += [Point(AT, rival.name, finer, at), Point(AWAY, rival.name, finer, away)]
+            points += [AtlasPoint(AT, rival.name, finer, at), AtlasPoint(AWAY, rival.name, finer, away)]
     return CurveFamily(
         "fronts",
         "What rivals do at a front: four of seven never converge there, however fine they are away from it",

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from wavesym.lab.atlas.attempts import attempts, truth
-from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
+from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import LEGEND, drive
 from wavesym.scene import Scene
 
@@ -20,7 +20,7 @@ ZERO = 1e-18
 
 def family(progress: Progress, gaps: Sequence[Fraction] = GAPS, counts: Sequence[int] = REFLECTIONS) -> CurveFamily:
     """Two and three rates that meet, after so many reflections."""
-    points: list[Point] = []
+    points: list[AtlasPoint] = []
     for rates, scene in ((2, _two), (3, _three)):
         for reflections in counts:
             for gap in gaps:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
+from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.lumped import strains
 from wavesym.lab.atlas.scenes import made
 from wavesym.programs.making import program
@@ -67,7 +67,7 @@ def family(progress: Progress, kappas: Sequence[Fraction] = KAPPAS) -> CurveFami
     for system in SYSTEMS:
         for kappa in kappas:
             progress(f"masses and springs, {system.name}, kappa = {kappa}")
-            points.append(Point("all systems", system.name, float(kappa), difference(system, kappa)))
+            points.append(AtlasPoint("all systems", system.name, float(kappa), difference(system, kappa)))
     return CurveFamily(
         "springs",
         "Waves against a chain of masses and springs: its order in kappa depends on the load, and may be none",
@@ -94,7 +94,7 @@ def _scene(system: Lumped, kappa: Fraction, until: int) -> Scene:
     return made(fields, system.load, until, strain=[Fraction(2 * rod - 1, 2) for rod in system.rods])
 
 
-def orders(points: Sequence[Point]) -> dict[str, float]:
+def orders(points: Sequence[AtlasPoint]) -> dict[str, float]:
     """The slope of each curve over its last decade: the power of kappa with which the difference falls."""
     found = {}
     for name in dict.fromkeys(point.curve for point in points):
@@ -103,6 +103,6 @@ def orders(points: Sequence[Point]) -> dict[str, float]:
     return found
 
 
-def _labelled(points: Sequence[Point]) -> tuple[Point, ...]:
+def _labelled(points: Sequence[AtlasPoint]) -> tuple[AtlasPoint, ...]:
     slopes = orders(points)
     return tuple(replace(point, curve=f"{point.curve}: order {slopes[point.curve]:.2f}") for point in points)

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from wavesym.lab.atlas.attempts import EVALUATORS, attempt, truth
-from wavesym.lab.atlas.family import Axis, CurveFamily, Point, Progress
+from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import LEGEND, drive
 from wavesym.numbers.doubles import nearest
 
@@ -35,7 +35,7 @@ def family(progress: Progress, kappas: Sequence[Fraction] = KAPPAS, counts: Sequ
     )
 
 
-def _points(kappa: Fraction, name: str, counts: Sequence[int]) -> list[Point]:
+def _points(kappa: Fraction, name: str, counts: Sequence[int]) -> list[AtlasPoint]:
     """An evaluator for the longest horizon, looked at up to shorter ones."""
     until = 2 * (min(FITTED[kappa], counts[-1]) if name == "pieces" else counts[-1])
     known = truth(drive([kappa], [1, 1], until), per_unit=3)
@@ -46,5 +46,5 @@ def _points(kappa: Fraction, name: str, counts: Sequence[int]) -> list[Point]:
         last = int(np.searchsorted(known.taus, 2 * count)) - 1
         error, bound = float(np.max(one.errors[: last + 1])), float(one.bounds[last])
         refused = one.refused if bound > nearest(known.model.tolerance) else ""
-        points.append(Point(f"kappa = {kappa}", name, count, error, bound, refused))
+        points.append(AtlasPoint(f"kappa = {kappa}", name, count, error, bound, refused))
     return points

@@ -196,7 +196,7 @@ def _example(scene: Described, load: TriedLoad, found: Finding) -> Reproduction:
 
 def _shown(scene: Described, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Reproduction:
     model = lower(scene.scene(load))
-    text = written(model.chain, dict(load.pieces), model.until, outputs)
+    text = written(model.named, dict(load.pieces), model.until, outputs)
     return Reproduction(text, f"wavesym run SCENE --samples {SAMPLES}", look)
 
 

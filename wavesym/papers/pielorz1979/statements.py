@@ -18,6 +18,7 @@ from wavesym.exact.table import Function
 from wavesym.model.chain import Chain
 from wavesym.model.loads import Applied
 from wavesym.model.model import Labels, Model
+from wavesym.model.network import network_of
 from wavesym.model.probe import Probe
 from wavesym.papers.evaluation import Scope, span
 from wavesym.papers.exact_tables import drive, meeting, uneven_building
@@ -183,7 +184,9 @@ def _first_opening(velocities: tuple[int, ...]) -> arb:
     exact = meeting(velocities)
     probes = tuple(Probe(f"strain@{x}", "strain", x, fmpq(1)) for x in range(2, exact.m, 2))
     impact = (Applied("impact", fmpq(0), fmpq(1)),)
-    ends = contact_ends(Model("meeting", exact.chain, impact, probes, fmpq(UNTIL), fmpq(1), Labels({}, (), "")))
+    network = network_of(exact.chain)
+    model = Model("meeting", exact.chain, network, impact, probes, fmpq(UNTIL), fmpq(1), Labels({}, (), ""))
+    ends = contact_ends(model)
     return min((end.tau for end in ends), default=arb.pos_inf(), key=float)
 
 

@@ -36,14 +36,14 @@ from typing import NamedTuple
 import numpy as np
 from flint import fmpq
 
-from wavesym.numbers.doubles import nearest, not_below
+from wavesym.exact.silence import silent
+from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.operator import Array, PanelOperator
 from wavesym.programs.march.plan import Plan, power_of_two
 from wavesym.programs.march.run import LEFT, RIGHT, Block, Run
 from wavesym.programs.march.sampler import OutputSampler
 from wavesym.programs.march.tail import Tail, tail
-from wavesym.programs.march.zero import silent
 
 MARGIN = 1.01
 _ONE = fmpq(1)
@@ -133,7 +133,7 @@ def _judge(plan: Plan, degree: int, real: Real, scale: fmpq) -> Verdict:
         errors.append(MARGIN * float(error))
     # what rounding could have made may be nothing at all: programs then return exactly 0
     if any(size <= error for size, error in zip(largest, errors, strict=True)):
-        for o, nothing in enumerate(silent(plan)):
+        for o, nothing in enumerate(silent(plan.model, rational(plan.tau_max))):
             if nothing:
                 errors[o] = largest[o] = 0.0
     return Verdict(degree, tuple(errors), tuple(map(float, largest)), truncated, rounded, not alarm.rung)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from math import inf
@@ -109,8 +109,9 @@ class Watched:
 
 @dataclass(frozen=True)
 class Plan:
-    """A scene made ready to march; columns number the nodes of the light cone from 0."""
+    """A model made ready to march; columns number the nodes of the light cone from 0."""
 
+    model: Model = field(compare=False)
     panels: tuple[MarchPanel, ...]
     junctions: tuple[Junction, ...]
     rods: tuple[fmpq, ...]  # half the initial velocity of the rods left of each column, and of that right of the last
@@ -174,12 +175,13 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
     """
     tau_max = model.horizon(real)
     columns = model.light_cone(rational(max(tau_max, float(windows))))
-    nodes = [model.chain.nodes[x] for x in columns]
+    nodes = [model.named.nodes[x] for x in columns]
     loads = model.acting(rational(tau_max))
     panels = _panels(load.time for load in loads)
     loaded = tuple(column for column, node in enumerate(nodes) if node.loads)
     starts = [rod.velocity / 2 if rod else fmpq(0) for rod in (*(node.left for node in nodes), nodes[-1].right)]
     return Plan(
+        model,
         panels,
         tuple(_junctions(nodes)),
         tuple(starts),
@@ -189,7 +191,7 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
         tuple(_watched(probe, columns.start) for probe in model.probes),
         tau_max,
         columns.start,
-        inf if len(columns) == model.chain.m + 1 else max(tau_max, float(windows)),
+        inf if len(columns) == model.named.m + 1 else max(tau_max, float(windows)),
         nearest(max(model.tolerance, 64 * real.roundoff)),
         # no less than what the arithmetic of so many nodes loses on all windows
         nearest(max(model.tolerance / _ESTIMATED, real.roundoff * len(nodes) * (int(tau_max) + 1))),

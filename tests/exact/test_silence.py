@@ -5,9 +5,9 @@ from fractions import Fraction
 import pytest
 
 from tests.support.truth import Truth
-from wavesym.programs.march import zero
-from wavesym.programs.march.plan import plan
-from wavesym.programs.march.zero import silent
+from wavesym.exact import silence
+from wavesym.exact.silence import silent
+from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 
 SHAFT = {"type": "drive", "m": 1, "kappa": ["3/7"], "inertia": [1, 1]}
@@ -19,6 +19,11 @@ TOWER = {"type": "building", "m": 2, "kappa": [1, "1/2", "1/3"]}
 
 def step(body, *times, weight=1):
     return {"body": body, "times": times, "steps": [weight] * len(times)}
+
+
+def found(made):
+    model = lower(made)
+    return silent(model, rational(model.horizon()))
 
 
 def scene(system, load, until, **outputs):
@@ -79,25 +84,25 @@ def test_what_is_zero_is_told_from_what_is_small(case):
     system, load, untils, outputs = sided(case)
     for until in untils:
         made = scene(system, load, until, **outputs)
-        truth = Truth(made, Fraction(plan(lower(made)).tau_max))
+        truth = Truth(made, Fraction(lower(made).horizon()))
         expected = [truth.largest(o, truth.until)[1] == 0 for o in range(len(made.outputs))]
-        assert silent(plan(lower(made))) == expected, (until, made.outputs)
+        assert found(made) == expected, (until, made.outputs)
 
 
 def test_some_of_it_is_zero_and_some_is_not():
     """Of each case, so that the comparison can fail."""
-    found = {True: 0, False: 0}
+    counted = {True: 0, False: 0}
     for case in CASES.values():
         system, load, untils, outputs = sided(case)
         for until in untils:
-            for answer in silent(plan(lower(scene(system, load, until, **outputs)))):
-                found[answer] += 1
-    assert min(found.values()) > 20
+            for answer in found(scene(system, load, until, **outputs)):
+                counted[answer] += 1
+    assert min(counted.values()) > 20
 
 
 def test_an_instant_is_not_missed_by_the_number_that_is_drawn(monkeypatch):
     made = scene(SHAFT, [step(1, 0), step(2, "1/3")], 2, velocity=["2/3"], strain=["2/3"])
-    answers = silent(plan(lower(made)))
+    answers = found(made)
     for drawn in (3, 10**30 + 7):
-        monkeypatch.setattr(zero, "_T", drawn)
-        assert silent(plan(lower(made))) == answers
+        monkeypatch.setattr(silence, "_T", drawn)
+        assert found(made) == answers

@@ -1,0 +1,117 @@
+"""Chains that are written out, from the command line: what is told of them, and what is refused in one line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import wavesym
+from wavesym.cli import main
+from wavesym.documents.inspection.document import inspection
+from wavesym.scene import Scene
+
+LINE = "system.type: chain given, collision, drive or building expected (a chain has pieces and `run`)"
+SYSTEM = {
+    "type": "chain",
+    "parts": [
+        {"mass": 2, "velocity": 1, "name": "ram"},
+        {"rod": 1},
+        {"joint": True, "dashpot": "1/10", "name": "seat"},
+        {"spring": 3, "dashpot": "1/4"},
+        {"mass": "1/2"},
+        {"rod": 9, "impedance": 2},
+        "fixed",
+    ],
+    "branch": [{"from": "seat", "name": "side", "ratio": -2, "parts": [{"rod": "1/2"}, "absorbing"]}],
+}
+
+
+def chain(**output: object) -> Scene:
+    return Scene(name="pile", system=SYSTEM, output={"until": 4, "velocity": ["ram"], **output})
+
+
+def test_the_law_of_a_joint_by_hand() -> None:
+    """C = 1/10 + 1 + 2^2 1 + 1/4 at the seat of a dashpot, a rod, a gear of ratio -2 and a dashpot beside it."""
+    read = json.loads(inspection(chain(), "laws", "json"))
+    assert read["light_cone"] == {"modelled": [0, 1, 3], "left_out": 1}
+    seat = read["joints"][1]
+    assert (seat["points"], seat["ends"]) == (["seat", 2], 3)
+    assert seat["M"] == [["0", "0"], ["0", "1/2"]]
+    assert seat["C"] == [["107/20", "-1/4"], ["-1/4", "9/4"]]
+    assert seat["K"] == [["3", "-3"], ["-3", "3"]]
+    assert [joint["knots"] for joint in read["joints"]] == [4, 4, 3], "0, 2, 3, 4 and 0, 1, 2, 3 and 0, 3/2, 5/2"
+    assert read["not_served"]["refusal"] == LINE
+
+
+def test_the_model_is_told_as_it_is() -> None:
+    read = json.loads(inspection(chain(), "model", "json"))
+    assert [(bar["delay"], bar["impedance"], bar["ratios"]) for bar in read["bars"]] == [
+        ("1", "1", ["1", "1"]),
+        ("9", "2", ["1", "1"]),
+        ("1/2", "1", ["-2", "1"]),
+    ]
+    assert [point["motion"] for point in read["points"]] == [None, None, None, "fixed", None]
+    (link,) = read["links"]
+    assert link == {"left": "seat", "right": 2, "ratio": "1", "spring": "3", "dashpot": "1/4"}
+
+
+def test_the_header_lists_the_parts(tmp_path: Path) -> None:
+    header = next(path for path in wavesym.generate(chain(), tmp_path) if path.suffix == ".h").read_text()
+    said = " ".join(header.replace("\n *", " ").split())
+    assert "parts = mass 2, velocity 1, name ram | rod 1 | joint, dashpot 1/10, name seat | spring 3" in said
+    assert "branch side = from seat, ratio -2: rod 1/2 | absorbing" in said
+    assert "places in lengths, tau in lengths at speed 1" in said
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["tables"],
+        ["tables", "--symbolic"],
+        ["derive"],
+        ["derive", "--walks"],
+        ["generate", "--evaluator", "closed"],
+        ["generate", "--evaluator", "march"],
+    ],
+    ids=" ".join,
+)
+def test_what_is_not_served_is_one_line(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([command[0], "geared_drive", *command[1:]]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert LINE in err
+    assert err.count("\n") == 1
+
+
+def test_a_chain_that_moves_is_not_told_to_be_still(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "bar.toml"
+    lines = 'name = "bar"', "[system]", 'type = "chain"', "parts = [{ rod = 1, strain = 1 }]"
+    file.write_text("\n".join([*lines, "[output]", "until = 1", "velocity = [0]"]))
+    assert main(["run", str(file), "--samples", "2"]) == 0
+    assert "no load" not in capsys.readouterr().err
+
+
+def test_a_joint_that_nothing_holds_is_refused() -> None:
+    """A dashpot between two joints that hang on springs alone."""
+    parts = [{"rod": 1}, {"spring": 1}, {"joint": True}, {"dashpot": 1}, {"joint": True}, {"spring": 1}, {"rod": 1}]
+    with pytest.raises(wavesym.SceneError, match="without mass, rod or dashpot"):
+        Scene(name="loose", system={"type": "chain", "parts": parts}, output={"until": 1, "velocity": [0]})
+
+
+@pytest.mark.parametrize(("end", "quantity"), [("fixed", "velocity"), ("free", "strain"), ("fixed", "displacement")])
+def test_what_an_end_keeps_at_0_is_0_and_can_be_generated(end: str, quantity: str, tmp_path: Path) -> None:
+    system = {"type": "chain", "parts": [{"mass": 4, "velocity": 1}, {"rod": 1}, end]}
+    scene = Scene(name="bar", system=system, output={"until": 6, quantity: ["1", "1/2"]})
+    assert not wavesym.evaluator(scene)([0.5, 2.5, 6.0])[0].any()
+    assert wavesym.generate(scene, tmp_path)
+
+
+def test_an_absorbing_end_sends_nothing_back() -> None:
+    """Ahead of it strain and velocity stay opposite, to the last bit."""
+    system = {"type": "chain", "parts": [{"mass": 4, "velocity": 1}, {"rod": 1, "impedance": "1/3"}, "absorbing"]}
+    scene = Scene(name="bar", system=system, output={"until": 9, "strain": ["1/2"], "velocity": ["1/2"]})
+    strain, velocity = wavesym.evaluator(scene)([k / 7 for k in range(63)])
+    assert velocity.any()
+    assert (strain == -velocity).all()

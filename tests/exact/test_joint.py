@@ -1,0 +1,158 @@
+"""Joints in motion: all that the proof allows for, and little more, against closed forms and matrix exponentials."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+from flint import arb, arb_mat, arb_poly, ctx, fmpq, fmpq_poly
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
+from wavesym.model.network import Bar, Link, Network, Point
+
+SMALL = st.fractions(0, 4, max_denominator=6).map(lambda x: fmpq(x.numerator, x.denominator))
+POSITIVE = st.fractions("1/4", 4, max_denominator=6).map(lambda x: fmpq(x.numerator, x.denominator))
+
+
+@pytest.fixture(autouse=True)
+def _precision():
+    with ctx.workprec(256):
+        yield
+
+
+def law(mass, damping, stiffness=None, given=None):
+    size = len(mass)
+    none = [[0] * size] * size
+    return JointLaw(
+        tuple(map(fmpq, mass)),
+        tuple(tuple(map(fmpq, row)) for row in damping),
+        tuple(tuple(map(fmpq, row)) for row in stiffness or none),
+        tuple(given or [None] * size),
+    )
+
+
+def moving(joint, velocity=None, displacement=None):
+    size = len(joint.mass)
+    return JointMotion(joint, [arb(v) for v in velocity or [0] * size], [arb(u) for u in displacement or [0] * size])
+
+
+def wave(powers, error=0):
+    return Enclosed(arb_poly(powers), arb(error))
+
+
+def driven(gamma, powers, start, u):
+    """The q with q' + gamma q = sum_k powers[k] u**k and q(0) = start, in closed form."""
+    steady = [arb(0)] * (len(powers) + 1)
+    for k in reversed(range(len(powers))):
+        steady[k] = (arb(powers[k]) - (k + 1) * steady[k + 1]) / gamma
+    return arb_poly(steady)(arb(u)) + (start - steady[0]) * (-arb(gamma) * arb(u)).exp()
+
+
+@pytest.mark.parametrize(
+    ("force", "length"),
+    [
+        (wave([800]), 1),  # the defect alone
+        (wave([0, 3]), 1),  # with a power of the right side in it
+        (wave([1, 0, 80_000]), 1),  # the last power of the right side is as large as what it is to balance
+        (wave([1, 0, -160_000]), 1),
+        (wave([2], "1e4"), 1),
+        (wave([-3], 2**14), fmpq(1, 2)),
+    ],
+)
+def test_a_cut_off_series_is_off_by_what_is_told(force, length):
+    """With three terms and a rate of 400 the defect is all there is."""
+    gamma, terms = 400, 3
+    (cut,) = moving(law([1], [[gamma]])).moved([force], [fmpq_poly()], fmpq(length), terms)
+    worst = arb(0)
+    for sign in (-1, 1):
+        powers = [arb(c) for c in force.polynomial.coeffs()]
+        powers[0] += sign * force.error
+        for k in range(201):
+            u = fmpq(k, 200) * length
+            error = abs(driven(gamma, powers, arb(0), u) - cut.polynomial(arb(u)))
+            assert not error > cut.error
+            worst = worst.max(error)
+    assert worst > cut.error * fmpq(4, 10)
+
+
+def test_an_error_at_the_start_goes_on():
+    joint = moving(law([1], [[2]]))
+    (first,) = joint.moved([wave([2], fmpq(1, 5))], [fmpq_poly()], fmpq(1), 30)
+    (second,) = joint.moved([STILL], [fmpq_poly()], fmpq(1, 2), 30)
+    for off in (-1, 0, 1):
+        ended = driven(2, [2 * (1 + off * fmpq(1, 10))], arb(0), 1)
+        assert first.at(fmpq(1)).contains(ended)
+        for u in (fmpq(0), fmpq(1, 4), fmpq(1, 2)):
+            assert second.at(u).contains(ended * (-2 * arb(u)).exp())
+    assert second.at(fmpq(0)).rad() < fmpq(11, 100)  # 1/5 over gamma = 2
+
+
+def test_a_point_without_mass_follows_at_once():
+    (moved,) = moving(law([0], [[4]])).moved([wave([7, 14], fmpq(7, 8))], [fmpq_poly()], fmpq(1), 9)
+    assert moved.polynomial(arb(1)).contains(fmpq(21, 4))
+    assert moved.error >= fmpq(7, 32)
+    assert moved.error < fmpq(7, 32) + fmpq(1, 2**200)
+
+
+def test_what_does_not_move_is_exactly_still():
+    (moved,) = moving(law([1], [[1]])).moved([STILL], [fmpq_poly()], fmpq(1), 9)
+    assert moved.polynomial.length() == 0
+    assert moved.error == 0
+
+
+def test_a_prescribed_point_moves_as_it_is_told():
+    joint = moving(law([0, 1], [[1, -1], [-1, 2]], given=["velocity", None]))
+    told, pulled = joint.moved([STILL, STILL], [fmpq_poly([3, 1]), fmpq_poly()], fmpq(1), 40)
+    assert told.polynomial(arb(1)).contains(4)
+    # 1 q' + 2 q = 3 + u
+    assert pulled.at(fmpq(1)).overlaps(driven(2, [3, 1], arb(0), 1))
+
+
+def exponential(joint, velocity, force, u):
+    """The motion of points with mass under constant forces by the exponential of a matrix: (q, u)' = A (q, u) + b."""
+    size = len(joint.mass)
+    matrix = arb_mat(2 * size + 1, 2 * size + 1)
+    for a in range(size):
+        for b in range(size):
+            matrix[a, b] = arb(-joint.damping[a][b] / joint.mass[a])
+            matrix[a, size + b] = arb(-joint.stiffness[a][b] / joint.mass[a])
+        matrix[a, 2 * size] = arb(force[a]) / arb(joint.mass[a])
+        matrix[size + a, a] = arb(1)
+    state = arb_mat(2 * size + 1, 1, [*velocity, *[arb(0)] * size, arb(1)])
+    found = (matrix * arb(u)).exp() * state
+    return [found[a, 0] for a in range(size)]
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    st.lists(POSITIVE, min_size=2, max_size=3),
+    st.lists(SMALL, min_size=3, max_size=3),
+    st.lists(SMALL, min_size=3, max_size=3),
+    st.sampled_from([1, 1000, 10**6]),
+    st.sampled_from([4, 40, 200]),
+)
+def test_springs_and_dashpots_between_masses(mass, dashpots, springs, stiff, terms):
+    """On two stretches, with few terms and many: what is told of the error holds, and stiffness leaves it small."""
+    size = len(mass)
+    points = tuple(Point(m, damping=d, stiffness=stiff * k) for m, d, k in zip(mass, dashpots, springs, strict=False))
+    links = tuple(Link(a, b, stiff * springs[a], dashpots[b]) for a, b in pairwise(range(size)))
+    network = Network((*points, Point(fmpq(0))), (Bar(0, size, fmpq(1), fmpq(1), fmpq(1)),), links)
+    joint = JointLaw.of(network, network.joints[0])
+    velocity, force = [arb(k + 1) for k in range(size)], [fmpq(2 - k) for k in range(size)]
+    motion = moving(joint, [k + 1 for k in range(size)])
+    length = fmpq(1, 200) if stiff > 1 else fmpq(1)
+    for start in (fmpq(0), length):
+        found = motion.moved([wave([f]) for f in force], [fmpq_poly()] * size, length, terms)
+        for part in (fmpq(0), fmpq(1, 3), fmpq(1)):
+            exact = exponential(joint, velocity, force, start + part * length)
+            for known, true in zip(found, exact, strict=True):
+                assert known.at(part * length).overlaps(true)
+        if terms == 200:
+            assert all(known.error < fmpq(1, 10**20) for known in found)
+
+
+def test_a_joint_without_rod_or_dashpot_has_no_law():
+    with pytest.raises(ZeroDivisionError):
+        _ = law([0], [[0]]).inverse

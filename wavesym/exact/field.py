@@ -1,0 +1,58 @@
+"""Waves everywhere in a network, in doubles: what a picture of all rods at once needs."""
+
+from __future__ import annotations
+
+import numpy as np
+from flint import ctx, fmpq
+from numpy.typing import NDArray
+
+from wavesym.exact.knots import Knots
+from wavesym.exact.motion import Motion
+from wavesym.exact.network_waves import NetworkWaves, SentWave
+from wavesym.model.model import Model
+from wavesym.model.network import End
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import middle, nearest
+
+Array = NDArray[np.float64]
+
+
+class Field:
+    """The velocity and the force (impedance times speed times strain) of every bar until the end of the horizon.
+
+    CostError where the outputs of a model with as many would cost too much.
+    """
+
+    def __init__(self, model: Model) -> None:
+        everywhere = model.watching(
+            Probe("", "velocity", number, fmpq(1, 2)) for number in range(1, len(model.network.bars) + 1)
+        )
+        self._network = model.network
+        bits = Motion(everywhere, model.until).first_bits
+        with ctx.workprec(bits):
+            knots = Knots(everywhere, model.until).joints
+            waves = NetworkWaves(model.network, knots, everywhere.acting(model.until), bits // 4)
+        self._waves = {end: _SampledWave(wave) for end, wave in waves.sent.items()}
+
+    def at(self, bar: int, part: Array, tau: Array) -> tuple[Array, Array]:
+        """Velocity and force of a bar at parts of its length from the left end; all of one shape."""
+        delay = nearest(self._network.bars[bar].delay)
+        right = self._waves[End(bar, 0)](tau - part * delay)
+        left = self._waves[End(bar, 1)](tau - (1 - part) * delay)
+        return right + left, nearest(self._network.bars[bar].impedance) * (left - right)
+
+
+class _SampledWave:
+    def __init__(self, wave: SentWave) -> None:
+        self._starts = np.array([nearest(start) for start in wave.starts])
+        self._powers = [
+            np.array([nearest(middle(c)) for c in known.polynomial.coeffs()] or [0.0]) for known in wave.stretches
+        ]
+
+    def __call__(self, tau: Array) -> Array:
+        place = np.clip(np.searchsorted(self._starts, tau, side="right") - 1, 0, None)
+        result = np.zeros_like(tau)
+        for number in np.unique(place):
+            here = place == number
+            result[here] = np.polynomial.polynomial.polyval(tau[here] - self._starts[number], self._powers[number])
+        return result

@@ -1,0 +1,149 @@
+"""Knots: the instants at which something not smooth arrives at a joint.
+
+A knot t of one joint is a knot t + T of the next, T being the delay of the bar between them: exact rationals. Between
+two knots a joint's motion is one smooth function, and it rests only on stretches that start earlier. Where all delays
+are equal, knots are those of a common window: every delay, and the parts of it at which loads act.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache, cached_property
+from heapq import heapify, heappop, heappush
+from itertools import pairwise
+
+from flint import fmpq
+
+from wavesym.errors import CostError
+from wavesym.model.loads import Applied
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
+
+MOST_KNOTS = 20_000
+
+
+class Knots:
+    """The stretches of every joint that can be felt, until tau = `until`.
+
+    `joints` has, for each of them, the starts of its stretches and the end of the last one.
+    """
+
+    def __init__(self, model: Model, until: fmpq) -> None:
+        self._network = model.network
+        self._until = until
+        self._acting = model.acting(until)
+        self._last = model.reached(until)
+        self._delays = {bar.delay for bar in self._network.bars}
+
+    @cached_property
+    def stretches(self) -> int:
+        """How many stretches there are in all. CostError where there are too many to count."""
+        if len(self._delays) == 1:
+            (delay,) = self._delays
+            return len(self._last) * (int((self._until / delay).floor()) + 1) * len(self._parts)
+        return sum(len(times) - 1 for times in self.joints.values())
+
+    @property
+    def crossings(self) -> int:
+        """How often fronts meet joints, or joints go through windows."""
+        return self.stretches // len(self._parts) if len(self._delays) == 1 else self.stretches
+
+    def size(self, terms: int, bits: int) -> int:
+        """About how many bytes the waves take: of each power middle and radius, and the words of the middle."""
+        ends = sum(len(self._network.joints[number].ends) for number in self._last) / max(len(self._last), 1)
+        return int(self.stretches * ends * terms * (48 + bits // 8))
+
+    @property
+    def told(self) -> str:
+        """What is counted, in a few words."""
+        return f"{len(self._last)} nodes times {float(self._until):g} units of tau"
+
+    @cached_property
+    def joints(self) -> Mapping[int, Sequence[fmpq]]:
+        """The starts of the stretches of every joint, and the end of the last one."""
+        if len(self._delays) == 1:
+            return dict.fromkeys(self._last, self._windows)
+        return {number: sorted({fmpq(0), *times, self._end(number)}) for number, times in self._met().items()}
+
+    def longest(self, number: int) -> fmpq:
+        """The longest stretch of a joint."""
+        return max((high - low for low, high in pairwise(self.joints[number])), default=fmpq(0))
+
+    def breakpoints(self, probe: Probe) -> Sequence[fmpq]:
+        """Where an output may jump or bend, and 0; in order."""
+        if probe.point is not None:
+            times = self.joints[self._network.joint_of[probe.point]]
+            return sorted({fmpq(0), *(time for time in times if time <= self._until)})
+        return self._breakpoints(probe.rod - 1, probe.place)
+
+    @cache  # noqa: B019 - as long as this object
+    def _breakpoints(self, number: int, place: fmpq) -> Sequence[fmpq]:
+        bar = self._network.bars[number]
+        if len(self._delays) == 1:
+            return list(self._in_windows(place))
+        ways = ((bar.left, place), (bar.right, 1 - place))
+        found = {
+            knot + way * bar.delay for point, way in ways for knot in self.joints[self._network.joint_of[point]][:-1]
+        }
+        return sorted({fmpq(0), *(time for time in found if 0 <= time <= self._until)})
+
+    # equal delays
+
+    @cached_property
+    def _parts(self) -> Sequence[fmpq]:
+        """Where in a window stretches start."""
+        (delay,) = self._delays
+        times = {load.time for _, load in self._loaded()}
+        return sorted({fmpq(0), *(time - (time / delay).floor() * delay for time in times)})
+
+    @cached_property
+    def _windows(self) -> Sequence[fmpq]:
+        (delay,) = self._delays
+        count = int((self._until / delay).floor()) + 1
+        return [n * delay + part for n in range(count) for part in self._parts] + [count * delay]
+
+    def _in_windows(self, place: fmpq) -> Iterator[fmpq]:
+        (delay,) = self._delays
+        moments = {moment for part in self._parts for moment in (part + place * delay, part + (1 - place) * delay)}
+        parts = sorted({moment - (moment / delay).floor() * delay for moment in moments})
+        if parts[0] != 0:
+            yield fmpq(0)
+        for n in range(int((self._until / delay).floor()) + 1):
+            yield from (n * delay + part for part in parts if n * delay + part <= self._until)
+
+    # any delays
+
+    def _end(self, number: int) -> fmpq:
+        """Later than anything that is asked of a joint."""
+        return self._last[number] + 1
+
+    def _loaded(self) -> Iterator[tuple[int, Applied]]:
+        for number in self._last:
+            for point in self._network.joints[number].points:
+                for unit in self._network.points[point].loads:
+                    for load in self._acting:
+                        if load.source == unit.source:
+                            yield number, load
+
+    def _met(self) -> dict[int, set[fmpq]]:
+        network = self._network
+        found: dict[int, set[fmpq]] = {number: set() for number in self._last}
+        coming = [(load.time, number) for number, load in self._loaded()]
+        coming += [(fmpq(0), number) for number in self._last if not network.at_rest(network.joints[number])]
+        heapify(coming)
+        count = 0
+        while coming:
+            time, number = heappop(coming)
+            if number not in found or time > self._last[number] or time in found[number]:
+                continue
+            found[number].add(time)
+            count += 1
+            if count > MOST_KNOTS:
+                raise CostError(
+                    f"output.until: fronts meet joints more than {MOST_KNOTS} times by tau = {float(time):g}, at most "
+                    f"{MOST_KNOTS} expected (a shorter horizon or lengths with a larger common measure help)"
+                )
+            for end, _ in network.joints[number].ends:
+                bar = network.bars[end.bar]
+                heappush(coming, (time + bar.delay, network.joint_of[network.point_at(network.beyond(end))]))
+        return found

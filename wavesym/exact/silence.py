@@ -1,0 +1,195 @@
+"""Which outputs are 0 throughout, though waves arrive: at a free end, or in the middle of what is symmetric.
+
+Rounding hides it, exact tables are too long; but a network moves as well in Laplace transforms, one number for what
+each front carries and every fixed s. With all of them times s, and t = 1/s, a joint obeys
+
+    (M + C t + K t^2) Q = M v + t P,        P = sum over ends of 2 n Z A + loads,        sent back: n Q - A
+
+(v at tau = 0 only; without mass, (C + K t) Q = P). An output is 0 if all that arrives at one instant adds up to 0.
+Computed modulo a prime at a random t, a sum that is not 0 is taken for 0 with a chance of less than one in 2**70: as a
+rational function of t its numerator has a degree below 2**50, and t is one of 2**127 numbers.
+
+Of what arrives at the end of the horizon only the jump is seen, and that is the sum at t = 0.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from heapq import heappop, heappush
+from math import factorial
+
+from flint import fmpq, fmpz_mod_ctx, fmpz_mod_mat
+
+from wavesym.exact.joint import JointLaw
+from wavesym.exact.node_rules import joint_rule
+from wavesym.model.model import Model
+from wavesym.model.network import End
+from wavesym.model.probe import Probe
+
+_PRIME = 2**127 - 1
+_FIELD = fmpz_mod_ctx(_PRIME)
+_T = 0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357 % _PRIME  # drawn once, so that the same scene makes the same files
+
+
+def silent(model: Model, until: fmpq) -> list[bool]:
+    """Whether each output is 0 on [0, until]."""
+    arriving, jumping = _Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums()
+    return [
+        not any(sums[time] for time in sums if time < until) and not (probe.order == 0 and jumps[until])
+        for probe, sums, jumps in zip(model.probes, arriving, jumping, strict=True)
+    ]
+
+
+class _Fronts:
+    """All that leaves joints, front by front, at one t."""
+
+    def __init__(self, model: Model, until: fmpq, t: int) -> None:
+        self._model, self._until, self._t = model, until, t
+        self._network = model.network
+        self._reached = model.reached(until)
+        self._joints = {number: _Answer(model, number, t) for number in self._reached}
+        self._coming: dict[tuple[fmpq, int], dict[End, int]] = {}
+        self._order: list[tuple[fmpq, int]] = []
+
+    def sums(self) -> list[dict[fmpq, int]]:
+        """What arrives at each output, by instant."""
+        network = self._network
+        sums: list[dict[fmpq, int]] = [defaultdict(int) for _ in self._model.probes]
+        ends: dict[End, list[tuple[int, fmpq, int]]] = defaultdict(list)
+        points: dict[int, list[int]] = defaultdict(list)
+        for k, probe in enumerate(self._model.probes):
+            if probe.point is not None:
+                points[probe.point].append(k)
+            for end, way, weight in _heard(probe):
+                bar = network.bars[end.bar]
+                ends[end].append((k, way * bar.delay, weight))
+                # what a bar holds is there until something is sent into it
+                sums[k][fmpq(0)] += weight * _modular(bar.held(end.side))
+        self._begin()
+        while self._order:
+            time, number = heappop(self._order)
+            sent, moved = self._joints[number].to(self._coming.pop((time, number)), time)
+            for point, value in moved.items():
+                for k in points[point]:
+                    sums[k][time] = (sums[k][time] + value) % _PRIME
+            for end, value in sent.items():
+                for k, delay, weight in ends[end]:
+                    if time + delay <= self._until:
+                        sums[k][time + delay] = (sums[k][time + delay] + weight * value) % _PRIME
+                if value:
+                    self._arrive(time + network.bars[end.bar].delay, network.beyond(end), value)
+        return sums
+
+    def _begin(self) -> None:
+        """What is on its way before anything is sent: the state at tau = 0, and the loads."""
+        for number in self._reached:
+            self._meet(fmpq(0), number)
+            for end, _ in self._network.joints[number].ends:
+                self._arrive(fmpq(0), end, _modular(self._network.bars[end.bar].held(1 - end.side)))
+            for time in self._joints[number].begins:
+                self._meet(time, number)
+
+    def _arrive(self, time: fmpq, end: End, value: int) -> None:
+        number = self._network.joint_of[self._network.point_at(end)]
+        if self._meet(time, number):
+            here = self._coming[time, number]
+            here[end] = (here.get(end, 0) + value) % _PRIME
+
+    def _meet(self, time: fmpq, number: int) -> bool:
+        """That something happens at a joint; whether that can still be felt."""
+        if number not in self._reached or time > self._reached[number]:
+            return False
+        if (time, number) not in self._coming:
+            self._coming[time, number] = {}
+            heappush(self._order, (time, number))
+        return True
+
+
+class _Answer:
+    """What a joint sends when something arrives."""
+
+    def __init__(self, model: Model, number: int, t: int) -> None:
+        self._network = network = model.network
+        self._joint = joint = network.joints[number]
+        self._t = t
+        law = JointLaw.of(network, joint)
+        self._law = law
+        self._free = [k for k, given in enumerate(law.given) if given is None]
+        rows = [[self._factor(k, b) for b in self._free] for k in self._free]
+        self._inverse = fmpz_mod_mat(rows, _FIELD).inv() if rows else None
+        self._loads: dict[fmpq, dict[int, int]] = defaultdict(dict)
+        place = {point: k for k, point in enumerate(joint.points)}
+        self._place = place
+        for load in model.loads:
+            for point in joint.points:
+                for unit in network.points[point].loads:
+                    if unit.source == load.source:
+                        k = place[point]
+                        value = self._transformed(unit.coefficients, network.points[point].motion == "acceleration")
+                        here = self._loads[load.time]
+                        here[k] = (here.get(k, 0) + _modular(load.weight) * value) % _PRIME
+
+    @property
+    def begins(self) -> Iterator[fmpq]:
+        """When loads on it begin or change."""
+        return iter(self._loads)
+
+    def _factor(self, a: int, b: int) -> int:
+        """(M + C t + K t^2), or (C + K t) for a point without mass."""
+        law, t = self._law, self._t
+        c, k = _modular(law.damping[a][b]), _modular(law.stiffness[a][b])
+        if law.mass[a] == 0:
+            return (c + k * t) % _PRIME
+        return ((_modular(law.mass[a]) if a == b else 0) + c * t + k * t * t) % _PRIME
+
+    def _transformed(self, coefficients: tuple[fmpq, ...], integrated: bool) -> int:
+        return sum(
+            _modular(c) * factorial(n) * pow(self._t, n + integrated, _PRIME) for n, c in enumerate(coefficients)
+        )
+
+    def to(self, came: Mapping[End, int], time: fmpq) -> tuple[dict[End, int], dict[int, int]]:
+        """What it sends into its ends when this arrives, and the velocities of its points; as changes of both."""
+        network, law, t = self._network, self._law, self._t
+        rule = joint_rule()
+        loads = self._loads.get(time, {})
+        begins = time == 0
+        push = {k: _modular(rule.load) * loads.get(k, 0) for k in range(len(law.mass))}
+        for end, point in self._joint.ends:
+            if value := came.get(end, 0):
+                bar = network.bars[end.bar]
+                factor = rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance
+                push[self._place[point]] += _modular(factor) * value
+        q = {}
+        for k, given in enumerate(law.given):
+            if given is not None:
+                start = _modular(network.points[self._joint.points[k]].velocity) if begins else 0
+                q[k] = (loads.get(k, 0) + start) % _PRIME
+        right = []
+        for a in self._free:
+            value = push[a] * (1 if law.mass[a] == 0 else t)
+            if begins and law.mass[a] != 0:
+                value += _modular(law.mass[a] * network.points[self._joint.points[a]].velocity)
+            value -= sum(self._factor(a, b) * moved for b, moved in q.items())
+            right.append([value % _PRIME])
+        if self._inverse is not None:
+            found = self._inverse * fmpz_mod_mat(right, _FIELD)
+            q |= {a: int(found[n, 0]) for n, a in enumerate(self._free)}
+        sent = {}
+        for end, point in self._joint.ends:
+            bar = network.bars[end.bar]
+            value = _modular(bar.ratios[end.side]) * q[self._place[point]] - came.get(end, 0)
+            sent[end] = (value - (_modular(bar.held(end.side)) if begins else 0)) % _PRIME
+        return sent, {point: q[k] for point, k in self._place.items()}
+
+
+def _heard(probe: Probe) -> Iterator[tuple[End, fmpq, int]]:
+    """From which ends of its bar an output hears, how far away (a part of the bar), and with what weight."""
+    if probe.point is None:
+        right, left = probe.weights
+        yield End(probe.rod - 1, 0), probe.place, right
+        yield End(probe.rod - 1, 1), 1 - probe.place, left
+
+
+def _modular(value: fmpq) -> int:
+    return int(value.p) * pow(int(value.q), -1, _PRIME) % _PRIME

@@ -1,0 +1,220 @@
+"""Any chain as a graph: points, the bars between them, and what links points at one place; all numbers exact.
+
+A bar carries two waves, each counted as a velocity: seen from its end, where a wave a arrives, it is a dashpot Z (its
+impedance) and a force 2 Z a. A bar's end may move `ratio` times as fast as its point (gears).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from heapq import heapify, heappop, heappush
+from typing import Literal, NamedTuple
+
+from flint import fmpq
+
+from wavesym.model.chain import Chain
+from wavesym.model.node import Node, UnitLoad
+
+_ZERO, _ONE = fmpq(0), fmpq(1)
+
+
+@dataclass(frozen=True)
+class Point:
+    """What moves as one: a rigid mass, or none; a dashpot and a spring to the ground; its velocity at tau = 0.
+
+    A `motion` is prescribed by the loads on the point: its velocity, or its acceleration. What is fixed has no loads.
+    """
+
+    mass: fmpq
+    damping: fmpq = _ZERO
+    stiffness: fmpq = _ZERO
+    velocity: fmpq = _ZERO
+    motion: Literal["fixed", "velocity", "acceleration"] | None = None
+    loads: tuple[UnitLoad, ...] = ()
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class Bar:
+    """An elastic rod from one point to another, with its state at tau = 0. Its delay is length / speed."""
+
+    left: int
+    right: int
+    length: fmpq
+    speed: fmpq
+    impedance: fmpq
+    ratios: tuple[fmpq, fmpq] = (_ONE, _ONE)
+    velocity: fmpq = _ZERO
+    strain: fmpq = _ZERO
+    name: str = ""
+
+    @property
+    def delay(self) -> fmpq:
+        """How long a wave takes from end to end."""
+        return self.length / self.speed
+
+    def held(self, side: int) -> fmpq:
+        """The wave that it holds at tau = 0 and that was sent from its left (0) or right (1) end."""
+        return (self.velocity + (-self.speed if side == 0 else self.speed) * self.strain) / 2
+
+
+@dataclass(frozen=True)
+class Link:
+    """A spring and a dashpot between two points; their left end moves `ratio` times as fast as its point."""
+
+    left: int
+    right: int
+    stiffness: fmpq = _ZERO
+    damping: fmpq = _ZERO
+    ratio: fmpq = _ONE
+
+
+class End(NamedTuple):
+    """One end of a bar: the left one (0) or the right one (1)."""
+
+    bar: int
+    side: int
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Points that links connect, which are solved together, and the ends of bars at them (with the point of each)."""
+
+    points: tuple[int, ...]
+    ends: tuple[tuple[End, int], ...]
+
+
+@dataclass(frozen=True)
+class Network:
+    """A chain with its branches."""
+
+    points: tuple[Point, ...]
+    bars: tuple[Bar, ...]
+    links: tuple[Link, ...] = ()
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """The joints, in the order of their first points."""
+        leader = list(range(len(self.points)))
+
+        def of(point: int) -> int:
+            while leader[point] != point:
+                point = leader[point]
+            return point
+
+        for link in self.links:
+            one, other = sorted((of(link.left), of(link.right)))
+            leader[other] = one
+        members: dict[int, list[int]] = {}
+        for point in range(len(self.points)):
+            members.setdefault(of(point), []).append(point)
+        return tuple(Joint(tuple(points), tuple(self._ends(points))) for points in members.values())
+
+    @cached_property
+    def joint_of(self) -> Mapping[int, int]:
+        """The number of each point's joint."""
+        return {point: number for number, joint in enumerate(self.joints) for point in joint.points}
+
+    def distances(self, places: Iterable[tuple[int, fmpq]], points: Iterable[int] = ()) -> dict[int, fmpq]:
+        """How long a wave takes from each joint to the nearest of some places (bar, part of it from its left end).
+
+        Points are places too.
+        """
+        nearest: dict[int, fmpq] = {}
+        coming = [(fmpq(0), self.joint_of[point]) for point in points]
+        for number, place in places:
+            bar = self.bars[number]
+            coming.append((place * bar.delay, self.joint_of[bar.left]))
+            coming.append(((1 - place) * bar.delay, self.joint_of[bar.right]))
+        heapify(coming)
+        while coming:
+            time, joint = heappop(coming)
+            if joint in nearest:
+                continue
+            nearest[joint] = time
+            for end, _ in self.joints[joint].ends:
+                other = self.joint_of[self.point_at(self.beyond(end))]
+                heappush(coming, (time + self.bars[end.bar].delay, other))
+        return nearest
+
+    def at_rest(self, joint: Joint) -> bool:
+        """Whether a joint goes on as it is at tau = 0, as far as no load acts on it and nothing else arrives."""
+        velocities = {point: self.points[point].velocity for point in joint.points}
+        pulls = {point: -self.points[point].damping * velocities[point] for point in joint.points}
+        for end, point in joint.ends:
+            bar = self.bars[end.bar]
+            ratio, arriving = bar.ratios[end.side], bar.held(1 - end.side)
+            if ratio * velocities[point] - arriving != bar.held(end.side):
+                return False
+            pulls[point] += ratio * bar.impedance * (2 * arriving - ratio * velocities[point])
+        for link in self.links:
+            if link.left in velocities:
+                opening = velocities[link.right] - link.ratio * velocities[link.left]
+                if opening != 0 and link.stiffness != 0:
+                    return False
+                pull = link.damping * opening
+                pulls[link.left] += link.ratio * pull
+                pulls[link.right] -= pull
+        return all(
+            self.points[point].motion is not None
+            or (pull == 0 and (self.points[point].stiffness == 0 or velocities[point] == 0))
+            for point, pull in pulls.items()
+        )
+
+    def is_free(self, end: End) -> bool:
+        """Whether nothing at all acts on an end of a bar."""
+        number = self.point_at(end)
+        point = self.points[number]
+        alone = self.joints[self.joint_of[number]] == Joint((number,), ((end, number),))
+        bare = point.mass == point.damping == point.stiffness == 0 and point.motion is None and not point.loads
+        return alone and bare and not any(number in (link.left, link.right) for link in self.links)
+
+    def _ends(self, points: list[int]) -> Iterator[tuple[End, int]]:
+        for number, bar in enumerate(self.bars):
+            for side, point in enumerate((bar.left, bar.right)):
+                if point in points:
+                    yield End(number, side), point
+
+    def beyond(self, end: End) -> End:
+        """The other end of a bar."""
+        return End(end.bar, 1 - end.side)
+
+    def point_at(self, end: End) -> int:
+        """The point at an end."""
+        bar = self.bars[end.bar]
+        return bar.right if end.side else bar.left
+
+
+def network_of(chain: Chain) -> Network:
+    """A named chain as a network: rod i is bar i - 1, node x is point x.
+
+    Each node's condition is multiplied by what makes the impedances at both ends of a rod one.
+    """
+    points: list[Point] = []
+    bars: list[Bar] = []
+    scale = fmpq(1)
+    for x, node in enumerate(chain.nodes):
+        if node.left and node.alpha != 0:
+            scale = bars[-1].impedance / (node.alpha / 2)
+        points.append(_point(node, scale))
+        if node.right:
+            impedance = scale * node.beta / 2 or fmpq(1)  # a prescribed motion does not feel its rod
+            bars.append(Bar(x, x + 1, fmpq(1), fmpq(1), impedance, velocity=fmpq(node.right.velocity)))
+    return Network(tuple(points), tuple(bars))
+
+
+def _point(node: Node, scale: fmpq) -> Point:
+    if (node.alpha if node.left else 0) == (node.beta if node.right else 0) == 0:
+        return _prescribed(node)
+    loads = tuple(UnitLoad(load.kind, load.number, tuple(scale * c for c in load.coefficients)) for load in node.loads)
+    return Point(scale * node.inertia, scale * node.damping, velocity=fmpq(node.velocity), loads=loads)
+
+
+def _prescribed(node: Node) -> Point:
+    """A node whose rod does not act on it: damping U_t = loads alone."""
+    loads = tuple(
+        UnitLoad(load.kind, load.number, tuple(c / node.damping for c in load.coefficients)) for load in node.loads
+    )
+    return Point(fmpq(0), motion="velocity", velocity=fmpq(node.velocity), loads=loads)

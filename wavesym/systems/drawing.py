@@ -1,0 +1,229 @@
+"""Parts drawn one after another: the points, bars and links of a chain, and where on its lines they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+from flint import fmpq
+
+from wavesym.fields.table import shown, wrong
+from wavesym.model.network import Bar, Link, Network, Point
+from wavesym.model.node import UnitLoad
+from wavesym.numbers.doubles import rational
+from wavesym.systems.parts import Branch, ChainPart, LinkPart, MotionPart, PointPart, RodPart
+
+Keys = tuple[str | int, ...]
+Placed = tuple[int, ChainPart | str]
+"""A node of a line, and which of the parts it is."""
+MAIN = ""
+"""The name of the line that is no branch."""
+
+
+def drawn(parts: Sequence[ChainPart | str], branches: Sequence[Branch]) -> Drawing:
+    """A chain and its branches. Raises the error of `table.wrong`."""
+    pen = _Pen()
+    pen.line(MAIN, parts, ("parts",))
+    for number, branch in enumerate(branches):
+        at = ("branch", number)
+        if branch.from_ not in pen.names:
+            raise wrong(f"{shown(branch.from_)} given, the name of a node before it expected", *at, "from")
+        if branch.name in pen.lines or branch.name in pen.names:
+            raise wrong(f"{shown(branch.name)} given, a name that is not taken expected", *at, "name")
+        if branch.ratio == 0:
+            raise wrong("0 given, a ratio other than 0 expected", *at, "ratio")
+        pen.line(branch.name, branch.parts, (*at, "parts"), pen.names[branch.from_], branch.ratio)
+    return pen.drawing()
+
+
+@dataclass(frozen=True)
+class Station:
+    """A place of a line where parts meet: x from its start, the points there from left to right, the bars beside it."""
+
+    x: Fraction
+    points: tuple[int, ...]
+    left: int | None
+    right: int | None
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """The points, bars and links of a chain; `lines` are the stations of the main line ("") and of the branches."""
+
+    points: tuple[Point, ...]
+    bars: tuple[Bar, ...]
+    links: tuple[Link, ...]
+    lines: Mapping[str, tuple[Station, ...]]
+    names: Mapping[str, int]
+
+    def network(self, sources: Mapping[int, Sequence[UnitLoad]]) -> Network:
+        """With unit loads on its points."""
+        points = (
+            Point(p.mass, p.damping, p.stiffness, p.velocity, p.motion, tuple(sources.get(k, ())), p.name)
+            for k, p in enumerate(self.points)
+        )
+        return Network(tuple(points), self.bars, self.links)
+
+    def length(self, bar: int | None) -> Fraction:
+        """The length of a bar."""
+        assert bar is not None
+        length = self.bars[bar].length
+        return Fraction(int(length.numer()), int(length.denom()))
+
+    def number(self, line: str, station: int) -> int:
+        """The bar that begins at a station of a line."""
+        bar = self.lines[line][station].right
+        assert bar is not None
+        return bar
+
+    def ends(self, point: int) -> Iterator[tuple[int, int]]:
+        """The bars at a point, each with the side of it that is there."""
+        for number, bar in enumerate(self.bars):
+            if bar.left == point:
+                yield number, 0
+            if bar.right == point:
+                yield number, 1
+
+
+@dataclass
+class _Pen:
+    """Draws lines of parts one after another."""
+
+    points: list[Point] = field(default_factory=list)
+    bars: list[Bar] = field(default_factory=list)
+    links: list[Link] = field(default_factory=list)
+    names: dict[str, int] = field(default_factory=dict)
+    lines: dict[str, tuple[Station, ...]] = field(default_factory=dict)
+
+    def drawing(self) -> Drawing:
+        """What was drawn."""
+        for k, point in enumerate(self.points):
+            self._bearable(k, point)
+        return Drawing(tuple(self.points), tuple(self.bars), tuple(self.links), self.lines, self.names)
+
+    def line(
+        self,
+        name: str,
+        parts: Sequence[ChainPart | str],
+        at: Keys,
+        begin: int | None = None,
+        ratio: Fraction = Fraction(1),
+    ) -> None:
+        """Parts from left to right; a branch begins at a point that is there already."""
+        self.lines[name] = ()  # so that no node of it has its name
+        nodes, between = _alternating(parts, at)
+        if begin is not None and nodes[0] is not None:
+            raise wrong("a node given first, what holds the branch to its node expected", *at, nodes[0][0])
+        numbers = [self._drawn(nodes, between, k, at) if k or begin is None else begin for k in range(len(nodes))]
+        stations = [Station(Fraction(0), (numbers[0],), None, None)]
+        for k, (part, left, right) in enumerate(zip(between, numbers, numbers[1:], strict=False)):
+            last, turns = stations[-1], ratio if begin is not None and k == 0 else Fraction(1)
+            if isinstance(part, RodPart):
+                if part.name and any(part.name == bar.name for bar in self.bars):
+                    number = next(n for n, each in enumerate(parts) if each is part)
+                    raise wrong(f"{shown(part.name)} given, a name that is not taken expected", *at, number, "name")
+                bar = self._bar(part, left, right, turns)
+                stations[-1] = replace(last, right=bar)
+                stations.append(Station(last.x + part.rod, (right,), bar, None))
+            else:
+                self._link(part, left, right, turns)
+                stations[-1] = replace(last, points=(*last.points, right))
+        self.lines[name] = tuple(stations)
+
+    def _drawn(self, nodes: Sequence[Placed | None], between: Sequence[RodPart | LinkPart], k: int, at: Keys) -> int:
+        """A new point for a node."""
+        self.points.append(Point(fmpq(0)))
+        number = len(self.points) - 1
+        if (placed := nodes[k]) is not None:
+            beside = [between[n] for n in (k - 1, k) if 0 <= n < len(between)]
+            self._become(number, placed[1], [part for part in beside if isinstance(part, RodPart)], (*at, placed[0]))
+        return number
+
+    def _bar(self, part: RodPart, left: int, right: int, ratio: Fraction) -> int:
+        self.bars.append(
+            Bar(
+                left,
+                right,
+                rational(part.rod),
+                rational(part.speed),
+                rational(part.impedance),
+                (rational(ratio), fmpq(1)),
+                rational(part.velocity),
+                rational(part.strain),
+                part.name or "",
+            )
+        )
+        if part.spring or part.dashpot:
+            self._link(part, left, right, ratio)
+        return len(self.bars) - 1
+
+    def _link(self, part: RodPart | LinkPart, left: int, right: int, ratio: Fraction) -> None:
+        self.links.append(Link(left, right, rational(part.spring), rational(part.dashpot), rational(ratio)))
+
+    def _become(self, point: int, part: ChainPart | str, rods: Sequence[RodPart], at: Keys) -> None:
+        """Give a point what a part says of it; `rods` are those beside it."""
+        if isinstance(part, PointPart):
+            velocities = {rod.velocity for rod in rods}
+            if part.velocity is None and len(velocities) > 1 and part.inertia:
+                raise wrong("missing, the velocity of a mass between rods of two velocities expected", *at, "velocity")
+            velocity = part.velocity if part.velocity is not None else min(velocities, default=Fraction(0))
+            mass, damping, spring = map(rational, (part.inertia, part.dashpot, part.spring))
+            self.points[point] = Point(mass, damping, spring, rational(velocity), name=part.name or "")
+        elif isinstance(part, MotionPart):
+            start = rational(part.velocity)
+            self.points[point] = Point(fmpq(0), velocity=start, motion=part.motion, name=part.name or "")
+        elif part == "fixed":
+            self.points[point] = Point(fmpq(0), motion="fixed")
+        elif part == "absorbing":
+            if not rods:
+                raise wrong('"absorbing" given, a rod beside it expected', *at)
+            self.points[point] = Point(fmpq(0), damping=rational(rods[0].impedance))
+        name = part.name if isinstance(part, PointPart | MotionPart) else None
+        if name:
+            if name in self.names or name in self.lines:
+                raise wrong(f"{shown(name)} given, a name that is not taken expected", *at, "name")
+            self.names[name] = point
+
+    def _damped(self, number: int) -> bool:
+        """Whether a point has a rod, a dashpot or a motion, or others hold it that have, or a mass, by dashpots."""
+        seen, coming = {number}, [number]
+        while coming:
+            point = self.points[number := coming.pop()]
+            held = any(number in (bar.left, bar.right) for bar in self.bars)
+            if point.damping != 0 or point.mass != 0 or point.motion is not None or held:
+                return True
+            ties = [{link.left, link.right} for link in self.links if link.damping != 0]
+            beside = set().union(*(tie for tie in ties if number in tie)) - seen
+            seen |= beside
+            coming += beside
+        return False
+
+    def _bearable(self, number: int, point: Point) -> None:
+        """A point must have something that says how fast it is."""
+        if point.mass == 0 and not self._damped(number):
+            raise wrong("a joint without mass, rod or dashpot given, one of these at it expected", "parts")
+
+
+def _alternating(parts: Sequence[ChainPart | str], at: Keys) -> tuple[list[Placed | None], list[RodPart | LinkPart]]:
+    """A line as nodes and what is between them; None for a node that is not written: a joint, or a free end."""
+    nodes: list[Placed | None] = [None]
+    between: list[RodPart | LinkPart] = []
+    for k, part in enumerate(parts):
+        if part == "contact":
+            raise wrong('"contact" given, a chain without contacts expected (collisions have them)', *at, k)
+        if isinstance(part, RodPart | LinkPart):
+            between.append(part)
+            nodes.append(None)
+            continue
+        if nodes[-1] is not None:
+            raise wrong("a node given beside another, a rod, a spring or a dashpot between them expected", *at, k)
+        if 0 < k < len(parts) - 1 and (part in ("free", "fixed", "absorbing") or isinstance(part, MotionPart)):
+            raise wrong("an end given between other parts, a mass or a joint expected", *at, k)
+        nodes[-1] = k, part
+    if not any(isinstance(part, RodPart) for part in between):
+        raise wrong("no rod given, at least 1 expected", *at)
+    open_start = nodes[0] is None and at == ("parts",)  # a branch starts at its node
+    if (open_start and isinstance(between[0], LinkPart)) or (nodes[-1] is None and isinstance(between[-1], LinkPart)):
+        raise wrong("a spring or dashpot given at an end, something for it to hold expected", *at)
+    return nodes, between

@@ -1,0 +1,79 @@
+"""Any chain: parts from left to right, as one would draw them, and branches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import ClassVar, Literal, cast
+
+from flint import fmpq
+from pydantic import Field, model_validator
+
+from wavesym.fields.loads import Load, LoadKinds
+from wavesym.fields.table import SceneTable, shown
+from wavesym.model.network import Network
+from wavesym.model.node import UnitLoad
+from wavesym.systems.chain_places import node, place
+from wavesym.systems.drawing import Drawing, drawn
+from wavesym.systems.node_loads import NodeLoad, SampledNodeLoad
+from wavesym.systems.parts import Branch, Parts, told
+from wavesym.systems.place import MisplacedError, Place, Position
+
+
+class ExplicitChain(SceneTable):
+    """A chain that is written out, part by part."""
+
+    load_kinds: ClassVar[LoadKinds] = (NodeLoad, SampledNodeLoad)
+    no_loads: ClassVar[str] = ""
+
+    type: Literal["chain"] = Field(description='"chain"')
+    parts: Parts = Field(description="a list of parts")
+    branch: tuple[Branch, ...] = ()
+
+    @model_validator(mode="after")
+    def _possible(self) -> ExplicitChain:
+        _ = self.drawing
+        return self
+
+    @cached_property
+    def drawing(self) -> Drawing:
+        """Its points, bars and links, and where they are."""
+        return drawn(self.parts, self.branch)
+
+    @property
+    def choices(self) -> Mapping[str, str]:
+        """What it is made of, line by line."""
+        branches = {
+            f"branch {each.name}": f"from {each.from_}, ratio {each.ratio}: {told(each.parts)}" for each in self.branch
+        }
+        return {"parts": told(self.parts), **branches}
+
+    def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
+        """The place of an output. MisplacedError."""
+        return place(self.drawing, position, quantity, {self._point(load) for load in loads})
+
+    def refused(self, load: Load) -> tuple[str, str] | None:
+        """What is wrong with a load, and under which key; None where nothing is."""
+        try:
+            point = self._point(load)
+        except MisplacedError as error:
+            return str(error), "at"
+        if self.drawing.points[point].motion == "fixed":
+            return f'{shown(_at(load))} given, a node that can move expected (a "fixed" end cannot)', "at"
+        return None
+
+    def made(self, loads: Sequence[Load]) -> tuple[None, Network]:
+        """No chain of the paper, and the network with the loads on its points."""
+        units: dict[int, dict[str, UnitLoad]] = {}
+        for load in loads:
+            for kind, coefficients in (("step", (fmpq(1),)), ("ramp", (fmpq(0), fmpq(1)))):
+                unit = UnitLoad(f"{_at(load)}:{kind}", None, coefficients)
+                units.setdefault(self._point(load), {})[unit.source] = unit
+        return None, self.drawing.network({point: tuple(each.values()) for point, each in units.items()})
+
+    def _point(self, load: Load) -> int:
+        return node(self.drawing, _at(load))
+
+
+def _at(load: Load) -> str:
+    return cast(NodeLoad | SampledNodeLoad, load).at

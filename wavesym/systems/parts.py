@@ -1,0 +1,194 @@
+"""The parts that an explicit chain is drawn with, as tables of a scene."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, PlainSerializer, PlainValidator, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
+
+from wavesym.fields.numbers import Exact, Positive, exact
+from wavesym.fields.table import SceneTable, first_error, listed, shown, wrong
+
+_NAMES = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
+_MOST_TOLD = 40
+MARKS = ("free", "fixed", "absorbing", "joint", "contact")
+
+
+def _name(value: object) -> str:
+    if not isinstance(value, str) or not _NAMES.fullmatch(value):
+        raise wrong(f"{shown(value)} given, a name expected (letters, digits and _, no digit first)")
+    return value
+
+
+def _not_negative(value: object) -> Fraction:
+    number = exact(value)
+    if number < 0:
+        raise wrong(f"{shown(value)} given, a number of at least 0 expected")
+    return number
+
+
+def _true(value: object) -> bool:
+    if value is not True:
+        raise wrong(f"{shown(value)} given, true expected")
+    return True
+
+
+def _moved(value: object) -> Literal["velocity", "acceleration"]:
+    if value == "velocity":
+        return "velocity"
+    if value == "acceleration":
+        return "acceleration"
+    raise wrong(f'{shown(value)} given, "velocity" or "acceleration" expected')
+
+
+PartName = Annotated[str, PlainValidator(_name)]
+NotNegative = Annotated[Fraction, PlainValidator(_not_negative), PlainSerializer(str, return_type=str)]
+
+
+class ChainPart(SceneTable):
+    """Something between the ends of a chain."""
+
+    key: ClassVar[str]
+
+
+class RodPart(ChainPart):
+    """An elastic rod; a spring and a dashpot in parallel to it go from end to end."""
+
+    key: ClassVar[str] = "rod"
+
+    rod: Positive = Field(description="a length")
+    impedance: Positive = Fraction(1)
+    speed: Positive = Fraction(1)
+    velocity: Exact = Fraction(0)
+    strain: Exact = Fraction(0)
+    spring: NotNegative = Fraction(0)
+    dashpot: NotNegative = Fraction(0)
+    name: PartName | None = None
+
+
+class PointPart(ChainPart):
+    """What moves as one: a rigid mass or a massless joint, with a dashpot and a spring to the ground."""
+
+    velocity: Exact | None = None
+    dashpot: NotNegative = Fraction(0)
+    spring: NotNegative = Fraction(0)
+    name: PartName | None = None
+
+    @property
+    def inertia(self) -> Fraction:
+        """Its mass."""
+        return Fraction(0)
+
+
+class MassPart(PointPart):
+    """A rigid mass."""
+
+    key: ClassVar[str] = "mass"
+
+    mass: Positive = Field(description="a mass")
+
+    @property
+    def inertia(self) -> Fraction:
+        """Its mass."""
+        return self.mass
+
+
+class JointPart(PointPart):
+    """A joint without mass."""
+
+    key: ClassVar[str] = "joint"
+
+    joint: Annotated[bool, PlainValidator(_true)] = Field(description="true")
+
+
+class MotionPart(ChainPart):
+    """An end that moves as its load says."""
+
+    key: ClassVar[str] = "motion"
+
+    motion: Annotated[Literal["velocity", "acceleration"], PlainValidator(_moved)] = Field(
+        description='"velocity" or "acceleration"'
+    )
+    velocity: Exact = Fraction(0)
+    name: PartName | None = None
+
+
+class LinkPart(ChainPart):
+    """A spring and a dashpot between the parts on its two sides."""
+
+    key: ClassVar[str] = "spring"
+
+    spring: NotNegative = Fraction(0)
+    dashpot: NotNegative = Fraction(0)
+
+    @model_validator(mode="after")
+    def _something(self) -> LinkPart:
+        if self.spring == self.dashpot == 0:
+            raise wrong("0 given, a spring or a dashpot above 0 expected")
+        return self
+
+
+KINDS: tuple[type[ChainPart], ...] = (RodPart, MassPart, JointPart, MotionPart)
+
+
+def _part(value: object) -> ChainPart | str:
+    if isinstance(value, ChainPart):
+        return value
+    if isinstance(value, str):
+        if value not in MARKS:
+            raise wrong(f"{shown(value)} given, {', '.join(MARKS)} or a table expected")
+        return value
+    if not isinstance(value, Mapping):
+        raise wrong(f"{shown(value)} given, a table, or one of {', '.join(MARKS)}, expected")
+    kind: type[ChainPart] = next((kind for kind in KINDS if kind.key in value), LinkPart)
+    if kind is LinkPart and not value.keys() & {"spring", "dashpot"}:
+        raise wrong("no kind given, rod, mass, joint, motion, spring or dashpot expected")
+    try:
+        return kind.model_validate(value)
+    except ValidationError as error:
+        what, path = first_error(error)
+        raise wrong(what, *path) from None
+
+
+def _parts(value: object) -> tuple[Any, ...]:
+    found = []
+    for k, part in enumerate(listed(value)):
+        try:
+            found.append(_part(part))
+        except PydanticCustomError as error:  # with where it is
+            context = error.context or {}
+            raise wrong(context["what"], k, *context["at"]) from None
+    return tuple(found)
+
+
+def _written(parts: tuple[ChainPart | str, ...]) -> list[Any]:
+    return [part if isinstance(part, str) else part.model_dump(exclude_defaults=True) for part in parts]
+
+
+def told(parts: tuple[ChainPart | str, ...]) -> str:
+    """Parts in a line; of a long one the first."""
+    words = [part if isinstance(part, str) else _told(part) for part in parts[:_MOST_TOLD]]
+    more = [f"... and {len(parts) - _MOST_TOLD} more"] if len(parts) > _MOST_TOLD else []
+    return " | ".join([*words, *more])
+
+
+def _told(part: ChainPart) -> str:
+    given = part.model_dump(exclude_defaults=True)
+    keys = sorted(given, key=lambda key: (key == "name", key != part.key))
+    return ", ".join(key if given[key] is True else f"{key} {given[key]}" for key in keys)
+
+
+Parts = Annotated[tuple[Any, ...], PlainValidator(_parts), PlainSerializer(_written, return_type=list[Any])]
+
+
+class Branch(SceneTable):
+    """Parts that start at a named node, read outwards; they move `ratio` times as fast as the node."""
+
+    from_: PartName = Field(alias="from", description="the name of a node")
+    name: PartName = Field(description="a name")
+    ratio: Exact = Fraction(1)
+    parts: Parts = Field(description="a list of parts")

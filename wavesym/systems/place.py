@@ -1,0 +1,57 @@
+"""Where an output is: what systems make of the positions that users write."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple
+
+from wavesym.fields.numbers import exact, written
+
+
+class Position(NamedTuple):
+    """A place as it is `written`: x (in rod lengths, or along a line) or a name, and its side.
+
+    -1 is the left one, +1 the right one, 0 where none is said.
+    """
+
+    written: str
+    x: Fraction | None
+    side: int
+    name: str = ""
+
+
+_NAMED = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?::(.*))?")
+
+
+def position_of(value: object) -> Position:
+    """A position as TOML or Python has it: a number, or text such as "1/2+", "hammer" or "branch:1-"."""
+    text = written(value)
+    if text is None:
+        return Position(str(exact(value)), exact(value), 0)
+    side = {"-": -1, "+": 1}.get(text[-1:], 0)
+    bare = text[:-1] if side else value
+    shown_as = str(value) if isinstance(value, str) else text
+    if isinstance(bare, str) and (found := _NAMED.fullmatch(bare)):
+        return Position(shown_as, None if found[2] is None else exact(found[2]), side, found[1])
+    return Position(shown_as, exact(bare), side)
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place that is there: `part` of rod number `rod` (from 1) from its left end, or a point without a rod.
+
+    `x` and `side` as they matter: two positions with the same are the same. `line` is the branch, if any.
+    """
+
+    x: Fraction
+    side: int
+    line: str
+    rod: int
+    part: Fraction
+    point: int | None = None
+
+
+class MisplacedError(ValueError):
+    """A position that is not there, or not one: what was expected, as a user reads it."""

@@ -1,0 +1,158 @@
+"""A network in doubles, as the wave equation in its bars and the balance of forces at its points say it.
+
+In a bar U_tt = speed^2 U_xx, and its force is impedance * speed * U_x. Its end moves `ratio` times as fast as its
+point, which feels `ratio` times its force. At the points, all at once,
+
+    mass u'' + damping u' + stiffness u = sum over ends of ratio * force of the bar + loads.
+
+At tau = 0 nothing is displaced: what a bar is strained then is counted besides. Nothing here knows of joints, waves or
+their laws.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, reduce
+from math import gcd
+
+import numpy as np
+from flint import fmpq
+from numpy.typing import NDArray
+
+from wavesym.model.model import Model
+from wavesym.model.network import Network
+from wavesym.numbers.doubles import fraction, nearest
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class GraphEvent:
+    """From `time` on, the load on a point (or what its motion is) has sum_k coefficients[k] (tau - time)**k more."""
+
+    time: Fraction
+    point: int
+    coefficients: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Graph:
+    """Points, and bars with two ends each: end 2 b is the left one of bar b, end 2 b + 1 the right one.
+
+    `mass`, `damping` and `stiffness` have no part of the bars in them; the last two are square. `given` are the points
+    whose motion is prescribed, with how many integrals their displacements are away from the loads.
+    """
+
+    network: Network
+    mass: Array
+    damping: Array
+    stiffness: Array
+    velocity: Array
+    given: dict[int, int]
+    ends: NDArray[np.int_]
+    ratios: Array
+    impedance: Array
+    speed: Array
+    start_velocity: Array
+    start_strain: Array
+    events: tuple[GraphEvent, ...]
+
+    @cached_property
+    def delays(self) -> tuple[Fraction, ...]:
+        """How long a wave takes through each bar."""
+        return tuple(fraction(bar.length) / fraction(bar.speed) for bar in self.network.bars)
+
+    @property
+    def measure(self) -> Fraction:
+        """The largest time that all delays are multiples of."""
+        return reduce(_common, self.delays)
+
+    @cached_property
+    def pull(self) -> Array:
+        """The forces of the bars on their points while nothing but their start has come to the ends, without ratios.
+
+        A bar's end feels impedance * (velocity and, towards the bar, speed * strain) less impedance * its velocity.
+        """
+        strain = self.speed * self.start_strain
+        ends = np.stack([self.start_velocity + strain, self.start_velocity - strain], axis=1)
+        return np.asarray((self.impedance[:, np.newaxis] * ends).ravel())
+
+    def load_integral(self, times: Array, order: int) -> Array:
+        """The loads integrated `order` times from tau = 0 on: shape (times, points)."""
+        total = np.zeros((len(times), len(self.mass)))
+        for event in self.events:
+            since = np.maximum(times - float(event.time), 0.0)
+            began = times >= float(event.time)
+            for k, c in enumerate(event.coefficients):
+                power = k + order
+                divided = np.prod(np.arange(k + 1, power + 1, dtype=float))
+                total[:, event.point] += np.where(began, c / divided * since**power, 0.0)
+        return total
+
+    def prescribed(self, times: Array) -> Array:
+        """The displacements of the points whose motion is given; 0 for the others."""
+        result = np.zeros((len(times), len(self.mass)))
+        for point, integrals in self.given.items():
+            result[:, point] = self.load_integral(times, integrals)[:, point] + times * self.velocity[point]
+        return result
+
+    @cached_property
+    def free(self) -> NDArray[np.int_]:
+        """The points that are free to move."""
+        return np.array([point for point in range(len(self.mass)) if point not in self.given], dtype=int)
+
+
+def graph(model: Model) -> Graph:
+    """The network of a model with its loads."""
+    network = model.network
+    points, bars = network.points, network.bars
+    damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))
+    for link in network.links:
+        pair = np.zeros(len(points))
+        pair[link.left], pair[link.right] = nearest(link.ratio), -1.0
+        damping = damping + nearest(link.damping) * np.outer(pair, pair)
+        stiffness = stiffness + nearest(link.stiffness) * np.outer(pair, pair)
+    return Graph(
+        network,
+        mass=_numbers(points, "mass"),
+        damping=damping,
+        stiffness=stiffness,
+        velocity=_numbers(points, "velocity"),
+        given={
+            number: 2 if point.motion == "acceleration" else 1 for number, point in enumerate(points) if point.motion
+        },
+        ends=np.array([(bar.left, bar.right) for bar in bars]).ravel(),
+        ratios=np.array([nearest(ratio) for bar in bars for ratio in bar.ratios]),
+        impedance=_numbers(bars, "impedance"),
+        speed=_numbers(bars, "speed"),
+        start_velocity=_numbers(bars, "velocity"),
+        start_strain=_numbers(bars, "strain"),
+        events=tuple(_events(model)),
+    )
+
+
+def _events(model: Model) -> list[GraphEvent]:
+    units = {
+        unit.source: (number, unit.coefficients)
+        for number, point in enumerate(model.network.points)
+        for unit in point.loads
+    }
+    found = []
+    for load in model.loads:
+        if load.source != "impact":  # that is in the velocities
+            point, coefficients = units[load.source]
+            found.append(
+                GraphEvent(fraction(load.time), point, tuple(nearest(load.weight * fmpq(c)) for c in coefficients))
+            )
+    return found
+
+
+def _numbers(parts: tuple[object, ...], name: str) -> Array:
+    return np.array([nearest(getattr(part, name)) for part in parts])
+
+
+def _common(one: Fraction, other: Fraction) -> Fraction:
+    return Fraction(
+        gcd(one.numerator * other.denominator, other.numerator * one.denominator), one.denominator * other.denominator
+    )

@@ -1,0 +1,262 @@
+"""Central differences at Courant number 1 over any network of bars, straight from the wave equation: no waves.
+
+A bar is delay/h cells, each of which a wave crosses in a step h of tau, for an h that all delays are multiples of.
+Inside a bar
+
+    U(j, t + h) = U(j + 1, t) + U(j - 1, t) - U(j, t - h),
+
+which is no approximation: fronts stay as sharp as they are. A point carries half a cell of each of its bars, so that
+
+    mass (u+ - 2 u + u-)/h^2 + damping (u+ - u-)/(2 h) + stiffness (u+ + 2 u + u-)/4
+        = sum over ends of ratio * impedance * ((U_beside - ratio u)/h - ratio h/2 (u+ - 2 u + u-)/h^2)
+        + the loads' mean from t - h to t + h,
+
+of order 2, and stable for any springs and dashpots. The first step is the balance of momentum from 0 to h, in which
+the bars' ends feel nothing but what was in the bars at the start: a mass may be faster than its bars.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import ceil, lcm
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
+from wavesym.verification.graph import Array, Graph, graph
+from wavesym.verification.spacetime import (
+    COARSEST,
+    FINEST_ALIGNED,
+    ROUNDINGS,
+    SAME,
+    STENCIL,
+    Displaced,
+    Instants,
+    Term,
+    between,
+    read,
+    whole,
+)
+
+# what a step costs besides its points, in points
+_STEP = 5000
+
+
+@dataclass(frozen=True)
+class GraphGrid:
+    """A network whose bars have cells of a step of tau. An instant k is tau = k * step. Everything is dimensionless."""
+
+    graph: Graph
+    probes: tuple[Probe, ...]
+    step: Fraction
+
+    @property
+    def cells(self) -> int:
+        """How many the shortest bar has."""
+        return int(min(self.graph.delays) / self.step)
+
+    @property
+    def aligned(self) -> bool:
+        """Whether all loads begin on the grid. All fronts are on it then, and errors are a series in h^2."""
+        return all((event.time / self.step).denominator == 1 for event in self.graph.events)
+
+    def finer(self, times: int) -> GraphGrid:
+        """The grid with that many cells for one."""
+        return GraphGrid(self.graph, self.probes, self.step / times)
+
+    def tau(self, instant: int) -> float:
+        """When an instant is."""
+        return float(instant * self.step)
+
+    def cost(self, until: float) -> float:
+        """What it takes to come to tau = `until`: points moved, roughly."""
+        points = float(sum(self.graph.delays) / self.step) + len(self.graph.mass) ** 2
+        return until / float(self.step) * (points + _STEP)
+
+    def instants(self, until: float) -> Instants:
+        """Those up to `until` at which what every output is read from has no front inside.
+
+        Fronts set out from points at multiples of the delays' common measure after 0 and after every load.
+        """
+        measure, step = self.graph.measure, float(self.step)
+        cuts = {event.time % measure for event in self.graph.events} | {Fraction(0)}
+        reaches = [1 if whole(self._place(probe)) else STENCIL for probe in self.probes]
+        instants = np.arange(1, int(until / step) - max(reaches) + 1)
+        free = np.ones(len(instants), dtype=bool)
+        for probe, reach in zip(self.probes, reaches, strict=True):
+            offset = fraction(probe.place) * (0 if probe.point is not None else self.graph.delays[probe.rod - 1])
+            for cut in cuts:
+                for way in (offset, -offset):
+                    window = float(measure / self.step)
+                    passed = (instants - float((cut + way) / self.step) + window / 2) % window - window / 2
+                    free &= np.abs(passed) > reach - SAME
+        return instants[free]
+
+    def integrate(self, instants: Instants) -> Displaced:
+        """The outputs at positive instants in ascending order. At a front, the mean of what is before and after it."""
+        h = float(self.step)
+        times = h * np.arange(instants[-1] + 2)
+        impulse = self.graph.load_integral(np.append(times, times[-1] + h), 1)
+        told = self.graph.prescribed(np.append(times, times[-1] + h))
+        kept = np.unique(np.add.outer(instants, (-1, 0, 1)))
+        history = np.zeros((len(kept), len(self._points)))
+        largest, row = 0.0, 0
+        field, points = _Field(self), _Points(self)
+        for step in range(int(instants[-1]) + 2):
+            if step == kept[row]:
+                history[row] = np.append(field.now, points.now)[self._points]
+                largest = max(largest, float(np.max(np.abs(points.now))), float(np.max(np.abs(field.now))))
+                row += 1
+            if step == 0:
+                points.begin(impulse[1] / h, told[1])
+            else:
+                points.move(field.beside, (impulse[step + 1] - impulse[step - 1]) / (2 * h), told[step + 1])
+            field.move(points.now)
+        values = np.array([np.full(len(instants), constant) for constant in self._constants])
+        rows = np.searchsorted(kept, instants)
+        for output, terms in zip(values, self._terms, strict=True):
+            for later, point, weight in terms:
+                output += weight * history[rows + later, np.searchsorted(self._points, point)]
+        return Displaced(values, largest * self._roundoff(int(instants[-1])))
+
+    def _roundoff(self, steps: int) -> Array:
+        """What rounding adds to the outputs for displacements of 1, at most (see `spacetime`)."""
+        unit = ROUNDINGS * float(UNIT_ROUNDOFF)
+        slope = steps / float(self.step)
+        sizes = []
+        for probe in self.probes:
+            speed = self.graph.speed[probe.rod - 1] if probe.quantity == "strain" else 1.0
+            sizes.append(unit * (steps * steps if probe.quantity == "displacement" else slope / speed))
+        return np.array(sizes)
+
+    @cached_property
+    def counts(self) -> NDArray[np.int_]:
+        """How many cells each bar has."""
+        return np.array([int(delay / self.step) for delay in self.graph.delays])
+
+    @cached_property
+    def firsts(self) -> NDArray[np.int_]:
+        """Where each bar begins in the field of all bars, one after the other; and the end of the last one."""
+        return np.append(0, np.cumsum(self.counts + 1))
+
+    def _place(self, probe: Probe) -> float:
+        """Where an output is, in cells from the left end of its bar."""
+        if probe.point is not None:
+            return 0.0
+        return float(fraction(probe.place) * self.graph.delays[probe.rod - 1] / self.step)
+
+    @cached_property
+    def _terms(self) -> list[list[Term]]:
+        return [list(self._read(probe)) for probe in self.probes]
+
+    def _read(self, probe: Probe) -> Iterator[Term]:
+        rate = 1.0 / float(self.step)
+        if probe.point is not None:
+            point = int(self.firsts[-1]) + probe.point
+            yield from ((later, point, weight) for later, _, weight in read(probe.quantity, 0, 1, rate))
+            return
+        bar = probe.rod - 1
+        slope = rate / self.graph.speed[bar] if probe.quantity == "strain" else rate
+        for j, weight in between(self._place(probe), int(self.counts[bar])):
+            for later, point, factor in read(probe.quantity, j, int(self.counts[bar]), slope):
+                yield later, int(self.firsts[bar]) + point, weight * factor
+
+    @cached_property
+    def _constants(self) -> list[float]:
+        """What the bars' strains at the start add to the outputs."""
+        return [
+            float(self.graph.start_strain[probe.rod - 1]) if probe.quantity == "strain" else 0.0
+            for probe in self.probes
+        ]
+
+    @cached_property
+    def _points(self) -> NDArray[np.int_]:
+        """The points that outputs are read from."""
+        return np.unique([point for terms in self._terms for _, point, _ in terms])
+
+
+def graph_grid(model: Model) -> GraphGrid:
+    """The coarsest grid for a model: its loads and outputs are on it where their denominators are small."""
+    made = graph(model)
+    measure = made.measure
+    common = 1
+    offsets = (fraction(probe.place) * made.delays[probe.rod - 1] for probe in model.probes if probe.point is None)
+    for time in (*(event.time for event in made.events), *offsets):
+        if lcm(common, (time / measure).denominator) <= FINEST_ALIGNED:
+            common = lcm(common, (time / measure).denominator)
+    shortest = min(*made.delays, fraction(model.until))
+    return GraphGrid(made, model.probes, measure / common / ceil(COARSEST * measure / common / shortest))
+
+
+class _Field:
+    """The displacements of all bars, one after the other, now and a step before."""
+
+    def __init__(self, grid: GraphGrid) -> None:
+        made = grid.graph
+        self._first = float(grid.step) * np.repeat(made.start_velocity, grid.counts + 1)
+        starts = grid.firsts[:-1]
+        self._ends = np.stack([starts, starts + grid.counts], axis=1).ravel()
+        self._beside = self._ends + np.tile([1, -1], len(starts))
+        self._which, self._ratios = made.ends, made.ratios
+        self.now = np.zeros(len(self._first))
+        self._before: Array | None = None
+
+    @property
+    def beside(self) -> Array:
+        """The displacements beside all ends, in their bars."""
+        return np.asarray(self.now[self._beside])
+
+    def move(self, points: Array) -> None:
+        """One step, to where the points are already."""
+        after = self._first.copy()
+        if self._before is not None:
+            after[1:-1] = self.now[2:] + self.now[:-2] - self._before[1:-1]
+        after[self._ends] = self._ratios * points[self._which]
+        self._before, self.now = self.now, after
+
+
+class _Points:
+    """The displacements of all points, now and a step before."""
+
+    def __init__(self, grid: GraphGrid) -> None:
+        made, h = grid.graph, float(grid.step)
+        self._graph, self._h, self._free = made, h, made.free
+        size = len(made.mass)
+        impedance = np.repeat(made.impedance, 2)
+        self._onto = np.zeros((size, len(made.ends)))  # what the ends' forces do to their points
+        self._onto[made.ends, np.arange(len(made.ends))] = made.ratios
+        radiated = np.diag(self._onto**2 @ impedance)
+        mass = np.diag(made.mass)
+        self._started = 2 * mass / h @ made.velocity
+        self._start = 2 * mass / h + made.damping + radiated + h / 2 * made.stiffness
+        mass = mass / h**2 + radiated / (2 * h)
+        self._ahead = mass + made.damping / (2 * h) + made.stiffness / 4
+        self._now = 2 * mass - radiated / h - made.stiffness / 2
+        self._behind = mass - made.damping / (2 * h) + made.stiffness / 4
+        tension = np.tile([1.0, -1.0], len(made.impedance)) * impedance
+        self._strained = self._onto @ (tension * np.repeat(made.speed * made.start_strain, 2))
+        self._beside = self._onto * impedance / h
+        free = np.ix_(self._free, self._free)
+        self._inverse, self._inverse_start = np.linalg.inv(self._ahead[free]), np.linalg.inv(self._start[free])
+        self.now = np.zeros(size)
+        self._before = self.now
+
+    def begin(self, load: Array, told: Array) -> None:
+        """The first step: mean velocities that balance momentum from 0 to h."""
+        h, free = self._h, self._free
+        right = self._onto @ self._graph.pull + load + self._started - self._start @ (told / h)
+        told[free] = h * self._inverse_start @ right[free]
+        self.now = told
+
+    def move(self, beside: Array, load: Array, told: Array) -> None:
+        """One step more, from what is beside the ends in the bars."""
+        right = self._beside @ beside + self._strained + load
+        right += self._now @ self.now - self._behind @ self._before - self._ahead @ told
+        told[self._free] = self._inverse @ right[self._free]
+        self._before, self.now = self.now, told
