@@ -20,9 +20,9 @@ from wavesym.papers.pielorz1979.letters import Moving
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.symbols import Symbols, expression, told
 from wavesym.papers.pielorz1979.transcript import others
-from wavesym.papers.pielorz1979.truth import EXAMPLES, driven, instants
+from wavesym.papers.pielorz1979.truth import EXAMPLES, JumpingChain, driven, instants
 from wavesym.papers.record import Case, Reading, Reproduction, Test
-from wavesym.papers.tree import Call, Tree
+from wavesym.papers.tree import Call, Symbol, Tree
 
 UNTIL = 8
 """How far in z equations are tried: waves have crossed the longest chain, and every load has begun."""
@@ -40,11 +40,15 @@ def test(entry: PaperEntry) -> Test:
     def cases(read: Reading) -> Iterator[Case]:
         for m in drawn.sizes:
             given: Counter[Unknown] = Counter()
-            scope = Moving(driven(drawn.name, m))
+            motion = driven(drawn.name, m)
+            scope, jumps = Moving(motion), _Jumps(JumpingChain(motion.exact, motion.loads))
             for equation, bound in _stated(read, m):
                 given[_unknown(equation, Scope(bound))] += 1
                 scope.bound |= bound
+                jumps.bound |= bound
                 yield from _balanced(scope, equation, bound)
+                if any(part.primes == 2 for part in within(equation) if isinstance(part, Symbol)):
+                    yield from _jumping(jumps, equation, bound)
             wanted = {(e.function, rod) for e in delay_equations(drawn.system) for rod in _rods(e, m)}
             yield from once({"m": m}, given, _others(entry.id, m), wanted)
 
@@ -74,6 +78,21 @@ def _balanced(scope: Moving, equation: Tree, at: Mapping[str, int]) -> Iterator[
 
     clock = "z", instants(UNTIL, between=[fmpq(5, 6)])
     return left_over(equation, at, scope, clock, lambda z: {"z": z}, seen)
+
+
+class _Jumps(Moving):
+    """An equation across a front: its second derivatives alone, each with the jump of the first one."""
+
+    def step(self, value: Any) -> Any:
+        return 0
+
+
+def _jumping(scope: _Jumps, equation: Tree, at: Mapping[str, int]) -> Iterator[Case]:
+    """The equation integrated across every front: what jumps in it adds up to nothing."""
+    motion = scope.motion
+    assert isinstance(motion, JumpingChain)
+    clock = "a front at z", motion.fronts
+    return left_over(equation, at, scope, clock, lambda z: {"z": z}, lambda z, left: None)
 
 
 def _unknown(equation: Tree, scope: Scope) -> Unknown:

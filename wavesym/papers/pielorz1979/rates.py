@@ -24,8 +24,16 @@ from wavesym.papers.pielorz1979.transcript import ids, settled
 from wavesym.papers.record import Case, Reading, Test, case, faults
 from wavesym.papers.tree import Blank, Progression, Symbol, latex
 
-_A, _B, _C = fmpq(2, 3), fmpq(3, 5), fmpq(5, 7)
-_COLLISIONS = ((_A, _B), (_A, 2 * _A), (2 * _A, _A), (_A, _B, _B), (_A, _A, _B), (_A, _B, _C), (1, 2, 3))
+_ONE, _A, _B, _C = fmpq(1), fmpq(2, 3), fmpq(3, 5), fmpq(5, 7)
+_COLLISIONS = (
+    (_A, _B),
+    (_A, 2 * _A),
+    (2 * _A, _A),
+    (_A, _B, _B),
+    (_A, _A, _B),
+    (_A, _B, _C),
+    (_ONE, 2 * _ONE, 3 * _ONE),
+)
 _DRIVES = (  # kappa, J
     ((_A,), (1, 3)),
     ((_A,), (1, 1)),
@@ -93,7 +101,7 @@ def _variants(table: str) -> Iterator[tuple[int, Parameters]]:
         for kappas in _COLLISIONS:
             m = 2 * len(kappas)
             velocity = collision(m).chain.parameters.velocity
-            yield m, Parameters(kappa={2 * i + 1: fmpq(kappa) for i, kappa in enumerate(kappas)}, velocity=velocity)
+            yield m, Parameters(kappa={2 * i + 1: kappa for i, kappa in enumerate(kappas)}, velocity=velocity)
     elif table == "T3":
         for shafts, discs in _DRIVES:
             yield len(shafts), Parameters(kappa=_each(shafts), inertia=_each(discs))

@@ -13,7 +13,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.exact.increments import Increment, combined, integrated
+from wavesym.exact.increments import Increment, combined, integrated, start
 from wavesym.exact.table import Function
 from wavesym.model.node import System
 from wavesym.papers.evaluation import MeaninglessError
@@ -144,6 +144,34 @@ class DrivenChain:
     def load(self, source: str, z: fmpq, power: int = 0) -> fmpq:
         """The sum of the source's pieces that have begun, each times the time since then to a power."""
         return sum((p.weight * (z - p.time) ** power for p in self.loads.get(source, ()) if z >= p.time), fmpq(0))
+
+
+class JumpingChain(DrivenChain):
+    """The jumps of a driven chain: what second derivatives have of f' and g' where these jump; all else has none."""
+
+    def wave(self, letter: str, rod: int, z: fmpq, order: int = 1) -> Exponentials:
+        """The jump of f' or g' of a rod at z, for order 2. MeaninglessError as for the motion."""
+        self._check(rod)
+        total = fmpq(0)
+        if order != 2:
+            return Exponentials.of(total)
+        for source, pieces in self.loads.items():
+            increments = self.exact.responses[source][Function(letter, rod)]
+            for piece in pieces:
+                number = (fmpq(z) - piece.time) / self.exact.interval
+                if number >= 0 and number.denom() == 1:
+                    total += piece.weight * start(increments[int(number.numer())])
+        return Exponentials.of(total)
+
+    @property
+    def fronts(self) -> tuple[fmpq, ...]:
+        """When something may jump, within the first intervals."""
+        times = {piece.time for pieces in self.loads.values() for piece in pieces}
+        return tuple(sorted({time + self.exact.interval * n for time in times for n in range(JUMPS)}))
+
+
+JUMPS = 4
+"""Intervals after a load in which jumps are looked at."""
 
 
 def _terms(increment: Increment, w: fmpq, weight: fmpq | int = 1) -> Iterator[tuple[fmpq, fmpq]]:
