@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from wavesym.papers.about import About, Heading, PrintedTable
+from wavesym.papers.about import About, Heading, TableLayout
 from wavesym.papers.entries import Aside, PaperEntry, Passage, Slip
 from wavesym.papers.entries import Paper as EntriesPaper
 from wavesym.papers.evaluation import Scope, holds
@@ -14,7 +14,7 @@ from wavesym.papers.record import Case, Reading, Record, Reproduction, Test, cas
 from wavesym.papers.tree import Relation
 
 SCENE = 'name = "counterexample"\n\n[system]\ntype = "drive"\n'
-TABLE = PrintedTable(
+TABLE = TableLayout(
     name="Table 1",
     cell="T1.{row}.{column}",
     row_head="T1.{row}",

@@ -21,7 +21,7 @@ class Heading(_Said):
     words: str = ""
 
 
-class PrintedTable(_Said):
+class TableLayout(_Said):
     """A table as the paper lays it out. `cell` makes the id of a cell of its {row} and {column}.
 
     `row_head` and `column_head` make that of a head in the same way, where heads are records too.
@@ -55,7 +55,7 @@ class About(_Said):
     english: str
     date: str
     transcription: str
-    table: tuple[PrintedTable, ...] = ()
+    table: tuple[TableLayout, ...] = ()
 
 
 def read_about(file: Path) -> About:

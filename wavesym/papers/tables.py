@@ -47,7 +47,7 @@ class PrintedTable(BaseModel):
 
 
 @dataclass(frozen=True)
-class Place:
+class CellPlace:
     """A cell: its id, its table, row and column by name, and what stands there."""
 
     id: str
@@ -70,7 +70,7 @@ def grid(text: str) -> Grid:
     return [[cell.strip() for cell in line.split("\t")] for line in text.strip("\n").split("\n")]
 
 
-def places(tables: Iterable[PrintedTable], text: str, start: int) -> Iterator[Place]:
+def places(tables: Iterable[PrintedTable], text: str, start: int) -> Iterator[CellPlace]:
     """The cells of all tables of a text whose first line is number `start`; IndexError where a line is too short."""
     cells = grid(text)
     for table in tables:
@@ -78,7 +78,7 @@ def places(tables: Iterable[PrintedTable], text: str, start: int) -> Iterator[Pl
             for number, column in enumerate(table.columns):
                 name = table.cell.format(row=row.name, column=column.name)
                 scan = cells[row.line - start][row.first + number]
-                yield Place(f"{table.id}.{name}", table, row.name, column.name, scan)
+                yield CellPlace(f"{table.id}.{name}", table, row.name, column.name, scan)
 
 
 def problems(tables: Iterable[PrintedTable], text: str, start: int, others: Iterable[str]) -> Iterator[str]:

@@ -10,9 +10,9 @@ from math import sqrt
 from operator import attrgetter
 
 from wavesym import __version__
-from wavesym.papers.about import About, Heading, PrintedTable
+from wavesym.papers.about import About, Heading, TableLayout
 from wavesym.papers.pages.findings import Findings, Survivor, Unjudged, by_place, faults_tried, lines, origin, titles
-from wavesym.papers.pages.reproduction import Reproduction, reproduction
+from wavesym.papers.pages.reproduction import ReproducedPage, reproduction
 from wavesym.papers.pages.shown import Shown, Stated, compared, formula, inferred, printed, readable
 from wavesym.papers.record import VERDICTS, Record
 
@@ -57,7 +57,7 @@ class Judged:
     against: str
     faults: str
     problems: tuple[str, ...]
-    reproduction: Reproduction | None
+    reproduction: ReproducedPage | None
 
 
 @dataclass(frozen=True)
@@ -186,7 +186,7 @@ def _note(group: Sequence[Record]) -> str:
     return readable(notes.pop()) if len(notes) == 1 else ""
 
 
-def _laid(table: PrintedTable, judged: Mapping[str, Judged]) -> Laid:
+def _laid(table: TableLayout, judged: Mapping[str, Judged]) -> Laid:
     columns = tuple(_head(column, judged.get(table.column_head.format(column=column.key))) for column in table.columns)
     named = {id: _head(Heading(key=id, formula=name)) for id, name in table.names.items()}
     rows = []
@@ -197,7 +197,7 @@ def _laid(table: PrintedTable, judged: Mapping[str, Judged]) -> Laid:
     return Laid(table.name, table.caption, columns, tuple(rows), _widths(table, judged))
 
 
-def _widths(table: PrintedTable, judged: Mapping[str, Judged]) -> tuple[float, ...]:
+def _widths(table: TableLayout, judged: Mapping[str, Judged]) -> tuple[float, ...]:
     """By the longest cell of a column; a cell twice as long takes two lines of a column that is not twice as wide."""
     columns = [[table.id(row, column) for row in table.rows] for column in table.columns]
     longest = [max(judged[id].size if id in judged else 0 for id in ids) for ids in columns]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from wavesym.papers.pages.findings import Findings, by_place, lines, origin, ranges_as_corrected, tested, titles
-from wavesym.papers.pages.reproduction import Reproduction, reproduction
+from wavesym.papers.pages.reproduction import ReproducedPage, reproduction
 from wavesym.papers.record import VERDICTS, Record
 
 
@@ -62,7 +62,7 @@ def _items(record: Record) -> Iterator[str]:
     yield from (f"- problem: {problem}" for problem in record.problems)
 
 
-def _reproduction(shown: Reproduction) -> Iterator[str]:
+def _reproduction(shown: ReproducedPage) -> Iterator[str]:
     if not shown.file:
         yield shown.said
         return

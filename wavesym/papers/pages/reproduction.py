@@ -9,7 +9,7 @@ from wavesym.papers.record import Record
 
 
 @dataclass(frozen=True)
-class Reproduction:
+class ReproducedPage:
     """What to type: a scene to save as `file`, a command, and what to look at; where there is no chain behind a
     counterexample, it is all in what is `said`."""
 
@@ -20,15 +20,15 @@ class Reproduction:
     look: str = ""
 
 
-def reproduction(record: Record) -> Reproduction | None:
+def reproduction(record: Record) -> ReproducedPage | None:
     """How to see a record's smallest counterexample; None where it has none."""
     wrong = record.counterexample
     if wrong is None:
         return None
     if wrong.example is None:
-        return Reproduction(f"{wrong}. There is no chain behind it to run: these are all its numbers.")
+        return ReproducedPage(f"{wrong}. There is no chain behind it to run: these are all its numbers.")
     example, file = wrong.example(), _file(record.id)
-    return Reproduction(f"{wrong}.", file, example.scene, example.command.replace("SCENE", file), example.look)
+    return ReproducedPage(f"{wrong}.", file, example.scene, example.command.replace("SCENE", file), example.look)
 
 
 def _file(id: str) -> str:

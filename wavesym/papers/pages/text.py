@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from textwrap import fill, indent
 
 from wavesym.papers.pages.findings import Findings, counted, lines, origin, ranges_as_corrected, tested
-from wavesym.papers.pages.reproduction import Reproduction, reproduction
+from wavesym.papers.pages.reproduction import ReproducedPage, reproduction
 from wavesym.papers.record import VERDICTS, Record
 
 WIDTH = 120
@@ -63,7 +63,7 @@ def _record(record: Record, reproduce: bool) -> Iterator[str]:
         yield from _reproduction(shown)
 
 
-def _reproduction(shown: Reproduction) -> Iterator[str]:
+def _reproduction(shown: ReproducedPage) -> Iterator[str]:
     if not shown.file:
         yield _said("reproduce", shown.said)
         return

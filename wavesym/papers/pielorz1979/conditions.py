@@ -194,6 +194,8 @@ def _balanced(scope: Moving, read: Reading, x: int, at: Mapping[str, object]) ->
         look = (
             f"put strain and velocity of tau = {tau}, and its slope there, {shown(f + g)}, into the condition: {left}"
         )
+        if node.loads and not node.right:  # of a drive
+            look += " (M along positive rotation: minus the scene's, which counts against it)"
         until = tau if tau > 0 else 1
         return example(driven.exact, driven.loads, until, outputs, "wavesym run SCENE --samples 1001", look)
 
