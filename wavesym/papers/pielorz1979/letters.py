@@ -67,6 +67,13 @@ class Units:
 _ONES = Units(fmpq(1), fmpq(1), fmpq(1))
 
 
+def unit_of_moment(chain: Chain, body: int) -> fmpq:
+    """What a unit of moment does to a body of a drive, along positive rotation, by its node. KeyError without one."""
+    _, unit = chain.loaded[f"M{body}"]
+    (value,) = unit.coefficients
+    return -fmpq(value) if body == len(chain.nodes) else fmpq(value)
+
+
 class Moving(IndexedLetters):
     """The letters on the motion of a chain; `seen` tells whether anything moved where it was looked at.
 
@@ -81,8 +88,7 @@ class Moving(IndexedLetters):
         self.letters = {
             r"\kappa": parameters.kappa.__getitem__,
             "J": (parameters.inertia or {}).__getitem__,
-            # in the unit of moment G J_01 theta_0 / l
-            r"\barA": lambda i: parameters.kappa[1] * parameters.inertia[1] / parameters.inertia[i],
+            r"\barA": lambda i: unit_of_moment(self.chain, i),
             r"\barv": (parameters.velocity or {}).__getitem__,
             "v": lambda i: self.velocity(i) * units.U_0 / late if i else _ANY_V_0,
             "m": lambda i: len(motion.loads[self._source(i)]) - 1,
