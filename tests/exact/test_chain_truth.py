@@ -112,7 +112,7 @@ def test_a_chain_is_right_to_the_last_bit(table: dict[str, Any]) -> None:
     assert wrong_values(table, most=8) == []
 
 
-@settings(max_examples=12)
+@settings(max_examples=8)
 @given(chains(UNTIL))
 def test_any_chain_is_right_to_the_last_bit(table: dict[str, Any]) -> None:
     assert wrong_values(table) == []

@@ -10,11 +10,15 @@ from pathlib import Path
 import pytest
 
 from wavesym.papers.entries import digest, problems
+from wavesym.papers.pages import markdown
+from wavesym.papers.pages.findings import Findings
+from wavesym.papers.pielorz1979 import particulars
 from wavesym.papers.pielorz1979.paper import ADAPTERS, records
 from wavesym.papers.pielorz1979.transcript import paper
 from wavesym.papers.record import Reading, judge
 from wavesym.papers.tree import latex
 
+KEPT = Path(__file__).parents[2] / "generated"
 SOURCE = Path(__file__).parents[3] / "shared/paper/000_9aa1e815c6a1b1ab.txt"
 
 
@@ -32,6 +36,11 @@ def test_everything_could_be_tested(judged):
     assert not [(record.id, record.problems) for record in judged if record.problems]
     assert all(record.cases > 0 and record.mutations.tried > 0 for record in judged)
     assert "untested" not in {record.verdict for record in judged}
+
+
+def test_the_errata_are_what_is_found_now(judged):
+    findings = Findings(particulars.about(), judged, paper().passages, False)
+    assert (KEPT / "errata.md").read_bytes().decode() == markdown.page(findings), "make generated"
 
 
 def test_ids_are_unique(judged):
@@ -120,7 +129,7 @@ def _judged(entry, **changes):
 
 
 FORMULAS = [entry for entry in paper().entries() if not entry.translated]
-DRAWN = random.Random(7).sample(FORMULAS, 36)
+DRAWN = random.Random(7).sample(FORMULAS, 24)
 
 
 @pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.id)

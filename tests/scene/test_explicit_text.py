@@ -47,7 +47,10 @@ def others() -> list[Scene]:
     ]
 
 
-@pytest.mark.parametrize("scene", [*map(Scene.from_toml, NAMED), *others()], ids=lambda scene: scene.name)
+BUILT_IN = [pytest.param(scene, marks=pytest.mark.slow) for scene in map(Scene.from_toml, NAMED)]
+
+
+@pytest.mark.parametrize("scene", [*BUILT_IN, *others()], ids=lambda scene: scene.name)
 def test_the_same_network_and_the_same_values_to_the_last_bit(scene: Scene, tmp_path) -> None:
     explicit = written(scene, tmp_path)
     assert explicit.system.type == "chain"

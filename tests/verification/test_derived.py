@@ -51,6 +51,7 @@ def test_all_holds(capsys):
         assert len(argument) > 150
 
 
+@pytest.mark.slow
 def test_arguments_say_what_was_gone_through():
     text, _ = derived(only_the_drive)
     law, solved, powers, *_ = (" ".join(" ".join(lines).split()) for lines in sections(text).values())

@@ -117,7 +117,9 @@ def softened(network: Network) -> Network:
     return replace(network, links=tuple(replace(link, damping=fmpq(0)) for link in network.links))
 
 
-@pytest.mark.parametrize("fault", [squared, swapped, softened])
+@pytest.mark.parametrize(
+    "fault", [squared, pytest.param(swapped, marks=pytest.mark.slow), pytest.param(softened, marks=pytest.mark.slow)]
+)
 def test_faults_of_a_network_are_found(fault: Callable[[Network], Network], monkeypatch: pytest.MonkeyPatch) -> None:
     right = model()
     wrong = replace(right, network=fault(right.network))
