@@ -62,13 +62,20 @@ class Bar:
 
 @dataclass(frozen=True)
 class Link:
-    """A spring and a dashpot between two points; their left end moves `ratio` times as fast as its point."""
+    """A spring and a dashpot between two points; their left end moves `ratio` times as fast as its point.
+
+    A `contact` has neither: it pushes and never pulls, and is open while its two sides are apart, at tau = 0 by `gap`.
+    `place` is what a scene calls it.
+    """
 
     left: int
     right: int
     stiffness: fmpq = _ZERO
     damping: fmpq = _ZERO
     ratio: fmpq = _ONE
+    contact: bool = False
+    gap: fmpq = _ZERO
+    place: str = ""
 
 
 class End(NamedTuple):

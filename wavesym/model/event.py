@@ -1,0 +1,32 @@
+"""What happens at a contact: it opens, or it closes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from flint import arb
+
+from wavesym.numbers.doubles import midpoint
+
+
+@dataclass(frozen=True)
+class Event:
+    """The contact at a place (as the scene calls it) opens or closes at `tau`, a ball.
+
+    A contact that is closed from the start is no event.
+    """
+
+    x: str
+    kind: Literal["opens", "closes"]
+    tau: arb
+
+    @property
+    def double(self) -> float:
+        """tau rounded to double."""
+        return midpoint(self.tau)
+
+    @property
+    def digits(self) -> str:
+        """tau with 20 significant digits."""
+        return str(self.tau.str(20, radius=False))
