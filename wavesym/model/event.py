@@ -11,7 +11,7 @@ from wavesym.numbers.doubles import midpoint
 
 
 @dataclass(frozen=True)
-class Event:
+class ContactEvent:
     """The contact at a place (as the scene calls it) opens or closes at `tau`, a ball.
 
     A contact that is closed from the start is no event.
