@@ -227,23 +227,23 @@ class RuledNetwork:
             found |= shape.keys()
         return response_size(counts, mean_bits(found))
 
-    def times(self, source: str, reach: Mapping[Function, fmpq]) -> dict[Function, list[fmpq]]:
+    def _times(self, source: str, reach: Mapping[Function, fmpq]) -> dict[Function, list[fmpq]]:
         """When fronts leave the ends of bars."""
         found: dict[Function, list[fmpq]] = defaultdict(list)
         for time, end, _ in self._foreseen(source, self._last(reach)):
             found[function_of(end)].append(time)
         return found
 
-    def arrivals(self, parts: Iterable[Part], loads: Sequence[Applied], until: fmpq) -> int:
+    def arrivals(self, probes: Sequence[Probe], loads: Sequence[Applied], until: fmpq) -> int:
         """How many increments all loads but the first of each source bring to outputs, at most."""
-        parts = list(parts)
+        parts = [part for probe in probes for part in self.parts(probe)]
         first: dict[str, fmpq] = {}
         for load in loads:
             first.setdefault(load.source, load.time)
         later = [load for load in loads if first[load.source] < load.time <= until]
         total = 0
         for source in {load.source for load in later}:
-            times = self.times(source, {part.function: until - first[source] - part.delay for part in parts})
+            times = self._times(source, {part.function: until - first[source] - part.delay for part in parts})
             for load in later:
                 if load.source == source:
                     for part in parts:
