@@ -34,6 +34,7 @@ POINT = "q"
 """The letter of a point's velocity among wave functions; its number stands for that of a rod."""
 MOST_FRONTS = 20_000
 MOST_POINTS = 20  # of a joint whose determinant is made
+MOST_NAMES = 3  # of one, in a message
 Shape = Mapping[fmpq, int]
 """How many powers there are at each rate."""
 Timed = Sequence[tuple[fmpq, Increment]]
@@ -105,21 +106,23 @@ class RuledNetwork:
             law = self._law(number)
             if (count := len(law.mass)) > MOST_POINTS:
                 raise UnservedError(
-                    f"system: springs and dashpots hold the node at {self.told(number)} and {count - 1} others together, "
-                    f"at most {MOST_POINTS} nodes expected for exact tables (pieces and `run` serve it)"
+                    f"system: springs and dashpots hold {count} nodes together ({self.told(number)}), "
+                    f"at most {MOST_POINTS} expected for exact tables (pieces and `run` serve it)"
                 )
             if rates(law) is None:
                 raise UnservedError(
-                    f"system: the polynomial of the node at {self.told(number)} is {written(joint_polynomial(law))}, "
-                    "factors s + g with rational g expected for exact tables (pieces and `run` serve it)"
+                    f"system: the joint at {self.told(number)} has the polynomial {written(joint_polynomial(law))}, "
+                    "one with factors s + g, g rational, expected for exact tables (pieces and `run` serve it)"
                 )
             self._responses[number] = joint_response(law)
         return self._responses[number]
 
     def told(self, number: int) -> str:
-        """What a scene calls a joint: the name or the place of the first of its points that has one."""
-        points = [self.network.points[point] for point in self.network.joints[number].points]
-        return next((point.name for point in points if point.name), points[0].place)
+        """What a scene calls the points of a joint that are free to move: their names or places, a few of them."""
+        free = (*self._law(number).heavy, *self._law(number).light)
+        points = [self.network.points[self.network.joints[number].points[k]] for k in sorted(free)]
+        names = [point.name or f"x = {point.place}" for point in points]
+        return ", ".join(names[:MOST_NAMES]) + (f" and {left} more" if (left := len(names) - MOST_NAMES) > 0 else "")
 
     def _law(self, number: int) -> JointLaw:
         return JointLaw.of(self.network, self.network.joints[number])

@@ -20,17 +20,20 @@ class NetworkTable:
     network: Network
     responses: Mapping[str, Mapping[Function, Timed]]
 
+    def rod(self, function: Function) -> int | str:
+        """The name of a function's rod, or its number."""
+        return self.network.bars[function.rod - 1].name or function.rod
+
     def rows(self) -> Iterator[Row]:
         """Every coefficient that is not 0, in the order function, rod, source, interval, rate, power."""
         functions = sorted({function for response in self.responses.values() for function in response})
         for function in functions:
-            rod = self.network.bars[function.rod - 1].name or function.rod
             for source, response in self.responses.items():
                 for time, increment in response.get(function, ()):
                     for rate in sorted(increment):
                         for power, value in enumerate(increment[rate]):
                             if value != 0:
-                                yield Row(function.function, rod, source, time, rate, power, value)
+                                yield Row(function.function, self.rod(function), source, time, rate, power, value)
 
 
 def network_table(network: Network, intervals: int | None, until: fmpq, most: float = inf) -> NetworkTable:
