@@ -23,7 +23,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from flint import fmpq
 
 from wavesym.difference import Difference
 from wavesym.documents.tables import symbolic_lines, table_lines
@@ -85,11 +84,15 @@ def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
     >>> row.function, row.rod, row.source, row.interval, row.rate, row.power, row.value
     ('f', 1, 'a', 1, Fraction(0, 1), 0, Fraction(-4, 1))
     """
-    made = table(scene, intervals)
-    rows = (row._replace(rate=fraction(row.rate), value=fraction(row.value)) for row in made.rows())
-    if isinstance(made, Table):
-        return list(rows)
-    return [row._replace(interval=fraction(fmpq(row.interval))) for row in rows]
+    rows = table(scene, intervals).rows()
+    return [
+        row._replace(
+            interval=row.interval if isinstance(row.interval, int) else fraction(row.interval),
+            rate=fraction(row.rate),
+            value=fraction(row.value),
+        )
+        for row in rows
+    ]
 
 
 def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
