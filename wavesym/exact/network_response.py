@@ -144,8 +144,6 @@ class RuledNetwork:
         CostError where they would have more than `most` coefficients.
         """
         last = self._last(reach)
-        for number in last:
-            self.response(number)
         refuse_size(self.size(source, last, asked), asked, most, "fewer parts")
         found: dict[Function, list[tuple[fmpq, Increment]]] = {function: [] for function in reach}
 
@@ -273,9 +271,11 @@ class RuledNetwork:
         self, source: str, last: Mapping[int, fmpq] | None, asked: str = "output.until"
     ) -> Iterator[tuple[fmpq, End, Shape]]:
         """The walk of `responses` with the number of powers at each rate for the coefficients."""
+        units = (_unit(point, source).get(fmpq(0), ()) for point in self.network.points)
+        begun_with = max(1, *map(len, units))
 
         def answer(number: int, time: fmpq, waves: Mapping[End, Shape]) -> Iterator[tuple[End, Shape]]:
-            shape = {fmpq(0): 1}
+            shape = {fmpq(0): begun_with}
             for wave in waves.values():
                 for rate, powers in wave.items():
                     shape[rate] = max(powers, shape.get(rate, 0))

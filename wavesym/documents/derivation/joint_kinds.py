@@ -20,7 +20,7 @@ _NONE, _ONE = fmpq(0), fmpq(1)
 
 
 @dataclass(frozen=True)
-class Written:
+class LoneJoint:
     """A joint alone, in numbers or in symbols: its law, and of each end its point and ratio and what a wave counts."""
 
     network: Network
@@ -32,7 +32,7 @@ class Written:
 class Kind:
     """Joints that differ in numbers alone: in symbols, and which they are."""
 
-    symbols: Written
+    symbols: LoneJoint
     numbers: tuple[int, ...]
 
 
@@ -44,7 +44,7 @@ def kinds(network: Network) -> tuple[Kind, ...]:
     return tuple(Kind(_symbolic(alone(network, numbers[0])), tuple(numbers)) for numbers in found.values())
 
 
-def alone(network: Network, number: int) -> Written:
+def alone(network: Network, number: int) -> LoneJoint:
     """A joint with its points, its links and the bars at it, whose other ends are nowhere."""
     joint = network.joints[number]
     place = {point: k for k, point in enumerate(joint.points)}
@@ -61,11 +61,11 @@ def alone(network: Network, number: int) -> Written:
     return _written([network.points[point] for point in joint.points], bars, links)
 
 
-def _written(points: list[Point], bars: list[Bar], links: list[Link]) -> Written:
+def _written(points: list[Point], bars: list[Bar], links: list[Link]) -> LoneJoint:
     network = Network((*points, Point(_NONE)), tuple(bars), tuple(links))
     ends = tuple(end for end in network.joints[-1].ends)
     near = Joint(tuple(range(len(points))), tuple((network.beyond(end), _near(bars[end.bar])) for end, _ in ends))
-    return Written(network, near, JointLaw.of(network, near))
+    return LoneJoint(network, near, JointLaw.of(network, near))
 
 
 def _near(bar: Bar) -> int:
@@ -84,7 +84,7 @@ def _structure(network: Network) -> Any:
     )
 
 
-def values(joint: Written) -> dict[str, fmpq]:
+def values(joint: LoneJoint) -> dict[str, fmpq]:
     """The numbers of a joint by the names of their symbols."""
     found: dict[str, fmpq] = {}
     for i, point in enumerate(joint.network.points[:-1], 1):
@@ -101,7 +101,7 @@ def values(joint: Written) -> dict[str, fmpq]:
     return {name: value for name, value in found.items() if value != 0}
 
 
-def _symbolic(joint: Written) -> Written:
+def _symbolic(joint: LoneJoint) -> LoneJoint:
     """The same joint with symbols for the numbers that it has."""
     symbols: Mapping[str, Ratio] = Ring(tuple(values(joint))).symbols()
 
@@ -123,7 +123,7 @@ def _symbolic(joint: Written) -> Written:
     return _written(points, bars, links)
 
 
-def told(joint: Written) -> Iterator[str]:
+def told(joint: LoneJoint) -> Iterator[str]:
     """What a kind of joint consists of, in words, point by point."""
     network = joint.network
     for i, point in enumerate(network.points[:-1], 1):

@@ -13,7 +13,7 @@ from wavesym.derivation.delay_terms import Operator
 from wavesym.derivation.node_law import node_law
 from wavesym.derivation.numbers import expression
 from wavesym.derivation.recurrence import POWER, RATE, joint_rule, weights
-from wavesym.documents.derivation.joint_kinds import Kind, Written, alone, kinds, told, values
+from wavesym.documents.derivation.joint_kinds import Kind, LoneJoint, alone, kinds, told, values
 from wavesym.documents.derivation.notation import Text
 from wavesym.exact.joint_response import JointResponse, joint_polynomial, joint_response, rates
 from wavesym.exact.network_response import MOST_POINTS
@@ -155,7 +155,7 @@ class _Author:
         point = self.network.points[number]
         return f"{point.name}, x = {point.place}" if point.name else f"x = {point.place}"
 
-    def _laws(self, made: Written) -> Iterator[str]:
+    def _laws(self, made: LoneJoint) -> Iterator[str]:
         """M q' + C q + K u = sum of 2 n Z a + F, row by row; what is prescribed, as it is."""
         law, rule = made.law, joint_rule()
         for i, point in enumerate(made.network.points[:-1]):
@@ -175,14 +175,14 @@ class _Author:
                     arriving.append((_expression(factor), self.n.indexed("a", e)))
             yield self._balanced(own, [*arriving, *force])
 
-    def _sent(self, made: Written) -> Iterator[str]:
+    def _sent(self, made: LoneJoint) -> Iterator[str]:
         """n q - a into each end."""
         for e, (end, at) in enumerate(made.joint.ends, 1):
             ratio = _expression(made.network.bars[end.bar].ratios[end.side])
             terms = [(ratio, self.n.indexed("q", at + 1)), (Integer(-1), self.n.indexed("a", e))]
             yield f"{self.n.indexed('l', e)} = {self.n.joined(terms)}"
 
-    def _symbolic(self, made: Written) -> Iterator[str]:
+    def _symbolic(self, made: LoneJoint) -> Iterator[str]:
         """The determinant of M s + C + K/s in symbols, and the rate of a joint that has one."""
         free = sorted((*made.law.heavy, *made.law.light))
         if not 0 < len(free) <= MOST_SYMBOLIC:
@@ -194,7 +194,7 @@ class _Author:
             first, last = coefficients
             yield f"{self.n.expression(RATE)} = {self.n.quotient([(last, '')], first)}"
 
-    def _polynomial(self, made: Written) -> Iterator[str]:
+    def _polynomial(self, made: LoneJoint) -> Iterator[str]:
         """The same in numbers, and its factors."""
         free = len(made.law.heavy) + len(made.law.light)
         if not 0 < free <= MOST_POINTS:
@@ -211,7 +211,7 @@ class _Author:
         within = self._in_s([expression(c) for c in reversed(factor.coeffs())])
         return f"({within})^{power}" if power > 1 else f"({within})"
 
-    def _answer(self, made: Written) -> Iterator[str]:
+    def _answer(self, made: LoneJoint) -> Iterator[str]:
         """The inverse in partial fractions, where the polynomial splits."""
         law = made.law
         if len(law.mass) > MOST_POINTS or rates(law) is None:
@@ -250,7 +250,7 @@ class _Author:
         return self.n.indexed(letter, Integer(index))
 
 
-def symbolic_polynomial(made: Written) -> Poly:
+def symbolic_polynomial(made: LoneJoint) -> Poly:
     """The determinant of M s + C + K/s of the free points, times the powers of s that clear it, as SymPy has it."""
     law = made.law
     free = sorted((*law.heavy, *law.light))
