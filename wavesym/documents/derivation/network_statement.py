@@ -192,7 +192,8 @@ class _Author:
         yield self._in_s(coefficients)
         if len(coefficients) == 2:
             first, last = coefficients
-            yield f"{self.n.expression(RATE)} = {self.n.quotient([(part, '') for part in last.as_ordered_terms()], first)}"
+            rate = self.n.quotient([(part, "") for part in last.as_ordered_terms()], first)
+            yield f"{self.n.expression(RATE)} = {rate}"
 
     def _polynomial(self, made: LoneJoint) -> Iterator[str]:
         """The same in numbers, and its factors."""
