@@ -22,6 +22,7 @@ from wavesym.errors import CostError, UnservedError
 from wavesym.exact.ball import Balls, segments
 from wavesym.exact.increments import Increment, combined
 from wavesym.exact.joint import JointLaw
+from wavesym.exact.network_joints import NetworkJoints
 from wavesym.exact.network_response import RuledNetwork
 from wavesym.exact.network_table import NetworkTable, network_table
 from wavesym.exact.signal import Signal, observed, signals
@@ -198,9 +199,9 @@ LINKED: dict[str, Any] = {
 
 
 def polynomials_split(table: Mapping[str, Any]) -> bool:
-    ruled = RuledNetwork(lower(Scene(**table)).network)
+    joints = NetworkJoints(lower(Scene(**table)).network)
     try:
-        return all(ruled.response(number) for number in range(len(ruled.network.joints)))
+        return all(joints.response(number) for number in range(len(joints.network.joints)))
     except UnservedError:
         return False
 
@@ -250,7 +251,7 @@ def test_a_rod_end_of_another_law_is_seen(place: str, monkeypatch: pytest.Monkey
 
     true = joint_rule()
     wrong = true._replace(**{place: (getattr(true, place)[0], 3 * getattr(true, place)[1])})
-    for module in ("network_response", "joint"):
+    for module in ("network_response", "foreseen", "joint"):
         monkeypatch.setattr(f"wavesym.exact.{module}.joint_rule", lambda: wrong)
     assert faulty(STEPPED, {})
 
@@ -327,7 +328,7 @@ def test_the_size_is_told_before(until: int) -> None:
     for source, response in table.responses.items():
         last = dict.fromkeys(range(len(network.joints)), fmpq(until))
         made = sum(len(powers) for each in response.values() for _, one in each for powers in one.values())
-        assert made <= ruled.size(source, last).coefficients <= 1.5 * made
+        assert made <= ruled.foreseen.size(source, last).coefficients <= 1.5 * made
 
 
 def refusal(network: Network, until: object = 4, intervals: int | None = None) -> str:
@@ -341,7 +342,7 @@ def test_what_would_be_large_is_counted_first(monkeypatch: pytest.MonkeyPatch) -
         raise AssertionError("solved")
 
     monkeypatch.setattr(RuledNetwork, "_velocities", solved)
-    monkeypatch.setattr("wavesym.exact.network_response.MOST_FRONTS", 2000)
+    monkeypatch.setattr("wavesym.exact.foreseen.MOST_FRONTS", 2000)
     parts = [{"mass": 1, "name": "a"}]
     for k in range(12):
         parts += [{"rod": f"{100 + k}/100"}, {"mass": f"{k + 2}/{k + 1}"}]

@@ -8,7 +8,7 @@ from math import inf
 
 from flint import fmpq
 
-from wavesym.exact.network_response import RuledNetwork, Timed
+from wavesym.exact.network_response import RuledNetwork, Timed, function_of
 from wavesym.exact.table import Function, Row
 from wavesym.model.network import Network
 
@@ -44,11 +44,13 @@ def network_table(network: Network, intervals: int | None, until: fmpq, most: fl
     """
     ruled = RuledNetwork(network)
     for number in range(len(network.joints)):
-        ruled.response(number)
+        ruled.joints.response(number)
     every = [Function(letter, rod) for letter in "fg" for rod in range(1, len(network.bars) + 1)]
     responses = {}
-    for source in ruled.sources:
-        reach = dict.fromkeys(every, until) if intervals is None else ruled.nth(source, intervals)
-        asked = "output.until" if intervals is None else "--intervals"
+    asked = "output.until" if intervals is None else "--intervals"
+    for source in ruled.joints.sources:
+        reach = dict.fromkeys(every, until)
+        if intervals is not None:
+            reach = {function_of(end): time for end, time in ruled.foreseen.nth(source, intervals).items()}
         responses[source] = ruled.responses(source, reach, most, asked)
     return NetworkTable(network, responses)

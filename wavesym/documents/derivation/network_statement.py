@@ -16,7 +16,7 @@ from wavesym.derivation.recurrence import POWER, RATE, joint_rule, weights
 from wavesym.documents.derivation.joint_kinds import Kind, LoneJoint, alone, kinds, told, values
 from wavesym.documents.derivation.notation import Text
 from wavesym.exact.joint_response import JointResponse, joint_polynomial, joint_response, rates
-from wavesym.exact.network_response import MOST_POINTS
+from wavesym.exact.network_joints import MOST_POINTS
 from wavesym.model.network import Network
 from wavesym.numbers.ratio import Ratio
 

@@ -11,7 +11,7 @@ from wavesym.errors import CostError
 from wavesym.exact.joint import JointLaw
 from wavesym.exact.joint_response import joint_polynomial, rates, written
 from wavesym.exact.knots import Knots
-from wavesym.exact.network_response import MOST_POINTS
+from wavesym.exact.network_joints import MOST_POINTS
 from wavesym.model.model import Model
 from wavesym.model.network import Joint
 from wavesym.numbers.doubles import rational
