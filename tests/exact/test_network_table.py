@@ -403,3 +403,32 @@ def test_a_table_keeps_its_order() -> None:
     keys = [(row.function, row.rod, row.interval) for row in table.rows() if row.source == "start"]
     assert keys == sorted(keys)
     assert Function("q", 0) not in table.responses["start"]
+
+
+MOVING: list[Any] = [
+    {"mass": 1, "velocity": 1, "name": "a"},
+    {"dashpot": "3/2"},
+    {"mass": 1, "velocity": 1},
+    {"rod": 1, "impedance": 4, "velocity": 1},
+]
+
+
+@pytest.mark.parametrize("end", ["free", "fixed"])
+def test_a_point_without_a_rod_is_watched_itself(end: str) -> None:
+    """All of it moves on as one, or until a fixed end is felt."""
+    output = {"until": 3, "velocity": ["a"], "displacement": ["a"]}
+    table = {"name": "moving", "system": {"type": "chain", "parts": [*MOVING, end]}, "output": output}
+    velocity, displacement = signals(lower(Scene(**table)))
+    assert (velocity.arrivals[0].increment, displacement.arrivals[0].increment) == ({0: [1]}, {0: [0, 1]})
+    assert [arrival.time for arrival in velocity.arrivals] == ([0] if end == "free" else [0, 1])
+    for signal in (velocity, displacement):
+        assert difference(signal, table, 3) == {}
+
+
+def test_what_is_absorbed_does_not_come_back() -> None:
+    """Two waves leave a body, and no more; so many departures of each are no endless search."""
+    parts = ["absorbing", {"rod": 1}, {"mass": 1, "velocity": 1}, {"rod": 2}, "absorbing"]
+    system = {"type": "chain", "parts": parts}
+    network = lower(Scene(name="gone", system=system, output={"until": 9, "velocity": [0]})).network
+    for table in (network_table(network, 5, NOWHERE), network_table(network, None, fmpq(9))):
+        assert {(row.function, row.rod, row.interval) for row in table.rows()} == {("f", 2, 0), ("g", 1, 0)}

@@ -1,7 +1,7 @@
 """Unit responses of any network: each joint's law run for what arrives there, at exact instants, in exact numbers.
 
 Waves are counted as increments are in the tables of named systems: f is sent into the left end of a bar and g into its
-right end, each beyond what the bar holds at tau = 0.
+right end, each beyond what the bar holds at tau = 0. A point's velocity is counted beyond what it is then.
 """
 
 from __future__ import annotations
@@ -57,11 +57,12 @@ class RuledNetwork:
         )
 
     def motion(self, probe: Probe) -> Increment:
-        """The part of an output that is not wave: what its bar holds at tau = 0."""
+        """The part of an output that is not wave: what its bar, or the point, holds at tau = 0."""
         if probe.point is not None:
-            return {}
-        bar = self.network.bars[probe.rod - 1]
-        held = bar.strain if probe.quantity == "strain" else bar.velocity
+            held = self.network.points[probe.point].velocity
+        else:
+            bar = self.network.bars[probe.rod - 1]
+            held = bar.strain if probe.quantity == "strain" else bar.velocity
         return trimmed({fmpq(0): [held] if probe.order == 0 else [fmpq(0), held]})
 
     def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
@@ -98,9 +99,13 @@ class RuledNetwork:
         def answer(number: int, time: fmpq, waves: Mapping[End, Increment]) -> Iterator[tuple[End, Increment]]:
             acts = source if time == 0 else ""
             velocities = self._velocities(number, acts, waves)
-            for point, velocity in velocities.items():
-                if velocity and time <= reach.get(watched := Function(POINT, point), -1):
-                    found[watched].append((time, velocity))
+            for point in self.network.joints[number].points:
+                if time <= reach.get(watched := Function(POINT, point), -1):
+                    parts = [(fmpq(1), velocities.get(point, {}))]
+                    if acts == START:
+                        parts.append((fmpq(-1), {fmpq(0): [self.network.points[point].velocity]}))
+                    if gained := combined(parts):
+                        found[watched].append((time, gained))
             return self._sent(number, acts, waves, velocities)
 
         begun = [number for number in self.joints.begun(source) if number in last]
