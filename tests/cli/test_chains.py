@@ -78,7 +78,10 @@ NO_PAPER = "collision, drive or building expected"
         (["tables", "geared_drive", "--symbolic"], f"chain given with --symbolic, {NO_PAPER}"),
         (["derive", "geared_drive", "--walks"], f"chain given with --walks, {NO_PAPER}"),
         (["generate", "geared_drive", "--evaluator", "march"], LINE),
-        (["tables", "geared_drive", "--intervals", "500"], "--intervals: the tables of coefficients would take"),
+        (
+            ["tables", "geared_drive", "--intervals", "500"],
+            "--intervals: the tables would hold more than 1.0e+06 coefficients",
+        ),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )

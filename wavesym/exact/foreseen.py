@@ -10,6 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from itertools import product
+from math import inf
 
 from flint import fmpq
 
@@ -17,7 +18,7 @@ from wavesym.errors import CostError
 from wavesym.exact.fronts import departures, reachable
 from wavesym.exact.network_joints import START, NetworkJoints, unit_at
 from wavesym.exact.node_rules import joint_rule
-from wavesym.exact.table_size import Size, mean_bits, response_size
+from wavesym.exact.table_size import MOST_WORK, Size, mean_bits, response_size
 from wavesym.model.network import End
 
 MOST_FRONTS = 20_000
@@ -31,13 +32,20 @@ class Foreseen:
     def __init__(self, joints: NetworkJoints) -> None:
         self._joints = joints
 
-    def size(self, source: str, last: Mapping[int, fmpq], asked: str = "output.until") -> Size:
-        """How large the response to a source will be. CostError where fronts alone are too many."""
+    def size(self, source: str, last: Mapping[int, fmpq], most: float = inf, asked: str = "output.until") -> Size:
+        """How large the response to a source will be. CostError where fronts or coefficients are too many."""
         found: set[fmpq] = set()
         counts: list[int] = []
-        for _, _, shape in self._walk(source, last, asked):
+        coefficients, most = 0, min(most, MOST_WORK)
+        for time, _, shape in self._walk(source, last, asked):
             counts.append(sum(shape.values()))
             found |= shape.keys()
+            coefficients += counts[-1]
+            if coefficients > most:
+                raise CostError(
+                    f"{asked}: the tables would hold more than {most:.1e} coefficients by tau = {float(time):g}, "
+                    f"at most {most:.1e} expected ({_fewer(asked)} or fewer parts helps)"
+                )
         return response_size(counts, mean_bits(found))
 
     def times(self, source: str, last: Mapping[int, fmpq]) -> Mapping[End, list[fmpq]]:
@@ -79,10 +87,9 @@ class Foreseen:
         begun = [number for number in self._joints.begun(source) if last is None or number in last]
         for count, front in enumerate(departures(network, begun, answer, last), 1):
             if count > MOST_FRONTS:
-                fewer = "a shorter horizon" if asked == "output.until" else "fewer intervals"
                 raise CostError(
                     f"{asked}: fronts leave the ends of rods more than {MOST_FRONTS} times by tau = "
-                    f"{float(front[0]):g}, at most {MOST_FRONTS} expected ({fewer} or fewer parts helps)"
+                    f"{float(front[0]):g}, at most {MOST_FRONTS} expected ({_fewer(asked)} or fewer parts helps)"
                 )
             yield front
 
@@ -122,3 +129,7 @@ class Foreseen:
         pushed = (acted - moved).union(held)
         moved |= {i for i, j in joints.response(number).entries if j in pushed}
         return {end for end, k in ends if k in moved}
+
+
+def _fewer(asked: str) -> str:
+    return "a shorter horizon" if asked == "output.until" else "fewer intervals"

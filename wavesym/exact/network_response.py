@@ -93,7 +93,7 @@ class RuledNetwork:
         CostError where they would have more than `most` coefficients.
         """
         last = self._last(reach)
-        refuse_size(self.foreseen.size(source, last, asked), asked, most, "fewer parts")
+        refuse_size(self.foreseen.size(source, last, most, asked), asked, most, "fewer parts")
         found: dict[Function, list[tuple[fmpq, Increment]]] = {function: [] for function in reach}
 
         def answer(number: int, time: fmpq, waves: Mapping[End, Increment]) -> Iterator[tuple[End, Increment]]:
