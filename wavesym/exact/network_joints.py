@@ -29,9 +29,18 @@ def unit_at(point: Point, source: str) -> Increment:
 
 
 class NetworkJoints:
-    """What the joints of a network answer, each made when it is first asked for."""
+    """What the joints of a network answer, each made when it is first asked for. UnservedError where it has contacts.
+
+    (A contact may close without any front, where what it parts moves at constant speed.)
+    """
 
     def __init__(self, network: Network) -> None:
+        for link in network.links:
+            if link.contact:
+                raise UnservedError(
+                    f"system: the contact at {link.place} opens and closes, a chain without contacts expected for exact "
+                    "tables (pieces and `run` serve it)"
+                )
         self.network = network
         self._responses: dict[int, JointResponse] = {}
 
@@ -46,17 +55,10 @@ class NetworkJoints:
         return self._responses[number]
 
     def _made(self, number: int) -> JointResponse:
-        points = self.network.joints[number].points
-        for link in self.network.links:
-            if link.contact and link.left in points:
-                raise UnservedError(
-                    f"system: the contact at {link.place or self.told(number)} opens and closes, a chain without "
-                    "contacts expected for exact tables (pieces and `run` serve it)"
-                )
         law = self.law(number)
-        if len(points) > MOST_POINTS:
+        if (count := len(law.mass)) > MOST_POINTS:
             raise UnservedError(
-                f"system: springs and dashpots hold {len(points)} nodes together ({self.told(number)}), "
+                f"system: springs and dashpots hold {count} nodes together ({self.told(number)}), "
                 f"at most {MOST_POINTS} expected for exact tables (pieces and `run` serve it)"
             )
         if rates(law) is None:
