@@ -16,9 +16,11 @@ from wavesym.compiler import derive
 from wavesym.derivation.node_law import node_law
 from wavesym.derivation.numbers import symbol
 from wavesym.documents.derivation.joint_kinds import alone, kinds, values
-from wavesym.documents.derivation.network_statement import MOST_SYMBOLIC, symbolic_polynomial
+from wavesym.documents.derivation.network_statement import MOST_SYMBOLIC, network_statement, symbolic_polynomial
+from wavesym.documents.derivation.notation import Text
 from wavesym.exact.joint import JointLaw
 from wavesym.exact.joint_response import joint_polynomial
+from wavesym.model.network import Bar, Link, Network, Point
 from wavesym.scene import Scene, lower
 
 STEP = {
@@ -141,3 +143,13 @@ def test_rods_are_told() -> None:
     ]
     assert read["rods"][0]["formulas"] == ["T = 1", "Z = 1", "c = 1", "v = 1", "e = 0"]
     assert fmpq(1) == lower(Scene(**STEP)).network.bars[0].delay
+
+
+def test_a_contact_is_told_as_it_is_open() -> None:
+    one = fmpq(1)
+    points = tuple(Point(fmpq(0), place=str(x)) for x in range(4))
+    bars = Bar(0, 1, one, one, one), Bar(2, 3, one, one, one)
+    statement = network_statement("c", Network(points, bars, (Link(1, 2, contact=True, place="1"),)), Text())
+    (kind,) = (kind.symbols for kind in statement.kinds if len(kind.symbols.laws) == 2)
+    assert kind.of.endswith("contact (open; closed, they move as one) between 1 and 2")
+    assert kind.laws == ("Z_1 q_1 = 2 Z_1 a_1", "Z_2 q_2 = 2 Z_2 a_2")

@@ -38,8 +38,8 @@ class NetworkJoints:
         for link in network.links:
             if link.contact:
                 raise UnservedError(
-                    f"system: the contact at {link.place} opens and closes, a chain without contacts expected for exact "
-                    "tables (pieces and `run` serve it)"
+                    f"system: the contact at {link.place} opens and closes, a chain without contacts expected for "
+                    "exact tables (pieces and `run` serve it)"
                 )
         self.network = network
         self._responses: dict[int, JointResponse] = {}

@@ -137,6 +137,10 @@ def told(joint: LoneJoint) -> Iterator[str]:
         which = f"{i}: " if len(network.points) > 2 else ""
         yield f"{which}{what}; {count}{', geared' * geared}{', loaded' * bool(point.loads)}"
     for link in network.links:
-        names = (("spring", link.stiffness != 0), ("dashpot", link.damping != 0), ("contact", link.contact))
+        names = (
+            ("spring", link.stiffness != 0),
+            ("dashpot", link.damping != 0),
+            ("contact (open; closed, they move as one)", link.contact),
+        )
         what = " and ".join(word for word, there in names if there)
         yield f"{what} between {link.left + 1} and {link.right + 1}"
