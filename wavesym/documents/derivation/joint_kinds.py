@@ -17,6 +17,7 @@ from wavesym.model.network import Bar, Joint, Link, Network, Point
 from wavesym.numbers.ratio import Ratio, Ring
 
 _NONE, _ONE = fmpq(0), fmpq(1)
+_CONTACT = "contact (open; closed, they move as one)"
 
 
 @dataclass(frozen=True)
@@ -137,10 +138,6 @@ def told(joint: LoneJoint) -> Iterator[str]:
         which = f"{i}: " if len(network.points) > 2 else ""
         yield f"{which}{what}; {count}{', geared' * geared}{', loaded' * bool(point.loads)}"
     for link in network.links:
-        names = (
-            ("spring", link.stiffness != 0),
-            ("dashpot", link.damping != 0),
-            ("contact (open; closed, they move as one)", link.contact),
-        )
+        names = (("spring", link.stiffness != 0), ("dashpot", link.damping != 0), (_CONTACT, link.contact))
         what = " and ".join(word for word, there in names if there)
         yield f"{what} between {link.left + 1} and {link.right + 1}"
