@@ -26,8 +26,9 @@ import numpy as np
 
 from wavesym.difference import Difference
 from wavesym.documents.tables import symbolic_lines, table_lines
-from wavesym.errors import SceneError, WavesymError
+from wavesym.errors import SceneError, UnservedError, WavesymError
 from wavesym.exact.contact import contact_ends
+from wavesym.exact.network_table import NetworkTable, network_table
 from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
@@ -42,6 +43,7 @@ from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
 
 if TYPE_CHECKING:
+    from wavesym.model.chain import Chain
     from wavesym.model.model import Model
     from wavesym.model.node import System
     from wavesym.papers.entries import PaperEntry
@@ -74,7 +76,8 @@ def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
     """The rows of the coefficient table, exact: `intervals` of every function, or those the horizon needs.
 
     A row is one term: in the interval that it names, the derivative of the wave function gains
-    value * exp(-rate * w) * w**power.
+    value * exp(-rate * w) * w**power. Of a chain that is written out `interval` is the tau at which the wave leaves its
+    end of the rod. UnservedError for a chain that has contacts, or a node whose polynomial does not split.
 
     >>> import wavesym
     >>> row = wavesym.tables(wavesym.Scene.from_toml("building_m2"), intervals=1)[0]
@@ -82,13 +85,23 @@ def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
     ('f', 1, 'a', 1, Fraction(0, 1), 0, Fraction(-4, 1))
     """
     rows = table(scene, intervals).rows()
-    return [row._replace(rate=fraction(row.rate), value=fraction(row.value)) for row in rows]
+    return [
+        row._replace(
+            interval=row.interval if isinstance(row.interval, int) else fraction(row.interval),
+            rate=fraction(row.rate),
+            value=fraction(row.value),
+        )
+        for row in rows
+    ]
 
 
-def table(scene: Scene, intervals: int | None = None) -> Table:
+def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
     """The unit responses of all sources of the scene's system."""
     model = lower(scene)
-    return full_table(model.named, intervals, rational(model.horizon()))
+    until = rational(model.horizon())
+    if model.chain is None:
+        return network_table(model.network, intervals, until)
+    return full_table(model.chain, intervals, until)
 
 
 def tables_text(scene: Scene, intervals: int | None, format: str) -> Iterator[str]:
@@ -102,7 +115,7 @@ def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tu
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """
     model = lower(scene)
-    symbols = in_rates(symbolic(model.named))
+    symbols = in_rates(symbolic(_named(model, "--symbolic", "tables")))
     until = rational(model.horizon())
     refuse_costly(symbols.chain, intervals, until)
     made = full_table(symbols.chain, intervals, until, most=MOST_FACTORED)
@@ -123,13 +136,17 @@ def inspect(scene: Scene, stage: str | None = None, format: str = "text") -> str
 def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
     """The derivation of "collision", "drive" or "building" (both bases), or of a scene, as text, latex or json.
 
-    With m, every line is written out; a scene has its own. WavesymError for an m that the system does not have.
+    With m, every line is written out; a scene has its own. Of a chain that is written out it is the law of each kind of
+    node. WavesymError for an m that the system does not have.
     """
-    from wavesym.documents.derivation.document import derivation, scene_derivation
+    from wavesym.documents.derivation.document import derivation, network_derivation, scene_derivation
 
     if isinstance(source, str):
         return derivation(source, m, format)
-    return scene_derivation(source.name, symbolic(lower(source).named), format)
+    model = lower(source)
+    if model.chain is None:
+        return network_derivation(model, format)
+    return scene_derivation(source.name, symbolic(model.chain), format)
 
 
 def walks(source: str | Scene, m: int | None, intervals: int, format: str = "text") -> str:
@@ -143,7 +160,17 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
     if isinstance(source, str):
         assert m is not None  # polynomials are those of one chain
         return walk_polynomials((generic(system, m) for system in systems(source, m)), intervals, format)
-    return walk_polynomials([symbolic(lower(source).named)], intervals, format)
+    return walk_polynomials([symbolic(_named(lower(source), "--walks", "derive"))], intervals, format)
+
+
+def _named(model: Model, option: str, command: str) -> Chain:
+    """The chain as the paper has it. UnservedError where it is written out."""
+    if model.chain is None:
+        raise UnservedError(
+            f"system.type: chain given with {option}, collision, drive or building expected (`{command}` without "
+            f"{option} serves a chain)"
+        )
+    return model.chain
 
 
 def generate(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -65,24 +66,63 @@ def test_the_header_lists_the_parts(tmp_path: Path) -> None:
     assert "places in lengths, tau in lengths at speed 1" in said
 
 
+BOB = "the joint at bob has the polynomial s^2 + s + 1, one with factors s + g, g rational, expected for exact tables"
+NO_PAPER = "collision, drive or building expected"
+
+
 @pytest.mark.parametrize(
-    "command",
+    ("command", "line"),
     [
-        ["tables"],
-        ["tables", "--symbolic"],
-        ["derive"],
-        ["derive", "--walks"],
-        ["generate", "--evaluator", "closed"],
-        ["generate", "--evaluator", "march"],
+        (["tables", "swinging.toml"], BOB),
+        (["generate", "swinging.toml", "--evaluator", "closed"], BOB),
+        (["tables", "geared_drive", "--symbolic"], f"chain given with --symbolic, {NO_PAPER}"),
+        (["derive", "geared_drive", "--walks"], f"chain given with --walks, {NO_PAPER}"),
+        (["generate", "geared_drive", "--evaluator", "march"], LINE),
+        (
+            ["tables", "geared_drive", "--intervals", "500"],
+            "--intervals: the tables would hold more than",
+        ),
     ],
-    ids=" ".join,
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )
-def test_what_is_not_served_is_one_line(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert main([command[0], "geared_drive", *command[1:]]) == 2
+def test_what_is_not_served_is_one_line(
+    command: list[str], line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("swinging.toml").write_text(
+        'name = "swinging"\n[system]\ntype = "chain"\n'
+        'parts = [{ mass = 1, spring = 1, velocity = 1, name = "bob" }, { rod = 1 }]\n'
+        "[output]\nuntil = 1\nvelocity = [0]\n"
+    )
+    assert main(command) == 2
     out, err = capsys.readouterr()
     assert out == ""
-    assert LINE in err
+    assert line in err
+    assert err.startswith(f"{command[1]}: ")
     assert err.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["swinging.toml"]
+
+
+def test_tables_of_a_chain(capsys: pytest.CaptureFixture[str]) -> None:
+    """A rod's name or number, NODE:step, the tau at which the wave leaves; by hand: (D + 1) q = 1 at the disc."""
+    assert main(["tables", "stepped_shaft"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "function,rod,source,interval,rate,power,value"
+    assert lines[1:5] == [
+        "f,1,disc:step,0,0,0,1",
+        "f,1,disc:step,0,1,0,-1",
+        "f,1,disc:step,2,0,0,-3/5",
+        "f,1,disc:step,2,1,0,3/5",
+    ]
+    assert main(["tables", "stepped_shaft", "--format", "json", "--intervals", "2"]) == 0
+    read = json.loads(capsys.readouterr().out)
+    assert read.keys() == {"name", "rows"}
+    assert read["rows"][-1]["interval"] == "4", "3 and twice through the second rod"
+    assert main(["tables", "stepped_shaft", "--format", "latex", "--intervals", "1"]) == 0
+    assert "when it leaves its end of the rod" in capsys.readouterr().out
+    rows = wavesym.tables(Scene.from_toml("stepped_shaft"), 2)
+    assert [str(row.interval) for row in rows][-1] == "4"
+    assert all(isinstance(row.interval, Fraction) for row in rows)
 
 
 def test_a_chain_that_moves_is_not_told_to_be_still(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,6 +7,7 @@ from sympy import Symbol
 
 import wavesym
 from tests.support.generated import files
+from wavesym import compiler
 from wavesym.derivation import node_law as derived
 from wavesym.derivation.delay import _at_node, delay_equations
 from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, node_law
@@ -22,6 +23,12 @@ SCENE = Scene(
     system={"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"},
     load=[{"times": [0], "a": [1], "b": [0]}],
     output={"until": 5, "tolerance": 1e-6, "strain": ["1/2"]},
+)
+CHAIN = Scene(
+    name="stepped",
+    system={"type": "chain", "parts": [{"mass": 2, "name": "a"}, {"rod": 1}, {"rod": "3/2", "impedance": 3}, "fixed"]},
+    load=[{"at": "a", "times": [0], "steps": [1]}],
+    output={"until": 5, "tolerance": 1e-6, "strain": ["1-"]},
 )
 KINDS = ("closed", "pieces", "march")
 
@@ -76,6 +83,31 @@ def test_a_rod_end_is_a_dashpot_and_a_force():
 def test_a_rod_that_is_not_there_brings_nothing():
     rule = numbers_of(Node(None, REST, inertia=1, alpha=5, beta=2))
     assert (rule.left, rule.right, rule.same) == (0, 2, 1)
+
+
+def of_a_chain():
+    made = {kind: files(lower(CHAIN), "c", kind)["stepped.c"] for kind in ("closed", "pieces")}
+    return made | {"table": wavesym.tables(CHAIN), "text": compiler.derive(CHAIN, None)}
+
+
+@pytest.mark.parametrize("factor", [2, -1])
+def test_another_coefficient_is_another_chain(balance, factor):
+    before = of_a_chain()
+    balance(lambda right, left, strain: right(left, strain) + factor * derived.BETA * derived._B / 64)
+    after = of_a_chain()
+    for kind, made in before.items():
+        assert after[kind] != made, kind
+
+
+@pytest.mark.parametrize("kind", ["closed", "pieces"])
+def test_without_a_derivation_no_chain_is_generated(balance, kind, tmp_path):
+    def blocked(*_):
+        raise RuntimeError("no derivation")
+
+    balance(blocked)
+    with pytest.raises(RuntimeError, match="no derivation"):
+        wavesym.generate(CHAIN, tmp_path, evaluator=kind)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("factor", [2, -1])

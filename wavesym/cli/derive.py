@@ -84,6 +84,9 @@ def derive(source: str | Scene, m: int | None, format: str, walks: bool, interva
                 text = compiler.walks(source, m, intervals or WALKED, format)
             else:
                 text = compiler.derive(source, m, format)
-    except ValueError as error:  # no such m
+    except ValueError as error:
+        if not isinstance(source, str):
+            raise
+        # no such m
         raise click.UsageError(str(error), click.get_current_context()) from None
     put(text)

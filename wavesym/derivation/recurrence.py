@@ -15,7 +15,7 @@ from functools import cache, reduce
 from math import gcd
 
 from flint import fmpq
-from sympy import Expr, Symbol, exp
+from sympy import Expr, Integer, Symbol, exp
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation, delay_equations
 from wavesym.derivation.delay_terms import Operator
@@ -28,6 +28,7 @@ from wavesym.model.node import Node, Parameters, System
 RATE = Symbol("g")
 POWER = Symbol("k", integer=True, nonnegative=True)
 W = Symbol("w", positive=True)
+_OWN = Symbol("q")
 
 
 @dataclass(frozen=True)
@@ -176,6 +177,21 @@ def joint_rule() -> JointRule:
         (2 * factor(law.own.b, ALPHA), 2 * factor(law.own.b, BETA)),
         (2 * factor(law.left, ALPHA), 2 * factor(law.right, BETA)),
     )
+
+
+@cache
+def _factor() -> SymbolicWeights:
+    return weights(Operator(Integer(1), _OWN))
+
+
+def factor_weights(rate: fmpq) -> Weights:
+    """What D + `rate`, a factor of a joint's polynomial, does to coefficients: the ansatz of all recurrences."""
+
+    def value(expression: Expr) -> fmpq:
+        return number(expression, {_OWN.name: rate}, None)
+
+    law = _factor()
+    return Weights(_linear(law.same, RATE, value), _linear(law.raised, POWER, value), value(law.jump))
 
 
 def coefficient_law(e: DelayEquation, interval: int) -> CoefficientLaw:

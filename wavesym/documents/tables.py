@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
+from wavesym.exact.network_table import NetworkTable
 from wavesym.exact.table import Row, Table
 from wavesym.model.symbolic import SymbolicChain
 from wavesym.numbers.factored import written
@@ -17,29 +18,33 @@ from wavesym.rendering import render_stream
 
 @dataclass(frozen=True)
 class LatexTable:
-    """templates/latex/tables.tex.j2; `rows` is read once."""
+    """templates/latex/tables.tex.j2; `rows` is read once. `starts` says when intervals start, and what w is."""
 
     name: str
-    interval: str
+    starts: str
     rows: Iterator[tuple[str, ...]]
 
 
-def table_lines(table: Table, name: str, format: str) -> Iterator[str]:
+def table_lines(table: Table | NetworkTable, name: str, format: str) -> Iterator[str]:
     """The rows of a table as text. `format` is "csv", "json" or "latex"."""
     return {"csv": _csv, "json": _json, "latex": _latex}[format](table, name)
 
 
-def _csv(table: Table, name: str) -> Iterator[str]:
+def _csv(table: Table | NetworkTable, name: str) -> Iterator[str]:
     yield ",".join(Row._fields) + "\n"
     for row in table.rows():
         yield ",".join(map(str, row)) + "\n"
 
 
-def _json(table: Table, name: str) -> Iterator[str]:
-    yield f'{{"name": {json.dumps(name)}, "interval": {table.interval}, "rows": ['
+def _json(table: Table | NetworkTable, name: str) -> Iterator[str]:
+    interval = f'"interval": {table.interval}, ' if isinstance(table, Table) else ""
+    yield f'{{"name": {json.dumps(name)}, {interval}"rows": ['
     separator = "\n"
     for row in table.rows():
-        yield separator + json.dumps(row._asdict() | {"rate": str(row.rate), "value": str(row.value)})
+        exact = {"rate": str(row.rate), "value": str(row.value)}
+        if isinstance(row.interval, fmpq):
+            exact["interval"] = str(row.interval)
+        yield separator + json.dumps(row._asdict() | exact)
         separator = ",\n"
     yield "\n]}\n"
 
@@ -66,6 +71,10 @@ def _symbolic_json(table: Table, symbols: SymbolicChain, name: str) -> Iterator[
     yield f'\n], "forms": {json.dumps(list(forms))}}}\n'
 
 
-def _latex(table: Table, name: str) -> Iterator[str]:
-    rows = (tuple(map(str, row)) for row in table.rows())
-    return render_stream("latex/tables.tex.j2", LatexTable(name.replace("_", r"\_"), str(table.interval), rows))
+def _latex(table: Table | NetworkTable, name: str) -> Iterator[str]:
+    if isinstance(table, Table):
+        starts = f"at the start of interval $n$, with $w = z - {table.interval}(n-1)$"
+    else:
+        starts = r"when it leaves its end of the rod, at the $\tau$ that is the interval, with $w$ the time since then"
+    rows = (tuple(str(value).replace("_", r"\_") for value in row) for row in table.rows())
+    return render_stream("latex/tables.tex.j2", LatexTable(name.replace("_", r"\_"), starts, rows))

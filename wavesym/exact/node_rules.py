@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-from wavesym.derivation.exact_rule import JointRule, NodeRule
+from flint import fmpq
+
+from wavesym.derivation.exact_rule import JointRule, NodeRule, Weights
 from wavesym.model.node import Node
 
 
@@ -27,3 +29,10 @@ def joint_rule() -> JointRule:
     from wavesym.derivation.recurrence import joint_rule
 
     return joint_rule()
+
+
+def factor_weights(rate: fmpq) -> Weights:
+    """What D + `rate` does to the coefficients of exponentials times powers."""
+    from wavesym.derivation.recurrence import factor_weights
+
+    return factor_weights(rate)

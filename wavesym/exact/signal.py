@@ -7,17 +7,18 @@ left is a list of arrivals: from `time` on, the output contains sum_g exp(-g w) 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import NamedTuple
+from typing import Protocol
 
 from flint import fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.increments import Increment, combined, integrated
 from wavesym.exact.increments import start as start_of
-from wavesym.exact.table import Function, Rules, unit_response
+from wavesym.exact.network_response import RuledNetwork
+from wavesym.exact.table import Function, Part, Rules, unit_response
 from wavesym.exact.table_size import refuse_large
 from wavesym.model.chain import Chain
 from wavesym.model.loads import Applied
@@ -43,12 +44,22 @@ class Signal:
     arrivals: tuple[Arrival, ...]
 
 
-class Part(NamedTuple):
-    """A wave function in an output: `sign` times its derivative (or the function itself), `delay` later."""
+class Ruled(Protocol):
+    """A chain with laws that run."""
 
-    sign: int
-    function: Function
-    delay: fmpq
+    def parts(self, probe: Probe) -> Sequence[Part]:
+        """The wave functions that an output is made of."""
+
+    def motion(self, probe: Probe) -> Increment:
+        """The part of an output that is not wave."""
+
+    def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
+        """All that makes waves."""
+
+    def responses(
+        self, source: str, reach: Mapping[Function, fmpq], most: float = inf
+    ) -> Mapping[Function, Iterable[tuple[fmpq, Increment]]]:
+        """What a unit of `source` gives each function on its clock, in order, until the time that is wanted of it."""
 
 
 def signals(model: Model, most: float = inf, real: Real = DOUBLE) -> tuple[Signal, ...]:
@@ -56,7 +67,11 @@ def signals(model: Model, most: float = inf, real: Real = DOUBLE) -> tuple[Signa
 
     CostError where the tables would have more than `most` numbers.
     """
-    return observed(RuledChain(model.named), model.probes, model.loads, rational(model.horizon(real)), most)
+    return observed(_ruled(model), model.probes, model.loads, rational(model.horizon(real)), most)
+
+
+def _ruled(model: Model) -> RuledChain | RuledNetwork:
+    return RuledNetwork(model.network) if model.chain is None else RuledChain(model.chain)
 
 
 def refuse_many(model: Model, most: float) -> None:
@@ -64,10 +79,7 @@ def refuse_many(model: Model, most: float) -> None:
 
     The first load of each source is not counted: what that costs is known from its table.
     """
-    first = {load.source: load.time for load in reversed(model.loads)}
-    later = [load.time for load in model.acting(model.until) if first[load.source] < load.time]
-    windows = sum(nearest(model.until - time) + 1 for time in later)
-    if (arrivals := 2 * len(model.probes) * windows) > most:
+    if (arrivals := _ruled(model).arrivals(model.probes, model.loads, model.until)) > most:
         raise CostError(
             f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected (fewer load "
             "times or outputs, or a shorter horizon, help)"
@@ -75,42 +87,78 @@ def refuse_many(model: Model, most: float) -> None:
 
 
 class RuledChain:
-    """A chain and its rules, derived as they are needed."""
+    """A named chain and its rules, derived as they are needed; functions are on the clocks of Table 1."""
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
         self.rules = Rules(chain)
 
+    def parts(self, probe: Probe) -> tuple[Part, Part]:
+        """dU/dx = g' - f', dU/dtau = f' + g' + v, U = f + g + v tau, each on the clocks of (4.2)."""
+        rod = self.chain.rod(probe.rod)
+        offset = probe.x - rod.x0
+        right, left = probe.weights
+        return (
+            Part(right, Function("f", probe.rod), rod.tau0 + offset),
+            Part(left, Function("g", probe.rod), rod.tau0 - offset),
+        )
+
+    def motion(self, probe: Probe) -> Increment:
+        """The part of an output that is not wave: v, or v tau."""
+        v = self.chain.rod(probe.rod).velocity * fmpq(sum(probe.weights), 2)
+        if v == 0:
+            return {}
+        return {fmpq(0): [v] if probe.order == 0 else [fmpq(0), v]}
+
+    def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
+        """The loads; an impact is one of them."""
+        return loads
+
+    def arrivals(self, probes: Sequence[Probe], loads: Sequence[Applied], until: fmpq) -> float:
+        """How many increments all loads but the first of each source bring to outputs, at most."""
+        first = {load.source: load.time for load in reversed(loads)}
+        later = [load.time for load in loads if first[load.source] < load.time <= until]
+        return 2 * len(probes) * sum(nearest(until - time) + 1 for time in later)
+
+    def responses(
+        self, source: str, reach: Mapping[Function, fmpq], most: float = inf
+    ) -> dict[Function, Sequence[tuple[fmpq, Increment]]]:
+        """The increments of functions until the time that is wanted of each, with the starts of their intervals."""
+        interval = self.rules.interval
+        wanted = {function: int((until / interval).floor()) + 1 for function, until in reach.items()}
+        refuse_large(self.chain, interval, wanted, [source], "output.until", most)
+        response = unit_response(self.rules, source, wanted)
+        starts = {function: enumerate(response.get(function, ())) for function in wanted}
+        return {function: [(fmpq(interval * n), each) for n, each in found] for function, found in starts.items()}
+
 
 def observed(
-    ruled: RuledChain,
+    ruled: Ruled,
     probes: Sequence[Probe],
     loads: Sequence[Applied],
     until: fmpq,
     most: float = inf,
 ) -> tuple[Signal, ...]:
     """The signals at `probes` until tau = `until` under `loads`."""
-    parts = [_parts(ruled.chain, probe) for probe in probes]
-    waves = [part for group in parts for part in group]
+    parts = [ruled.parts(probe) for probe in probes]
+    loads = ruled.acting(loads)
     responses = {}
     for source in dict.fromkeys(load.source for load in loads):
         start = min(load.time for load in loads if load.source == source)
-        wanted: dict[Function, int] = defaultdict(int)
-        for part in waves:
-            reach = (until - start - part.delay) / ruled.rules.interval
-            wanted[part.function] = max(wanted[part.function], int(reach.floor()) + 1)
-        refuse_large(ruled.chain, ruled.rules.interval, wanted, [source], "output.until", most)
-        responses[source] = unit_response(ruled.rules, source, wanted)
+        reach: dict[Function, fmpq] = {}
+        for part in (part for group in parts for part in group):
+            reach[part.function] = max(until - start - part.delay, reach.get(part.function, fmpq(-1)))
+        responses[source] = ruled.responses(source, reach, most)
     signals = []
     for probe, group in zip(probes, parts, strict=True):
         gains: dict[fmpq, list[tuple[fmpq, Increment]]] = defaultdict(list)
         for load in loads:
             for part in group:
                 start = load.time + part.delay
-                increments = responses[load.source].get(part.function, [])
-                for time, increment in _arrivals(start, ruled.rules.interval, increments, until):
-                    gains[time].append((part.sign * load.weight, increment))
-        signals.append(_signal(probe, gains, _motion(ruled.chain, probe), until))
+                for time, increment in responses[load.source].get(part.function, ()):
+                    if increment and start + time <= until:
+                        gains[start + time].append((part.factor * load.weight, increment))
+        signals.append(_signal(probe, gains, ruled.motion(probe), until))
     return tuple(signals)
 
 
@@ -123,30 +171,3 @@ def _signal(probe: Probe, gains: dict[fmpq, list[tuple[fmpq, Increment]]], movin
     if until in merged and start_of(merged[until]) == 0:
         del merged[until]  # of what begins at the end of the horizon only the first value is seen
     return Signal(probe.name, tuple(Arrival(time, merged[time]) for time in sorted(merged) if merged[time]))
-
-
-def _arrivals(
-    start: fmpq, interval: int, increments: Iterable[Increment], until: fmpq
-) -> Iterator[tuple[fmpq, Increment]]:
-    for n, increment in enumerate(increments):
-        if increment and start + interval * n <= until:
-            yield start + interval * n, increment
-
-
-def _parts(chain: Chain, probe: Probe) -> tuple[Part, Part]:
-    """dU/dx = g' - f', dU/dtau = f' + g' + v, U = f + g + v tau, each on the clocks of (4.2)."""
-    rod = chain.rod(probe.rod)
-    offset = probe.x - rod.x0
-    right, left = probe.weights
-    return (
-        Part(right, Function("f", probe.rod), rod.tau0 + offset),
-        Part(left, Function("g", probe.rod), rod.tau0 - offset),
-    )
-
-
-def _motion(chain: Chain, probe: Probe) -> Increment:
-    """The part of an output that is not wave: v, or v tau."""
-    v = chain.rod(probe.rod).velocity * fmpq(sum(probe.weights), 2)
-    if v == 0:
-        return {}
-    return {fmpq(0): [v] if probe.order == 0 else [fmpq(0), v]}

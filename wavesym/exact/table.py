@@ -25,13 +25,24 @@ class Function(NamedTuple):
     rod: int
 
 
+class Part(NamedTuple):
+    """A wave function in an output: `factor` times its derivative (or the function itself), `delay` later."""
+
+    factor: int | fmpq
+    function: Function
+    delay: fmpq
+
+
 class Row(NamedTuple):
-    """One coefficient of a table, as in docs/reference.md; all exact."""
+    """One coefficient of a table, as in docs/reference.md; all exact.
+
+    Of a chain that is written out, `rod` may be a name, and `interval` is the tau at which the wave leaves its end.
+    """
 
     function: str
-    rod: int
+    rod: int | str
     source: str
-    interval: int
+    interval: int | fmpq | Fraction
     rate: fmpq | Fraction
     power: int
     value: fmpq | Fraction

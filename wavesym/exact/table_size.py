@@ -9,7 +9,7 @@ powers, so the digits of a coefficient are in proportion to their number.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from fractions import Fraction
 from math import inf, log10
 from typing import NamedTuple, TypeVar
@@ -58,7 +58,7 @@ def table_size(chain: Chain, interval: int, wanted: Mapping[K, int], sources: It
     rates = {node.rate for node in chain.nodes if node.inertia}
     bodies = sum(bool(node.inertia) for node in chain.nodes)
     dense = bodies / len(chain.nodes)
-    height = sum(map(_bits, rates)) / max(len(rates), 1)
+    height = mean_bits(rates)
     coefficients = bits = work = 0.0
     for nodes in places.values():
         # how far it is from the load to the nearer end of each rod
@@ -81,6 +81,15 @@ def table_size(chain: Chain, interval: int, wanted: Mapping[K, int], sources: It
     return Size(coefficients, _ENTRY * increments + _COEFFICIENT * coefficients + bits / 8, work)
 
 
+def response_size(powers: Iterable[int], height: float) -> Size:
+    """The size of increments of which each has so many coefficients; `height` are the bits of a rate."""
+    counts = np.fromiter(powers, float)
+    bits = float(np.sum(counts**2)) * height
+    work = float(np.sum(counts * (1 + (counts * height / _DIGITS) ** _LONG)))
+    coefficients = float(np.sum(counts))
+    return Size(coefficients, _ENTRY * len(counts) + _COEFFICIENT * coefficients + bits / 8, work)
+
+
 def refuse_large(
     chain: Chain,
     interval: int,
@@ -90,12 +99,16 @@ def refuse_large(
     most: float = inf,
 ) -> None:
     """CostError, for the key or option `asked`, where a table is beyond `LARGEST` bytes, `MOST_WORK` or `most` work."""
-    size = table_size(chain, interval, wanted, sources)
+    refuse_size(table_size(chain, interval, wanted, sources), asked, most)
+
+
+def refuse_size(size: Size, asked: str, most: float = inf, parts: str = "smaller m") -> None:
+    """The same for a size that is known, of a chain with less to work on where it has fewer `parts`."""
     fewer = "a shorter horizon" if asked == "output.until" else "fewer intervals"
     if size.bytes > LARGEST:
         raise CostError(
             f"{asked}: the tables of coefficients would take {size.bytes:.1e} bytes, "
-            f"at most {LARGEST:.1e} expected ({fewer} or smaller m helps)"
+            f"at most {LARGEST:.1e} expected ({fewer} or {parts} helps)"
         )
     if size.work > min(most, MOST_WORK):
         digits = size.bytes / max(size.coefficients, 1) * log10(2) * 8
@@ -134,6 +147,11 @@ def _places(chain: Chain, sources: set[str]) -> dict[str, list[int]]:
         for name in sources.intersection(names):
             places[name].append(x)
     return places
+
+
+def mean_bits(rates: Collection[Quantity]) -> float:
+    """How many bits a rate has."""
+    return sum(map(_bits, rates)) / max(len(rates), 1)
 
 
 def _bits(rate: Quantity) -> int:

@@ -48,7 +48,7 @@ class Model:
 
     @property
     def named(self) -> Chain:
-        """The chain as the paper has it. UnservedError for one that is written out, which has no exact tables."""
+        """The chain as the paper has it. UnservedError for one that is written out, part by part."""
         if self.chain is None:
             raise UnservedError(
                 "system.type: chain given, collision, drive or building expected (a chain has pieces and `run`)"

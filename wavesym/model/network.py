@@ -7,7 +7,7 @@ impedance) and a force 2 Z a. A bar's end may move `ratio` times as fast as its 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from heapq import heapify, heappop, heappush
 from typing import Literal, NamedTuple
@@ -25,6 +25,7 @@ class Point:
     """What moves as one: a rigid mass, or none; a dashpot and a spring to the ground; its velocity at tau = 0.
 
     A `motion` is prescribed by the loads on the point: its velocity, or its acceleration. What is fixed has no loads.
+    `place` is where a scene would say that it is.
     """
 
     mass: fmpq
@@ -34,6 +35,7 @@ class Point:
     motion: Literal["fixed", "velocity", "acceleration"] | None = None
     loads: tuple[UnitLoad, ...] = ()
     name: str = ""
+    place: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True)
@@ -205,7 +207,7 @@ def network_of(chain: Chain) -> Network:
     for x, node in enumerate(chain.nodes):
         if node.left and node.alpha != 0:
             scale = bars[-1].impedance / (node.alpha / 2)
-        points.append(_point(node, scale))
+        points.append(replace(_point(node, scale), place=str(x)))
         if node.right:
             impedance = scale * node.beta / 2 or fmpq(1)  # a prescribed motion does not feel its rod
             bars.append(Bar(x, x + 1, fmpq(1), fmpq(1), impedance, velocity=fmpq(node.right.velocity)))

@@ -59,11 +59,21 @@ class Drawing:
 
     def network(self, sources: Mapping[int, Sequence[UnitLoad]]) -> Network:
         """With unit loads on its points."""
+        places = self._places()
         points = (
-            Point(p.mass, p.damping, p.stiffness, p.velocity, p.motion, tuple(sources.get(k, ())), p.name)
-            for k, p in enumerate(self.points)
+            replace(point, loads=tuple(sources.get(k, ())), place=places[k]) for k, point in enumerate(self.points)
         )
         return Network(tuple(points), self.bars, self.links)
+
+    def _places(self) -> Mapping[int, str]:
+        """Where each point is: its line and how far along it, with a side where more than one is there."""
+        places: dict[int, str] = {}
+        for line, stations in self.lines.items():
+            for station in stations:
+                sides = ("-", *("" for _ in station.points[2:]), "+") if len(station.points) > 1 else ("",)
+                for point, side in zip(station.points, sides, strict=True):
+                    places.setdefault(point, f"{line}{line and ':'}{station.x}{side}")
+        return places
 
     def length(self, bar: int | None) -> Fraction:
         """The length of a bar."""

@@ -6,11 +6,13 @@ import json
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
+from wavesym.documents.derivation.network_statement import network_statement
 from wavesym.documents.derivation.notation import Latex, Text
 from wavesym.documents.derivation.statement import Statement, scene_statement, statements
 from wavesym.rendering import render
 
 if TYPE_CHECKING:
+    from wavesym.model.model import Model
     from wavesym.model.symbolic import SymbolicChain
 
 
@@ -29,6 +31,14 @@ def derivation(name: str, m: int | None, format: str) -> str:
 def scene_derivation(name: str, symbols: SymbolicChain, format: str) -> str:
     """The derivation of the system of a scene, with the families of its own parameters."""
     return _written((scene_statement(name, symbols, _notation(format)),), format)
+
+
+def network_derivation(model: Model, format: str) -> str:
+    """The law of each kind of joint of a chain that is written out."""
+    made = network_statement(model.name, model.network, _notation(format))
+    if format == "json":
+        return json.dumps(asdict(made), indent=2) + "\n"
+    return render({"latex": "latex/network.tex.j2", "text": "text/network.txt.j2"}[format], made)
 
 
 def _notation(format: str) -> Text:

@@ -95,6 +95,14 @@ class Text:
         written = self.expression(below)
         return f"{f'({above})' if is_sum else above}/{written if below.is_Atom or below.is_Indexed else f'({written})'}"
 
+    def over(self, above: str, below: str, power: int) -> str:
+        """Something divided by (below)**power."""
+        return f"{above}/({below})" + (f"^{power}" if power > 1 else "")
+
+    def placed(self, name: str, place: str) -> str:
+        """A coefficient at a rate and a power, as they are written."""
+        return f"{name}[{place}]"
+
     def power(self, base: str, power: int) -> str:
         """A factor base**power with its space."""
         return "" if power == 0 else f" {base}" if power == 1 else f" {base}^{power}"
@@ -206,6 +214,12 @@ class Latex(Text):
     def divided(self, above: str, is_sum: bool, below: Expr) -> str:
         # a product, which can be broken over lines where a fraction cannot
         return rf"\frac{{1}}{{{self.expression(below)}}} " + (rf"\bigl( {above} \bigr)" if is_sum else above)
+
+    def over(self, above: str, below: str, power: int) -> str:
+        return rf"\frac{{{above}}}{{({below})^{{{power}}}}}" if power > 1 else rf"\frac{{{above}}}{{{below}}}"
+
+    def placed(self, name: str, place: str) -> str:
+        return f"{name}_{{{place.replace('g', self.expression(RATE))}}}"
 
     def coefficient(self, function: str, rod: Expr, back: int, rate: Expr, power: Expr) -> str:
         interval = "n" if back == 0 else f"n-{back}"

@@ -9,7 +9,9 @@ from flint import fmpq
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
 from wavesym.errors import CostError
 from wavesym.exact.joint import JointLaw
+from wavesym.exact.joint_response import joint_polynomial, rates, written
 from wavesym.exact.knots import Knots
+from wavesym.exact.network_joints import MOST_POINTS
 from wavesym.model.model import Model
 from wavesym.model.network import Joint
 from wavesym.numbers.doubles import rational
@@ -34,7 +36,7 @@ def not_served(model: Model) -> Facts:
         refusal = str(model.named)
     except CostError as error:
         refusal = str(error)
-    words = "Tables, derivation, closed form and march are not served"
+    words = "Symbolic tables, walks, highest powers and march are not served"
     return Facts("not_served", words, {"refusal": refusal})
 
 
@@ -121,6 +123,7 @@ def joint_laws(model: Model) -> Listing:
                 "M": _matrix("M", mass),
                 "C": _matrix("C", law.damping),
                 "K": _matrix("K", law.stiffness),
+                "polynomial": _polynomial(law),
                 "refusal": Told(None, "") if rows or not refusal else refusal,
             }
         )
@@ -128,8 +131,23 @@ def joint_laws(model: Model) -> Listing:
         "joints",
         f"Joints in the light cone, with a knot for each start of a stretch without fronts:\n{LAW}",
         rows,
-        ("M", "C", "K", "refusal"),
+        ("M", "C", "K", "polynomial", "refusal"),
     )
+
+
+def _polynomial(law: JointLaw) -> Told:
+    """Of a joint that is not large: its polynomial, and the rates where it splits."""
+    if len(law.mass) > MOST_POINTS:
+        return Told(None, f"more than {MOST_POINTS} points: no polynomial is made")
+    found, shown = rates(law), written(joint_polynomial(law))
+    if found is None:
+        return Told({"coefficients": _listed(law), "rates": None}, f"polynomial {shown}, which does not split")
+    words = f", rates {', '.join(map(str, found))}" if found else ""
+    return Told({"coefficients": _listed(law), "rates": list(map(str, found))}, f"polynomial {shown}{words}")
+
+
+def _listed(law: JointLaw) -> list[str]:
+    return list(map(str, joint_polynomial(law).coeffs()))
 
 
 def _named(model: Model, point: int) -> Plain:

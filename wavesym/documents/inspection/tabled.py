@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
 from wavesym.errors import CostError
 from wavesym.exact.motion import Motion
+from wavesym.exact.network_table import NetworkTable, network_table
 from wavesym.exact.table import Table, full_table
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
@@ -20,7 +21,7 @@ def tabled(model: Model) -> Iterator[Section]:
     """The size of the table that `tables` prints, and the knots of every output."""
     try:
         _refuse_long(model)
-        made = full_table(model.named, None, rational(model.horizon()), most=MOST_COUNTED)
+        made = _made(model)
     except CostError as refusal:
         yield Facts("table", "The exact table is not made here", {"refusal": str(refusal)})
     else:
@@ -41,8 +42,15 @@ def _refuse_long(model: Model) -> None:
         )
 
 
-def _sizes(table: Table) -> Iterator[Section]:
-    counts: dict[tuple[str, int, str], list[Plain]] = {}
+def _made(model: Model) -> Table | NetworkTable:
+    until = rational(model.horizon())
+    if model.chain is None:
+        return network_table(model.network, None, until, most=MOST_COUNTED)
+    return full_table(model.chain, None, until, most=MOST_COUNTED)
+
+
+def _sizes(table: Table | NetworkTable) -> Iterator[Section]:
+    counts: dict[tuple[str, int | str, str], list[Plain]] = {}
     for row in table.rows():
         count = counts.setdefault((row.function, row.rod, row.source), [0, set()])
         count[0] += 1
@@ -50,17 +58,21 @@ def _sizes(table: Table) -> Iterator[Section]:
     rows = [
         {
             "function": function.function,
-            "rod": function.rod,
+            "rod": (rod := function.rod if isinstance(table, Table) else table.rod(function)),
             "source": source,
             "intervals": len(increments),
-            "coefficients": counts.get((*function, source), [0, ()])[0],
-            "rates": [str(rate) for rate in sorted(counts.get((*function, source), [0, ()])[1])],
+            "coefficients": counts.get((function.function, rod, source), [0, ()])[0],
+            "rates": [str(rate) for rate in sorted(counts.get((function.function, rod, source), [0, ()])[1])],
         }
         for source, response in table.responses.items()
         for function, increments in sorted(response.items())
     ]
-    total = {"interval": table.interval, "coefficients": sum(row["coefficients"] for row in rows)}
-    yield Facts("table", "The exact table: how long an interval is, and how many coefficients are not 0", total)
+    total: dict[str, Plain] = {"coefficients": sum(row["coefficients"] for row in rows)}
+    words = "The exact table: how many coefficients are not 0"
+    if isinstance(table, Table):
+        total = {"interval": table.interval, **total}
+        words = "The exact table: how long an interval is, and how many coefficients are not 0"
+    yield Facts("table", words, total)
     yield Listing("functions", "Its wave functions, for each source", rows)
 
 

@@ -1,0 +1,70 @@
+"""Fronts on their way through a network: when what leaves which end of a bar, in the order of time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from heapq import heapify, heappop, heappush
+from typing import TypeVar
+
+from flint import fmpq
+
+from wavesym.model.network import End, Network
+
+T = TypeVar("T")
+Answer = Callable[[int, fmpq, Mapping[End, T]], Iterator[tuple[End, T]]]
+"""What a joint sends into ends of bars at an instant, from what arrives there: of ends that get nothing, nothing."""
+
+
+def departures(
+    network: Network, begun: Iterable[int], answer: Answer[T], last: Mapping[int, fmpq] | None
+) -> Iterator[tuple[fmpq, End, T]]:
+    """All that leaves the ends of bars after something began at some joints at 0; without end where `last` is None.
+
+    `last` has the joints that matter, each with the tau until which it does.
+    """
+    arriving: dict[tuple[fmpq, int], dict[End, T]] = {(fmpq(0), number): {} for number in begun}
+    coming = list(arriving)
+    heapify(coming)
+    while coming:
+        time, number = at = heappop(coming)
+        for end, wave in answer(number, time, arriving.pop(at)):
+            yield time, end, wave
+            there = network.beyond(end)
+            other = network.joint_of[network.point_at(there)]
+            late = time + network.bars[end.bar].delay, other
+            if last is None or (other in last and late[0] <= last[other]):
+                if late not in arriving:
+                    arriving[late] = {}
+                    heappush(coming, late)
+                arriving[late][there] = wave
+
+
+def reachable(network: Network, begun: Iterable[End], passes: Callable[[int], Mapping[End, Iterable[End]]]) -> set[End]:
+    """The ends that something leaves at some time; `passes` tells of a joint where what arrives at an end goes."""
+    found: set[End] = set()
+    coming = list(begun)
+    while coming:
+        end = coming.pop()
+        if end not in found:
+            found.add(end)
+            there = network.beyond(end)
+            coming += passes(network.joint_of[network.point_at(there)])[there]
+    return found
+
+
+def needed(network: Network, wanted: Mapping[int, fmpq]) -> dict[int, fmpq]:
+    """Until when what happens at each joint can matter to the `wanted` ones until theirs."""
+    last: dict[int, fmpq] = {}
+    coming = [(-time, number) for number, time in wanted.items() if time >= 0]
+    heapify(coming)
+    while coming:
+        time, number = heappop(coming)
+        if number in last:
+            continue
+        last[number] = -time
+        for end, _ in network.joints[number].ends:
+            other = network.joint_of[network.point_at(network.beyond(end))]
+            late = time + network.bars[end.bar].delay
+            if other not in last and late <= 0:
+                heappush(coming, (late, other))
+    return last
