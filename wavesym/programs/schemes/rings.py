@@ -1,0 +1,337 @@
+"""The march of any chain in NumPy: rings of windows for the waves, joints as blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+class RingScheme:
+    """The march of a chain. All delays are multiples of one step, so what arrives at a joint on a window (one step
+    long) was sent on a window before, and each joint needs to know no more. A window is cut into panels at the instants
+    of loads; on a panel waves are Chebyshev series in u, -1 <= u <= 1. A track is what is sent into an end of a bar.
+
+    A joint with a state x (velocities of masses, lengthening of springs) has a matrix for each panel:
+    (coefficients of what acts on its points, x at the start) -> (those of the velocities q, x at the end less x), and
+    sends ratio q - a; where a arrives, push a acts. One without has a matrix that makes what it sends of what arrives.
+    """
+
+    TABLES = (
+        # tracks: how many windows later it arrives, and what is on its way at tau = 0
+        "steps",
+        "held",
+        # joints: where their points, states and ports start in the next tables, and on each panel their matrix
+        "first_point",
+        "first_state",
+        "first_port",
+        "answer",
+        "matrix",
+        "begun",
+        "force_on",
+        # ports: the point of the joint, factors, and tracks
+        "point_of",
+        "push",
+        "ratio",
+        "arrive",
+        "send",
+        # panels: half the length, and what its start is later than that of another
+        "half_length",
+        "since",
+        # changes of the loads: from there on three powers of the time since
+        "event_window",
+        "event_panel",
+        "event_force",
+        "event_power",
+        # outputs: what, and two tracks with factors and delays
+        "quantity",
+        "track",
+        "gain",
+        "delay",
+        # after a cycle of windows tau is a whole number again; where they begin in it
+        "begin",
+        # delays: from t >= `from` on, t counted from the start of the cycle, a wave is that of `panel_of`, `back`
+        # windows ago, with u = (t - start + excess) / half - 1; an integral over all of a window is from low to high
+        "first_stretch",
+        "from",
+        "start",
+        "excess",
+        "low",
+        "high",
+        "back",
+        "panel_of",
+    )
+    CONSTANTS = ("degree", "step", "span", "forces")
+    VALUE, INTEGRAL, NOTHING = 0, 1, 2
+    SAMPLES = 4096
+    """So many samples at once."""
+
+    def __init__(
+        self,
+        tables: dict[str, tuple[float, ...]],
+        constants: dict[str, float],
+        tau_max: float,
+        real: type[np.float64],
+    ) -> None:
+        def reals(name: str, *shape: int) -> NDArray[np.float64]:
+            return np.array(tables[name], real).reshape(shape or -1)
+
+        def indices(name: str, *shape: int) -> NDArray[np.int_]:
+            return np.array(tables[name], int).reshape(shape or -1)
+
+        self.tau_max, self.real = tau_max, real
+        self.degree, self.forces = int(constants["degree"]), int(constants["forces"])
+        self.step, self.span = real(constants["step"]), real(constants["span"])
+        self.steps, self.held = indices("steps"), reals("held")
+        self.half_length = reals("half_length")
+        self.panels = len(self.half_length)
+        self.since = reals("since", self.panels, self.panels)
+        self.begun, self.force_on = reals("begun"), indices("force_on")
+        self.event_window, self.event_panel = indices("event_window"), indices("event_panel")
+        self.event_force, self.event_power = indices("event_force"), reals("event_power", -1, 3)
+        self.quantity = indices("quantity")
+        self.track, self.delay = indices("track", -1, 2), indices("delay", -1, 2)
+        self.gain = reals("gain", -1, 2)
+        self.begin = reals("begin")
+        self.first_stretch = indices("first_stretch")
+        self.counts_from, self.start, self.excess = (
+            reals(name, -1, len(self.begin)) for name in ("from", "start", "excess")
+        )
+        self.low, self.high = reals("low"), reals("high")
+        self.back, self.panel_of = indices("back"), indices("panel_of")
+        self.deepest = max(1, int(np.max(self.back)), int(np.max(self.steps)))
+        """How many windows back anything is asked for."""
+        shapes = np.stack([np.diff(tables[f"first_{name}"]) for name in ("point", "state", "port")], axis=1)
+        self.groups = [
+            JointGroup(self, tables, np.flatnonzero(np.all(shapes == shape, axis=1)), *shape.tolist())
+            for shape in np.unique(shapes, axis=0)
+        ]
+
+    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
+        """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range.
+
+        Marches once, up to the last tau.
+        """
+        taus = np.asarray(tau, dtype=self.real)
+        flat = taus.ravel()
+        out = np.full((len(self.quantity), flat.size), np.nan, self.real)
+        inside = np.flatnonzero((flat >= 0) & (flat <= self.tau_max))
+        if inside.size:
+            order = inside[np.argsort(flat[inside], kind="stable")]
+            windows = self.places(flat[order])[0]
+            for block in self.blocks(int(windows[-1]) + 1):
+                begin, end = np.searchsorted(windows, [block.first, block.first + block.count])
+                for low in range(begin, end, self.SAMPLES):
+                    part = order[low : min(low + self.SAMPLES, end)]
+                    out[:, part] = self.read(block, flat[part])
+        return out.reshape(len(self.quantity), *taus.shape)
+
+    def places(self, tau: NDArray[np.float64]) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]:
+        """Of each tau its window, the place of that in a cycle, and the time since the cycle began."""
+        cycle = np.floor(tau / self.span)
+        cycle -= cycle * self.span > tau
+        t = tau - cycle * self.span
+        phase = np.searchsorted(self.begin, t, side="right") - 1
+        return cycle.astype(int) * len(self.begin) + phase, phase, t
+
+    def blocks(self, windows: int) -> Iterator[WindowBlock]:
+        """So many windows from tau = 0 on, in order, a block at a time."""
+        tracks, size = len(self.held), self.degree + 1
+        most = max(1, min(256, 2_000_000 // (tracks * self.panels * size)))
+        waves = np.zeros((self.deepest + most, tracks, self.panels, size), self.real)
+        waves[..., 0] = self.held[:, None]
+        x = self.begun.copy()
+        loads = RunningLoads(self, self.event_power, self.since)
+        totals = np.zeros(len(self.quantity), self.real)
+        for first in range(0, windows, most):
+            count = min(most, windows - first)
+            starts = np.zeros((count, self.panels, len(x)), self.real)
+            acting = np.zeros((count, self.panels, len(self.force_on), 3), self.real)
+            for n in range(count):
+                for panel in range(self.panels):
+                    starts[n, panel] = x
+                    acting[n, panel] = loads.on(first + n, panel)
+                    for group in self.groups:
+                        group.move(waves, self.deepest + n, panel, acting[n, panel], x)
+            block = WindowBlock(first, count, waves, starts, acting, totals)
+            for output in np.flatnonzero(self.quantity == self.INTEGRAL):
+                gains = self._gathered(block, output, np.arange(count), None)
+                block.totals[output] += np.cumsum(np.concatenate([np.zeros(1, self.real), gains]), dtype=self.real)
+            totals = block.totals[:, -1]
+            yield block
+            waves[: self.deepest] = waves[count : count + self.deepest].copy()
+
+    def read(self, block: WindowBlock, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        """All outputs at some tau in the windows of a block."""
+        window, phase, t = self.places(tau)
+        n = window - block.first
+        out = np.zeros((len(self.quantity), len(tau)), self.real)
+        for output, quantity in enumerate(self.quantity):
+            if quantity == self.VALUE:
+                out[output] = self._arrived(block, output, n, phase, t)
+            elif quantity == self.INTEGRAL:
+                out[output] = block.totals[output, n] + self._gathered(block, output, n, (phase, t))
+        return out
+
+    def _arrived(
+        self,
+        block: WindowBlock,
+        output: int,
+        n: NDArray[np.int_],
+        phase: NDArray[np.int_],
+        t: NDArray[np.float64],
+    ) -> NDArray[np.float64]:
+        """What an output hears at t, on windows n of a block, which are at `phase` in their cycle."""
+        total = np.zeros(t.shape, self.real)
+        for track, gain, delay in zip(self.track[output], self.gain[output], self.delay[output], strict=True):
+            s = np.full(t.shape, self.first_stretch[delay])
+            for later in range(self.first_stretch[delay] + 1, self.first_stretch[delay + 1]):
+                s[t >= self.counts_from[later, phase]] = later
+            u = ((t - self.start[s, phase]) + self.excess[s, phase]) / self.half_length[self.panel_of[s]] - 1
+            c = block.waves[self.deepest + n - self.back[s], track, self.panel_of[s]].T
+            total += gain * _series(np.ascontiguousarray(c), u)
+        return total
+
+    def _gathered(
+        self,
+        block: WindowBlock,
+        output: int,
+        n: NDArray[np.int_],
+        until: tuple[NDArray[np.int_], NDArray[np.float64]] | None,
+    ) -> NDArray[np.float64]:
+        """The integral from the start of windows n, at a phase, to t; or over all of them."""
+        total = np.zeros(n.shape, self.real)
+        for track, gain, delay in zip(self.track[output], self.gain[output], self.delay[output], strict=True):
+            first, end = self.first_stretch[delay], self.first_stretch[delay + 1]
+            for s in range(first, end):
+                here = np.arange(n.size)
+                high = np.full(n.shape, self.high[s], self.real)
+                if until:
+                    phase, t = until
+                    here = np.flatnonzero((t >= self.counts_from[s, phase]) | (s == first))
+                    high = (t - self.start[s, phase]) + self.excess[s, phase]
+                    if s + 1 < end:
+                        high = np.where(t >= self.counts_from[s + 1, phase], self.high[s], high)
+                half = self.half_length[self.panel_of[s]]
+                c = _antiderivative(block.waves[self.deepest + n[here] - self.back[s], track, self.panel_of[s]].T)
+                low = np.full(here.shape, self.low[s], self.real)
+                total[here] += gain * (half * (_series(c, high[here] / half - 1) - _series(c, low / half - 1)))
+        return total
+
+
+class WindowBlock:
+    """Some windows of a march: all tracks, (deepest + windows, track, panel, k), with those of the windows before."""
+
+    def __init__(
+        self,
+        first: int,
+        count: int,
+        waves: NDArray[np.float64],
+        starts: NDArray[np.float64],
+        acting: NDArray[np.float64],
+        totals: NDArray[np.float64],
+    ) -> None:
+        self.first, self.count, self.waves = first, count, waves
+        self.starts, self.acting = starts, acting
+        """The states at the start of each panel, and what acts on each point there."""
+        self.totals = np.repeat(totals[:, None], count + 1, axis=1)
+        """The integrals at the start of each window."""
+
+
+class RunningLoads:
+    """The loads, polynomials in the time since their last change."""
+
+    def __init__(self, scheme: RingScheme, powers: NDArray[np.float64], since: NDArray[np.float64]) -> None:
+        self._scheme, self._powers, self._since = scheme, powers, since
+        self._now: dict[int, tuple[int, int, NDArray[np.float64]]] = {}
+        self._event = 0
+
+    def on(self, window: int, panel: int) -> NDArray[np.float64]:
+        """Three coefficients of what acts on each point on a panel; panels come in order."""
+        scheme = self._scheme
+        while self._event < len(scheme.event_window) and (
+            (scheme.event_window[self._event], scheme.event_panel[self._event]) == (window, panel)
+        ):
+            self._now[int(scheme.event_force[self._event])] = window, panel, self._powers[self._event]
+            self._event += 1
+        # one more, for points on which nothing acts
+        acting = np.zeros((scheme.forces + 1, 3), scheme.real)
+        half = scheme.half_length[panel]
+        for force, (begun, place, c) in self._now.items():
+            middle = ((window - begun) * scheme.step + self._since[panel, place]) + half
+            acting[force, 0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2]
+            acting[force, 1] = half * (c[1] + 2 * middle * c[2])
+            acting[force, 2] = half * half / 2 * c[2]
+        return acting[scheme.force_on]
+
+
+class JointGroup:
+    """Joints with as many points, states and ports each."""
+
+    def __init__(
+        self,
+        scheme: RingScheme,
+        tables: dict[str, tuple[float, ...]],
+        joints: NDArray[np.int_],
+        points: int,
+        states: int,
+        ports: int,
+    ) -> None:
+        def members(name: str, size: int) -> NDArray[np.int_]:
+            return np.array(tables[f"first_{name}"])[joints, None] + np.arange(size)
+
+        self.points, self.states, self.ports = members("point", points), members("state", states), members("port", ports)
+        self.arrive, self.send = (np.array(tables[name], int)[self.ports] for name in ("arrive", "send"))
+        self.back = scheme.steps[self.arrive]
+        at = np.array(tables["point_of"], int)[self.ports][..., None] == np.arange(points)
+        push, ratio = (np.array(tables[name], scheme.real)[self.ports] for name in ("push", "ratio"))
+        self.size = scheme.degree + 1
+        self.collect = np.swapaxes(at * push[..., None], 1, 2)
+        self.spread = at * ratio[..., None]
+        width = points * self.size + states if states else ports + points
+        height = width if states else ports
+        matrix = np.array(tables["matrix"], scheme.real)
+        answer = np.array(tables["answer"], int).reshape(scheme.panels, -1)[:, joints]
+        self.matrix = matrix[answer[..., None] + np.arange(height * width)].reshape(*answer.shape, height, width)
+
+    def move(
+        self,
+        waves: NDArray[np.float64],
+        n: int,
+        panel: int,
+        acting: NDArray[np.float64],
+        x: NDArray[np.float64],
+    ) -> None:
+        """A panel of a window: what the joints send goes into `waves`, and their states x go on."""
+        a = waves[n - self.back, self.arrive, panel]
+        s = np.zeros((*self.points.shape, self.size), a.dtype)
+        s[..., :3] = acting[self.points]
+        if self.states.size:
+            s += self.collect @ a
+            given = np.concatenate([s.reshape(len(s), -1), x[self.states]], axis=1)
+            answer = (self.matrix[panel] @ given[..., None])[..., 0]
+            q = answer[:, : s[0].size].reshape(s.shape)
+            x[self.states] += answer[:, s[0].size :]
+            waves[n, self.send, panel] = self.spread @ q - a
+        else:
+            waves[n, self.send, panel] = self.matrix[panel] @ np.concatenate([a, s], axis=1)
+
+
+def _series(c: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
+    """sum of c[k] T_k(u)"""
+    twice = u + u
+    now, after = np.zeros_like(u), np.zeros_like(u)
+    for k in range(len(c) - 1, 0, -1):
+        now, after = (twice * now - after) + c[k], now
+    return np.asarray((u * now - after) + c[0])
+
+
+def _antiderivative(c: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of a series, times 1 / half the length of the panel."""
+    result = np.zeros((len(c) + 1, c.shape[1]), c.dtype)
+    result[1:] = c
+    result[1] *= 2
+    result[1:-2] -= c[2:]
+    result[1:] /= 2 * np.arange(1, len(c) + 1, dtype=c.dtype)[:, None]
+    return result
