@@ -121,6 +121,15 @@ class RingPlan:
             ),
         )
 
+    def changes(self) -> Iterator[tuple[int, tuple[fmpq, fmpq, fmpq]]]:
+        """Force and powers of what is new with each event."""
+        now: dict[int, tuple[fmpq, fmpq_poly]] = {}
+        for event in self.events:
+            time, load = event.window * self.step + self.panels[event.panel].start, fmpq_poly(list(event.powers))
+            since, before = now.get(event.force, (time, fmpq_poly()))
+            now[event.force] = time, load
+            yield event.force, _three(load - before(fmpq_poly([time - since, 1])))
+
     def stretches(self, delay: fmpq) -> tuple[Stretch, ...]:
         """Those of a wave that arrives `delay` after it was sent, in order; `start` counts from that of a window."""
         found = []

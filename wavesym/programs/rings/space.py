@@ -14,12 +14,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from math import sqrt
 
 from flint import fmpq, fmpq_mat
 
 from wavesym.exact.joint import JointLaw
 from wavesym.exact.node_rules import joint_rule
 from wavesym.model.network import Joint, Network
+from wavesym.numbers.doubles import not_below
 
 _ZERO = fmpq(0)
 
@@ -55,6 +57,16 @@ class JointSpace:
     def points(self) -> int:
         """How many points there are."""
         return self.passed.nrows()
+
+    @cached_property
+    def norm(self) -> float:
+        """That of `rates` in the norm of energy, at most: it bounds how fast anything in the joint is."""
+        squares = (
+            self.rates[a, b] ** 2 * self.weights[a] / self.weights[b]
+            for a in range(self.states)
+            for b in range(self.states)
+        )
+        return sqrt(not_below(sum(squares, _ZERO))) * (1 + 2.0**-50)
 
     @cached_property
     def scattering(self) -> fmpq_mat:

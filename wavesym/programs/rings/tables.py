@@ -6,7 +6,9 @@ from collections.abc import Iterable, Sequence
 from functools import cached_property
 from itertools import accumulate
 
+import numpy as np
 from flint import fmpq
+from numpy.typing import NDArray
 
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import Real
@@ -31,6 +33,10 @@ class RingTables:
                 if place.space.states and (key := answer_key(place, panel.length)) not in found:
                     found[key] = answer(place.space, panel.length, self._degree)
         return found
+
+    def missed(self, place: Place, length: fmpq) -> NDArray[np.float64]:
+        """What the polynomials of a joint miss; of one without state nothing."""
+        return self.answers[answer_key(place, length)].missed if place.space.states else np.zeros((0, 0))
 
     def tables(self, nothing: Sequence[bool]) -> dict[str, tuple[float, ...]]:
         """All tables, by name; `nothing` says of each output whether it is 0 throughout."""

@@ -281,6 +281,7 @@ class JointGroup:
         def members(name: str, size: int) -> NDArray[np.int_]:
             return np.array(tables[f"first_{name}"])[joints, None] + np.arange(size)
 
+        self.joints = joints
         self.points, self.states, self.ports = members("point", points), members("state", states), members("port", ports)
         self.arrive, self.send = (np.array(tables[name], int)[self.ports] for name in ("arrive", "send"))
         self.back = scheme.steps[self.arrive]
