@@ -20,7 +20,7 @@ from wavesym.exact.node_rules import joint_rule
 from wavesym.model.model import Model
 from wavesym.model.network import End
 from wavesym.model.probe import Probe
-from wavesym.numbers.doubles import nearest, rational
+from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch
 from wavesym.programs.rings.space import JointSpace, Port, joint_space
@@ -294,4 +294,4 @@ def least_numbers(plan: RingPlan) -> Iterator[fmpq]:
     yield from (panel.length / 2 for panel in plan.panels)
     yield from (track.held for track in plan.tracks)
     yield from (heard.gain for output in plan.outputs for heard in output.heard)
-    yield fmpq(nearest(plan.step))
+    yield plan.step
