@@ -35,7 +35,7 @@ from wavesym.programs.march.tail import Tail, tail_of
 from wavesym.programs.rings.answer import NEGLIGIBLE
 from wavesym.programs.rings.plan import Place, RingPlan, largest_number
 from wavesym.programs.rings.tables import RingTables
-from wavesym.programs.schemes.rings import JointGroup, RingScheme, RunningLoads, WindowBlock
+from wavesym.programs.schemes.rings import JointGroup, MarchingRings, RingScheme, RunningLoads, WindowBlock
 
 Array = NDArray[np.float64]
 
@@ -69,7 +69,7 @@ def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
     outputs, step = len(plan.outputs), nearest(plan.step)
     truncated, rounded, summed = 0.0, losses.begun, 0.0
     largest, reading, sums = np.zeros(outputs), np.zeros(outputs), np.zeros(outputs)
-    for block in scheme.blocks(plan.windows):
+    for block in _blocks(scheme, plan.windows):
         lost, inexact = losses.of(block)
         truncated += lost
         rounded += inexact
@@ -77,7 +77,7 @@ def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
         window = (block.first + np.arange(block.count))[:, None]
         taus = np.unique(np.minimum((window + np.linspace(0, 1, SAMPLES, endpoint=False)) * step, plan.tau_max))
         inside = np.isin(scheme.places(taus)[0], window)
-        largest = np.maximum(largest, np.max(np.abs(scheme.read(block, taus[inside])), axis=1, initial=0.0))
+        largest = np.maximum(largest, np.max(np.abs(block.read(taus[inside])), axis=1, initial=0.0))
         for o, output in enumerate(plan.outputs):
             weights = reading_weights(degree, output.integral)
             size = sum(
@@ -109,6 +109,12 @@ def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
             if nothing:
                 errors[o] = largest[o] = 0.0
     return Verdict(degree, tuple(errors), tuple(map(float, largest)), truncated, rounded, True)
+
+
+def _blocks(scheme: RingScheme, windows: int) -> Iterator[WindowBlock]:
+    marching = MarchingRings(scheme)
+    for first in range(0, windows, marching.most):
+        yield marching.block(first, min(marching.most, windows - first))
 
 
 def largest_wave(smooth: Tail, plan: RingPlan, energy: float) -> float:

@@ -56,6 +56,7 @@ class RingTables:
         first = {id(group[0]) for group in stretches}
         return {
             "steps": tuple(track.steps for track in plan.tracks),
+            "ring": _firsts(track.steps + 1 for track in plan.tracks),
             "held": reals(track.held for track in plan.tracks),
             "first_point": _firsts(space.points for space in spaces),
             "first_state": _firsts(space.states for space in spaces),
@@ -105,16 +106,17 @@ class RingTables:
             "events": len(plan.events),
             "tracks": len(plan.tracks),
             "slots": sum(track.steps + 1 for track in plan.tracks),
-            "most_points": max(place.space.points for place in plan.places),
-            "most_states": max(place.space.states for place in plan.places),
-            "most_ports": max(len(place.space.ports) for place in plan.places),
+            "widest": max(
+                place.space.points * (self._degree + 1) + place.space.states if place.space.states else 1
+                for place in plan.places
+            ),
             "cycle": plan.cycle[0],
             "span": real.nearest(fmpq(plan.cycle[1])),
             "step": real.nearest(plan.step),
         }
 
     def _matrices(self) -> tuple[tuple[float, ...], tuple[int, ...]]:
-        """One after the other, and by panel and joint where each starts."""
+        """One after the other, each by columns, and by panel and joint where they start."""
         matrix: list[float] = []
         begins: dict[tuple[object, ...], int] = {}
         where = []
@@ -124,10 +126,10 @@ class RingTables:
                 if key not in begins:
                     begins[key] = len(matrix)
                     if place.space.states:
-                        numbers = (rational(value) for value in self.answers[key].matrix.ravel().tolist())
+                        numbers = (rational(value) for value in self.answers[key].matrix.T.ravel().tolist())
                         matrix += map(self._real.nearest, numbers)
                     else:
-                        matrix += map(self._real.nearest, place.space.scattering.entries())
+                        matrix += map(self._real.nearest, place.space.scattering.transpose().entries())
                 where.append(begins[key])
         return tuple(matrix), tuple(where)
 

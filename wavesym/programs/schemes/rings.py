@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -120,11 +118,14 @@ class RingScheme:
         if inside.size:
             order = inside[np.argsort(flat[inside], kind="stable")]
             windows = self.places(flat[order])[0]
-            for block in self.blocks(int(windows[-1]) + 1):
-                begin, end = np.searchsorted(windows, [block.first, block.first + block.count])
+            marching = MarchingRings(self)
+            count = int(windows[-1]) + 1
+            for first in range(0, count, marching.most):
+                block = marching.block(first, min(marching.most, count - first))
+                begin, end = np.searchsorted(windows, [first, first + block.count])
                 for low in range(begin, end, self.SAMPLES):
                     part = order[low : min(low + self.SAMPLES, end)]
-                    out[:, part] = self.read(block, flat[part])
+                    out[:, part] = block.read(flat[part])
         return out.reshape(len(self.quantity), *taus.shape)
 
     def places(self, tau: NDArray[np.float64]) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]:
@@ -135,108 +136,113 @@ class RingScheme:
         phase = np.searchsorted(self.begin, t, side="right") - 1
         return cycle.astype(int) * len(self.begin) + phase, phase, t
 
-    def blocks(self, windows: int) -> Iterator[WindowBlock]:
-        """So many windows from tau = 0 on, in order, a block at a time."""
-        tracks, size = len(self.held), self.degree + 1
-        most = max(1, min(256, 2_000_000 // (tracks * self.panels * size)))
-        waves = np.zeros((self.deepest + most, tracks, self.panels, size), self.real)
-        waves[..., 0] = self.held[:, None]
-        x = self.begun.copy()
-        loads = RunningLoads(self, self.event_power, self.since)
-        totals = np.zeros(len(self.quantity), self.real)
-        for first in range(0, windows, most):
-            count = min(most, windows - first)
-            starts = np.zeros((count, self.panels, len(x)), self.real)
-            acting = np.zeros((count, self.panels, len(self.force_on), 3), self.real)
-            for n in range(count):
-                for panel in range(self.panels):
-                    starts[n, panel] = x
-                    acting[n, panel] = loads.on(first + n, panel)
-                    for group in self.groups:
-                        group.move(waves, self.deepest + n, panel, acting[n, panel], x)
-            block = WindowBlock(first, count, waves, starts, acting, totals)
-            for output in np.flatnonzero(self.quantity == self.INTEGRAL):
-                gains = self._gathered(block, output, np.arange(count), None)
-                block.totals[output] += np.cumsum(np.concatenate([np.zeros(1, self.real), gains]), dtype=self.real)
-            totals = block.totals[:, -1]
-            yield block
-            waves[: self.deepest] = waves[count : count + self.deepest].copy()
-
-    def read(self, block: WindowBlock, tau: NDArray[np.float64]) -> NDArray[np.float64]:
-        """All outputs at some tau in the windows of a block."""
-        window, phase, t = self.places(tau)
-        n = window - block.first
-        out = np.zeros((len(self.quantity), len(tau)), self.real)
-        for output, quantity in enumerate(self.quantity):
-            if quantity == self.VALUE:
-                out[output] = self._arrived(block, output, n, phase, t)
-            elif quantity == self.INTEGRAL:
-                out[output] = block.totals[output, n] + self._gathered(block, output, n, (phase, t))
-        return out
-
-    def _arrived(
-        self,
-        block: WindowBlock,
-        output: int,
-        n: NDArray[np.int_],
-        phase: NDArray[np.int_],
-        t: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
-        """What an output hears at t, on windows n of a block, which are at `phase` in their cycle."""
-        total = np.zeros(t.shape, self.real)
-        for track, gain, delay in zip(self.track[output], self.gain[output], self.delay[output], strict=True):
-            s = np.full(t.shape, self.first_stretch[delay])
-            for later in range(self.first_stretch[delay] + 1, self.first_stretch[delay + 1]):
-                s[t >= self.counts_from[later, phase]] = later
-            u = ((t - self.start[s, phase]) + self.excess[s, phase]) / self.half_length[self.panel_of[s]] - 1
-            c = block.waves[self.deepest + n - self.back[s], track, self.panel_of[s]].T
-            total += gain * _series(np.ascontiguousarray(c), u)
-        return total
-
-    def _gathered(
-        self,
-        block: WindowBlock,
-        output: int,
-        n: NDArray[np.int_],
-        until: tuple[NDArray[np.int_], NDArray[np.float64]] | None,
-    ) -> NDArray[np.float64]:
-        """The integral from the start of windows n, at a phase, to t; or over all of them."""
-        total = np.zeros(n.shape, self.real)
-        for track, gain, delay in zip(self.track[output], self.gain[output], self.delay[output], strict=True):
-            first, end = self.first_stretch[delay], self.first_stretch[delay + 1]
-            for s in range(first, end):
-                here = np.arange(n.size)
-                high = np.full(n.shape, self.high[s], self.real)
-                if until:
-                    phase, t = until
-                    here = np.flatnonzero((t >= self.counts_from[s, phase]) | (s == first))
-                    high = (t - self.start[s, phase]) + self.excess[s, phase]
-                    if s + 1 < end:
-                        high = np.where(t >= self.counts_from[s + 1, phase], self.high[s], high)
-                half = self.half_length[self.panel_of[s]]
-                c = _antiderivative(block.waves[self.deepest + n[here] - self.back[s], track, self.panel_of[s]].T)
-                low = np.full(here.shape, self.low[s], self.real)
-                total[here] += gain * (half * (_series(c, high[here] / half - 1) - _series(c, low / half - 1)))
-        return total
-
 
 class WindowBlock:
-    """Some windows of a march: all tracks, (deepest + windows, track, panel, k), with those of the windows before."""
+    """Some windows of a march: all tracks, (deepest + windows, track, panel, k), with those of the windows before.
+
+    `starts` are the states at the start of each panel, `acting` what acts on each point there, `totals` the integrals
+    at the start of each window and at the end of the last.
+    """
 
     def __init__(
         self,
+        scheme: RingScheme,
         first: int,
-        count: int,
         waves: NDArray[np.float64],
         starts: NDArray[np.float64],
         acting: NDArray[np.float64],
         totals: NDArray[np.float64],
     ) -> None:
-        self.first, self.count, self.waves = first, count, waves
+        self._scheme, self.first, self.count, self.waves = scheme, first, len(starts), waves
         self.starts, self.acting = starts, acting
-        """The states at the start of each panel, and what acts on each point there."""
-        self.totals = np.repeat(totals[:, None], count + 1, axis=1)
-        """The integrals at the start of each window."""
+        self.totals = np.repeat(totals[:, None], self.count + 1, axis=1)
+        n = np.arange(self.count)
+        for output in np.flatnonzero(scheme.quantity == scheme.INTEGRAL):
+            self.totals[output, 1:] += np.cumsum(self._gathered(output, n, n, None), dtype=scheme.real)
+
+    def read(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        """All outputs at some tau in these windows."""
+        scheme = self._scheme
+        window, phase, t = scheme.places(tau)
+        n = window - self.first
+        out = np.zeros((len(scheme.quantity), len(tau)), scheme.real)
+        for output, quantity in enumerate(scheme.quantity):
+            if quantity == scheme.VALUE:
+                out[output] = self._arrived(output, n, phase, t)
+            elif quantity == scheme.INTEGRAL:
+                out[output] = self.totals[output, n] + self._gathered(output, n, phase, t)
+        return out
+
+    def _arrived(
+        self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """What an output hears at t, on windows n, which are at `phase` in their cycle."""
+        scheme = self._scheme
+        total = np.zeros(t.shape, scheme.real)
+        for track, gain, delay in zip(scheme.track[output], scheme.gain[output], scheme.delay[output], strict=True):
+            s = np.full(t.shape, scheme.first_stretch[delay])
+            for later in range(scheme.first_stretch[delay] + 1, scheme.first_stretch[delay + 1]):
+                s[t >= scheme.counts_from[later, phase]] = later
+            half = scheme.half_length[scheme.panel_of[s]]
+            u = ((t - scheme.start[s, phase]) + scheme.excess[s, phase]) / half - 1
+            c = self.waves[scheme.deepest + n - scheme.back[s], track, scheme.panel_of[s]].T
+            total += gain * _series(np.ascontiguousarray(c), u)
+        return total
+
+    def _gathered(
+        self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64] | None
+    ) -> NDArray[np.float64]:
+        """The integral from the start of windows n to t; without t over all of them."""
+        scheme = self._scheme
+        total = np.zeros(n.shape, scheme.real)
+        for track, gain, delay in zip(scheme.track[output], scheme.gain[output], scheme.delay[output], strict=True):
+            first, end = scheme.first_stretch[delay], scheme.first_stretch[delay + 1]
+            for s in range(first, end):
+                here, panel = np.arange(n.size), scheme.panel_of[s]
+                high = np.full(n.shape, scheme.high[s], scheme.real)
+                if t is not None:
+                    if s > first:
+                        here = np.flatnonzero(t >= scheme.counts_from[s, phase])
+                    within = (t - scheme.start[s, phase]) + scheme.excess[s, phase]
+                    over = t >= scheme.counts_from[s + 1, phase] if s + 1 < end else np.zeros(t.shape, bool)
+                    high = np.where(over, high, within)
+                half = scheme.half_length[panel]
+                c = _antiderivative(self.waves[scheme.deepest + n[here] - scheme.back[s], track, panel].T)
+                low = np.full(here.shape, scheme.low[s], scheme.real)
+                total[here] += gain * (half * (_series(c, high[here] / half - 1) - _series(c, low / half - 1)))
+        return total
+
+
+class MarchingRings:
+    """A march on its way."""
+
+    def __init__(self, scheme: RingScheme) -> None:
+        tracks, size = len(scheme.held), scheme.degree + 1
+        self.most = max(1, min(256, 2_000_000 // (tracks * scheme.panels * size)))
+        """So many windows at once."""
+        self._scheme = scheme
+        self._waves = np.zeros((scheme.deepest + self.most, tracks, scheme.panels, size), scheme.real)
+        self._waves[..., 0] = scheme.held[:, None]
+        self._x = scheme.begun.copy()
+        self._loads = RunningLoads(scheme, scheme.event_power, scheme.since)
+        self._totals = np.zeros(len(scheme.quantity), scheme.real)
+
+    def block(self, first: int, count: int) -> WindowBlock:
+        """The next windows; what the block holds is overwritten by the one after it."""
+        scheme = self._scheme
+        starts = np.zeros((count, scheme.panels, len(self._x)), scheme.real)
+        acting = np.zeros((count, scheme.panels, len(scheme.force_on), 3), scheme.real)
+        if first > 0:
+            self._waves[: scheme.deepest] = self._waves[self.most : self.most + scheme.deepest].copy()
+        for n in range(count):
+            for panel in range(scheme.panels):
+                starts[n, panel] = self._x
+                acting[n, panel] = self._loads.on(first + n, panel)
+                for group in scheme.groups:
+                    group.move(self._waves, scheme.deepest + n, panel, acting[n, panel], self._x)
+        made = WindowBlock(scheme, first, self._waves, starts, acting, self._totals)
+        self._totals = made.totals[:, -1]
+        return made
 
 
 class RunningLoads:
@@ -294,7 +300,8 @@ class JointGroup:
         height = width if states else ports
         matrix = np.array(tables["matrix"], scheme.real)
         answer = np.array(tables["answer"], int).reshape(scheme.panels, -1)[:, joints]
-        self.matrix = matrix[answer[..., None] + np.arange(height * width)].reshape(*answer.shape, height, width)
+        columns = matrix[answer[..., None] + np.arange(height * width)].reshape(*answer.shape, width, height)
+        self.matrix = np.swapaxes(columns, -1, -2)
 
     def move(
         self,
