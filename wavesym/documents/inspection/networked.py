@@ -34,7 +34,7 @@ def not_served(model: Model) -> Facts:
         refusal = str(model.named)
     except CostError as error:
         refusal = str(error)
-    words = "Tables, derivation, closed form and march are not served"
+    words = "Tables, derivation and closed form are not served"
     return Facts("not_served", words, {"refusal": refusal})
 
 

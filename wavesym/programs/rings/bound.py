@@ -89,7 +89,9 @@ def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
         if not np.max(np.abs(block.waves)) < reach:
             raise OverflowError(f"waves beyond {nearest(real.reach):.1g}")
     smooth = smoothness(plan, degree)
-    felt = [sum(abs(nearest(heard.gain)) * size_of(plan, heard.track) for heard in output.heard) for output in plan.outputs]
+    felt = [
+        sum(abs(nearest(heard.gain)) * size_of(plan, heard.track) for heard in output.heard) for output in plan.outputs
+    ]
     lost_reading = 8.0 * (degree + 3) ** 2 * smallest
     errors = []
     for o, output in enumerate(plan.outputs):
@@ -139,9 +141,9 @@ def size_of(plan: RingPlan, track: int) -> float:
     if law.given[point] is not None:
         return 0.0
     free = [k for k, given in enumerate(law.given) if given is None]
-    held = fmpq_mat(len(free), len(free), [law.damping[a][b] + (law.mass[a] if a == b else 0) for a in free for b in free])
+    held = [law.damping[a][b] + (law.mass[a] if a == b else 0) for a in free for b in free]
     at = free.index(point)
-    return _ABOVE * sqrt(nearest(held.inv()[at, at] * (5 + 2 * plan.step)))
+    return _ABOVE * sqrt(nearest(fmpq_mat(len(free), len(free), held).inv()[at, at] * (5 + 2 * plan.step)))
 
 
 def smoothness(plan: RingPlan, degree: int) -> Tail:
@@ -173,9 +175,7 @@ def strength(place: Place, point: int, rate: float) -> float:
     """The jump of waves that a jump of what acts on a point counts as."""
     space = place.space
     state = sum((weight * space.pushed[n, point] ** 2 for n, weight in enumerate(space.weights)), fmpq(0))
-    sent = sum(
-        (port.impedance * (port.ratio * space.passed[port.point, point]) ** 2 for port in space.ports), fmpq(0)
-    )
+    sent = sum((port.impedance * (port.ratio * space.passed[port.point, point]) ** 2 for port in space.ports), fmpq(0))
     return _ABOVE * (sqrt(nearest(state) / rate) / 2 + sqrt(nearest(sent)))
 
 

@@ -1,8 +1,8 @@
 """What is marched of a chain: one step, rings of windows for the waves, joints, loads and what is read; all exact.
 
-The step h is the greatest common measure of the delays, so that what is sent on a window [n h, (n + 1) h) arrives at the
-other end of its bar on window n + delay/h: every joint knows all that it needs when a window begins. A window is cut
-into the same panels everywhere, at what load times leave over of h, so that on a panel every wave is smooth.
+The step h is the greatest common measure of the delays, so that what is sent on a window [n h, (n + 1) h) arrives at
+the other end of its bar on window n + delay/h: every joint knows all that it needs when a window begins. A window is
+cut into the same panels everywhere, at what load times leave over of h, so that on a panel every wave is smooth.
 """
 
 from __future__ import annotations

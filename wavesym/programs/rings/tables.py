@@ -162,5 +162,3 @@ def state_bytes(plan: RingPlan, degree: int, real: Real) -> int:
 
 def _firsts(counts: Iterable[int]) -> tuple[int, ...]:
     return tuple(accumulate(counts, initial=0))
-
-

@@ -157,7 +157,7 @@ class WindowBlock:
         self.starts, self.acting = starts, acting
         self.totals = np.repeat(totals[:, None], self.count + 1, axis=1)
         n = np.arange(self.count)
-        for output in np.flatnonzero(scheme.quantity == scheme.INTEGRAL):
+        for output in np.flatnonzero(scheme.quantity == scheme.INTEGRAL).tolist():
             self.totals[output, 1:] += np.cumsum(self._gathered(output, n, n, None), dtype=scheme.real)
 
     def read(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -288,7 +288,8 @@ class JointGroup:
             return np.array(tables[f"first_{name}"])[joints, None] + np.arange(size)
 
         self.joints = joints
-        self.points, self.states, self.ports = members("point", points), members("state", states), members("port", ports)
+        self.points, self.states = members("point", points), members("state", states)
+        self.ports = members("port", ports)
         self.arrive, self.send = (np.array(tables[name], int)[self.ports] for name in ("arrive", "send"))
         self.back = scheme.steps[self.arrive]
         at = np.array(tables["point_of"], int)[self.ports][..., None] == np.arange(points)
