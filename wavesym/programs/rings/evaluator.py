@@ -144,7 +144,7 @@ def _first_degree(plan: RingPlan, real: Real) -> int:
     bodies = [-nearest(p.space.rates[n, n]) for p in plan.places for n in range(p.space.states)]
     slow = sum(rate for rate in bodies if rate > 0) / len(bodies)
     detail = math.sqrt(2 * slow * longest * plan.crossings) + min(_fastest(plan) * longest, 1e6) / 4
-    return math.ceil(detail) + (12 if real is DOUBLE else 6)
+    return math.ceil(detail) + (8 if real is DOUBLE else 4)
 
 
 def _fastest(plan: RingPlan) -> float:
