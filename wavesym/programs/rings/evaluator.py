@@ -143,7 +143,8 @@ def _first_degree(plan: RingPlan, real: Real) -> int:
     longest = max(nearest(panel.length) for panel in plan.panels)
     bodies = [-nearest(p.space.rates[n, n]) for p in plan.places for n in range(p.space.states)]
     slow = sum(rate for rate in bodies if rate > 0) / len(bodies)
-    detail = math.sqrt(2 * slow * longest * plan.crossings) + min(_fastest(plan) * longest, 1e6) / 4
+    turning = max(place.space.turning for place in plan.places)
+    detail = math.sqrt(2 * slow * longest * plan.crossings) + min(turning * longest / 2, 1e6)
     return math.ceil(detail) + (8 if real is DOUBLE else 4)
 
 

@@ -16,12 +16,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import sqrt
 
+import numpy as np
 from flint import fmpq, fmpq_mat
+from numpy.typing import NDArray
 
 from wavesym.exact.joint import JointLaw
 from wavesym.exact.node_rules import joint_rule
 from wavesym.model.network import Joint, Network
-from wavesym.numbers.doubles import not_below
+from wavesym.numbers.doubles import nearest
 
 _ZERO = fmpq(0)
 
@@ -60,13 +62,23 @@ class JointSpace:
 
     @cached_property
     def norm(self) -> float:
-        """That of `rates` in the norm of energy, at most: it bounds how fast anything in the joint is."""
-        squares = (
-            self.rates[a, b] ** 2 * self.weights[a] / self.weights[b]
-            for a in range(self.states)
-            for b in range(self.states)
-        )
-        return sqrt(not_below(sum(squares, _ZERO))) * (1 + 2.0**-50)
+        """That of `rates` where the energy is |x|**2 / 2, at most: it bounds how fast anything in the joint is."""
+        return _norm(self._balanced)
+
+    @cached_property
+    def turning(self) -> float:
+        """About how fast its bodies swing on their springs, where nothing takes their energy; 0 where that is more."""
+        swing = _norm((self._balanced - self._balanced.T) / 2)
+        decay = float(np.max(-np.diag(self._balanced), initial=0.0))
+        return sqrt(max(swing**2 - decay**2 / 4, 0.0))
+
+    @cached_property
+    def _balanced(self) -> NDArray[np.float64]:
+        roots = [sqrt(nearest(weight)) for weight in self.weights]
+        rows = [
+            [nearest(self.rates[a, b]) * roots[a] / roots[b] for b in range(self.states)] for a in range(self.states)
+        ]
+        return np.array(rows).reshape(self.states, self.states)
 
     @cached_property
     def scattering(self) -> fmpq_mat:
@@ -163,3 +175,10 @@ def _ports(network: Network, joint: Joint) -> Iterator[Port]:
         free = network.points[point].motion is None
         push = rule.arrives[1 - end.side] * ratio * bar.impedance if free else _ZERO
         yield Port(place[point], bar.impedance, ratio, push)
+
+
+def _norm(matrix: NDArray[np.float64]) -> float:
+    """An upper bound of the 2-norm: the root of those of the largest sums of rows and of columns, rounded up."""
+    size = np.abs(matrix)
+    rows, columns = (float(np.max(np.sum(size, axis=axis), initial=0.0)) for axis in (0, 1))
+    return sqrt(rows * columns) * (1 + 1e-12)
