@@ -216,7 +216,7 @@ def test_the_light_cone_ends_in_what_is_held() -> None:
         output={"until": "9/2", "velocity": ["2"], "displacement": ["2"]},
     )
     model = lower(scene)
-    assert len(ring_plan(model).places) < 10
+    assert len(ring_plan(model).joints) < 10
     made = ring_march(model)
     taus = instants(model)
     assert np.all(in_bounds(model, made, taus, exact(model, taus)) <= 1)

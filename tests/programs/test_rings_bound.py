@@ -128,7 +128,7 @@ def energies(plan: RingPlan, degree: int) -> np.ndarray:
     """The energy of bars and joints at the start of each window."""
     scheme, block = blocks(plan, degree)
     held = np.sum(squared(scheme, block.waves), axis=-1)
-    weights = np.array([float(w.p) / float(w.q) for place in plan.places for w in place.space.weights])
+    weights = np.array([float(w.p) / float(w.q) for place in plan.joints for w in place.space.weights])
     found = block.starts[:, 0] ** 2 @ weights / 2
     for number, track in enumerate(plan.tracks):
         z = float(track.impedance.p) / float(track.impedance.q)
@@ -152,7 +152,7 @@ def test_energy_never_grows(table) -> None:
         return
     network = plan.model.network
     driven = any(point.motion not in (None, "fixed") for point in network.points)
-    if driven or len(plan.places) < len(network.joints) or plan.windows > 200:
+    if driven or len(plan.joints) < len(network.joints) or plan.windows > 200:
         return
     energy = energies(plan, 40)
     assert np.all(np.diff(energy) <= 1e-9 * (energy[0] + 1))
@@ -171,9 +171,9 @@ def test_energy_with_a_wrong_weight_is_seen() -> None:
     plan = ring_plan(lower(sprung()))
     energy = energies(plan, 24)
     assert np.allclose(energy, energy[0], rtol=1e-11, atol=0)
-    body = plan.places[1]
+    body = plan.joints[1]
     stiffer = replace(body.space, weights=(body.space.weights[0], 2 * body.space.weights[1]))
-    wrong = replace(plan, places=(plan.places[0], replace(body, space=stiffer), *plan.places[2:]))
+    wrong = replace(plan, joints=(plan.joints[0], replace(body, space=stiffer), *plan.joints[2:]))
     assert np.ptp(energies(wrong, 24)) > 1e-2
 
 
@@ -208,7 +208,7 @@ def test_rounding_that_is_left_out_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
 
 def grown(plan: RingPlan, jumps: list[float], order: int) -> float:
     """[x^order] of s(x) times G(x) to the power of the crossings."""
-    rate = rational(max(place.space.norm for place in plan.places))
+    rate = rational(max(place.space.norm for place in plan.joints))
     x = fmpq_series([0, rate], prec=order + 1)
     one = fmpq_series([1], prec=order + 1)
     total = fmpq_series([rational(jump) for jump in jumps], prec=order + 1)
@@ -237,7 +237,7 @@ def test_jumps_of_derivatives_are_bounded(order: int) -> None:
     """Of strain + velocity, twice a wave, in the rods of impedance 1 of a drive."""
     model = lower(drive(6, strain=[], displacement=[], velocity=["1/2", "2", "4"]))
     plan = ring_plan(model)
-    rate = max(place.space.norm for place in plan.places)
+    rate = max(place.space.norm for place in plan.joints)
     jumps = list(bounds._jumps(plan, rate))
     assert 0 < steepest(model, order) <= 2 * grown(plan, jumps, order)
 

@@ -168,9 +168,7 @@ def _pieces(model: Model, real: Real, asked: bool, windows: int | None, optimize
 def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator | RingMarch:
     if model.chain is None:
         if windows is not None:
-            raise UnservedError(
-                "--windows: chain given, collision, drive or building expected (they take given loads)"
-            )
+            raise UnservedError("--windows: chain given, collision, drive or building expected (they take given loads)")
         return ring_march(model, real)
     return marched(model, real, windows=windows)
 

@@ -33,7 +33,7 @@ from wavesym.programs.march.bound import MARGIN, Verdict, reading_weights
 from wavesym.programs.march.plan import power_of_two
 from wavesym.programs.march.tail import Tail, tail_of
 from wavesym.programs.rings.answer import NEGLIGIBLE
-from wavesym.programs.rings.plan import Place, RingPlan, largest_number
+from wavesym.programs.rings.plan import MarchedJoint, RingPlan, largest_number
 from wavesym.programs.rings.tables import RingTables
 from wavesym.programs.schemes.rings import JointGroup, MarchingRings, RingScheme, RunningLoads, WindowBlock
 
@@ -131,13 +131,13 @@ def size_of(plan: RingPlan, track: int) -> float:
         return 1 / sqrt(nearest(impedance))
     number, point = next(
         (number, port.point)
-        for number, place in enumerate(plan.places)
-        for port, send in zip(place.space.ports, place.sends, strict=True)
+        for number, joint in enumerate(plan.joints)
+        for port, send in zip(joint.space.ports, joint.sends, strict=True)
         if send == track
     )
     network = plan.model.network
-    joint = [network.joints[each] for each in plan.model.reached(rational(plan.tau_max))][number]
-    law = JointLaw.of(network, joint)
+    reached = list(plan.model.reached(rational(plan.tau_max)))
+    law = JointLaw.of(network, network.joints[reached[number]])
     if law.given[point] is not None:
         return 0.0
     free = [k for k, given in enumerate(law.given) if given is None]
@@ -148,7 +148,7 @@ def size_of(plan: RingPlan, track: int) -> float:
 
 def smoothness(plan: RingPlan, degree: int) -> Tail:
     """How near to polynomials of some degree, and no lower one, true waves are where the norm of energy is 1."""
-    rate = max((place.space.norm for place in plan.places), default=0.0)
+    rate = max((joint.space.norm for joint in plan.joints), default=0.0)
     jumps = list(_jumps(plan, rate)) if rate else [0.0] * 3
     if not any(jumps):
         return Tail(max(degree, 3), 0.0)  # without a state waves are as the loads
@@ -160,9 +160,9 @@ def _jumps(plan: RingPlan, rate: float) -> Iterator[float]:
     """Those of order 0, 1, 2 that loads and start make, as waves (velocity times root of impedance), all added up."""
     strengths: dict[int, float] = {}
     begin = 0.0
-    for place in plan.places:
-        strengths |= {force: strength(place, point, rate) for point, force in enumerate(place.forces) if force >= 0}
-        begin += started(plan, place, rate)
+    for joint in plan.joints:
+        strengths |= {force: strength(joint, point, rate) for point, force in enumerate(joint.forces) if force >= 0}
+        begin += started(plan, joint, rate)
     loads = [0.0] * 3
     for force, powers in plan.changes():
         for order, c in enumerate(powers):
@@ -171,18 +171,18 @@ def _jumps(plan: RingPlan, rate: float) -> Iterator[float]:
     yield from loads
 
 
-def strength(place: Place, point: int, rate: float) -> float:
+def strength(joint: MarchedJoint, point: int, rate: float) -> float:
     """The jump of waves that a jump of what acts on a point counts as."""
-    space = place.space
+    space = joint.space
     state = sum((weight * space.pushed[n, point] ** 2 for n, weight in enumerate(space.weights)), fmpq(0))
     sent = sum((port.impedance * (port.ratio * space.passed[port.point, point]) ** 2 for port in space.ports), fmpq(0))
     return _ABOVE * (sqrt(nearest(state) / rate) / 2 + sqrt(nearest(sent)))
 
 
-def started(plan: RingPlan, place: Place, rate: float) -> float:
-    """The same for the start: as if what was held in place until tau = 0 were let go."""
-    space = place.space
-    arriving = [plan.tracks[track].held for track in place.arrive]
+def started(plan: RingPlan, joint: MarchedJoint, rate: float) -> float:
+    """The same for the start: as if what was held in joint until tau = 0 were let go."""
+    space = joint.space
+    arriving = [plan.tracks[track].held for track in joint.arrive]
     acting = [fmpq(0)] * space.points
     for port, a in zip(space.ports, arriving, strict=True):
         acting[port.point] += port.push * a
@@ -190,7 +190,7 @@ def started(plan: RingPlan, place: Place, rate: float) -> float:
     moved, q = space.rates * x + space.pushed * s, space.shown * x + space.passed * s
     state = sum((weight * moved[n, 0] ** 2 for n, weight in enumerate(space.weights)), fmpq(0))
     sent = fmpq(0)
-    for port, a, track in zip(space.ports, arriving, place.sends, strict=True):
+    for port, a, track in zip(space.ports, arriving, joint.sends, strict=True):
         sent += port.impedance * (port.ratio * q[port.point, 0] - a - plan.tracks[track].held) ** 2
     return _ABOVE * (sqrt(nearest(state) / rate) / 2 + sqrt(nearest(sent)))
 
@@ -207,10 +207,10 @@ class Losses:
         self._loads = RunningLoads(scheme, np.abs(scheme.event_power), np.abs(scheme.since))
         self._lengths = [nearest(panel.length) for panel in plan.panels]
         self._impedance = np.array([nearest(track.impedance) for track in plan.tracks])
-        self._weights = np.array([nearest(weight) for place in plan.places for weight in place.space.weights])
-        self._norms = np.array([place.space.norm for place in plan.places])
+        self._weights = np.array([nearest(weight) for joint in plan.joints for weight in joint.space.weights])
+        self._norms = np.array([joint.space.norm for joint in plan.joints])
         self._missed = [
-            [np.array([made.missed(plan.places[j], panel.length) for j in group.joints]) for panel in plan.panels]
+            [np.array([made.missed(plan.joints[j], panel.length) for j in group.joints]) for panel in plan.panels]
             for group in scheme.groups
         ]
         delays = nearest(plan.step) * np.array([track.steps for track in plan.tracks])

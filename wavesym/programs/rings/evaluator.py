@@ -138,31 +138,31 @@ def _first_degree(plan: RingPlan, real: Real) -> int:
 
     A stiff spring adds those of a body on it.
     """
-    if not any(place.space.states for place in plan.places):
+    if not any(joint.space.states for joint in plan.joints):
         return _LEAST_DEGREE
     longest = max(nearest(panel.length) for panel in plan.panels)
-    bodies = [-nearest(p.space.rates[n, n]) for p in plan.places for n in range(p.space.states)]
+    bodies = [-nearest(p.space.rates[n, n]) for p in plan.joints for n in range(p.space.states)]
     slow = sum(rate for rate in bodies if rate > 0) / len(bodies)
-    turning = max(place.space.turning for place in plan.places)
+    turning = max(joint.space.turning for joint in plan.joints)
     detail = math.sqrt(2 * slow * longest * plan.crossings) + min(turning * longest / 2, 1e6)
     return math.ceil(detail) + (8 if real is DOUBLE else 4)
 
 
 def _fastest(plan: RingPlan) -> float:
-    return max(place.space.norm for place in plan.places)
+    return max(joint.space.norm for joint in plan.joints)
 
 
 def _multiplications(plan: RingPlan, degree: int) -> int:
     """On one window."""
     wide = (
-        place.space.points * (degree + 1) + place.space.states
-        if place.space.states
-        else (len(place.space.ports) + place.space.points) * (degree + 1)
-        for place in plan.places
+        joint.space.points * (degree + 1) + joint.space.states
+        if joint.space.states
+        else (len(joint.space.ports) + joint.space.points) * (degree + 1)
+        for joint in plan.joints
     )
     return len(plan.panels) * sum(
-        width * (width if place.space.states else len(place.space.ports))
-        for width, place in zip(wide, plan.places, strict=True)
+        width * (width if joint.space.states else len(joint.space.ports))
+        for width, joint in zip(wide, plan.joints, strict=True)
     )
 
 
@@ -180,7 +180,7 @@ def _refuse_long(plan: RingPlan, degree: int, spent: float, real: Real) -> float
             f"{_MOST_BYTES:.1e} expected (fewer rods, or lengths with a larger common measure, help)"
         )
     # two matrices are multiplied with: the answers, and their sizes
-    work = plan.windows * (3.0 * _multiplications(plan, degree) + _JOINT * len(plan.places) * len(plan.panels))
+    work = plan.windows * (3.0 * _multiplications(plan, degree) + _JOINT * len(plan.joints) * len(plan.panels))
     spent += work
     if spent > _MOST_WORK:
         raise CostError(

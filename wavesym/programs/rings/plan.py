@@ -44,7 +44,7 @@ class Track:
 
 
 @dataclass(frozen=True)
-class Place:
+class MarchedJoint:
     """A joint of the light cone: its laws, and of each port the tracks that `arrive` and that it `sends`.
 
     `forces` are the loads on its points, by number; -1 for none.
@@ -82,7 +82,7 @@ class RingPlan:
     step: fmpq
     panels: tuple[MarchPanel, ...]
     tracks: tuple[Track, ...]
-    places: tuple[Place, ...]
+    joints: tuple[MarchedJoint, ...]
     forces: int
     events: tuple[LoadEvent, ...]
     outputs: tuple[WatchedPlace, ...]
@@ -108,14 +108,14 @@ class RingPlan:
     def scaled(self, factor: fmpq) -> RingPlan:
         """The same with all that moves it `factor` times as large; every motion is, then."""
 
-        def louder(place: Place) -> Place:
-            begun = tuple(factor * value for value in place.space.begun)
-            return replace(place, space=replace(place.space, begun=begun))
+        def louder(joint: MarchedJoint) -> MarchedJoint:
+            begun = tuple(factor * value for value in joint.space.begun)
+            return replace(joint, space=replace(joint.space, begun=begun))
 
         return replace(
             self,
             tracks=tuple(replace(track, held=factor * track.held) for track in self.tracks),
-            places=tuple(map(louder, self.places)),
+            joints=tuple(map(louder, self.joints)),
             events=tuple(
                 replace(event, powers=_three(factor * fmpq_poly(list(event.powers)))) for event in self.events
             ),
@@ -171,7 +171,7 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
     tracks += [Track(0, _ZERO, _ZERO)] * (len(shown) + 1)
     loads = _Loads(model, until, reached)
     panels = _panels([time for time, _, _ in loads.changes], step)
-    places = []
+    marched = []
     for number in reached:
         joint = network.joints[number]
         space = joint_space(network, joint)
@@ -180,13 +180,13 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
         sends = (*(track_of[end] for end, _ in joint.ends), *(point_of[point] for _, point in watched))
         arrive = (*(track_of[network.beyond(end)] for end, _ in joint.ends), *(silent for _ in watched))
         forces = tuple(loads.numbers.get(point, -1) for point in joint.points)
-        places.append(Place(replace(space, ports=ports), arrive, sends, forces))
+        marched.append(MarchedJoint(replace(space, ports=ports), arrive, sends, forces))
     return RingPlan(
         model,
         step,
         panels,
         tuple(tracks),
-        tuple(places),
+        tuple(marched),
         len(loads.numbers),
         tuple(loads.events(panels, step)),
         tuple(_watched(model, probe, track_of, point_of) for probe in model.probes),
@@ -279,15 +279,15 @@ def _watched(model: Model, probe: Probe, track_of: dict[End, int], point_of: dic
 def largest_number(plan: RingPlan) -> fmpq:
     """The largest of what moves it: about as large as its motion."""
     powers = (power for event in plan.events for power in event.powers)
-    begun = (value for place in plan.places for value in place.space.begun)
+    begun = (value for joint in plan.joints for value in joint.space.begun)
     return max(map(abs, (*(track.held for track in plan.tracks), *begun, *powers)), default=_ZERO)
 
 
 def least_numbers(plan: RingPlan) -> Iterator[fmpq]:
     """What programs read as numbers that must not be too small for their format."""
-    for place in plan.places:
-        yield from place.space.begun
-        for port in place.space.ports:
+    for joint in plan.joints:
+        yield from joint.space.begun
+        for port in joint.space.ports:
             yield from (port.ratio, port.push)
     for event in plan.events:
         yield from event.powers

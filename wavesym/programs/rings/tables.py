@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import Real
 from wavesym.programs.rings.answer import Answer, answer
-from wavesym.programs.rings.plan import Place, RingPlan
+from wavesym.programs.rings.plan import MarchedJoint, RingPlan
 
 VALUE, INTEGRAL, NOTHING = 0, 1, 2
 
@@ -28,15 +28,15 @@ class RingTables:
     def answers(self) -> dict[tuple[object, ...], Answer]:
         """By laws and length of a panel: of joints that have a state."""
         found: dict[tuple[object, ...], Answer] = {}
-        for place in self._plan.places:
+        for joint in self._plan.joints:
             for panel in self._plan.panels:
-                if place.space.states and (key := answer_key(place, panel.length)) not in found:
-                    found[key] = answer(place.space, panel.length, self._degree)
+                if joint.space.states and (key := answer_key(joint, panel.length)) not in found:
+                    found[key] = answer(joint.space, panel.length, self._degree)
         return found
 
-    def missed(self, place: Place, length: fmpq) -> NDArray[np.float64]:
+    def missed(self, joint: MarchedJoint, length: fmpq) -> NDArray[np.float64]:
         """What the polynomials of a joint miss; of one without state nothing."""
-        return self.answers[answer_key(place, length)].missed if place.space.states else np.zeros((0, 0))
+        return self.answers[answer_key(joint, length)].missed if joint.space.states else np.zeros((0, 0))
 
     def tables(self, nothing: Sequence[bool]) -> dict[str, tuple[float, ...]]:
         """All tables, by name; `nothing` says of each output whether it is 0 throughout."""
@@ -45,7 +45,7 @@ class RingTables:
         def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
             return tuple(map(real.nearest, values))
 
-        spaces = [place.space for place in plan.places]
+        spaces = [joint.space for joint in plan.joints]
         ports = [port for space in spaces for port in space.ports]
         matrix, where = self._matrices()
         delays = sorted({heard.delay for output in plan.outputs for heard in output.heard})
@@ -64,12 +64,12 @@ class RingTables:
             "answer": where,
             "matrix": matrix,
             "begun": reals(value for space in spaces for value in space.begun),
-            "force_on": tuple(force for place in plan.places for force in place.forces),
+            "force_on": tuple(force for joint in plan.joints for force in joint.forces),
             "point_of": tuple(port.point for port in ports),
             "push": reals(port.push for port in ports),
             "ratio": reals(port.ratio for port in ports),
-            "arrive": tuple(track for place in plan.places for track in place.arrive),
-            "send": tuple(track for place in plan.places for track in place.sends),
+            "arrive": tuple(track for joint in plan.joints for track in joint.arrive),
+            "send": tuple(track for joint in plan.joints for track in joint.sends),
             "half_length": reals(panel.length / 2 for panel in plan.panels),
             "since": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
             "event_window": tuple(event.window for event in plan.events),
@@ -100,15 +100,15 @@ class RingTables:
         return {
             "degree": self._degree,
             "panels": len(plan.panels),
-            "joints": len(plan.places),
-            "states": sum(place.space.states for place in plan.places),
+            "joints": len(plan.joints),
+            "states": sum(joint.space.states for joint in plan.joints),
             "forces": plan.forces,
             "events": len(plan.events),
             "tracks": len(plan.tracks),
             "slots": sum(track.steps + 1 for track in plan.tracks),
             "widest": max(
-                place.space.points * (self._degree + 1) + place.space.states if place.space.states else 1
-                for place in plan.places
+                joint.space.points * (self._degree + 1) + joint.space.states if joint.space.states else 1
+                for joint in plan.joints
             ),
             "cycle": plan.cycle[0],
             "span": real.nearest(fmpq(plan.cycle[1])),
@@ -121,34 +121,34 @@ class RingTables:
         begins: dict[tuple[object, ...], int] = {}
         where = []
         for panel in self._plan.panels:
-            for place in self._plan.places:
-                key = answer_key(place, panel.length)
+            for joint in self._plan.joints:
+                key = answer_key(joint, panel.length)
                 if key not in begins:
                     begins[key] = len(matrix)
-                    if place.space.states:
+                    if joint.space.states:
                         numbers = (rational(value) for value in self.answers[key].matrix.T.ravel().tolist())
                         matrix += map(self._real.nearest, numbers)
                     else:
-                        matrix += map(self._real.nearest, place.space.scattering.transpose().entries())
+                        matrix += map(self._real.nearest, joint.space.scattering.transpose().entries())
                 where.append(begins[key])
         return tuple(matrix), tuple(where)
 
 
-def answer_key(place: Place, length: fmpq) -> tuple[object, ...]:
+def answer_key(joint: MarchedJoint, length: fmpq) -> tuple[object, ...]:
     """Joints with the same one have the same matrix on panels of this length."""
-    if place.space.states:
-        return (*place.space.key, str(length))
-    return tuple(map(str, place.space.scattering.entries()))
+    if joint.space.states:
+        return (*joint.space.key, str(length))
+    return tuple(map(str, joint.space.scattering.entries()))
 
 
 def table_bytes(plan: RingPlan, degree: int, real: Real) -> int:
     """The size of the tables that grow: matrices, loads, and where stretches start."""
     sizes = {}
-    for place in plan.places:
+    for joint in plan.joints:
         for panel in plan.panels:
-            ports, states = len(place.space.ports), place.space.states
-            wide = place.space.points * (degree + 1) + states
-            sizes[answer_key(place, panel.length)] = wide * wide if states else ports * (ports + place.space.points)
+            ports, states = len(joint.space.ports), joint.space.states
+            wide = joint.space.points * (degree + 1) + states
+            sizes[answer_key(joint, panel.length)] = wide * wide if states else ports * (ports + joint.space.points)
     delays = {heard.delay for output in plan.outputs for heard in output.heard}
     stretches = sum(len(plan.stretches(delay)) for delay in delays) * 3 + 1
     return real.bytes * (sum(sizes.values()) + 6 * len(plan.events) + plan.cycle[0] * stretches)
