@@ -208,11 +208,10 @@ class Losses:
         self._lengths = [nearest(panel.length) for panel in plan.panels]
         self._impedance = np.array([nearest(track.impedance) for track in plan.tracks])
         self._weights = np.array([nearest(weight) for joint in plan.joints for weight in joint.space.weights])
-        self._norms = np.array([joint.space.norm for joint in plan.joints])
-        self._missed = [
-            [np.array([made.missed(plan.joints[j], panel.length) for j in group.joints]) for panel in plan.panels]
-            for group in scheme.groups
-        ]
+        first = [plan.joints[group.joints[0]] for group in scheme.groups]
+        self._norms = [joint.space.norm for joint in first]
+        self._missed = [[made.missed(joint, panel.length) for panel in plan.panels] for joint in first]
+        self._pushes = max(group.send.shape[1] for group in scheme.groups)
         delays = nearest(plan.step) * np.array([track.steps for track in plan.tracks])
         self.begun = unit * sqrt(delays * self._impedance @ scheme.held**2 + self._weights @ scheme.begun**2 / 2)
         self.direct = np.zeros(len(plan.tracks))
@@ -224,7 +223,7 @@ class Losses:
         lost = inexact = 0.0
         for panel in panels:
             truncation, rounding = np.zeros(block.count), np.zeros(block.count)
-            for group, missed in zip(self._scheme.groups, self._missed, strict=True):
+            for group, missed, norm in zip(self._scheme.groups, self._missed, self._norms, strict=True):
                 a, sent = self._waves(block, group, panel)
                 known, size = (np.zeros((*a.shape[:2], group.points.shape[1], group.size)) for _ in range(2))
                 known[..., :3], size[..., :3] = block.acting[:, panel, group.points], loads[:, panel, group.points]
@@ -232,12 +231,13 @@ class Losses:
                     x = block.starts[:, panel, group.states]
                     given = _joined(group.collect @ a + known, x)
                     sizes = _joined(np.abs(group.collect) @ np.abs(a) + size, np.abs(x))
-                    truncation += self._truncated(group, panel, missed[panel], given, sizes)
+                    truncation += self._truncated(missed[panel], norm * self._lengths[panel], given, sizes)
                     wrong, ends = self._answered(group, panel, sizes)
                     wrong = np.abs(group.spread) @ wrong + 3 * self._unit * (np.abs(sent) + np.abs(a))
                     rounding += np.sum(self._weights[group.states] / 2 * ends**2, axis=(1, 2))
                 else:
-                    wrong = self._products(group.matrix[panel], np.concatenate([np.abs(a), size], axis=2), 0)
+                    sizes = np.swapaxes(np.concatenate([np.abs(a), size], axis=2), 2, 3)
+                    wrong = np.swapaxes(self._products(group.columns[panel], sizes), 2, 3)
                 wrong += 4 * self._smallest
                 squares = np.sum(wrong**2, axis=-1) + wrong[..., 0] ** 2
                 rounding += pi / 4 * self._lengths[panel] * np.sum(self._impedance[group.send] * squares, axis=(1, 2))
@@ -251,30 +251,28 @@ class Losses:
         n = self._scheme.deepest + np.arange(block.count)[:, None, None]
         return block.waves[n - group.back, group.arrive, panel], block.waves[n, group.send, panel]
 
-    def _products(self, matrix: Array, sizes: Array, pushes: int) -> Array:
-        """How wrong (joints, rows, columns) times (windows, joints, columns, any) may be, from absolute values.
+    def _products(self, columns: Array, sizes: Array) -> Array:
+        """How wrong (..., rows) times (rows, columns) may be, from absolute values.
 
-        What it is multiplied with is a sum of so many `pushes`.
+        What is multiplied is itself a sum of pushes, and so are the `sizes`.
         """
-        size = np.abs(matrix) + NEGLIGIBLE * np.max(np.abs(matrix), axis=(1, 2), keepdims=True)
-        count = matrix.shape[-1] + pushes + _SPARE
-        small = count * (1 + np.sum(size, axis=-1, keepdims=True)) + np.sum(sizes, axis=2, keepdims=True)
-        return np.asarray(self._unit * count * (size @ sizes) + self._smallest * small)
+        size = np.abs(columns) + NEGLIGIBLE * np.max(np.abs(columns))
+        count = len(columns) + self._pushes + _SPARE
+        small = count * (1 + np.sum(size, axis=0)) + np.sum(sizes, axis=-1, keepdims=True)
+        return np.asarray(self._unit * count * (sizes @ size) + self._smallest * small)
 
     def _answered(self, group: JointGroup, panel: int, sizes: Array) -> tuple[Array, Array]:
         """How wrong velocities (windows, joints, points, k) and states at the end may be."""
-        matrix, states = group.matrix[panel], group.states.shape[1]
-        wrong = self._products(matrix, sizes[..., None], group.send.shape[1])[..., 0]
-        before = sizes[..., -states:]
-        ends = wrong[..., -states:] + 2 * self._unit * (before + (np.abs(matrix) @ sizes[..., None])[..., -states:, 0])
+        columns, states = group.columns[panel], group.states.shape[1]
+        wrong = self._products(columns, sizes)
+        after = sizes[..., -states:] + sizes @ np.abs(columns[:, -states:])
+        ends = wrong[..., -states:] + 2 * self._unit * after
         return wrong[..., :-states].reshape(*sizes.shape[:2], -1, group.size), ends
 
-    def _truncated(self, group: JointGroup, panel: int, missed: Array, given: Array, sizes: Array) -> Array:
+    def _truncated(self, missed: Array, turned: float, given: Array, sizes: Array) -> Array:
         """The squares of what is lost by truncation, (windows,)."""
-        inexact = self._products(missed, sizes[..., None], group.send.shape[1])[..., 0]
-        eps = np.linalg.norm(np.abs((missed @ given[..., None])[..., 0]) + inexact, axis=-1)
-        turned = self._norms[group.joints] * self._lengths[panel]
-        return np.asarray(np.sum((2 * eps * (np.sqrt(turned) + (1 + turned) / sqrt(2))) ** 2, axis=1))
+        eps = np.linalg.norm(np.abs(given @ missed.T) + self._products(missed.T, sizes), axis=-1)
+        return np.asarray(np.sum((2 * eps * (sqrt(turned) + (1 + turned) / sqrt(2))) ** 2, axis=1))
 
 
 def _joined(acting: Array, x: Array) -> Array:

@@ -100,10 +100,12 @@ class RingScheme:
         self.back, self.panel_of = indices("back"), indices("panel_of")
         self.deepest = max(1, int(np.max(self.back)), int(np.max(self.steps)))
         """How many windows back anything is asked for."""
-        shapes = np.stack([np.diff(tables[f"first_{name}"]) for name in ("point", "state", "port")], axis=1)
+        shapes = [np.diff(tables[f"first_{name}"]) for name in ("point", "state", "port")]
+        answers, matrix = indices("answer", self.panels, -1), reals("matrix")
+        kinds = np.stack([answers[0], *shapes], axis=1)
         self.groups = [
-            JointGroup(self, tables, np.flatnonzero(np.all(shapes == shape, axis=1)), *shape.tolist())
-            for shape in np.unique(shapes, axis=0)
+            JointGroup(self, tables, np.flatnonzero(np.all(kinds == kind, axis=1)), answers, matrix, *kind[1:].tolist())
+            for kind in np.unique(kinds, axis=0)
         ]
 
     def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
@@ -273,13 +275,15 @@ class RunningLoads:
 
 
 class JointGroup:
-    """Joints with as many points, states and ports each."""
+    """Joints with the same matrices, and as many ports each."""
 
     def __init__(
         self,
         scheme: RingScheme,
         tables: dict[str, tuple[float, ...]],
         joints: NDArray[np.int_],
+        answers: NDArray[np.int_],
+        matrix: NDArray[np.float64],
         points: int,
         states: int,
         ports: int,
@@ -299,10 +303,9 @@ class JointGroup:
         self.spread = at * ratio[..., None]
         width = points * self.size + states if states else ports + points
         height = width if states else ports
-        matrix = np.array(tables["matrix"], scheme.real)
-        answer = np.array(tables["answer"], int).reshape(scheme.panels, -1)[:, joints]
-        columns = matrix[answer[..., None] + np.arange(height * width)].reshape(*answer.shape, width, height)
-        self.matrix = np.swapaxes(columns, -1, -2)
+        self.columns = np.stack([matrix[at : at + width * height] for at in answers[:, joints[0]]])
+        self.columns = self.columns.reshape(-1, width, height)
+        """The matrix of each panel, turned."""
 
     def move(
         self,
@@ -319,12 +322,12 @@ class JointGroup:
         if self.states.size:
             s += self.collect @ a
             given = np.concatenate([s.reshape(len(s), -1), x[self.states]], axis=1)
-            answer = (self.matrix[panel] @ given[..., None])[..., 0]
+            answer = given @ self.columns[panel]
             q = answer[:, : s[0].size].reshape(s.shape)
             x[self.states] += answer[:, s[0].size :]
             waves[n, self.send, panel] = self.spread @ q - a
         else:
-            waves[n, self.send, panel] = self.matrix[panel] @ np.concatenate([a, s], axis=1)
+            waves[n, self.send, panel] = self.columns[panel].T @ np.concatenate([a, s], axis=1)
 
 
 def _series(c: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
