@@ -84,6 +84,26 @@ def test_what_is_not_served_is_one_line(command: list[str], capsys: pytest.Captu
     assert err.count("\n") == 1
 
 
+def test_a_march_is_generated_and_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["generate", "geared_drive", "--evaluator", "march", "--language", "all", "-o", str(tmp_path)]) == 0
+    assert capsys.readouterr().err.startswith("geared_drive: march, degree ")
+    told = json.loads((tmp_path / "geared_drive.json").read_text())
+    assert (told["evaluator"], told["command"]) == ("march", "wavesym generate geared_drive.toml --evaluator march")
+    assert "on steps of 1/2" in told["reason"]
+    assert 0 < told["error_bound"] < 1e-8
+
+
+def test_a_march_on_too_fine_a_step_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "fine.toml"
+    lines = 'name = "fine"', "[system]", 'type = "chain"', "parts = [{ rod = 1, strain = 1 }, { rod = 1.001 }]"
+    file.write_text("\n".join([*lines, "[output]", "until = 3", "velocity = [0]"]))
+    assert main(["generate", str(file), "--evaluator", "march", "-o", str(tmp_path / "out")]) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert "delays 1, 1001/1000 have the common measure 1/1000" in err
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_chain_that_moves_is_not_told_to_be_still(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "bar.toml"
     lines = 'name = "bar"', "[system]", 'type = "chain"', "parts = [{ rod = 1, strain = 1 }]"

@@ -112,6 +112,29 @@ def test_springs_soft_and_stiff(stiffness) -> None:
     assert np.all(in_bounds(model, made, taus, exact(model, taus)) <= 1)
 
 
+@pytest.mark.parametrize("times", [["1e-9"], ["1/2", "0.5000001"], ["1/3", "2/3", "0.7", "1.1"]])
+def test_loads_at_nasty_times(times) -> None:
+    """Panels that are very short, which cost much of the bound, and many."""
+    parts = [
+        {"mass": 1},
+        {"rod": 1},
+        {"mass": "1/2", "dashpot": "1/3", "name": "b"},
+        {"rod": "3/2", "impedance": "1/4"},
+    ]
+    signs = [(-1) ** k for k in range(len(times))]
+    scene = Scene(
+        name="nasty",
+        system={"type": "chain", "parts": [*parts, {"spring": 3}, {"mass": 1, "name": "hung"}]},
+        load=[{"at": "b", "times": times, "steps": signs, "ramps": [1] * len(times)}],
+        output={"until": 3, "velocity": ["b", "hung"], "strain": ["1+"], "displacement": ["hung"]},
+    )
+    model = lower(scene)
+    made = ring_march(model)
+    assert made.error_bound < 1e-5
+    taus = instants(model, 20)
+    assert np.all(in_bounds(model, made, taus, exact(model, taus)) <= 1)
+
+
 @pytest.mark.parametrize("dashpot", [1, "1.000000001", "0.999999999"])
 def test_a_dashpot_near_the_impedance(dashpot) -> None:
     """One that is equal to it sends back exactly 0; the others send 1e-9 of what arrives, and not rounding."""
