@@ -17,7 +17,7 @@ from wavesym.exact.joint import JointLaw
 from wavesym.exact.motion import Motion
 from wavesym.model.model import Model
 from wavesym.model.network import Bar, Link, Network, Point
-from wavesym.numbers.doubles import rational
+from wavesym.numbers.doubles import fraction, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.making import program
 from wavesym.programs.rings import bound as bounds
@@ -142,7 +142,7 @@ def quiet(model: Model) -> Model:
     return replace(model, loads=())
 
 
-@settings(max_examples=15)
+@settings(max_examples=10)
 @given(small(until=6))
 def test_energy_never_grows(table) -> None:
     """And stays where there is nothing that takes it."""
@@ -152,9 +152,12 @@ def test_energy_never_grows(table) -> None:
         return
     network = plan.model.network
     driven = any(point.motion not in (None, "fixed") for point in network.points)
-    if driven or len(plan.joints) < len(network.joints) or plan.windows > 200:
+    fine = (
+        max(joint.space.norm for joint in plan.joints) * float(fraction(plan.step)) <= 8
+    )  # for polynomials of degree 30
+    if driven or not fine or len(plan.joints) < len(network.joints) or plan.windows > 200:
         return
-    energy = energies(plan, 40)
+    energy = energies(plan, 30)
     assert np.all(np.diff(energy) <= 1e-9 * (energy[0] + 1))
     if not any(x.damping for x in (*network.points, *network.links)):
         assert np.allclose(energy, energy[0], rtol=1e-6, atol=0)
