@@ -125,7 +125,12 @@ def ring_march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> 
 
 
 def _made(plan: RingPlan, degree: int, real: Real) -> tuple[RingMarch, Verdict]:
-    verdict = judge(plan, degree, real)
+    try:
+        verdict = judge(plan, degree, real)
+    except OverflowError:  # of the numbers' format, which costs have nothing to do with
+        raise
+    except ArithmeticError as error:
+        raise CostError(f"system.parts: to solve the joints of a march, {error} (softer springs help)") from None
     outputs = tuple(
         ProgramOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)
         for output, error, size in zip(plan.outputs, verdict.bounds, verdict.largest, strict=True)
