@@ -112,6 +112,22 @@ def test_springs_soft_and_stiff(stiffness) -> None:
     assert np.all(in_bounds(model, made, taus, exact(model, taus)) <= 1)
 
 
+def test_a_spring_of_a_million() -> None:
+    """It swings 160 times a unit of tau; a Laplace expansion has it in closed form."""
+    parts = [{"rod": 1, "velocity": 1}, {"mass": 1, "velocity": 0, "spring": 10**6}, {"rod": "7/6"}]
+    output = {"until": "1.3", "tolerance": "1e-5", "velocity": ["1-", 0], "strain": ["1/3"]}
+    table = {"name": "stiff", "system": {"type": "chain", "parts": parts}, "output": output}
+    model = lower(Scene(**table))
+    made = ring_march(model)
+    assert made.plan.step == fmpq(1, 6)
+    assert made.error_bound < 1e-6
+    taus = np.linspace(0, 1.3, 14)
+    expansion = Laplace(table, model_until(model))
+    terms = [expansion.terms(*probe.name.split("@")) for probe in model.probes]
+    true = np.array([[float(each.value(Fraction(tau)).mid()) for tau in taus.tolist()] for each in terms])
+    assert np.all(in_bounds(model, made, taus, true) <= 1)
+
+
 @pytest.mark.parametrize("times", [["1e-9"], ["1/2", "0.5000001"], ["1/3", "2/3", "0.7", "1.1"]])
 def test_loads_at_nasty_times(times) -> None:
     """Panels that are very short, which cost much of the bound, and many."""
