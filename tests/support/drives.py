@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tests.support import chains
 from wavesym.exact.reference import Reference
 from wavesym.model.model import Model
-from wavesym.scene import Scene, lower
+from wavesym.scene import Scene
 
 DRIVE: dict[str, Any] = {
     "type": "chain",
@@ -102,8 +102,3 @@ def instants(model: Model, most: int = 12) -> NDArray[np.float64]:
 def exact(model: Model, taus: NDArray[np.float64]) -> NDArray[np.float64]:
     """The outputs from power series in balls, correctly rounded."""
     return np.array(Reference(model).values(taus.tolist()))
-
-
-def modelled(scene: Scene) -> Model:
-    """A scene as a march takes it."""
-    return lower(scene)
