@@ -13,7 +13,7 @@ import wavesym
 
 PACKAGE = Path(wavesym.__file__).parent
 COSTS = {"CostError", "_TooLarge"}
-FORM = re.compile(r"(output|output\.until|load|system\.m|--intervals|\{asked\}): .+ expected.* \(.+ helps?\)")
+FORM = re.compile(r"(output|output\.until|load|system\.(m|parts)|--intervals|\{asked\}): .+ expected.* \(.+ helps?\)")
 PASSED_ON = re.compile(r".*\{error\} \(.+ helps?\)")  # the sentence of another error, which says how much
 
 

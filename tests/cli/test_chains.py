@@ -13,7 +13,7 @@ from wavesym.cli import main
 from wavesym.documents.inspection.document import inspection
 from wavesym.scene import Scene
 
-LINE = "system.type: chain given, collision, drive or building expected (a chain has pieces and `run`)"
+LINE = "system.type: chain given, collision, drive or building expected (a chain has pieces, a march and `run`)"
 SYSTEM = {
     "type": "chain",
     "parts": [
@@ -77,7 +77,6 @@ NO_PAPER = "collision, drive or building expected"
         (["generate", "swinging.toml", "--evaluator", "closed"], BOB),
         (["tables", "geared_drive", "--symbolic"], f"chain given with --symbolic, {NO_PAPER}"),
         (["derive", "geared_drive", "--walks"], f"chain given with --walks, {NO_PAPER}"),
-        (["generate", "geared_drive", "--evaluator", "march"], LINE),
         (
             ["tables", "geared_drive", "--intervals", "500"],
             "--intervals: the tables would hold more than",
@@ -123,6 +122,26 @@ def test_tables_of_a_chain(capsys: pytest.CaptureFixture[str]) -> None:
     rows = wavesym.tables(Scene.from_toml("stepped_shaft"), 2)
     assert [str(row.interval) for row in rows][-1] == "4"
     assert all(isinstance(row.interval, Fraction) for row in rows)
+
+
+def test_a_march_is_generated_and_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["generate", "geared_drive", "--evaluator", "march", "--language", "all", "-o", str(tmp_path)]) == 0
+    assert capsys.readouterr().err.startswith("geared_drive: march, degree ")
+    told = json.loads((tmp_path / "geared_drive.json").read_text())
+    assert (told["evaluator"], told["command"]) == ("march", "wavesym generate geared_drive.toml --evaluator march")
+    assert "on steps of 1/2" in told["reason"]
+    assert 0 < told["error_bound"] < 1e-8
+
+
+def test_a_march_on_too_fine_a_step_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "fine.toml"
+    lines = 'name = "fine"', "[system]", 'type = "chain"', "parts = [{ rod = 1, strain = 1 }, { rod = 1.001 }]"
+    file.write_text("\n".join([*lines, "[output]", "until = 3", "velocity = [0]"]))
+    assert main(["generate", str(file), "--evaluator", "march", "-o", str(tmp_path / "out")]) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert "delays 1, 1001/1000 have the common measure 1/1000" in err
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_chain_that_moves_is_not_told_to_be_still(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -51,7 +51,8 @@ class Model:
         """The chain as the paper has it. UnservedError for one that is written out, part by part."""
         if self.chain is None:
             raise UnservedError(
-                "system.type: chain given, collision, drive or building expected (a chain has pieces and `run`)"
+                "system.type: chain given, collision, drive or building expected "
+                "(a chain has pieces, a march and `run`)"
             )
         return self.chain
 

@@ -20,12 +20,13 @@ from wavesym.programs.march.given import SMOOTH
 from wavesym.programs.march.plan import Plan, Stretch
 from wavesym.programs.pieces import Pieces
 from wavesym.programs.program import Driven, Program, Provenance
+from wavesym.programs.rings.evaluator import RingMarch
 
 QUANTITIES = ("strain", "velocity", "displacement")
 """The numbers that stand for them in tables are their places; the next one is an output that is 0 throughout."""
 
 
-def assemble(evaluator: ClosedForm | Pieces | MarchEvaluator, provenance: Provenance) -> Program:
+def assemble(evaluator: ClosedForm | Pieces | MarchEvaluator | RingMarch, provenance: Provenance) -> Program:
     """The program of an evaluator, whatever its bound."""
     match evaluator:
         case ClosedForm():
@@ -34,6 +35,8 @@ def assemble(evaluator: ClosedForm | Pieces | MarchEvaluator, provenance: Proven
             return _pieces(evaluator, provenance)
         case MarchEvaluator():
             return _march(evaluator, provenance)
+        case RingMarch(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
+            return Program("rings", evaluator.real, tau_max, outputs, tables, constants, evaluator.bytes, provenance)
 
 
 def _closed(form: ClosedForm, provenance: Provenance) -> Program:

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 
 from flint import fmpq
 
-from wavesym.errors import CostError, RangeError, WavesymError
+from wavesym.errors import CostError, RangeError, UnservedError, WavesymError
 from wavesym.exact.signal import refuse_many, signals
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
@@ -18,8 +18,9 @@ from wavesym.programs.closed import ClosedForm, closed_form
 from wavesym.programs.march.evaluator import MarchEvaluator, marched, unmet
 from wavesym.programs.pieces import Pieces, pieces
 from wavesym.programs.program import ProgramOutput
+from wavesym.programs.rings.evaluator import RingMarch, ring_march
 
-Made = ClosedForm | Pieces | MarchEvaluator
+Made = ClosedForm | Pieces | MarchEvaluator | RingMarch
 
 _USUAL_TABLES = {"double": "speed", "single": "size"}
 # Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
@@ -164,7 +165,11 @@ def _pieces(model: Model, real: Real, asked: bool, windows: int | None, optimize
     return pieces(model, real, model.tolerance, optimize)
 
 
-def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator:
+def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator | RingMarch:
+    if model.chain is None:
+        if windows is not None:
+            raise UnservedError("--windows: chain given, collision, drive or building expected (they take given loads)")
+        return ring_march(model, real)
     return marched(model, real, windows=windows)
 
 

@@ -56,8 +56,9 @@ class Driven:
 class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
-    `kind` names its scheme: "closed", "pieces" or "march". `tables` are flat, by name, each number as it is written:
-    indices are ints, all else floats of the format; which there are, assembly.py says. `constants` are single numbers.
+    `kind` names its scheme: "closed", "pieces", "march", or "rings", the march of a chain that is written out. `tables`
+    are flat, by name, each number as it is written: indices are ints, all else floats of the format; which there are,
+    assembly.py says, and of rings rings/tables.py. `constants` are single numbers.
     `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march, `sources` are the names of loads
     that it can be given, and it is `whole` where no node was left out.
     """
@@ -74,6 +75,11 @@ class Program:
     sources: tuple[str, ...] = ()
     whole: bool = True
     driven: Driven | None = None
+
+    @property
+    def evaluator(self) -> str:
+        """What a user calls its kind."""
+        return "march" if self.kind == "rings" else self.kind
 
     @property
     def error_bound(self) -> float:

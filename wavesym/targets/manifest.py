@@ -10,7 +10,7 @@ from wavesym.targets.description import Description
 SCHEMA_VERSION = 2
 # What NAME.c compiles to besides its tables, with clang -Os for a Cortex-M4: no more than this; a test compiles it.
 SMALL_TARGET = "Cortex-M4, -Os"
-CODE_AT_MOST = {"closed": 1024, "pieces": 4096, "march": 8192}
+CODE_AT_MOST = {"closed": 1024, "pieces": 4096, "march": 8192, "rings": 8192}
 
 
 def manifest(description: Description, program: Program) -> str:
@@ -29,7 +29,7 @@ def manifest(description: Description, program: Program) -> str:
         "load": [{"source": p.source, "time": str(p.time), "weight": str(p.weight)} for p in model.loads],
         "until": str(model.until),
         "tolerance": str(model.tolerance),
-        "evaluator": program.kind,
+        "evaluator": program.evaluator,
         "reason": description.reason,
         "precision": program.real.name,
         "size": {"target": SMALL_TARGET, "data": program.bytes, "code_at_most": CODE_AT_MOST[program.kind]},

@@ -36,7 +36,7 @@ def not_served(model: Model) -> Facts:
         refusal = str(model.named)
     except CostError as error:
         refusal = str(error)
-    words = "Symbolic tables, walks, highest powers and march are not served"
+    words = "Symbolic tables, walks and highest powers are not served"
     return Facts("not_served", words, {"refusal": refusal})
 
 

@@ -10,6 +10,7 @@ from wavesym.programs.choice import MAKERS, Made, Tried, attempt
 from wavesym.programs.closed import ClosedForm
 from wavesym.programs.march.evaluator import MarchEvaluator
 from wavesym.programs.pieces import Pieces
+from wavesym.programs.rings.evaluator import RingMarch
 
 # To fit pieces whose tables are so large once more, in floats or the smallest ones, takes some seconds.
 MOST_BYTES = 64 << 10
@@ -62,7 +63,7 @@ def _dear(form: Made) -> str:
             f"not tried, nor the smallest tables: to fit {form.bytes} bytes once more takes long, "
             f"at most {MOST_BYTES} expected"
         )
-    if isinstance(form, MarchEvaluator) and (marched := form.work * form.tau_max) > MOST_MARCHED:
+    if isinstance(form, (MarchEvaluator, RingMarch)) and (marched := form.marched) > MOST_MARCHED:
         return f"not tried: a march would take {marched:.1e} operations, at most {MOST_MARCHED:.1e} expected"
     return ""
 
@@ -75,7 +76,7 @@ def told_degrees(form: Made) -> Told | None:
         case Pieces():
             low, high = form.degrees
             return Told([low, high], f"{low}..{high}")
-        case MarchEvaluator():
+        case MarchEvaluator() | RingMarch():
             return Told([form.degree, form.degree], str(form.degree))
 
 

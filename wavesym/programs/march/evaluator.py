@@ -78,6 +78,11 @@ class MarchEvaluator:
         return 8.0 * len(self.plan.panels) * len(self.plan.junctions) * self.degree
 
     @property
+    def marched(self) -> float:
+        """The same of all windows."""
+        return self.work * self.tau_max
+
+    @property
     def summary(self) -> str:
         """What it is, in a few words."""
         size = -(-self.state_bytes // 1024)

@@ -48,14 +48,24 @@ def tail_after(plan: Plan, degree: int, windows: int, jumps: Sequence[float]) ->
     rate = nearest(plan.rate)
     if rate == 0 or not any(jumps):
         return Tail(max(degree, len(jumps)), 0.0)  # without bodies waves are as the loads
-    longest = max(nearest(panel.length) for panel in plan.panels)
-    shortest = min(nearest(panel.length) for panel in plan.panels)
     impedance = min(nearest(z) for node in plan.junctions for z in (node.left, node.right) if z)
     mass = sum(nearest(node.mass) for node in plan.junctions)
+    added = sqrt(mass / 2 / impedance) * (windows + 2) * len(plan.panels)
+    return tail_of(degree, jumps, rate, windows, added, [nearest(panel.length) for panel in plan.panels])
+
+
+def tail_of(
+    degree: int, jumps: Sequence[float], rate: float, crossings: int, added: float, lengths: Sequence[float]
+) -> Tail:
+    """The same for nodes whose rates are at most `rate` > 0, met by a front so often, on panels of these lengths.
+
+    In the norm of energy jumps add so many times [x^k] of G(x) to the power of crossings.
+    """
+    longest, shortest = max(lengths), min(lengths)
     r = np.linspace(0.001, 0.999, 999) / rate
-    growth = (windows + 2) * np.log((1 + rate * r) / (1 - rate * r))
+    growth = (crossings + 2) * np.log((1 + rate * r) / (1 - rate * r))
     start = np.logaddexp.reduce([log(jump) + order * np.log(r) for order, jump in enumerate(jumps) if jump])
-    injected = log(sqrt(mass / 2 / impedance) * (windows + 2) * len(plan.panels))
+    injected = log(added)
 
     def size(degree: int) -> float:
         """The logarithm of the tail."""

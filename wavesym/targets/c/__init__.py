@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from wavesym.programs.program import Program
-from wavesym.targets.c import closed, march, pieces
+from wavesym.targets.c import closed, march, pieces, rings
 from wavesym.targets.c.header import header
 from wavesym.targets.c.selftest import selftest
 from wavesym.targets.description import Description
 from wavesym.targets.target import Target
 
-_SOURCES = {"closed": closed.source, "pieces": pieces.source, "march": march.source}
+_SOURCES = {"closed": closed.source, "pieces": pieces.source, "march": march.source, "rings": rings.source}
 
 
 class CTarget:

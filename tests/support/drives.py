@@ -1,0 +1,104 @@
+"""Chains for the march: a drive whose shafts differ, one of every kind of joint, and small ones drawn."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from tests.support import chains
+from wavesym.exact.reference import Reference
+from wavesym.model.model import Model
+from wavesym.scene import Scene
+
+DRIVE: dict[str, Any] = {
+    "type": "chain",
+    "parts": [
+        {"mass": 1, "name": "motor"},
+        {"rod": 1},
+        {"mass": 2},
+        {"rod": "3/2"},
+        {"mass": "1/2"},
+        {"rod": 2},
+        {"mass": 3, "name": "end"},
+    ],
+}
+# a joint of each kind: moved, gears and a branch, a spring without mass, two bodies on a spring, absorbing
+EVERY: dict[str, Any] = {
+    "type": "chain",
+    "parts": [
+        {"motion": "acceleration", "velocity": "1/4", "name": "ground"},
+        {"rod": 1, "spring": "1/2", "dashpot": "1/10"},
+        {"mass": 1, "name": "floor"},
+        {"rod": "1/2", "speed": 2, "impedance": "1/3", "strain": "1/5"},
+        {"joint": True, "spring": 2, "name": "seat"},
+        {"rod": "3/4"},
+        {"mass": "1/2", "dashpot": "1/10", "name": "gear"},
+        {"spring": 40, "dashpot": "1/7"},
+        {"mass": 2, "name": "hung"},
+    ],
+    "branch": [
+        {
+            "from": "gear",
+            "name": "side",
+            "ratio": -2,
+            "parts": [{"rod": "1/2", "velocity": 1}, {"rod": 1, "impedance": 3}, "absorbing"],
+        }
+    ],
+}
+LOADS = [
+    {"at": "ground", "spacing": "1/3", "samples": [0, 1, "-1/2", 0]},
+    {"at": "gear", "times": [0, "0.7"], "steps": [1, -2], "ramps": [0, "1/2"]},
+]
+
+
+def drive(until: object = 24, **output: object) -> Scene:
+    """Shafts of lengths 1, 3/2 and 2 between four discs, under a moment on the first."""
+    load = [{"at": "motor", "times": [0, 4], "steps": [1, -1]}]
+    watched = {"strain": ["1-", "5/2+"], "velocity": ["motor", "end"], "displacement": ["end"]}
+    return Scene(name="drive", system=DRIVE, load=load, output={"until": until, "tolerance": 1e-8, **watched, **output})
+
+
+def every(until: object = 3, **output: object) -> Scene:
+    """One of every kind of joint, with loads at instants that leave remainders."""
+    watched = {
+        "strain": ["1-", "1/4", "side:1/2-"],
+        "velocity": ["floor", "hung", "ground", "side:3/2"],
+        "displacement": ["seat", "hung"],
+    }
+    return Scene(
+        name="every", system=EVERY, load=LOADS, output={"until": until, "tolerance": 1e-6, **watched, **output}
+    )
+
+
+@st.composite
+def small(draw: st.DrawFn, until: object = "5/2") -> dict[str, Any]:
+    """Chains as `chains` draws them, where nearly equal lengths have a common measure that is not too small."""
+
+    def measured(part: Any) -> Any:
+        return part | {"rod": "33/32"} if isinstance(part, dict) and part.get("rod") == "1.001" else part
+
+    table: dict[str, Any] = draw(chains.chains(until=until))
+    lines = [table["system"], *table["system"].get("branch", ())]
+    for line in lines:
+        line["parts"] = list(map(measured, line["parts"]))
+    # places that 1.001 had made are elsewhere now
+    for quantity in ("strain", "velocity", "displacement"):
+        table["output"][quantity] = [place.replace("1.001", "33/32") for place in table["output"][quantity]]
+    return table
+
+
+def instants(model: Model, most: int = 12) -> NDArray[np.float64]:
+    """At, hardly before and hardly after instants at which outputs may jump, and between them."""
+    fronts = np.array(Reference(model).breakpoints())
+    some = fronts[np.linspace(0, len(fronts) - 1, min(most, len(fronts))).astype(int)]
+    end = model.horizon()
+    taus = np.unique([*some, *np.nextafter(some, -1), *np.nextafter(some, 2 * end), *np.linspace(0, end, 7)])
+    return np.asarray(taus[(taus >= 0) & (taus <= end)])
+
+
+def exact(model: Model, taus: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The outputs from power series in balls, correctly rounded."""
+    return np.array(Reference(model).values(taus.tolist()))

@@ -1,0 +1,195 @@
+"""The march of a chain as an evaluator: of the least degree that is enough for its horizon.
+
+The degree is found as that of the march of the paper's systems: by marching once over the whole horizon and adding up
+what was lost (bound.py), and raised until that is no more than what rounding costs.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+from flint import arb, fmpq
+
+from wavesym.errors import CostError
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import bound, nearest, rational
+from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.programs.march.bound import Verdict
+from wavesym.programs.program import ProgramOutput
+from wavesym.programs.rings.bound import judge
+from wavesym.programs.rings.plan import RingPlan, least_numbers, ring_plan
+from wavesym.programs.rings.tables import RingTables, state_bytes, table_bytes
+
+_MOST_BYTES = 1 << 22  # of tables, and of the state, which programs keep on the stack
+_MOST_WORK = 2e10  # multiplications of trying all degrees, half a minute or so
+_JOINT = 2e4  # what a joint takes on a panel besides, in such units
+_SETTLED = 0.8  # a bound that a higher degree does not bring below so much of it is left as it is
+_LEAST_DEGREE = 4
+
+
+@dataclass(frozen=True)
+class RingMarch:
+    """A march over [0, tau_max] with polynomials of `degree` in `real` numbers."""
+
+    plan: RingPlan
+    degree: int
+    real: Real
+    outputs: tuple[ProgramOutput, ...]
+
+    @property
+    def tau_max(self) -> float:
+        """The last tau."""
+        return self.plan.tau_max
+
+    @cached_property
+    def error_bound(self) -> float:
+        """The largest error of any output relative to its largest value; proved."""
+        return max(output.bound for output in self.outputs)
+
+    @cached_property
+    def tables(self) -> dict[str, tuple[float, ...]]:
+        """The numbers of its program."""
+        return RingTables(self.plan, self.degree, self.real).tables([output.bound == 0 for output in self.outputs])
+
+    @cached_property
+    def constants(self) -> dict[str, float]:
+        """Its single numbers."""
+        return RingTables(self.plan, self.degree, self.real).constants()
+
+    @property
+    def bytes(self) -> int:
+        """The size of the tables that grow."""
+        return table_bytes(self.plan, self.degree, self.real)
+
+    @property
+    def state_bytes(self) -> int:
+        """The size of what a march remembers: the waves in all bars."""
+        return state_bytes(self.plan, self.degree, self.real)
+
+    @property
+    def work(self) -> float:
+        """About how many operations a window takes, and so a value that is asked for alone on one."""
+        return 2.0 * _multiplications(self.plan, self.degree)
+
+    @property
+    def marched(self) -> float:
+        """The same of all windows."""
+        return self.work * self.plan.windows
+
+    @property
+    def summary(self) -> str:
+        """What it is, in a few words."""
+        size = -(-self.state_bytes // 1024)
+        step = "" if self.plan.step == 1 else f" on steps of {self.plan.step}"
+        return f"march, degree {self.degree}{step}, a state of {size} KiB, bound {self.error_bound:g}"
+
+    def shortfall(self, tolerance: fmpq) -> str:
+        """Why it does not meet a tolerance."""
+        worst = max(self.outputs, key=lambda output: output.bound)
+        if not worst.bound < 1:
+            return f"march: its error may be as large as {worst.name} itself"
+        return f"march: rounding leaves a bound of {worst.bound:g} to tau = {self.tau_max:g} for {worst.name}"
+
+    @cached_property
+    def check_points(self) -> list[float]:
+        """For the self-test: both ends, the first windows, and a few of all later ones."""
+        step, last = self.plan.step, rational(self.tau_max)
+        early = [self.real.nearest(step * k / 8) for k in range(161) if step * k / 8 <= last]
+        late = [self.real.nearest(last * k / 32) for k in range(33)]
+        return sorted({min(tau, self.tau_max) for tau in early + late})
+
+
+def ring_march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> RingMarch:
+    """The march of a chain in `real` numbers, whatever its bound: of the least sufficient degree, or of the one given.
+
+    UnservedError where the chain has contacts, CostError where it would be long or large. OverflowError where numbers
+    would be beyond those of the format.
+    """
+    plan = ring_plan(model, real)
+    if any(0 < abs(value) < real.least for value in least_numbers(plan)) or plan.cycle[1] * real.roundoff > 1:
+        raise OverflowError(f"a number of the tables is beyond {real.name} precision")
+    if degree is not None:
+        return _made(plan, max(degree, _LEAST_DEGREE), real)[0]
+    degree = _first_degree(plan, real)
+    before = math.inf
+    spent = 0.0
+    while True:
+        spent = _refuse_long(plan, degree, spent, real)
+        made, verdict = _made(plan, degree, real)
+        if verdict.truncated <= verdict.rounded or _SETTLED * before < made.error_bound < math.inf:
+            return made
+        before = made.error_bound
+        degree += max(2, degree // 6)
+
+
+def _made(plan: RingPlan, degree: int, real: Real) -> tuple[RingMarch, Verdict]:
+    try:
+        verdict = judge(plan, degree, real)
+    except OverflowError:  # of the numbers' format, which costs have nothing to do with
+        raise
+    except ArithmeticError as error:
+        raise CostError(f"system.parts: to solve the joints of a march, {error} (softer springs help)") from None
+    outputs = tuple(
+        ProgramOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)
+        for output, error, size in zip(plan.outputs, verdict.bounds, verdict.largest, strict=True)
+    )
+    return RingMarch(plan, degree, real, outputs), verdict
+
+
+def _first_degree(plan: RingPlan, real: Real) -> int:
+    """A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved.
+
+    A stiff spring adds those of a body on it.
+    """
+    if not any(joint.space.states for joint in plan.joints):
+        return _LEAST_DEGREE
+    longest = max(nearest(panel.length) for panel in plan.panels)
+    bodies = [-nearest(p.space.rates[n, n]) for p in plan.joints for n in range(p.space.states)]
+    slow = sum(rate for rate in bodies if rate > 0) / len(bodies)
+    turning = max(joint.space.turning for joint in plan.joints)
+    detail = math.sqrt(2 * slow * longest * plan.crossings) + min(turning * longest / 2, 1e6)
+    return math.ceil(detail) + (8 if real is DOUBLE else 4)
+
+
+def _fastest(plan: RingPlan) -> float:
+    return max(joint.space.norm for joint in plan.joints)
+
+
+def _multiplications(plan: RingPlan, degree: int) -> int:
+    """On one window."""
+    wide = (
+        joint.space.points * (degree + 1) + joint.space.states
+        if joint.space.states
+        else (len(joint.space.ports) + joint.space.points) * (degree + 1)
+        for joint in plan.joints
+    )
+    return len(plan.panels) * sum(
+        width * (width if joint.space.states else len(joint.space.ports))
+        for width, joint in zip(wide, plan.joints, strict=True)
+    )
+
+
+def _refuse_long(plan: RingPlan, degree: int, spent: float, real: Real) -> float:
+    """What trying a degree costs, with what is `spent` already; CostError where that is too much."""
+    if (size := table_bytes(plan, degree, real)) > _MOST_BYTES:
+        raise CostError(
+            f"system.parts: joints as fast as {_fastest(plan):.3g} on a step of {plan.step} need polynomials of degree "
+            f"{degree} to tau = {plan.tau_max:g}, and so {size:.1e} bytes of tables, at most {_MOST_BYTES:.1e} "
+            "expected in a march (softer springs, heavier bodies, or lengths with a smaller common measure, help)"
+        )
+    if (size := state_bytes(plan, degree, real)) > _MOST_BYTES:
+        raise CostError(
+            f"system.parts: the rings of a march on a step of {plan.step} would have {size:.1e} bytes, at most "
+            f"{_MOST_BYTES:.1e} expected (fewer rods, or lengths with a larger common measure, help)"
+        )
+    # two matrices are multiplied with: the answers, and their sizes
+    work = plan.windows * (3.0 * _multiplications(plan, degree) + _JOINT * len(plan.joints) * len(plan.panels))
+    spent += work
+    if spent > _MOST_WORK:
+        raise CostError(
+            f"output.until: a march of degree {degree} on steps of {plan.step} to tau = {plan.tau_max:g} would cost "
+            f"{spent:.1e} operations, at most {_MOST_WORK:.1e} expected (a shorter horizon helps)"
+        )
+    return spent

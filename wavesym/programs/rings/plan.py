@@ -1,0 +1,297 @@
+"""What is marched of a chain: one step, rings of windows for the waves, joints, loads and what is read; all exact.
+
+The step h is the greatest common measure of the delays, so that what is sent on a window [n h, (n + 1) h) arrives at
+the other end of its bar on window n + delay/h: every joint knows all that it needs when a window begins. A window is
+cut into the same panels everywhere, at what load times leave over of h, so that on a panel every wave is smooth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import pairwise
+from math import gcd, lcm
+
+from flint import fmpq, fmpq_poly
+
+from wavesym.errors import CostError, UnservedError
+from wavesym.exact.node_rules import joint_rule
+from wavesym.model.model import Model
+from wavesym.model.network import End
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import rational
+from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch
+from wavesym.programs.rings.space import JointSpace, Port, joint_space
+
+FINEST = 64
+"""The shortest delay is no more steps than that."""
+
+_ZERO, _ONE = fmpq(0), fmpq(1)
+
+
+@dataclass(frozen=True)
+class Track:
+    """What is sent into one end of a bar (or a velocity that is watched): it arrives `steps` windows later.
+
+    `held` is what is on its way at tau = 0. `impedance` is 0 where no bar carries it.
+    """
+
+    steps: int
+    held: fmpq
+    impedance: fmpq
+
+
+@dataclass(frozen=True)
+class MarchedJoint:
+    """A joint of the light cone: its laws, and of each port the tracks that `arrive` and that it `sends`.
+
+    `forces` are the loads on its points, by number; -1 for none.
+    """
+
+    space: JointSpace
+    arrive: tuple[int, ...]
+    sends: tuple[int, ...]
+    forces: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Heard:
+    """One of the waves of an output: `gain` times a track, `delay` after it was sent."""
+
+    track: int
+    gain: fmpq
+    delay: fmpq
+
+
+@dataclass(frozen=True)
+class WatchedPlace:
+    """An output: a sum of waves, or its integral over time."""
+
+    name: str
+    integral: bool
+    heard: tuple[Heard, Heard]
+
+
+@dataclass(frozen=True)
+class RingPlan:
+    """A model made ready to march."""
+
+    model: Model = field(compare=False)
+    step: fmpq
+    panels: tuple[MarchPanel, ...]
+    tracks: tuple[Track, ...]
+    joints: tuple[MarchedJoint, ...]
+    forces: int
+    events: tuple[LoadEvent, ...]
+    outputs: tuple[WatchedPlace, ...]
+    tau_max: float
+
+    @property
+    def windows(self) -> int:
+        """How many windows reach tau_max, one that starts there included."""
+        return int((rational(self.tau_max) / self.step).floor()) + 1
+
+    @cached_property
+    def cycle(self) -> tuple[int, int]:
+        """After so many windows, the first number, tau is an integer again, the second; or beyond the horizon."""
+        windows, span = int(self.step.q), int(self.step.p)
+        return (windows, span) if windows <= self.windows else (self.windows, int(self.tau_max) + 2)
+
+    @property
+    def crossings(self) -> int:
+        """How often a front can have met a joint, at most."""
+        shortest = min(track.steps for track in self.tracks if track.steps)
+        return -(-self.windows // shortest)
+
+    def scaled(self, factor: fmpq) -> RingPlan:
+        """The same with all that moves it `factor` times as large; every motion is, then."""
+
+        def louder(joint: MarchedJoint) -> MarchedJoint:
+            begun = tuple(factor * value for value in joint.space.begun)
+            return replace(joint, space=replace(joint.space, begun=begun))
+
+        return replace(
+            self,
+            tracks=tuple(replace(track, held=factor * track.held) for track in self.tracks),
+            joints=tuple(map(louder, self.joints)),
+            events=tuple(
+                replace(event, powers=_three(factor * fmpq_poly(list(event.powers)))) for event in self.events
+            ),
+        )
+
+    def changes(self) -> Iterator[tuple[int, tuple[fmpq, fmpq, fmpq]]]:
+        """Force and powers of what is new with each event."""
+        now: dict[int, tuple[fmpq, fmpq_poly]] = {}
+        for event in self.events:
+            time, load = event.window * self.step + self.panels[event.panel].start, fmpq_poly(list(event.powers))
+            since, before = now.get(event.force, (time, fmpq_poly()))
+            now[event.force] = time, load
+            yield event.force, _three(load - before(fmpq_poly([time - since, 1])))
+
+    def stretches(self, delay: fmpq) -> tuple[Stretch, ...]:
+        """Those of a wave that arrives `delay` after it was sent, in order; `start` counts from that of a window."""
+        found = []
+        windows = int((delay / self.step).floor())
+        for back in (windows + 1, windows):
+            for number, panel in enumerate(self.panels):
+                start = delay + panel.start - back * self.step
+                if start < self.step and start + panel.length > 0:
+                    found.append(Stretch(start, back, number))
+        return tuple(found)
+
+
+def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
+    """The plan of a chain in `real` numbers.
+
+    UnservedError for contacts; CostError where the step would be too small, or load times have too many remainders.
+    """
+    network = model.network
+    if contact := next((link for link in network.links if link.contact), None):
+        raise UnservedError(
+            f"system.parts: a contact at {contact.place} given, a chain without contacts expected in a march "
+            "(pieces serve contacts)"
+        )
+    tau_max = model.horizon(real)
+    until = rational(tau_max)
+    reached = model.reached(until)
+    modelled = {end for number in reached for end, _ in network.joints[number].ends}
+    bars = sorted({end.bar for end in modelled} | {probe.rod - 1 for probe in model.probes if probe.point is None})
+    step = _step([network.bars[bar].delay for bar in bars])
+    track_of = {End(bar, side): 2 * k + side for k, bar in enumerate(bars) for side in (0, 1)}
+    tracks = [
+        Track(int(bar.delay / step), bar.held(side), bar.impedance)
+        for bar in (network.bars[number] for number in bars)
+        for side in (0, 1)
+    ]
+    shown = sorted({probe.point for probe in model.probes if probe.point is not None})
+    point_of = {point: len(tracks) + k for k, point in enumerate(shown)}
+    silent = len(tracks) + len(shown)  # a track on which nothing is ever sent
+    tracks += [Track(0, _ZERO, _ZERO)] * (len(shown) + 1)
+    loads = _Loads(model, until, reached)
+    panels = _panels([time for time, _, _ in loads.changes], step)
+    marched = []
+    for number in reached:
+        joint = network.joints[number]
+        space = joint_space(network, joint)
+        watched = [(k, point) for k, point in enumerate(joint.points) if point in point_of]
+        ports = (*space.ports, *(Port(k, _ZERO, _ONE, _ZERO) for k, _ in watched))
+        sends = (*(track_of[end] for end, _ in joint.ends), *(point_of[point] for _, point in watched))
+        arrive = (*(track_of[network.beyond(end)] for end, _ in joint.ends), *(silent for _ in watched))
+        forces = tuple(loads.numbers.get(point, -1) for point in joint.points)
+        marched.append(MarchedJoint(replace(space, ports=ports), arrive, sends, forces))
+    return RingPlan(
+        model,
+        step,
+        panels,
+        tuple(tracks),
+        tuple(marched),
+        len(loads.numbers),
+        tuple(loads.events(panels, step)),
+        tuple(_watched(model, probe, track_of, point_of) for probe in model.probes),
+        tau_max,
+    )
+
+
+def _step(delays: list[fmpq]) -> fmpq:
+    """Their greatest common measure."""
+    below = lcm(*(int(delay.q) for delay in delays))
+    step = fmpq(gcd(*(int(delay * below) for delay in delays)), below)
+    if step * FINEST < (shortest := min(delays)):
+        few = ", ".join(map(str, sorted(set(delays))[:3])) + (", ..." if len(set(delays)) > 3 else "")
+        raise CostError(
+            f"system.parts: delays {few} have the common measure {step}, {float(shortest / step):.3g} to the shortest, "
+            f"at most {FINEST} expected in a march (lengths with a larger common measure, or pieces, help)"
+        )
+    return step
+
+
+def _panels(times: list[fmpq], step: fmpq) -> tuple[MarchPanel, ...]:
+    cuts = sorted({_ZERO, step} | {time - (time / step).floor() * step for time in times})
+    if len(cuts) - 1 > MOST_PANELS:
+        raise CostError(
+            f"load: times (k*spacing in a record) leave {len(cuts) - 1} different remainders of the step {step}, at "
+            f"most {MOST_PANELS} expected in a march (times in parts of {step}, or fewer samples, help)"
+        )
+    return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
+
+
+class _Loads:
+    """What acts on the points of the light cone, or moves them: polynomials from event to event."""
+
+    def __init__(self, model: Model, until: fmpq, reached: dict[int, fmpq]) -> None:
+        points = [point for number in reached for point in model.network.joints[number].points]
+        self.changes: list[tuple[fmpq, int, fmpq_poly]] = []
+        for number in points:
+            point = model.network.points[number]
+            units = {unit.source: fmpq_poly(list(unit.coefficients)) for unit in point.loads}
+            for load in model.acting(until):
+                if load.source in units:
+                    polynomial = load.weight * units[load.source]
+                    if point.motion is None:
+                        polynomial *= joint_rule().load
+                    elif point.motion == "acceleration":
+                        polynomial = polynomial.integral()
+                    self.changes.append((load.time, number, polynomial))
+            if point.motion is not None and point.velocity != 0:
+                self.changes.append((_ZERO, number, fmpq_poly([point.velocity])))
+        acting = {number for _, number, _ in self.changes}
+        self.numbers = {point: force for force, point in enumerate(sorted(acting))}
+
+    def events(self, panels: tuple[MarchPanel, ...], step: fmpq) -> Iterator[LoadEvent]:
+        """From each change on, the whole polynomial, in order."""
+        places = {panel.start: number for number, panel in enumerate(panels)}
+        now: dict[int, tuple[fmpq, fmpq_poly]] = {}
+        gains: dict[tuple[fmpq, int], fmpq_poly] = {}
+        for time, point, polynomial in self.changes:
+            at = time, self.numbers[point]
+            gains[at] = gains.get(at, fmpq_poly()) + polynomial
+        for (time, force), change in sorted(gains.items(), key=lambda item: item[0]):
+            since, before = now.get(force, (time, fmpq_poly()))
+            total = before(fmpq_poly([time - since, 1])) + change
+            now[force] = time, total
+            window = int((time / step).floor())
+            yield LoadEvent(window, places[time - window * step], force, _three(total))
+
+
+def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:
+    return load[0], load[1], load[2]
+
+
+def _watched(model: Model, probe: Probe, track_of: dict[End, int], point_of: dict[int, int]) -> WatchedPlace:
+    integral = probe.quantity == "displacement"
+    if probe.point is not None:
+        here = Heard(point_of[probe.point], _ONE, _ZERO)
+        return WatchedPlace(probe.name, integral, (here, replace(here, gain=_ZERO)))
+    bar = model.network.bars[probe.rod - 1]
+    right, left = (fmpq(weight) / (bar.speed if probe.quantity == "strain" else 1) for weight in probe.weights)
+    return WatchedPlace(
+        probe.name,
+        integral,
+        (
+            Heard(track_of[End(probe.rod - 1, 0)], right, probe.place * bar.delay),
+            Heard(track_of[End(probe.rod - 1, 1)], left, (1 - probe.place) * bar.delay),
+        ),
+    )
+
+
+def largest_number(plan: RingPlan) -> fmpq:
+    """The largest of what moves it: about as large as its motion."""
+    powers = (power for event in plan.events for power in event.powers)
+    begun = (value for joint in plan.joints for value in joint.space.begun)
+    return max(map(abs, (*(track.held for track in plan.tracks), *begun, *powers)), default=_ZERO)
+
+
+def least_numbers(plan: RingPlan) -> Iterator[fmpq]:
+    """What programs read as numbers that must not be too small for their format."""
+    for joint in plan.joints:
+        yield from joint.space.begun
+        for port in joint.space.ports:
+            yield from (port.ratio, port.push)
+    for event in plan.events:
+        yield from event.powers
+    yield from (panel.length / 2 for panel in plan.panels)
+    yield from (track.held for track in plan.tracks)
+    yield from (heard.gain for output in plan.outputs for heard in output.heard)
+    yield plan.step

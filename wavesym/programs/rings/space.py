@@ -1,0 +1,184 @@
+"""A joint as a system with a state: the velocities of its masses, and how long its springs have become; all exact.
+
+With s what acts on its points (forces; of a point whose motion is prescribed its velocity), M, C and K of the joint and
+the springs k, whose lengthening is B u,
+
+    M q' + C q + B' k z = s,    z' = B q    become    x' = rates x + pushed s,    q = shown x + passed s,
+
+x = (q of points with mass, z), once points without mass are put in terms of x and s. An end whose point moves with q
+sends n q - a; what arrives acts with 2 n Z a. The energy of the state is sum of weights x**2 / 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
+
+import numpy as np
+from flint import fmpq, fmpq_mat
+from numpy.typing import NDArray
+
+from wavesym.exact.joint import JointLaw
+from wavesym.exact.node_rules import joint_rule
+from wavesym.model.network import Joint, Network
+from wavesym.numbers.doubles import nearest
+
+_ZERO = fmpq(0)
+
+
+@dataclass(frozen=True)
+class Port:
+    """An end of a bar at a point of a joint: the impedance and the ratio, and what a wave that arrives acts with."""
+
+    point: int
+    impedance: fmpq
+    ratio: fmpq
+    push: fmpq
+
+
+@dataclass(frozen=True)
+class JointSpace:
+    """The laws of a joint; `weights` are masses and springs, `begun` is x at tau = 0."""
+
+    rates: fmpq_mat
+    pushed: fmpq_mat
+    shown: fmpq_mat
+    passed: fmpq_mat
+    weights: tuple[fmpq, ...]
+    begun: tuple[fmpq, ...]
+    ports: tuple[Port, ...]
+
+    @property
+    def states(self) -> int:
+        """How many numbers x has."""
+        return len(self.weights)
+
+    @property
+    def points(self) -> int:
+        """How many points there are."""
+        return self.passed.nrows()
+
+    @cached_property
+    def norm(self) -> float:
+        """That of `rates` where the energy is |x|**2 / 2, at most: it bounds how fast anything in the joint is."""
+        return _norm(self._balanced)
+
+    @cached_property
+    def turning(self) -> float:
+        """About how fast its bodies swing on their springs, where nothing takes their energy; 0 where that is more."""
+        swing = _norm((self._balanced - self._balanced.T) / 2)
+        decay = float(np.max(-np.diag(self._balanced), initial=0.0))
+        return sqrt(max(swing**2 - decay**2 / 4, 0.0))
+
+    @cached_property
+    def _balanced(self) -> NDArray[np.float64]:
+        roots = [sqrt(nearest(weight)) for weight in self.weights]
+        rows = [
+            [nearest(self.rates[a, b]) * roots[a] / roots[b] for b in range(self.states)] for a in range(self.states)
+        ]
+        return np.array(rows).reshape(self.states, self.states)
+
+    @cached_property
+    def scattering(self) -> fmpq_mat:
+        """Of a joint without state: what goes back into each end, from what arrives at each and acts on each point."""
+        ends, points = len(self.ports), self.points
+        rows = fmpq_mat(ends, ends + points)
+        for i, port in enumerate(self.ports):
+            for j, other in enumerate(self.ports):
+                rows[i, j] = port.ratio * self.passed[port.point, other.point] * other.push - (i == j)
+            for k in range(points):
+                rows[i, ends + k] = port.ratio * self.passed[port.point, k]
+        return rows
+
+    @cached_property
+    def key(self) -> tuple[object, ...]:
+        """Joints with the same one answer alike."""
+        matrices = (self.rates, self.pushed, self.shown, self.passed)
+        return tuple(tuple(map(str, each.entries())) for each in matrices)
+
+
+def joint_space(network: Network, joint: Joint) -> JointSpace:
+    """The laws of one joint of a network."""
+    law = JointLaw.of(network, joint)
+    size = len(joint.points)
+    heavy, light = law.heavy, law.light
+    springs = list(_springs(network, joint, law))
+    states = len(heavy) + len(springs)
+    # q = shown x + passed s, one row after the other
+    shown, passed = fmpq_mat(size, states), fmpq_mat(size, size)
+    for n, k in enumerate(heavy):
+        shown[k, n] = fmpq(1)
+    for k, motion in enumerate(law.given):
+        if motion is not None:
+            passed[k, k] = fmpq(1)
+    pulls = [[_ZERO] * states for _ in range(size)]  # of the springs, on the points
+    for n, (stiffness, row) in enumerate(springs, len(heavy)):
+        for k, factor in row.items():
+            pulls[k][n] += factor * stiffness
+    others = [b for b in range(size) if b not in light]
+    for n, k in enumerate(light):
+        for m, a in enumerate(light):
+            inverse = law.inverse[n, m]
+            passed[k, a] += inverse
+            for j in range(states):
+                shown[k, j] -= inverse * (pulls[a][j] + sum((law.damping[a][b] * shown[b, j] for b in others), _ZERO))
+            for b in others:
+                passed[k, b] -= inverse * law.damping[a][b] * passed[b, b]
+    rates, pushed = fmpq_mat(states, states), fmpq_mat(states, size)
+    for n, k in enumerate(heavy):
+        for j in range(states):
+            rates[n, j] = -(pulls[k][j] + _along(law.damping[k], shown, j)) / law.mass[k]
+        for j in range(size):
+            rest = _along(law.damping[k], passed, j)
+            pushed[n, j] = ((j == k) - rest) / law.mass[k]
+    for n, (_, row) in enumerate(springs, len(heavy)):
+        for j in range(states):
+            rates[n, j] = sum((factor * shown[k, j] for k, factor in row.items()), _ZERO)
+        for j in range(size):
+            pushed[n, j] = sum((factor * passed[k, j] for k, factor in row.items()), _ZERO)
+    return JointSpace(
+        rates,
+        pushed,
+        shown,
+        passed,
+        (*(law.mass[k] for k in heavy), *(stiffness for stiffness, _ in springs)),
+        (*(network.points[joint.points[k]].velocity for k in heavy), *(_ZERO for _ in springs)),
+        tuple(_ports(network, joint)),
+    )
+
+
+def _along(row: tuple[fmpq, ...], matrix: fmpq_mat, column: int) -> fmpq:
+    return sum((value * matrix[b, column] for b, value in enumerate(row)), _ZERO)
+
+
+def _springs(network: Network, joint: Joint, law: JointLaw) -> Iterator[tuple[fmpq, dict[int, fmpq]]]:
+    """Each spring that a free point feels, and how much longer it becomes with each point."""
+    place = {point: k for k, point in enumerate(joint.points)}
+    for point, k in place.items():
+        if (stiffness := network.points[point].stiffness) != 0 and law.given[k] is None:
+            yield stiffness, {k: fmpq(1)}
+    for link in network.links:
+        if link.left in place and link.stiffness != 0:
+            a, b = place[link.left], place[link.right]
+            if a != b and any(law.given[k] is None for k in (a, b)):
+                yield link.stiffness, {a: -link.ratio, b: fmpq(1)}
+
+
+def _ports(network: Network, joint: Joint) -> Iterator[Port]:
+    rule = joint_rule()
+    place = {point: k for k, point in enumerate(joint.points)}
+    for end, point in joint.ends:
+        bar = network.bars[end.bar]
+        ratio = bar.ratios[end.side]
+        free = network.points[point].motion is None
+        push = rule.arrives[1 - end.side] * ratio * bar.impedance if free else _ZERO
+        yield Port(place[point], bar.impedance, ratio, push)
+
+
+def _norm(matrix: NDArray[np.float64]) -> float:
+    """An upper bound of the 2-norm: the root of those of the largest sums of rows and of columns, rounded up."""
+    size = np.abs(matrix)
+    rows, columns = (float(np.max(np.sum(size, axis=axis), initial=0.0)) for axis in (0, 1))
+    return sqrt(rows * columns) * (1 + 1e-12)

@@ -1,0 +1,164 @@
+"""A ring plan and a degree as flat tables: what schemes/rings.py and templates/c/rings.c are run from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import cached_property
+from itertools import accumulate
+
+import numpy as np
+from flint import fmpq
+from numpy.typing import NDArray
+
+from wavesym.numbers.doubles import rational
+from wavesym.numbers.reals import Real
+from wavesym.programs.rings.answer import Answer, answer
+from wavesym.programs.rings.plan import MarchedJoint, RingPlan
+
+VALUE, INTEGRAL, NOTHING = 0, 1, 2
+
+
+class RingTables:
+    """The numbers of a march at some degree in `real` numbers."""
+
+    def __init__(self, plan: RingPlan, degree: int, real: Real) -> None:
+        self._plan, self._degree, self._real = plan, degree, real
+
+    @cached_property
+    def answers(self) -> dict[tuple[object, ...], Answer]:
+        """By laws and length of a panel: of joints that have a state."""
+        found: dict[tuple[object, ...], Answer] = {}
+        for joint in self._plan.joints:
+            for panel in self._plan.panels:
+                if joint.space.states and (key := answer_key(joint, panel.length)) not in found:
+                    found[key] = answer(joint.space, panel.length, self._degree)
+        return found
+
+    def missed(self, joint: MarchedJoint, length: fmpq) -> NDArray[np.float64]:
+        """What the polynomials of a joint miss; of one without state nothing."""
+        return self.answers[answer_key(joint, length)].missed if joint.space.states else np.zeros((0, 0))
+
+    def tables(self, nothing: Sequence[bool]) -> dict[str, tuple[float, ...]]:
+        """All tables, by name; `nothing` says of each output whether it is 0 throughout."""
+        plan, real = self._plan, self._real
+
+        def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
+            return tuple(map(real.nearest, values))
+
+        spaces = [joint.space for joint in plan.joints]
+        ports = [port for space in spaces for port in space.ports]
+        matrix, where = self._matrices()
+        delays = sorted({heard.delay for output in plan.outputs for heard in output.heard})
+        stretches = [plan.stretches(delay) for delay in delays]
+        flat = [stretch for group in stretches for stretch in group]
+        begins = [n * plan.step for n in range(plan.cycle[0])]
+        starts = [begin + stretch.start for stretch in flat for begin in begins]
+        first = {id(group[0]) for group in stretches}
+        return {
+            "steps": tuple(track.steps for track in plan.tracks),
+            "ring": _firsts(track.steps + 1 for track in plan.tracks),
+            "held": reals(track.held for track in plan.tracks),
+            "first_point": _firsts(space.points for space in spaces),
+            "first_state": _firsts(space.states for space in spaces),
+            "first_port": _firsts(len(space.ports) for space in spaces),
+            "answer": where,
+            "matrix": matrix,
+            "begun": reals(value for space in spaces for value in space.begun),
+            "force_on": tuple(force for joint in plan.joints for force in joint.forces),
+            "point_of": tuple(port.point for port in ports),
+            "push": reals(port.push for port in ports),
+            "ratio": reals(port.ratio for port in ports),
+            "arrive": tuple(track for joint in plan.joints for track in joint.arrive),
+            "send": tuple(track for joint in plan.joints for track in joint.sends),
+            "half_length": reals(panel.length / 2 for panel in plan.panels),
+            "since": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
+            "event_window": tuple(event.window for event in plan.events),
+            "event_panel": tuple(event.panel for event in plan.events),
+            "event_force": tuple(event.force for event in plan.events),
+            "event_power": reals(power for event in plan.events for power in event.powers),
+            "quantity": tuple(
+                NOTHING if none else INTEGRAL if output.integral else VALUE
+                for output, none in zip(plan.outputs, nothing, strict=True)
+            ),
+            "track": tuple(heard.track for output in plan.outputs for heard in output.heard),
+            "gain": reals(heard.gain for output in plan.outputs for heard in output.heard),
+            "delay": tuple(delays.index(heard.delay) for output in plan.outputs for heard in output.heard),
+            "begin": tuple(map(real.not_below, begins)),
+            "first_stretch": _firsts(map(len, stretches)),
+            "from": tuple(real.not_below(max(start, fmpq(0))) for start in starts),
+            "start": reals(starts),
+            "excess": reals(rational(real.nearest(start)) - start for start in starts),
+            "low": reals(-stretch.start if id(stretch) in first else fmpq(0) for stretch in flat),
+            "high": reals(min(plan.panels[s.panel].length, plan.step - s.start) for s in flat),
+            "back": tuple(stretch.back for stretch in flat),
+            "panel_of": tuple(stretch.panel for stretch in flat),
+        }
+
+    def constants(self) -> dict[str, float]:
+        """Single numbers."""
+        plan, real = self._plan, self._real
+        return {
+            "degree": self._degree,
+            "panels": len(plan.panels),
+            "joints": len(plan.joints),
+            "states": sum(joint.space.states for joint in plan.joints),
+            "forces": plan.forces,
+            "events": len(plan.events),
+            "tracks": len(plan.tracks),
+            "slots": sum(track.steps + 1 for track in plan.tracks),
+            "widest": max(
+                joint.space.points * (self._degree + 1) + joint.space.states if joint.space.states else 1
+                for joint in plan.joints
+            ),
+            "cycle": plan.cycle[0],
+            "span": real.nearest(fmpq(plan.cycle[1])),
+            "step": real.nearest(plan.step),
+        }
+
+    def _matrices(self) -> tuple[tuple[float, ...], tuple[int, ...]]:
+        """One after the other, each by columns, and by panel and joint where they start."""
+        matrix: list[float] = []
+        begins: dict[tuple[object, ...], int] = {}
+        where = []
+        for panel in self._plan.panels:
+            for joint in self._plan.joints:
+                key = answer_key(joint, panel.length)
+                if key not in begins:
+                    begins[key] = len(matrix)
+                    if joint.space.states:
+                        numbers = (rational(value) for value in self.answers[key].matrix.T.ravel().tolist())
+                        matrix += map(self._real.nearest, numbers)
+                    else:
+                        matrix += map(self._real.nearest, joint.space.scattering.transpose().entries())
+                where.append(begins[key])
+        return tuple(matrix), tuple(where)
+
+
+def answer_key(joint: MarchedJoint, length: fmpq) -> tuple[object, ...]:
+    """Joints with the same one have the same matrix on panels of this length."""
+    if joint.space.states:
+        return (*joint.space.key, str(length))
+    return tuple(map(str, joint.space.scattering.entries()))
+
+
+def table_bytes(plan: RingPlan, degree: int, real: Real) -> int:
+    """The size of the tables that grow: matrices, loads, and where stretches start."""
+    sizes = {}
+    for joint in plan.joints:
+        for panel in plan.panels:
+            ports, states = len(joint.space.ports), joint.space.states
+            wide = joint.space.points * (degree + 1) + states
+            sizes[answer_key(joint, panel.length)] = wide * wide if states else ports * (ports + joint.space.points)
+    delays = {heard.delay for output in plan.outputs for heard in output.heard}
+    stretches = sum(len(plan.stretches(delay)) for delay in delays) * 3 + 1
+    return real.bytes * (sum(sizes.values()) + 6 * len(plan.events) + plan.cycle[0] * stretches)
+
+
+def state_bytes(plan: RingPlan, degree: int, real: Real) -> int:
+    """The size of what a march remembers: the rings of waves."""
+    slots = sum(track.steps + 1 for track in plan.tracks)
+    return real.bytes * slots * len(plan.panels) * (degree + 1)
+
+
+def _firsts(counts: Iterable[int]) -> tuple[int, ...]:
+    return tuple(accumulate(counts, initial=0))

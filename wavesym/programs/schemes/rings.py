@@ -1,0 +1,349 @@
+"""The march of any chain in NumPy: rings of windows for the waves, joints as blocks."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+class RingScheme:
+    """The march of a chain. All delays are multiples of one step, so what arrives at a joint on a window (one step
+    long) was sent on a window before, and each joint needs to know no more. A window is cut into panels at the instants
+    of loads; on a panel waves are Chebyshev series in u, -1 <= u <= 1. A track is what is sent into an end of a bar.
+
+    A joint with a state x (velocities of masses, lengthening of springs) has a matrix for each panel:
+    (coefficients of what acts on its points, x at the start) -> (those of the velocities q, x at the end less x), and
+    sends ratio q - a; where a arrives, push a acts. One without has a matrix that makes what it sends of what arrives.
+    """
+
+    TABLES = (
+        # tracks: how many windows later it arrives, and what is on its way at tau = 0
+        "steps",
+        "held",
+        # joints: where their points, states and ports start in the next tables, and on each panel their matrix
+        "first_point",
+        "first_state",
+        "first_port",
+        "answer",
+        "matrix",
+        "begun",
+        "force_on",
+        # ports: the point of the joint, factors, and tracks
+        "point_of",
+        "push",
+        "ratio",
+        "arrive",
+        "send",
+        # panels: half the length, and what its start is later than that of another
+        "half_length",
+        "since",
+        # changes of the loads: from there on three powers of the time since
+        "event_window",
+        "event_panel",
+        "event_force",
+        "event_power",
+        # outputs: what, and two tracks with factors and delays
+        "quantity",
+        "track",
+        "gain",
+        "delay",
+        # after a cycle of windows tau is a whole number again; where they begin in it
+        "begin",
+        # delays: from t >= `from` on, t counted from the start of the cycle, a wave is that of `panel_of`, `back`
+        # windows ago, with u = (t - start + excess) / half - 1; an integral over all of a window is from low to high
+        "first_stretch",
+        "from",
+        "start",
+        "excess",
+        "low",
+        "high",
+        "back",
+        "panel_of",
+    )
+    CONSTANTS = ("degree", "step", "span", "forces")
+    VALUE, INTEGRAL, NOTHING = 0, 1, 2
+    SAMPLES = 4096
+    """So many samples at once."""
+
+    def __init__(
+        self,
+        tables: dict[str, tuple[float, ...]],
+        constants: dict[str, float],
+        tau_max: float,
+        real: type[np.float64],
+    ) -> None:
+        def reals(name: str, *shape: int) -> NDArray[np.float64]:
+            return np.array(tables[name], real).reshape(shape or -1)
+
+        def indices(name: str, *shape: int) -> NDArray[np.int_]:
+            return np.array(tables[name], int).reshape(shape or -1)
+
+        self.tau_max, self.real = tau_max, real
+        self.degree, self.forces = int(constants["degree"]), int(constants["forces"])
+        self.step, self.span = real(constants["step"]), real(constants["span"])
+        self.steps, self.held = indices("steps"), reals("held")
+        self.half_length = reals("half_length")
+        self.panels = len(self.half_length)
+        self.since = reals("since", self.panels, self.panels)
+        self.begun, self.force_on = reals("begun"), indices("force_on")
+        self.event_window, self.event_panel = indices("event_window"), indices("event_panel")
+        self.event_force, self.event_power = indices("event_force"), reals("event_power", -1, 3)
+        self.quantity = indices("quantity")
+        self.track, self.delay = indices("track", -1, 2), indices("delay", -1, 2)
+        self.gain = reals("gain", -1, 2)
+        self.begin = reals("begin")
+        self.first_stretch = indices("first_stretch")
+        self.counts_from, self.start, self.excess = (
+            reals(name, -1, len(self.begin)) for name in ("from", "start", "excess")
+        )
+        self.low, self.high = reals("low"), reals("high")
+        self.back, self.panel_of = indices("back"), indices("panel_of")
+        self.deepest = max(1, int(np.max(self.back)), int(np.max(self.steps)))
+        """How many windows back anything is asked for."""
+        shapes = [np.diff(tables[f"first_{name}"]) for name in ("point", "state", "port")]
+        answers, matrix = indices("answer", self.panels, -1), reals("matrix")
+        kinds = np.stack([answers[0], *shapes], axis=1)
+        self.groups = [
+            JointGroup(self, tables, np.flatnonzero(np.all(kinds == kind, axis=1)), answers, matrix, *kind[1:].tolist())
+            for kind in np.unique(kinds, axis=0)
+        ]
+
+    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
+        """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range.
+
+        Marches once, up to the last tau.
+        """
+        taus = np.asarray(tau, dtype=self.real)
+        flat = taus.ravel()
+        out = np.full((len(self.quantity), flat.size), np.nan, self.real)
+        inside = np.flatnonzero((flat >= 0) & (flat <= self.tau_max))
+        if inside.size:
+            order = inside[np.argsort(flat[inside], kind="stable")]
+            windows = self.places(flat[order])[0]
+            marching = MarchingRings(self)
+            count = int(windows[-1]) + 1
+            for first in range(0, count, marching.most):
+                block = marching.block(first, min(marching.most, count - first))
+                begin, end = np.searchsorted(windows, [first, first + block.count])
+                for low in range(begin, end, self.SAMPLES):
+                    part = order[low : min(low + self.SAMPLES, end)]
+                    out[:, part] = block.read(flat[part])
+        return out.reshape(len(self.quantity), *taus.shape)
+
+    def places(self, tau: NDArray[np.float64]) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]:
+        """Of each tau its window, the place of that in a cycle, and the time since the cycle began."""
+        cycle = np.floor(tau / self.span)
+        cycle -= cycle * self.span > tau
+        t = tau - cycle * self.span
+        phase = np.searchsorted(self.begin, t, side="right") - 1
+        return cycle.astype(int) * len(self.begin) + phase, phase, t
+
+
+class WindowBlock:
+    """Some windows of a march: all tracks, (deepest + windows, track, panel, k), with those of the windows before.
+
+    `starts` are the states at the start of each panel, `acting` what acts on each point there, `totals` the integrals
+    at the start of each window and at the end of the last.
+    """
+
+    def __init__(
+        self,
+        scheme: RingScheme,
+        first: int,
+        waves: NDArray[np.float64],
+        starts: NDArray[np.float64],
+        acting: NDArray[np.float64],
+        totals: NDArray[np.float64],
+    ) -> None:
+        self._scheme, self.first, self.count, self.waves = scheme, first, len(starts), waves
+        self.starts, self.acting = starts, acting
+        self.totals = np.repeat(totals[:, None], self.count + 1, axis=1)
+        n = np.arange(self.count)
+        for output in np.flatnonzero(scheme.quantity == scheme.INTEGRAL).tolist():
+            self.totals[output, 1:] += np.cumsum(self._gathered(output, n, n, None), dtype=scheme.real)
+
+    def read(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        """All outputs at some tau in these windows."""
+        scheme = self._scheme
+        window, phase, t = scheme.places(tau)
+        n = window - self.first
+        out = np.zeros((len(scheme.quantity), len(tau)), scheme.real)
+        for output, quantity in enumerate(scheme.quantity):
+            if quantity == scheme.VALUE:
+                out[output] = self._arrived(output, n, phase, t)
+            elif quantity == scheme.INTEGRAL:
+                out[output] = self.totals[output, n] + self._gathered(output, n, phase, t)
+        return out
+
+    def _arrived(
+        self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """What an output hears at t, on windows n, which are at `phase` in their cycle."""
+        scheme = self._scheme
+        total = np.zeros(t.shape, scheme.real)
+        for track, gain, delay in zip(scheme.track[output], scheme.gain[output], scheme.delay[output], strict=True):
+            s = np.full(t.shape, scheme.first_stretch[delay])
+            for later in range(scheme.first_stretch[delay] + 1, scheme.first_stretch[delay + 1]):
+                s[t >= scheme.counts_from[later, phase]] = later
+            half = scheme.half_length[scheme.panel_of[s]]
+            u = ((t - scheme.start[s, phase]) + scheme.excess[s, phase]) / half - 1
+            c = self.waves[scheme.deepest + n - scheme.back[s], track, scheme.panel_of[s]].T
+            total += gain * _series(np.ascontiguousarray(c), u)
+        return total
+
+    def _gathered(
+        self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64] | None
+    ) -> NDArray[np.float64]:
+        """The integral from the start of windows n to t; without t over all of them."""
+        scheme = self._scheme
+        total = np.zeros(n.shape, scheme.real)
+        for track, gain, delay in zip(scheme.track[output], scheme.gain[output], scheme.delay[output], strict=True):
+            first, end = scheme.first_stretch[delay], scheme.first_stretch[delay + 1]
+            for s in range(first, end):
+                here, panel = np.arange(n.size), scheme.panel_of[s]
+                high = np.full(n.shape, scheme.high[s], scheme.real)
+                if t is not None:
+                    if s > first:
+                        here = np.flatnonzero(t >= scheme.counts_from[s, phase])
+                    within = (t - scheme.start[s, phase]) + scheme.excess[s, phase]
+                    over = t >= scheme.counts_from[s + 1, phase] if s + 1 < end else np.zeros(t.shape, bool)
+                    high = np.where(over, high, within)
+                half = scheme.half_length[panel]
+                c = _antiderivative(self.waves[scheme.deepest + n[here] - scheme.back[s], track, panel].T)
+                low = np.full(here.shape, scheme.low[s], scheme.real)
+                total[here] += gain * (half * (_series(c, high[here] / half - 1) - _series(c, low / half - 1)))
+        return total
+
+
+class MarchingRings:
+    """A march on its way."""
+
+    def __init__(self, scheme: RingScheme) -> None:
+        tracks, size = len(scheme.held), scheme.degree + 1
+        self.most = max(1, min(256, 2_000_000 // (tracks * scheme.panels * size)))
+        """So many windows at once."""
+        self._scheme = scheme
+        self._waves = np.zeros((scheme.deepest + self.most, tracks, scheme.panels, size), scheme.real)
+        self._waves[..., 0] = scheme.held[:, None]
+        self._x = scheme.begun.copy()
+        self._loads = RunningLoads(scheme, scheme.event_power, scheme.since)
+        self._totals = np.zeros(len(scheme.quantity), scheme.real)
+
+    def block(self, first: int, count: int) -> WindowBlock:
+        """The next windows; what the block holds is overwritten by the one after it."""
+        scheme = self._scheme
+        starts = np.zeros((count, scheme.panels, len(self._x)), scheme.real)
+        acting = np.zeros((count, scheme.panels, len(scheme.force_on), 3), scheme.real)
+        if first > 0:
+            self._waves[: scheme.deepest] = self._waves[self.most : self.most + scheme.deepest].copy()
+        for n in range(count):
+            for panel in range(scheme.panels):
+                starts[n, panel] = self._x
+                acting[n, panel] = self._loads.on(first + n, panel)
+                for group in scheme.groups:
+                    group.move(self._waves, scheme.deepest + n, panel, acting[n, panel], self._x)
+        made = WindowBlock(scheme, first, self._waves, starts, acting, self._totals)
+        self._totals = made.totals[:, -1]
+        return made
+
+
+class RunningLoads:
+    """The loads, polynomials in the time since their last change."""
+
+    def __init__(self, scheme: RingScheme, powers: NDArray[np.float64], since: NDArray[np.float64]) -> None:
+        self._scheme, self._powers, self._since = scheme, powers, since
+        self._now: dict[int, tuple[int, int, NDArray[np.float64]]] = {}
+        self._event = 0
+
+    def on(self, window: int, panel: int) -> NDArray[np.float64]:
+        """Three coefficients of what acts on each point on a panel; panels come in order."""
+        scheme = self._scheme
+        while self._event < len(scheme.event_window) and (
+            (scheme.event_window[self._event], scheme.event_panel[self._event]) == (window, panel)
+        ):
+            self._now[int(scheme.event_force[self._event])] = window, panel, self._powers[self._event]
+            self._event += 1
+        # one more, for points on which nothing acts
+        acting = np.zeros((scheme.forces + 1, 3), scheme.real)
+        half = scheme.half_length[panel]
+        for force, (begun, place, c) in self._now.items():
+            middle = ((window - begun) * scheme.step + self._since[panel, place]) + half
+            acting[force, 0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2]
+            acting[force, 1] = half * (c[1] + 2 * middle * c[2])
+            acting[force, 2] = half * half / 2 * c[2]
+        return acting[scheme.force_on]
+
+
+class JointGroup:
+    """Joints with the same matrices, and as many ports each."""
+
+    def __init__(
+        self,
+        scheme: RingScheme,
+        tables: dict[str, tuple[float, ...]],
+        joints: NDArray[np.int_],
+        answers: NDArray[np.int_],
+        matrix: NDArray[np.float64],
+        points: int,
+        states: int,
+        ports: int,
+    ) -> None:
+        def members(name: str, size: int) -> NDArray[np.int_]:
+            return np.array(tables[f"first_{name}"])[joints, None] + np.arange(size)
+
+        self.joints = joints
+        self.points, self.states = members("point", points), members("state", states)
+        self.ports = members("port", ports)
+        self.arrive, self.send = (np.array(tables[name], int)[self.ports] for name in ("arrive", "send"))
+        self.back = scheme.steps[self.arrive]
+        at = np.array(tables["point_of"], int)[self.ports][..., None] == np.arange(points)
+        push, ratio = (np.array(tables[name], scheme.real)[self.ports] for name in ("push", "ratio"))
+        self.size = scheme.degree + 1
+        self.collect = np.swapaxes(at * push[..., None], 1, 2)
+        self.spread = at * ratio[..., None]
+        width = points * self.size + states if states else ports + points
+        height = width if states else ports
+        self.columns = np.stack([matrix[at : at + width * height] for at in answers[:, joints[0]]])
+        self.columns = self.columns.reshape(-1, width, height)
+        """The matrix of each panel, turned."""
+
+    def move(
+        self,
+        waves: NDArray[np.float64],
+        n: int,
+        panel: int,
+        acting: NDArray[np.float64],
+        x: NDArray[np.float64],
+    ) -> None:
+        """A panel of a window: what the joints send goes into `waves`, and their states x go on."""
+        a = waves[n - self.back, self.arrive, panel]
+        s = np.zeros((*self.points.shape, self.size), a.dtype)
+        s[..., :3] = acting[self.points]
+        if self.states.size:
+            s += self.collect @ a
+            given = np.concatenate([s.reshape(len(s), -1), x[self.states]], axis=1)
+            answer = given @ self.columns[panel]
+            q = answer[:, : s[0].size].reshape(s.shape)
+            x[self.states] += answer[:, s[0].size :]
+            waves[n, self.send, panel] = self.spread @ q - a
+        else:
+            waves[n, self.send, panel] = self.columns[panel].T @ np.concatenate([a, s], axis=1)
+
+
+def _series(c: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
+    """sum of c[k] T_k(u)"""
+    twice = u + u
+    now, after = np.zeros_like(u), np.zeros_like(u)
+    for k in range(len(c) - 1, 0, -1):
+        now, after = (twice * now - after) + c[k], now
+    return np.asarray((u * now - after) + c[0])
+
+
+def _antiderivative(c: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of a series, times 1 / half the length of the panel."""
+    result = np.zeros((len(c) + 1, c.shape[1]), c.dtype)
+    result[1:] = c
+    result[1] *= 2
+    result[1:-2] -= c[2:]
+    result[1:] /= 2 * np.arange(1, len(c) + 1, dtype=c.dtype)[:, None]
+    return result

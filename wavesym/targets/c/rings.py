@@ -1,0 +1,32 @@
+"""The march of a chain as C: its joints, tracks, loads and outputs as tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from wavesym.programs.program import Program
+from wavesym.rendering import render
+from wavesym.targets.c.kernel import kernel
+from wavesym.targets.description import Description
+from wavesym.targets.literals import Lines, c_constants, c_tables
+
+
+@dataclass(frozen=True)
+class CRings:
+    """templates/c/rings.c.j2; every table as the lines between its braces."""
+
+    scene: Description
+    tables: dict[str, Lines]
+    constants: dict[str, str]
+    kernel: str
+
+
+def source(scene: Description, program: Program) -> str:
+    """NAME.c."""
+    context = CRings(
+        scene=scene,
+        tables=c_tables(program.tables, program.real),
+        constants=c_constants(program.constants, program.real),
+        kernel=kernel("rings.c", scene),
+    )
+    return render("c/rings.c.j2", context)
