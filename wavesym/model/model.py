@@ -65,8 +65,8 @@ class Model:
         else:
             at, given, expected = "system.contacts", "open", "closed"
         raise UnservedError(
-            f"{at}: {given} given, {expected} expected (tables, derivation, closed form and march have one law from "
-            "start to end; pieces and `run` have contacts that open)"
+            f"{at}: {given} given, {expected} expected (contacts that open have pieces and `run`, not tables, "
+            "derivation, closed form or march)"
         )
 
     def horizon(self, real: Real = DOUBLE) -> float:
