@@ -38,10 +38,14 @@ def test_a_field_has_what_outputs_have():
 
 
 def test_lines_are_the_chain_and_its_branches():
-    model = lower(wavesym.Scene(name="lines", system=CHAIN, load=[], output={"until": 1, "velocity": [0]}))
-    main, branch = xt._lines(model.network)
-    assert (main.bars, main.length) == ((0, 1), 2.5)
-    assert (branch.bars, branch.length) == ((2,), 1.0)
+    lines = wavesym.Scene(name="lines", system=CHAIN, load=[], output={"until": 1, "velocity": [0]}).system.lines
+    assert {name: [station.right for station in stations] for name, stations in lines.items()} == {
+        "": [0, 1, None],
+        "b": [2, None],
+    }
+    assert [float(stations[-1].x) for stations in lines.values()] == [2.5, 1.0]
+    drive = Scene.from_toml("drive_m1").system.lines
+    assert [station.points for station in drive[""]] == [(0,), (1,)]
 
 
 @pytest.mark.parametrize("name", ["building_m2"])
