@@ -245,7 +245,11 @@ def test_the_readme_is_one_screen() -> None:
 
 
 def test_no_source_names_a_document_that_is_not_here() -> None:
-    there = {path.name for folder in (".", "docs", "bench", "generated", "examples/chains") for path in (ROOT / folder).glob("*.md")}
+    there = {
+        path.name
+        for folder in (".", "docs", "bench", "generated", "examples/chains")
+        for path in (ROOT / folder).glob("*.md")
+    }
     for path in (path for room in ("wavesym", "tests", "templates") for path in (ROOT / room).rglob("*.*")):
         if path.suffix in {".py", ".c", ".h", ".j2", ".toml"}:
             named = re.findall(r"\b(\w+\.md)\b", path.read_text(encoding="utf-8"))

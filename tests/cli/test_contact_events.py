@@ -67,10 +67,10 @@ def test_the_header_the_manifest_and_the_module() -> None:
 def test_the_programs_go_through_events() -> None:
     """C and NumPy have what `run` has, within their bound; the height of the lower end is what is published."""
     response = wavesym.evaluator(scene())
-    taus = [0.5, 1.0, 4 / 3, 2.0, 7 / 3, 3.0, 4.0, 5.0]
+    taus = [0.5, 2.0, 7 / 3, 3.0, 5.0, 1.0, 4 / 3, 4.0]
     true = response(taus)
-    height = 5 - 5 * np.array(taus) ** 2 + true[2]  # in the frame of the ground, h0 - g tau^2/2 + displacement
-    assert height[[0, 3, 4, 5, 7]] == pytest.approx([15 / 4, 5 / 3, 40 / 9, 5 / 3, 15 / 4][:3] + [height[5], height[7]])
+    height = 5 + true[2] - true[3]
+    assert height == pytest.approx([15 / 4, 5 / 3, 40 / 9, 40 / 9, 40 / 9, 0, 0, 0], abs=1e-14)
     made = files(lower(scene()), "all")
     largest = np.abs(response(np.linspace(0, 5, 501))).max(axis=1)
     module = imported(made["drop.py"], "drop")
@@ -86,7 +86,11 @@ def test_run_and_inspect(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
         """name = "drop"
         [system]
         type = "chain"
-        parts = [{ motion = "acceleration", name = "ground" }, { contact = 5 }, { rod = 10, speed = 30, impedance = 30 }]
+        parts = [
+            { motion = "acceleration", name = "ground" },
+            { contact = 5 },
+            { rod = 10, speed = 30, impedance = 30 },
+        ]
         [[load]]
         at = "ground"
         times = [0]

@@ -1,4 +1,4 @@
-"""examples/: each scene has a picture and words, and what is said of it follows from something else than the program."""
+"""examples/: each scene has a picture and words, and what is said of it follows from something else, too."""
 
 from __future__ import annotations
 
