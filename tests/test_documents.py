@@ -1,4 +1,4 @@
-"""README.md, CONTRIBUTING.md, docs/ and examples/: what they tell a reader to type is run, and what they show is what comes out.
+"""README.md, CONTRIBUTING.md, docs/, examples/: what they tell to type is run, and what they show is what comes out.
 
 The first word after ``` says what a block is, a second one the file that it is saved as:
 toml, c     a scene, a program in C; a later command uses the file

@@ -101,11 +101,6 @@ class Network:
     bars: tuple[Bar, ...]
     links: tuple[Link, ...] = ()
 
-    @property
-    def contacts(self) -> tuple[Link, ...]:
-        """The links that open and close."""
-        return tuple(link for link in self.links if link.contact)
-
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
         """The joints, in the order of their first points."""
@@ -123,6 +118,11 @@ class Network:
         for point in range(len(self.points)):
             members.setdefault(of(point), []).append(point)
         return tuple(Joint(tuple(points), tuple(self._ends(points))) for points in members.values())
+
+    @cached_property
+    def contacts(self) -> tuple[int, ...]:
+        """The links that are contacts."""
+        return tuple(number for number, link in enumerate(self.links) if link.contact)
 
     @cached_property
     def joint_of(self) -> Mapping[int, int]:

@@ -27,8 +27,9 @@ Opened = Mapping[str, Sequence[tuple[float, float]]]
 
 def open_times(model: Model, events: Iterable[ContactEvent]) -> Opened:
     """From when to when each contact is open."""
-    found: dict[str, list[tuple[float, float]]] = {link.place: [] for link in model.network.contacts}
-    since = {link.place: 0.0 for link in model.network.contacts if link.gap}
+    contacts = [link for link in model.network.links if link.contact]
+    found: dict[str, list[tuple[float, float]]] = {link.place: [] for link in contacts}
+    since = {link.place: 0.0 for link in contacts if link.gap}
     for event in events:
         if event.kind == "opens":
             since[event.x] = event.double
