@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from flint import fmpq
 
+import wavesym
 from wavesym.errors import SceneError, UnservedError
 from wavesym.model.model import Model
 from wavesym.model.network import Link, Network
@@ -95,6 +96,18 @@ def test_a_tuned_damper_is_a_branch_without_a_rod() -> None:
     assert len(model.network.bars) == 2
     assert [len(joint.points) for joint in model.network.joints] == [1, 2, 1]
     assert model.network.points[model.probes[1].point or 0].mass == fmpq(1, 20)
+
+
+def test_a_damper_on_a_branch_does_what_it_does_in_a_line() -> None:
+    """At the end of a chain it is the same to draw it onwards."""
+    tie, mass, begun = {"spring": 2, "dashpot": "1/10"}, {"mass": "1/3"}, {"rod": 1, "velocity": 1}
+    output = {"until": 7, "velocity": ["hammer", "1/2"], "displacement": ["0"]}
+    hung = {"type": "chain", "parts": [begun, MASS], "branch": [{"from": "hammer", "name": "d", "parts": [tie, mass]}]}
+    drawn = {"type": "chain", "parts": [begun, MASS, tie, mass]}
+    taus = [k / 3 for k in range(22)]
+    one, other = (wavesym.evaluator(Scene(name="s", system=each, output=output))(taus) for each in (hung, drawn))
+    assert one.any()
+    assert one.tobytes() == other.tobytes()
 
 
 def test_an_open_collision_is_its_chain_with_contacts(tmp_path: Path) -> None:
