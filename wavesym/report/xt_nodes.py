@@ -1,7 +1,7 @@
 """What stands between the rods of a place x time picture: masses, ends, springs, and contacts while they are open.
 
-All of it has a width in points. At an end of the chain it stands outside of the rod, but for a contact with the rod; that
-lies over it, as everything does elsewhere.
+All of it has a width in points. At an end of the chain it stands outside of the rod, but for a contact with the rod,
+which lies over it as everything does elsewhere.
 """
 
 from __future__ import annotations
