@@ -145,7 +145,7 @@ def test_contacts_without_events_are_counted(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "command", [["tables"], ["derive"], ["generate", "--evaluator", "march"], ["generate", "--evaluator", "closed"]]
+    "command", [["tables"], ["generate", "--evaluator", "march"], ["generate", "--evaluator", "closed"]]
 )
 def test_what_has_no_contacts_refuses_them(
     command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
