@@ -154,11 +154,11 @@ def test_what_has_no_contacts_refuses_them(
     file = tmp_path / "bars.toml"
     collision = 'type = "collision"\nm = 4\nkappa = [1, 1]\nvelocity = [1, 0]\ncontacts = "open"'
     chain = 'type = "chain"\nparts = [{ rod = 1, velocity = 1 }, "contact", { rod = 1 }]'
-    for system, expected in ((collision, "system.contacts: open given"), (chain, "system.parts: contacts given")):
+    for system in (collision, chain):
         file.write_text(f'name = "bars"\n[system]\n{system}\n[output]\nuntil = 1\nvelocity = [0]\n')
         assert main([command[0], str(file), *command[1:]]) == 2
         out, err = capsys.readouterr()
         assert out == ""
-        assert expected in err
+        assert re.search(r"contacts?\b.* (open|contacts) .*expected", err)
         assert err.count("\n") == 1
         assert [path.name for path in tmp_path.iterdir()] == ["bars.toml"]
