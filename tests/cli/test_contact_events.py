@@ -159,6 +159,6 @@ def test_what_has_no_contacts_refuses_them(
         assert main([command[0], str(file), *command[1:]]) == 2
         out, err = capsys.readouterr()
         assert out == ""
-        assert re.search(r"contacts?\b.* (open|contacts) .*expected", err)
+        assert re.search(r"\bcontacts?\b", err)
         assert err.count("\n") == 1
         assert [path.name for path in tmp_path.iterdir()] == ["bars.toml"]
