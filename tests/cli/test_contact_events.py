@@ -116,6 +116,18 @@ def test_run_and_inspect(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert contact == {"x": "0", "left": "ground", "right": 1, "ratio": "1", "gap": "5"}
 
 
+def test_an_open_collision_is_told_as_one() -> None:
+    system = {"type": "collision", "m": 4, "kappa": [1, 1], "velocity": [1, 0], "contacts": "open"}
+    bars = Scene(name="bars", system=system, output={"until": 6, "velocity": [0]})
+    read = json.loads(inspection(bars, "summary", "json"))
+    assert read["system"] == {**read["system"], "type": "collision", "contacts": "open"}
+    assert [(event["x"], event["kind"]) for event in read["events"]] == [("2", "opens")]
+    assert [row["x"] for row in json.loads(inspection(bars, "model", "json"))["contacts"]] == ["2"]
+    header = files(lower(bars), "c")["bars.h"]
+    assert "contacts = open" in header
+    assert "CONTACT_END" not in header
+
+
 def test_response() -> None:
     events = wavesym.evaluator(scene()).events
     agreed([(event.x, event.kind, event.digits) for event in events])

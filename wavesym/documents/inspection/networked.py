@@ -23,8 +23,7 @@ def counted(model: Model) -> dict[str, Plain]:
     return {
         "points": len(network.points),
         "bars": len(network.bars),
-        "links": len(network.links) - len(network.contacts),
-        **({"contacts": len(network.contacts)} if network.contacts else {}),
+        "links": len(network.links),
         "joints": len(network.joints),
     }
 
