@@ -74,6 +74,12 @@ def test_sides_of_a_contact() -> None:
     assert [bool(point.loads) for point in model.network.points] == [False, False, True, False]
 
 
+def test_a_node_and_its_side_of_a_contact_are_one_place() -> None:
+    with pytest.raises(SceneError, match=r"velocity\[1\]: 0- given, another place than hammer expected"):
+        chain([MASS, "contact", ROD], velocity=["hammer", "0-"])
+    assert len(chain([MASS, "contact", ROD], velocity=["hammer", "0+"]).probes) == 2
+
+
 @pytest.mark.parametrize(
     ("parts", "load"),
     [

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 from fractions import Fraction
 
 from flint import fmpq
@@ -80,11 +79,8 @@ def _at_station(
     if quantity != "strain":
         if apart and not side:
             raise _one_sided(text)
-        if apart:
-            point = station.points[-1 if side > 0 else 0]
-            return replace(_moving(drawing, line, station, point), side=side)
-        if line == "" or station.x != 0:
-            return _moving(drawing, line, station, station.points[0])
+        if apart or line == "" or station.x != 0:
+            return _moving(drawing, line, station, station.points[-1 if side > 0 else 0])
     rods = [(rod, way, end) for rod, way, end in ((station.left, -1, 1), (station.right, 1, 0)) if rod is not None]
     if not rods:
         raise MisplacedError(f"{text} given, a place at a rod expected")
