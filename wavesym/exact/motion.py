@@ -7,13 +7,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from math import inf
 
-from flint import arb, arb_poly, ctx, fmpq
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
 from wavesym.exact.joint import STILL, Enclosed, JointLaw
 from wavesym.exact.knots import Knots
-from wavesym.exact.network_waves import NetworkWaves
+from wavesym.exact.network_waves import NetworkWaves, Waves, later
+from wavesym.exact.touching_waves import replayed
 from wavesym.model.model import Model
 from wavesym.model.network import End
 from wavesym.model.probe import Probe
@@ -39,7 +40,7 @@ class Motion:
         self._network = model.network
         self._acting = model.acting(until)
         self._knots = Knots(model, until)
-        self._solved: dict[int, NetworkWaves] = {}
+        self._solved: dict[int, Waves] = {}
         if (kept := self._knots.crossings) > MOST_STRETCHES:
             raise CostError(
                 f"output.until: {self._knots.told} are {kept:g} stretches to keep, at most {MOST_STRETCHES} expected "
@@ -57,6 +58,22 @@ class Motion:
         """The bits that cancel in the series of a joint on its longest stretch."""
         law = JointLaw.of(self._network, self._network.joints[number])
         return law.fastest * self._knots.longest(number) * 3
+
+    @cached_property
+    def size(self) -> arb:
+        """The largest wave, at most, as a velocity."""
+        with ctx.workprec(self.first_bits):
+            return max(
+                (
+                    abs(known.polynomial(arb(0).union(arb(end - start)))).upper()
+                    for wave in self.waves(self.first_bits).sent.values()
+                    for start, end, known in zip(
+                        wave.starts, [*wave.starts[1:], self.until], wave.stretches, strict=True
+                    )
+                    if start < end
+                ),
+                default=arb(0),
+            )
 
     def refuse_long(self, taus: int) -> None:
         """CostError where values of all outputs at so many tau would take minutes."""
@@ -84,11 +101,11 @@ class Motion:
         wanted: Sequence[int] = range(len(starts))
         if taus is not None and probe.order == 0:
             wanted = sorted({bisect_right(starts, tau) - 1 for tau in taus})
-        waves = self._waves(bits)
+        waves = self.waves(bits)
         with ctx.workprec(bits):
             return list(_segments(waves, probe, [(starts[k], ends[k]) for k in wanted]))
 
-    def _waves(self, bits: int) -> NetworkWaves:
+    def waves(self, bits: int) -> Waves:
         """What needs more bits, and so more terms, costs the others nothing."""
         if bits not in self._solved:
             terms = bits // 4
@@ -98,11 +115,16 @@ class Motion:
                     f"most {_LARGEST:.1e} expected (a shorter horizon or fewer load times help)"
                 )
             with ctx.workprec(bits):
-                self._solved[bits] = NetworkWaves(self._network, self._knots.joints, self._acting, terms)
+                known = self._knots.schedule
+                self._solved[bits] = (
+                    NetworkWaves(self._network, self._knots.joints, self._acting, terms)
+                    if known is None
+                    else replayed(self._network, known.stages, known.ends, self._acting)
+                )
         return self._solved[bits]
 
 
-def _segments(waves: NetworkWaves, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]]) -> Iterator[Segment]:
+def _segments(waves: Waves, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]]) -> Iterator[Segment]:
     """An output on each of these stretches, which come in order."""
     displacement = arb(0)
     for start, end in stretches:
@@ -118,7 +140,7 @@ def _segments(waves: NetworkWaves, probe: Probe, stretches: Iterable[tuple[fmpq,
         yield Segment(start, {fmpq(0): polynomial})
 
 
-def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Enclosed:
+def _value(waves: Waves, probe: Probe, start: fmpq) -> Enclosed:
     """Strain, or velocity, from tau = `start` on: the left-going wave less, or plus, the right-going one."""
     polynomial, error = arb_poly(), arb(0)
     if probe.point is not None:
@@ -133,18 +155,21 @@ def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Enclosed:
             known, ratio = _velocity(waves, point, start), arb(bar.ratios[end.side])
             return Enclosed(ratio * known.polynomial, (abs(ratio) * known.error).upper())
     right, left = probe.weights
+    exact: fmpq_poly | None = fmpq_poly()  # of waves that cancel nothing is left, where both are known exactly
     for factor, side, way in ((right, 0, probe.place), (left, 1, 1 - probe.place)):
         known, offset = waves.sent[End(probe.rod - 1, side)].at(start - way * bar.delay)
-        if known.polynomial.length():
-            later = known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial
-            polynomial += factor * later
-        error += known.error
+        wave = later(known, offset)
+        exact = None if exact is None or wave.exact is None else exact + factor * wave.exact
+        polynomial += factor * wave.polynomial
+        error += wave.error
+    if exact is not None and exact.length() == 0:
+        return STILL
     if probe.quantity == "strain" and bar.speed != 1:
         polynomial, error = polynomial * arb(1 / bar.speed), (error / arb(bar.speed)).upper()
     return Enclosed(polynomial, error)
 
 
-def _velocity(waves: NetworkWaves, point: int, start: fmpq) -> Enclosed:
+def _velocity(waves: Waves, point: int, start: fmpq) -> Enclosed:
     known, offset = waves.velocities[point].at(start)
     return Enclosed(known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial, known.error)
 

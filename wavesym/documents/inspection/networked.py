@@ -89,8 +89,25 @@ def parts(model: Model) -> Iterator[Section]:
                 "dashpot": str(link.damping),
             }
             for link in network.links
+            if not link.contact
         ],
     )
+    if network.contacts:
+        yield Listing(
+            "contacts",
+            "Contacts: two points that push each other while they touch, and how far apart they are at tau = 0",
+            [
+                {
+                    "x": link.place,
+                    "left": _named(model, link.left),
+                    "right": _named(model, link.right),
+                    "ratio": str(link.ratio),
+                    "gap": str(link.gap),
+                }
+                for link in network.links
+                if link.contact
+            ],
+        )
 
 
 def graph_cone(model: Model) -> Facts:
@@ -127,9 +144,10 @@ def joint_laws(model: Model) -> Listing:
                 "refusal": Told(None, "") if rows or not refusal else refusal,
             }
         )
+    parted = ", with all contacts open" if model.network.contacts else ""
     return Listing(
         "joints",
-        f"Joints in the light cone, with a knot for each start of a stretch without fronts:\n{LAW}",
+        f"Joints in the light cone, with a knot for each start of a stretch without fronts{parted}:\n{LAW}",
         rows,
         ("M", "C", "K", "polynomial", "refusal"),
     )
