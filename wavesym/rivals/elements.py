@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csc_array, diags_array
+from scipy.sparse import coo_array, csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from wavesym.model.probe import Probe
@@ -139,24 +139,31 @@ def _prepare(problem: NetworkProblem, resolution: float) -> Evaluate:
     push = np.append(loads[0], np.zeros(elements.size - problem.points)) - damping @ elements.velocity
     push[weightless] *= np.isin(np.flatnonzero(weightless), problem.told) * 4 / h
     stencils = [elements.stencil(probe) for probe in problem.probes]
+    seen = np.unique(np.concatenate([where for where, _ in stencils]))
+    held, braked = csr_array(stiffness), csr_array(damping) if damping.nnz else None
 
     def evaluate(taus: Array) -> Array:
         u, v = np.zeros(elements.size), elements.velocity.copy()
         a = begin(push)
-        history = np.empty((steps + 1, len(stencils)))
-        for step in range(steps + 1):
-            if step:
-                u += h * v + h * h / 4 * a
-                v += h / 2 * a
-                right = -(stiffness @ u) - damping @ v
-                right[: problem.points] += loads[step]
-                a = solve(right)
-                u += h * h / 4 * a
-                v += h / 2 * a
-            for k, (probe, (where, weights)) in enumerate(zip(problem.probes, stencils, strict=True)):
-                history[step, k] = weights @ (v if probe.quantity == "velocity" else u)[where]
-        rows = [np.interp(taus, times, column) for column in history.T]
-        return np.asarray(rows + np.array([_strained(problem, probe) for probe in problem.probes])[:, np.newaxis])
+        displacement, velocity = np.empty((2, steps + 1, len(seen)))
+        displacement[0], velocity[0] = u[seen], v[seen]
+        for step in range(1, steps + 1):
+            u += h * v + h * h / 4 * a
+            v += h / 2 * a
+            right = -(held @ u)
+            if braked is not None:
+                right -= braked @ v
+            right[: problem.points] += loads[step]
+            a = solve(right)
+            u += h * h / 4 * a
+            v += h / 2 * a
+            displacement[step], velocity[step] = u[seen], v[seen]
+        rows = []
+        for probe, (where, weights) in zip(problem.probes, stencils, strict=True):
+            field = velocity if probe.quantity == "velocity" else displacement
+            row = np.interp(taus, times, field[:, np.searchsorted(seen, where)] @ weights)
+            rows.append(row + _strained(problem, probe))
+        return np.array(rows)
 
     return evaluate
 
