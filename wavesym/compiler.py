@@ -55,7 +55,8 @@ def evaluator(scene: Scene) -> Response:
     """The outputs of a scene as a function of tau, each value right to the last bit.
 
     Called with an array of tau it gives an array of shape (outputs, *tau.shape). It has `outputs`, their names,
-    `tau_max`, the end of the horizon, and `error_bound`.
+    `tau_max`, the end of the horizon, `error_bound`, and the `events` of contacts that open and close (`x`, `kind`,
+    `tau` as a ball, `double`, `digits`).
     SceneError for what is no Scene; CostError, where it is called, for what would take minutes.
 
     >>> import wavesym
@@ -244,6 +245,11 @@ def grid(model: Model, samples: int) -> Iterator[float]:
     yield model.horizon() if samples > 1 else 0.0
 
 
+def events(scene: Scene) -> list[str]:
+    """A line for each time that a contact opens or closes. CostError where that would take minutes to know."""
+    return [f"contact at x = {each.x} {each.kind} at tau = {each.digits}" for each in Response(lower(scene)).events]
+
+
 def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
     """What a user might not expect: no load, tau out of range, contacts that open early enough to matter."""
     model = lower(scene)
@@ -286,7 +292,7 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
     if kind == "xt":
         from wavesym.report import xt
 
-        save(xt.draw(lower(scene)), path)
+        save(xt.draw(lower(scene), scene.system.lines), path)
         return []
     from wavesym.report.histories import histories
     from wavesym.report.panels import draw, notes

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from flint import ctx, fmpq
+from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.exact.knots import Knots
+from wavesym.exact.events import events
 from wavesym.exact.motion import Motion
-from wavesym.exact.network_waves import NetworkWaves, SentWave
+from wavesym.exact.network_waves import SentWave
 from wavesym.model.model import Model
 from wavesym.model.network import End
 from wavesym.model.probe import Probe
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 class Field:
     """The velocity and the force (impedance times speed times strain) of every bar until the end of the horizon.
 
-    CostError where the outputs of a model with as many would cost too much.
+    `events` are those of all contacts. CostError where the outputs of a model with as many would cost too much.
     """
 
     def __init__(self, model: Model) -> None:
@@ -28,11 +28,9 @@ class Field:
             Probe("", "velocity", number, fmpq(1, 2)) for number in range(1, len(model.network.bars) + 1)
         )
         self._network = model.network
-        bits = Motion(everywhere, model.until).first_bits
-        with ctx.workprec(bits):
-            knots = Knots(everywhere, model.until).joints
-            waves = NetworkWaves(model.network, knots, everywhere.acting(model.until), bits // 4)
-        self._waves = {end: _SampledWave(wave) for end, wave in waves.sent.items()}
+        self.events = events(everywhere)
+        motion = Motion(everywhere, model.until)
+        self._waves = {end: _SampledWave(wave) for end, wave in motion.waves(motion.first_bits).sent.items()}
 
     def at(self, bar: int, part: Array, tau: Array) -> tuple[Array, Array]:
         """Velocity and force of a bar at parts of its length from the left end; all of one shape."""

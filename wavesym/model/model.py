@@ -50,10 +50,24 @@ class Model:
     def named(self) -> Chain:
         """The chain as the paper has it. UnservedError for one that is written out, which has no exact tables."""
         if self.chain is None:
+            self.refuse_contacts()
             raise UnservedError(
                 "system.type: chain given, collision, drive or building expected (a chain has pieces and `run`)"
             )
         return self.chain
+
+    def refuse_contacts(self) -> None:
+        """UnservedError where contacts open and close: for what is one law from the start to the end."""
+        if not self.network.contacts:
+            return
+        if self.labels.system["type"] == "chain":
+            at, given, expected = "system.parts", "contacts", "none"
+        else:
+            at, given, expected = "system.contacts", "open", "closed"
+        raise UnservedError(
+            f"{at}: {given} given, {expected} expected (contacts that open have pieces and `run`, not tables, "
+            "derivation, closed form or march)"
+        )
 
     def horizon(self, real: Real = DOUBLE) -> float:
         """The last tau in `real` numbers: the smallest of them that is not below `until`."""
@@ -68,10 +82,23 @@ class Model:
         return light_cone(self.named, self.probes, until)
 
     def reached(self, until: fmpq) -> dict[int, fmpq]:
-        """The joints of the network that can influence an output by then, and until when each can."""
+        """The joints of the network that can influence an output by then, and until when each can.
+
+        A contact counts as if it were closed: it may close. What one does is asked for until the end, as an output is.
+        """
+        return self._felt_at(until, [self.network.links[number].left for number in self.contacts(until)])
+
+    def contacts(self, until: fmpq) -> tuple[int, ...]:
+        """The links that are contacts and can influence an output by then."""
+        if not self.network.contacts:
+            return ()
+        reached, network = self._felt_at(until), self.network
+        return tuple(n for n in network.contacts if network.joint_of[network.links[n].left] in reached)
+
+    def _felt_at(self, until: fmpq, more: Iterable[int] = ()) -> dict[int, fmpq]:
         network = self.network
         places = [(probe.rod - 1, probe.place) for probe in self.probes if probe.point is None]
-        points = [probe.point for probe in self.probes if probe.point is not None]
+        points = [probe.point for probe in self.probes if probe.point is not None] + list(more)
         distances = network.distances(places, points)
         bars = [network.bars[bar] for bar, _ in places]
         beside = {network.joint_of[point] for bar in bars for point in (bar.left, bar.right)}
