@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from wavesym.lab.atlas import dashpots, lengths, refusals, stiffness
+from wavesym.exact.events import events
+from wavesym.lab.atlas import contacts, dashpots, lengths, refusals, stiffness
 from wavesym.lab.atlas.attempts import ROUNDED
 from wavesym.lab.atlas.scenes import TOLERANCE
 from wavesym.programs.making import make
@@ -40,7 +41,7 @@ def test_steps_of_a_common_grid():
 
 
 def test_lengths():
-    family = lengths.family(quietly, gaps=[Fraction(1, 1000), Fraction(0)])
+    family = lengths.family(quietly, gaps=[Fraction(1, 2), Fraction(0)])
     assert len(served(family)) == 2
 
 
@@ -78,10 +79,29 @@ def test_dashpots():
     assert [point.error for point in family.points if "echo" in point.curve and point.x == 0] == [0] * 4
 
 
+def test_a_dropped_bar_meets_the_ground_when_it_should():
+    """In its own frame: gap 1/2, acceleration 1/9, so 3; a wave there and back, 2; free, a whole period is 16."""
+    found = events(lower(contacts.dropped(40)))
+    instants = [3, 5, 11, 13]
+    assert [event.double for event in found] == [at + 16 * k for k in range(3) for at in instants if at + 16 * k <= 40]
+    assert contacts.widths(found) == [0.0] * len(found)
+
+
+def test_contacts():
+    family = contacts.family(quietly, {"wagons": contacts.wagons(12)})
+    widths, radii = (family.curve("wagons", name) for name in (contacts.WIDTH, contacts.RADIUS))
+    assert [point.error for point in widths[:2]] == [0, pytest.approx(2.0**-254)]
+    assert max(point.error for point in widths) < 2.0**-220
+    assert 0 < radii[1].error < 2.0**-370 < radii[-1].error < 2.0**-220
+    kept = served(family, contacts.PIECES)
+    assert len(kept) == len(widths) > 8
+    assert [point.error for point in kept] == sorted(point.error for point in kept)
+
+
 def test_every_refusal_has_its_reason():
     panels = {name: (scene, places[:2]) for name, (scene, places) in refusals.PANELS.items()}
     family = refusals.family(quietly, panels)
-    assert len(served(family)) == 6
+    assert len(served(family)) == 8
     assert all(math.isnan(point.error) <= bool(point.refused) for point in family.points)
 
 

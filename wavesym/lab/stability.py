@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from wavesym.lab.atlas import (
+    contacts,
     dashpots,
     endurance,
     extremes,
@@ -32,6 +33,7 @@ FAMILIES: Mapping[str, Callable[[Progress], CurveFamily]] = {
     "lengths": lengths.family,
     "stiffness": stiffness.family,
     "dashpots": dashpots.family,
+    "contacts": contacts.family,
     "refusals": refusals.family,
     "march": endurance.family,
 }

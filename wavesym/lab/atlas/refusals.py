@@ -1,4 +1,4 @@
-"""Where each program refuses a chain: by its knots, by the common step of its delays, by its springs."""
+"""Where each program refuses a chain: by its knots, the common step of its delays, its springs, its contact events."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from wavesym.lab.atlas.attempts import EVALUATORS
+from wavesym.lab.atlas.contacts import dropped
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import chain
 from wavesym.lab.atlas.stiffness import scene as sprung
@@ -30,6 +31,11 @@ def stiff(ratio: float) -> Scene:
     return sprung(Fraction(ratio))
 
 
+def bouncing(count: float) -> Scene:
+    """A bar dropped on the ground, which it meets or leaves so often."""
+    return dropped(4 * int(count))
+
+
 def masses(lengths: Sequence[Fraction], until: int) -> Scene:
     """Rods between unit masses, the first of which is pushed."""
     parts: list[Any] = [{"mass": 1, "name": "first"}]
@@ -44,6 +50,7 @@ PANELS: Mapping[str, Panel] = {
     "horizon, lengths 1, 1.414213562 and 1.732050808": (long, (2, 5, 10, 20, 40, 120)),
     "steps in the first rod, lengths 1 and 1 + a step": (stepped, (1, 2, 4, 8, 16, 32, 64, 128, 1e3, 1e6)),
     "K/M of a spring between two masses": (stiff, (1, 10, 100, 1e3, 1e4, 1e5, 1e6, 1e8)),
+    "contact events": (bouncing, (4, 16, 64, 256, 1024)),
 }
 
 
