@@ -1,6 +1,7 @@
 """What stands between the rods of a place x time picture: masses, ends, springs, and contacts while they are open.
 
-All of it has a width in points; at an end of the chain it stands outside of the rod, elsewhere it lies over the place.
+All of it has a width in points. At an end of the chain it stands outside of the rod, but for a contact with the rod,
+which lies over it as everything does elsewhere.
 """
 
 from __future__ import annotations
@@ -60,9 +61,12 @@ def draw_nodes(axes: Axes, network: Network, stations: Sequence[Station], opened
     for station in stations:
         items = list(_items(network, station))
         width = sum(item.width for item in items)
-        at = -width if station.left is None else 0.0 if station.right is None else -width / 2
+        at = -width / 2
         if station.left is None:
-            axes.spines["left"].set_position(("outward", width))
+            at = -_outside(items)
+            axes.spines["left"].set_position(("outward", -at))
+        elif station.right is None:
+            at = _outside(items[::-1]) - width
         for item in items:
             _draw_item(_Pen(axes, float(station.x), at + item.width / 2), item, opened, until)
             at += item.width
@@ -89,6 +93,13 @@ def _items(network: Network, station: Station) -> Iterator[_Item]:
             yield _Item(point, _MASS)
         elif len(station.points) == 1:
             yield _Item(point, _THIN)
+
+
+def _outside(items: Sequence[_Item]) -> float:
+    """The width of what does not lie over the rod, the last of them beside it."""
+    beside = items[-1]
+    touching = isinstance(beside.what, Link) and beside.what.contact
+    return sum(item.width for item in items[: -1 if touching else None])
 
 
 @dataclass(frozen=True)
