@@ -31,8 +31,8 @@ from wavesym.targets.files import files
 NAMED = "BDC"
 """Of the paper's systems."""
 
-CHAINS = "LS"
-"""Written out: three lengths, a spring."""
+CHAINS = "LSE"
+"""Written out: three lengths, a spring, contact events."""
 
 
 def scene(name: str, until: float, system: dict[str, Any], load: Sequence[dict[str, Any]], **output: Any) -> Scene:
@@ -81,7 +81,7 @@ def report(folder: Path) -> Iterator[str]:
     yield ""
     yield "Time a sample against largest error, rivals included, by `wavesym chart`; the numbers are in the CSVs."
     yield ""
-    yield from (f"![{label}]({label}.svg)" for label in "bdc")
+    yield from (f"![{label}]({label}.svg)" for label in "bdcl")
     yield ""
     yield "## Growth"
     yield ""

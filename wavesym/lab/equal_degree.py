@@ -7,29 +7,49 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 from flint import fmpq
 
 from wavesym.lab.harness import SAMPLES, many
 from wavesym.lab.timing import medians
+from wavesym.model.model import Model
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.programs.pieces import Pieces
 from wavesym.scene import Scene, lower
-from wavesym.targets.files import files
+from wavesym.targets.files import sources
 
-_DIGITS = range(3, 15)
+_DIGITS = range(4, 15)
 
 
 @dataclass(frozen=True)
 class Fitted:
-    """A scene's pieces and its C by file name. `degree` is the mean over the horizon, `count` that of the pieces."""
+    """A scene's pieces at some tolerance, whatever its own is."""
 
     scene: Scene
-    degree: float
-    count: int
-    c: dict[str, str]
+    model: Model
+    form: Pieces
+
+    @cached_property
+    def degree(self) -> float:
+        """Of the piece that a tau is on, in the mean over all tau and outputs."""
+        total = 0.0
+        for grid in self.form.grids:
+            for (start, end), polynomials in zip(pairwise(grid.starts), grid.powers, strict=True):
+                total += (end - start) * sum(len(powers) - 1 for powers in polynomials)
+        return total / self.form.tau_max / len(self.form.outputs)
+
+    @property
+    def count(self) -> int:
+        """How many pieces an output has, in the mean."""
+        return sum(len(grid.centres) * len(grid.outputs) for grid in self.form.grids) // len(self.form.outputs)
+
+    @cached_property
+    def c(self) -> dict[str, str]:
+        """The C by file name."""
+        return sources(program(self.model, self.form), "c")
 
 
 def fitted(scene: Scene, tolerance: fmpq) -> Fitted:
@@ -37,21 +57,11 @@ def fitted(scene: Scene, tolerance: fmpq) -> Fitted:
     model = lower(scene).tolerating(tolerance)
     form = choose(model, "pieces").evaluator
     assert isinstance(form, Pieces)
-    count = sum(len(grid.centres) * len(grid.outputs) for grid in form.grids)
-    return Fitted(scene, _degree(form), count // len(scene.outputs), files(program(model, form, tested=True), "c"))
-
-
-def _degree(form: Pieces) -> float:
-    """Of the piece that a tau is on, in the mean over all tau and outputs."""
-    total = 0.0
-    for grid in form.grids:
-        for (start, end), polynomials in zip(pairwise(grid.starts), grid.powers, strict=True):
-            total += (end - start) * sum(len(powers) - 1 for powers in polynomials)
-    return total / form.tau_max / len(form.outputs)
+    return Fitted(scene, model, form)
 
 
 def at_degree(scene: Scene, degree: float) -> Fitted:
-    """The pieces of a scene at that tolerance of 1e-3, 1e-4, ... 1e-14 at which their degree is nearest."""
+    """The pieces of a scene at that tolerance of 1e-4, 1e-5, ... 1e-14 at which their degree is nearest."""
     return min((fitted(scene, fmpq(1, 10**digits)) for digits in _DIGITS), key=lambda one: abs(one.degree - degree))
 
 
