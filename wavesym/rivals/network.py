@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from flint import fmpq
 
+from wavesym.errors import UnservedError
 from wavesym.model.model import Model
 from wavesym.model.network import Bar, Network
 from wavesym.model.probe import Probe
@@ -67,8 +68,10 @@ class NetworkProblem:
 
 
 def network_problem(model: Model) -> NetworkProblem:
-    """The network of a model with its loads."""
+    """The network of a model with its loads. UnservedError where contacts open and close."""
     network = model.network
+    if network.contacts:
+        raise UnservedError("system: a contact that opens and closes given, none expected")
     points, bars = network.points, network.bars
     damping, stiffness = (np.diag([nearest(getattr(p, name)) for p in points]) for name in ("damping", "stiffness"))
     for link in network.links:
