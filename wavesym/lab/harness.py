@@ -10,7 +10,7 @@ import numpy as np
 
 from wavesym.running.native import address, library
 from wavesym.running.toolchain import Compiler, at_hand
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 
 SAMPLES = 10_001
 PLAIN = ("-O2",)
@@ -106,7 +106,7 @@ def many(
     """So many calls of "many", that is of `sample` for so many samples, or of "lines", which only write."""
     function = getattr(_library(each, made, flags), which)
     function.argtypes = [ctypes.c_double, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_int]
-    step = float(each.output.until) / (samples - 1)
+    step = lower(each).horizon() / (samples - 1)
     out = np.empty((len(each.outputs), samples))
 
     def call() -> object:

@@ -122,7 +122,7 @@ def reference(scene: Scene, samples: int) -> Subject:
 def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
     """The rivals that take the scene, each from coarse to fine."""
     model = lower(scene)
-    at = taus(float(scene.output.until), samples, "double")
+    at = taus(model.horizon(), samples, "double")
     for rival in RIVALS:
         try:
             stated = rival.states(model)
@@ -193,7 +193,7 @@ def _c(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
     call, evaluate = getattr(compiled, f"{name}_sample"), getattr(compiled, f"{name}_eval")
     call.argtypes = [number, number, ctypes.c_size_t, ctypes.c_void_p]
     evaluate.argtypes = [number, ctypes.c_void_p]
-    apart = spacing(float(scene.output.until), samples, precision)
+    apart = spacing(lower(scene).horizon(), samples, precision)
     out = np.empty((outputs, samples), dtype=dtype)
     where = address(out)
 
@@ -212,4 +212,4 @@ def _c(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
 
 def _numpy(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
     evaluate = made.program.evaluate
-    return partial(evaluate, taus(float(scene.output.until), samples, precision)), evaluate
+    return partial(evaluate, taus(lower(scene).horizon(), samples, precision)), evaluate
