@@ -49,6 +49,9 @@ class Compiler(SimpleNamespace):
     def warnings(self, scene: object, taus: object = ()) -> list[str]:
         return ["a contact opens"]
 
+    def events(self, scene: object) -> list[str]:
+        return []
+
     def no_load(self, scene: object) -> list[str]:
         return []
 
@@ -221,8 +224,9 @@ def test_verify(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_run_puts_values_out_and_warnings_aside(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
+    compiler.events = lambda scene: ["a contact closes"]
     assert main(["run", "mine.toml"]) == 0
-    assert capsys.readouterr() == ("tau,strain@0.5\n0.0,0.0\n", "mine: a contact opens\n")
+    assert capsys.readouterr() == ("tau,strain@0.5\n0.0,0.0\n", "mine: a contact opens\nmine: a contact closes\n")
     assert main(["run", "mine.toml", "--samples", "7", "-o", "out.csv"]) == 0
     assert capsys.readouterr().out == ""
     assert Path("out.csv").read_bytes() == b"tau,strain@0.5\n0.0,0.0\n"

@@ -10,6 +10,7 @@ import pytest
 from flint import fmpq
 
 import wavesym
+from wavesym.cli import main
 from wavesym.errors import SceneError, UnservedError
 from wavesym.model.model import Model
 from wavesym.model.network import Link, Network
@@ -122,6 +123,21 @@ def test_an_open_collision_is_its_chain_with_contacts(tmp_path: Path) -> None:
     assert other.probes == one.probes
     assert touching(one.network) == [(2, 3, "2", 0), (5, 6, "4", 0)]
     assert [bar.velocity for bar in one.network.bars] == [1, 1, fmpq(-1, 2), fmpq(-1, 2), -2, -2]
+
+
+def test_a_scene_of_ones_own_is_written_out_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "bars.toml"
+    collision = 'type = "collision"\nm = 4\nkappa = [1, 1]\nvelocity = [1, 0]\ncontacts = "open"'
+    file.write_text(f'name = "bars"\n[system]\n{collision}\n[output]\nuntil = 1\nvelocity = [0]\n')
+    assert main(["scenes", str(file), "--explicit"]) == 0
+    text = capsys.readouterr().out
+    assert text.count('"contact"') == 1
+    assert "closed" not in text
+    file.write_text(text)
+    assert main(["scenes", str(file), "--explicit"]) == 2
+    assert "system.type: chain given" in capsys.readouterr().err
+    assert main(["scenes", "stepped_shaft", "--explicit"]) == 0
+    assert "brake" in capsys.readouterr().out
 
 
 def test_what_a_closed_collision_is_does_not_change() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from itertools import pairwise
 from math import comb, exp, factorial
 from pathlib import Path
@@ -117,6 +118,19 @@ def test_contacts_open_and_close_in_turn(name: str, until: int, least: int) -> N
     for x in {event.x for event in events}:
         kinds = [event.kind for event in events if event.x == x]
         assert all(one != other for one, other in pairwise(kinds))
+
+
+def test_the_fractions_in_the_words() -> None:
+    text = " ".join((FOLDER / "README.md").read_text(encoding="utf-8").split())
+    reflected = (1 - Fraction(1, 4)) / (1 + Fraction(1, 4))
+    first, second, third = (1 - reflected ** (2 * n) for n in (1, 2, 3))
+    assert f"= {reflected} of what arrives" in text
+    assert f"{first}, then {second}, then {third}." in text
+    shaft = [Fraction(1), Fraction(4), Fraction(1, 4)]
+    one, other = (2 * left / (left + right) for left, right in pairwise(shaft))
+    brake = 2 * shaft[-1] / (shaft[-1] + Fraction(1, 8))
+    assert f"here {one} and {other}, and moves a brake of dashpot c with 2 Z/(Z + c), here {brake}." in text
+    assert f"the brake turns {one * other * brake} times as fast" in text
 
 
 def test_commands_of_the_documents_name_these_scenes() -> None:

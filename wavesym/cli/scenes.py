@@ -16,17 +16,17 @@ def scenes(name: str | None, explicit: bool) -> None:
       wavesym scenes building_m2 --explicit
     """
     from wavesym.scene import Scene, builtin_names, builtin_text
+    from wavesym.scene.explicit_text import explicit_text
 
-    if name is not None and explicit and (scene := Scene.from_toml(name)).system.type != "chain":
-        from wavesym.scene.explicit_text import explicit_text
-
-        click.echo(explicit_text(scene), nl=False)
-        return
-    if name is not None:
-        click.echo(builtin_text(name), nl=False)
-        return
-    if explicit:
+    if explicit and name is None:
         raise click.UsageError("--explicit given without NAME, the name of a built-in scene expected")
+    if name is not None:
+        scene = Scene.from_toml(name) if explicit else None
+        if scene is None or (name in builtin_names() and scene.system.type == "chain"):
+            click.echo(builtin_text(name), nl=False)
+        else:
+            click.echo(explicit_text(scene), nl=False)
+        return
     described = builtin_names()
     width = max(map(len, described))
     for each, description in described.items():

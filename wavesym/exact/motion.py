@@ -7,13 +7,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from math import inf
 
-from flint import arb, arb_poly, ctx, fmpq
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
 from wavesym.exact.joint import STILL, Enclosed, JointLaw
 from wavesym.exact.knots import Knots
-from wavesym.exact.network_waves import NetworkWaves, Waves
+from wavesym.exact.network_waves import NetworkWaves, Waves, later
 from wavesym.exact.touching_waves import replayed
 from wavesym.model.model import Model
 from wavesym.model.network import End
@@ -155,12 +155,15 @@ def _value(waves: Waves, probe: Probe, start: fmpq) -> Enclosed:
             known, ratio = _velocity(waves, point, start), arb(bar.ratios[end.side])
             return Enclosed(ratio * known.polynomial, (abs(ratio) * known.error).upper())
     right, left = probe.weights
+    exact: fmpq_poly | None = fmpq_poly()  # of waves that cancel nothing is left, where both are known exactly
     for factor, side, way in ((right, 0, probe.place), (left, 1, 1 - probe.place)):
         known, offset = waves.sent[End(probe.rod - 1, side)].at(start - way * bar.delay)
-        if known.polynomial.length():
-            later = known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial
-            polynomial += factor * later
-        error += known.error
+        wave = later(known, offset)
+        exact = None if exact is None or wave.exact is None else exact + factor * wave.exact
+        polynomial += factor * wave.polynomial
+        error += wave.error
+    if exact is not None and exact.length() == 0:
+        return STILL
     if probe.quantity == "strain" and bar.speed != 1:
         polynomial, error = polynomial * arb(1 / bar.speed), (error / arb(bar.speed)).upper()
     return Enclosed(polynomial, error)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from flint import fmpq
 
+from wavesym.errors import UnservedError
 from wavesym.fields.loads import Load
 from wavesym.model.network import Network, Point
 from wavesym.scene.lowering import lower
@@ -20,6 +21,8 @@ def explicit_text(scene: Scene) -> str:
 
 
 def _lines(scene: Scene) -> Iterator[str]:
+    if scene.system.type == "chain":
+        raise UnservedError("system.type: chain given, collision, drive or building expected (a chain is written out)")
     model = lower(scene)
     yield f"# {scene.name}, a {scene.system.type}, written out part by part."
     parted = model.labels.system.get("contacts") == "open"

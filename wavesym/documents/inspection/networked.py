@@ -142,9 +142,10 @@ def joint_laws(model: Model) -> Listing:
                 "refusal": Told(None, "") if rows or not refusal else refusal,
             }
         )
+    parted = ", with all contacts open" if model.network.contacts else ""
     return Listing(
         "joints",
-        f"Joints in the light cone, with a knot for each start of a stretch without fronts:\n{LAW}",
+        f"Joints in the light cone, with a knot for each start of a stretch without fronts{parted}:\n{LAW}",
         rows,
         ("M", "C", "K", "refusal"),
     )
