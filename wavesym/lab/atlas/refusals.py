@@ -71,4 +71,5 @@ def family(progress: Progress, panels: Mapping[str, Panel] = PANELS) -> CurveFam
         "proved bound / largest value",
         tuple(points),
         "filled: served; hollow: its bound is too large; cross: refused before the work (the table has each reason)",
+        most=1e9,
     )
