@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 import pytest
@@ -14,6 +15,7 @@ from wavesym.exact import knots as room
 from wavesym.exact.joint import Enclosed
 from wavesym.exact.knots import Knots
 from wavesym.exact.network_waves import NetworkWaves, SentWave
+from wavesym.exact.reference import Reference
 from wavesym.model.network import Bar, End, Link, Network, Point
 from wavesym.numbers.doubles import rational
 from wavesym.scene import lower
@@ -168,3 +170,11 @@ def test_an_absorbing_end_sends_exactly_nothing():
         for known in waves.sent[End(bar, 1)].stretches:
             assert known.polynomial.length() == 0
             assert known.error == 0
+
+
+def test_a_rod_that_is_longer_than_the_horizon_costs_nothing():
+    """Its window is cut at the horizon; half of infinity is a dashpot: 1 - exp(-tau)."""
+    model = chain(["1e12"], 6, load=[{"at": "a", "times": ["5/2"], "steps": [1]}])
+    assert max(Knots(model, model.until).joints[0]) == 7
+    (values,) = Reference(model).values([2.5, 3.5, 6.0])
+    assert values == pytest.approx([0.0, *(1 - math.exp(2.5 - tau) for tau in (3.5, 6.0))], rel=1e-15)

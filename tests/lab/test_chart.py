@@ -18,7 +18,7 @@ from wavesym.lab.measure import ChartRow, Measured, _Judge, measure, to_csv
 from wavesym.lab.subjects import Subject, spacing, subjects, taus
 from wavesym.lab.timing import medians
 from wavesym.rivals.every import RIVALS
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 
 SCENE = Scene(
     name="small",
@@ -76,6 +76,15 @@ def test_our_evaluators_keep_their_bounds():
         assert max(judge.errors(one)) <= one.bound + 2.0**-53
         seen.add(one.curve)
     assert {("closed", "C", "double"), ("closed", "NumPy", "double")} <= seen
+
+
+def test_samples_are_those_that_are_judged_where_the_horizon_is_no_double():
+    """A unit in the last place of tau is an error of several in what is steep."""
+    scene = SCENE.with_({"output.until": "29/10"})
+    assert lower(scene).horizon() != float(scene.output.until)
+    one = next(subject for subject in subjects(scene, 301) if subject.language == "NumPy")
+    judged = taus(_Judge(scene).until, 301, "double")
+    np.testing.assert_array_equal(one.sample(), one.at(judged))
 
 
 def test_medians_interleave():

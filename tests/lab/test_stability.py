@@ -28,7 +28,7 @@ from wavesym.programs import pieces
 from wavesym.programs.choice import choose
 from wavesym.report.saving import save
 from wavesym.rivals import characteristics, differences, elements, laplace, modes, steps
-from wavesym.rivals.problem import stated
+from wavesym.rivals.line import stated
 from wavesym.scene import lower
 
 

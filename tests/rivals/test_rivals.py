@@ -13,7 +13,9 @@ from wavesym.exact.reference import Reference
 from wavesym.model.loads import Applied
 from wavesym.rivals import characteristics, delays, differences, elements, laplace, modes, steps
 from wavesym.rivals.every import RIVALS
-from wavesym.rivals.problem import problem, stated
+from wavesym.rivals.line import stated
+from wavesym.rivals.network import NetworkProblem
+from wavesym.rivals.problem import problem
 from wavesym.scene import Scene, lower
 
 
@@ -65,7 +67,7 @@ def truth(name):
 def errors(rival, name, resolution, broken=lambda problem: problem):
     """The largest error of each output."""
     taus, values, sizes = truth(name)
-    found = rival.prepare(broken(stated(lower(SCENES[name]))), resolution)(taus)
+    found = rival.prepare(broken(rival.states(lower(SCENES[name]))), resolution)(taus)
     return np.max(np.abs(found - values) / sizes, axis=1)
 
 
@@ -128,6 +130,8 @@ def test_characteristics_read_off_the_same_from_any_samples(rival, count):
 @pytest.mark.parametrize("rival", RIVALS, ids=lambda rival: rival.name)
 def test_a_wrong_sign_at_a_body_is_seen(rival):
     def broken(problem):
+        if isinstance(problem, NetworkProblem):
+            return replace(problem, ratios=problem.ratios * [[1, -1]])
         alpha = problem.alpha.copy()
         alpha[1] *= -1
         return replace(problem, alpha=alpha)

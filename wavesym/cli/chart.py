@@ -36,7 +36,7 @@ for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
 def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
     """Draw speed against accuracy: every evaluator of a scene, and other methods.
 
-    Takes some tens of seconds, and a C compiler.
+    Takes some tens of seconds, and a C compiler. Methods that do not take the scene are left out, and said to be.
 
     \b
     Example:
@@ -51,11 +51,14 @@ def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
     with progress(f"chart {scene.name}") as line:
         from wavesym.lab.chart import draw
         from wavesym.lab.measure import measure, to_csv
+        from wavesym.lab.subjects import left_out
         from wavesym.report.saving import picture_format, save
         from wavesym.writing import write_whole
 
         picture_format(out)  # before the work, not after it
         measured = measure(scene, samples, line.tell)
         save(draw(scene, measured), out)
+    for each in left_out(scene):
+        click.echo(f"{scene.name}: left out: {each}", err=True)
     if table is not None:
         write_whole({table: to_csv(measured)})

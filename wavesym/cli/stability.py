@@ -16,7 +16,10 @@ from wavesym.cli.progress import progress
 def stability(directory: Path) -> None:
     """Run and draw where methods fail: error against reflections, gaps of rates, kappa, degree, and at fronts.
 
-    Takes two or three minutes, and a C compiler; prints the paths of what it wrote.
+    Of chains that are written out: lengths that are nearly equal, springs from soft to stiff, dashpots near the
+    impedance, contacts after many events, and where each program refuses.
+
+    Takes about three minutes, and a C compiler; prints the paths of what it wrote.
 
     \b
     Example:

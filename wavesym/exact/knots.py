@@ -113,7 +113,9 @@ class Knots:
     def _windows(self) -> Sequence[fmpq]:
         (delay,) = self._delays
         count = int((self._until / delay).floor()) + 1
-        return [n * delay + part for n in range(count) for part in self._parts] + [count * delay]
+        starts = [n * delay + part for n in range(count) for part in self._parts]
+        # of a rod that is crossed not once no more is moved than is asked for
+        return [*starts, min(delay, self._until + 1) if count == 1 else count * delay]
 
     def _in_windows(self, place: fmpq) -> Iterator[fmpq]:
         (delay,) = self._delays

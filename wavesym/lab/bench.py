@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import platform
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -16,75 +15,24 @@ from typing import Any
 
 import numpy as np
 
+from wavesym.lab.equal_degree import at_degree, fitted, ratios
+from wavesym.lab.harness import CALLS, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
 from wavesym.lab.timing import medians
+from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import choose
 from wavesym.programs.making import make
 from wavesym.programs.pieces import Pieces
 from wavesym.programs.request import Request
 from wavesym.running.compiled import imported
-from wavesym.running.native import FAST, address, library
-from wavesym.running.toolchain import Compiler, at_hand
+from wavesym.running.native import FAST
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import files
 
-SAMPLES = 10_001
-PLAIN = ("-O2",)
-# In C, so that nothing else is timed: many calls of sample, as many straight lines of the same size, many of eval.
-_CALLS = 20
-_HARNESS = """
-void many(double dtau, size_t count, double *out, int calls)
-{
-    for (int call = 0; call < calls; ++call) {
-        NAME_sample(0.0, dtau, count, out);
-    }
-}
+NAMED = "BDC"
+"""Of the paper's systems."""
 
-void straight(double v, double d, size_t count, double *out);
-__attribute__((noinline)) void straight(double v, double d, size_t count, double *out)
-{
-    for (size_t k = 0; k < count; ++k) {
-        out[k] = v + d * (double)(int)k;
-    }
-}
-
-void lines(double d, size_t count, double *out, int calls)
-{
-    for (int call = 0; call < calls; ++call) {
-        for (size_t row = 0; row < PREFIX_OUTPUTS; ++row) {
-            straight((double)call, d, count, out + row * count);
-        }
-    }
-}
-
-void each(const double *tau, size_t count, double *out)
-{
-    for (size_t k = 0; k < count; ++k) {
-        NAME_eval(tau[k], out);
-    }
-}
-"""
-_PEAK = """
-#include <stddef.h>
-enum { LANES = 32 };
-void peak(size_t count, double *x)
-{
-    double s[LANES], t[LANES], w[LANES];
-    UNROLLED
-    for (int j = 0; j < LANES; ++j) s[j] = t[j] = w[j] = x[j];
-    for (size_t k = 0; k < count; ++k) {
-        const double next = x[k % 2];
-        UNROLLED
-        for (int j = 0; j < LANES; ++j) s[j] = s[j] * w[j] + next;
-        UNROLLED
-        for (int j = 0; j < LANES; ++j) t[j] = t[j] * w[j] + next;
-    }
-    UNROLLED
-    for (int j = 0; j < LANES; ++j) x[j] = s[j] + t[j];
-}
-"""
-_UNROLLED = {"gcc": 'UNROLLED=_Pragma("GCC unroll 32")', "clang": 'UNROLLED=_Pragma("clang loop unroll(full)")'}
-
-Output = dict[str, Any]
+CHAINS = "LSE"
+"""Written out: three lengths, a spring, contact events."""
 
 
 def scene(name: str, until: float, system: dict[str, Any], load: Sequence[dict[str, Any]], **output: Any) -> Scene:
@@ -92,13 +40,14 @@ def scene(name: str, until: float, system: dict[str, Any], load: Sequence[dict[s
     return Scene(name=name, system=system, load=list(load), output={"until": until, **output})
 
 
-def scenes(folder: Path) -> dict[str, Scene]:
-    """The three scenes that the figures are for."""
-    return {label: Scene.from_toml(folder / f"{label.lower()}.toml") for label in "BDC"}
+def scenes(folder: Path, labels: str) -> dict[str, Scene]:
+    """The scenes that the figures are for."""
+    return {label: Scene.from_toml(folder / f"{label.lower()}.toml") for label in labels}
 
 
 def report(folder: Path) -> Iterator[str]:
     """The whole report on the scenes in `folder`, line by line."""
+    named, chains = scenes(folder, NAMED), scenes(folder, CHAINS)
     yield "# Benchmarks"
     yield ""
     yield "Made by `make bench`; times are medians of interleaved rounds in one process, single thread."
@@ -111,18 +60,28 @@ def report(folder: Path) -> Iterator[str]:
     yield ""
     yield from _table(
         ("scene", "compiler", "flags", "floor", "sample", "ratio", "of FMA peak", "eval, random", "NumPy", "bound"),
-        _evaluating(scenes(folder)),
+        _evaluating({**named, **chains}),
+    )
+    yield ""
+    yield "## Chains against the collision"
+    yield ""
+    yield "Time a value, over that of C at the same degree: with as many samples, and with as many on a piece. A chain"
+    yield "has more pieces where fronts come more often."
+    yield ""
+    yield from _table(
+        ("scene", "compiler", "flags", "degree", "that of C", "pieces", "those of C", "ratio", "at as many on a piece"),
+        _at_equal_degree(named["C"], chains),
     )
     yield ""
     yield "## Generating"
     yield ""
-    yield from _table(("what", "wall s", "peak MB", "evaluator"), _generating(scenes(folder)))
+    yield from _table(("what", "wall s", "peak MB", "evaluator"), _generating(folder))
     yield ""
     yield "## Charts"
     yield ""
     yield "Time a sample against largest error, rivals included, by `wavesym chart`; the numbers are in the CSVs."
     yield ""
-    yield from (f"![{label}]({label}.svg)" for label in "bdc")
+    yield from (f"![{label}]({label}.svg)" for label in "bdcl")
     yield ""
     yield "## Growth"
     yield ""
@@ -138,7 +97,7 @@ def _machine() -> Iterator[str]:
     )
     yield f"- {cpu}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
     yield f"- Python {platform.python_version()}, NumPy {np.__version__}"
-    for compiler in _compilers():
+    for compiler in compilers():
         yield f"- {compiler.version}"
 
 
@@ -149,10 +108,6 @@ def _lines(path: str) -> list[str]:
         return []
 
 
-def _compilers() -> list[Compiler]:
-    return [compiler for compiler in at_hand() if compiler.name in _UNROLLED]
-
-
 def _table(header: Sequence[str], rows: Iterator[Sequence[str]]) -> Iterator[str]:
     yield "| " + " | ".join(header) + " |"
     yield "|" + "---|" * len(header)
@@ -160,28 +115,28 @@ def _table(header: Sequence[str], rows: Iterator[Sequence[str]]) -> Iterator[str
         yield "| " + " | ".join(row) + " |"
 
 
-def _evaluating(three: dict[str, Scene]) -> Iterator[Sequence[str]]:
-    for label, each in three.items():
+def _evaluating(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
+    for label, each in given.items():
         made = files(make(lower(each), Request(evaluator="pieces")), "all")
         module = imported(made[f"{each.name}.py"], each.name)
         form = choose(lower(each), "pieces").evaluator
         assert isinstance(form, Pieces)
         outputs = len(each.outputs)
         taus = np.linspace(0.0, form.tau_max, SAMPLES)
-        for compiler in _compilers():
+        for compiler in compilers():
             for flags in (FAST, PLAIN):
-                with _compiler(compiler.name):
+                with chosen_compiler(compiler.name):
                     calls: list[Callable[[], object]] = [
-                        _many("lines", each, made, flags),
-                        _many("many", each, made, flags),
-                        _each(each, made, flags, form.tau_max),
+                        many("lines", each, made, flags),
+                        many("many", each, made, flags),
+                        one_by_one(each, made, flags, form.tau_max),
                         partial(module.evaluate, taus),
-                        _peak(compiler.name, flags),
+                        peak(compiler.name, flags),
                     ]
-                low, sample, random, numpy, peak = medians(calls)
-                low, sample = low / _CALLS, sample / _CALLS
+                low, sample, random, numpy, highest = medians(calls)
+                low, sample = low / CALLS, sample / CALLS
                 values = outputs * SAMPLES
-                share = (form.work - 2) * values / sample / (64 * 10_000 / peak)
+                share = (form.work - 2) * values / sample / (64 * 10_000 / highest)
                 yield (
                     label,
                     compiler.name,
@@ -194,93 +149,52 @@ def _evaluating(three: dict[str, Scene]) -> Iterator[Sequence[str]]:
                 )
 
 
-class _compiler:
-    """The C compiler that `toolchain` is to choose, for a while."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-        self._before = os.environ.get("CC")
-
-    def __enter__(self) -> None:
-        library.cache_clear()
-        os.environ["CC"] = self._name
-
-    def __exit__(self, *_: object) -> None:
-        library.cache_clear()
-        if self._before is None:
-            del os.environ["CC"]
-        else:
-            os.environ["CC"] = self._before
+def _at_equal_degree(collision: Scene, chains: dict[str, Scene]) -> Iterator[Sequence[str]]:
+    other = fitted(collision, rational(collision.output.tolerance))
+    for label, chain in chains.items():
+        one = at_degree(chain, other.degree)
+        for compiler in compilers():
+            for flags in (FAST, PLAIN):
+                with chosen_compiler(compiler.name):
+                    found = [f"{ratio:.2f}" for ratio in ratios(one, other, flags)]
+                degrees = [f"{each.degree:.1f}" for each in (one, other)]
+                yield label, compiler.name, f"`{' '.join(flags)}`", *degrees, f"{one.count}", f"{other.count}", *found
 
 
-def _library(each: Scene, made: dict[str, str], flags: tuple[str, ...]) -> ctypes.CDLL:
-    name = each.name
-    harness = _HARNESS.replace("NAME", name).replace("PREFIX", name.upper())
-    return library(made[f"{name}.c"] + harness, flags, (f"{name}.h", made[f"{name}.h"]))
-
-
-def _many(
-    which: str, each: Scene, made: dict[str, str], flags: tuple[str, ...], calls: int = _CALLS
-) -> Callable[[], object]:
-    function = getattr(_library(each, made, flags), which)
-    function.argtypes = [ctypes.c_double, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_int]
-    step = float(each.output.until) / (SAMPLES - 1)
-    out = np.empty((len(each.outputs), SAMPLES))
-
-    def call() -> object:
-        return function(step, SAMPLES, address(out), calls)
-
-    return call
-
-
-def _each(each: Scene, made: dict[str, str], flags: tuple[str, ...], tau_max: float) -> Callable[[], object]:
-    function = _library(each, made, flags).each
-    function.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p]
-    taus = np.random.default_rng(1).uniform(0.0, tau_max, SAMPLES)
-    out = np.empty(len(each.outputs))
-
-    def call() -> object:
-        return function(address(taus), SAMPLES, address(out))
-
-    return call
-
-
-def _peak(compiler: str, flags: tuple[str, ...]) -> Callable[[], object]:
-    function = library(_PEAK, (*flags, f"-D{_UNROLLED[compiler]}")).peak
-    function.argtypes = [ctypes.c_size_t, ctypes.c_void_p]
-    values = np.full(32, 0.5)
-
-    def call() -> object:
-        return function(10_000, address(values))
-
-    return call
-
-
-def _generating(three: dict[str, Scene]) -> Iterator[Sequence[str]]:
-    for label, each in three.items():
-        yield _generated(f"{label}, as above", each)
+def _generating(folder: Path) -> Iterator[Sequence[str]]:
+    for label in NAMED + CHAINS:
+        yield _generated(f"{label}, as above", (folder / f"{label.lower()}.toml").read_text(encoding="utf-8"))
     shafts = [f"{20 + i}/40" for i in range(49)]
     discs = [f"{30 + (7 * i) % 23}/30" for i in range(50)]
     drive = {"type": "drive", "m": 49, "kappa": shafts, "inertia": discs}
     load = {"body": 1, "times": [0], "steps": [1]}
-    yield _generated(
-        "drive of 50 unequal discs to tau = 100",
-        scene("discs", 100, drive, [load], strain=["1/2", "49/2"], velocity=["97/2"]),
-    )
+    train = scene("discs", 100, drive, [load], strain=["1/2", "49/2"], velocity=["97/2"])
+    yield _generated("drive of 50 unequal discs to tau = 100", _toml(train))
+    yield _generated("50 unequal rods, lengths 9/10 to 13/10, to tau = 50", _toml(_rods()))
     tower = {"type": "building", "m": 10, "kappa": ["1/100"] * 11, "base": "ground"}
     step = {"times": [0], "a": [1], "b": [0]}
     tall = scene("tower", 20_000, tower, [step], tolerance="1e-6", strain=["1/2"], velocity=[10])
-    yield _generated("building of 10 storeys to tau = 20 000", tall, "march")
+    yield _generated("building of 10 storeys to tau = 20 000", _toml(tall), "march")
     made = files(make(lower(tall), Request(evaluator="march")))
-    (seconds,) = medians([_many("many", tall, made, FAST, calls=1)])
+    (seconds,) = medians([many("many", tall, made, FAST, calls=1)])
     yield "one run of its C, 10 001 samples", f"{seconds:.3f}", "", "march"
 
 
-def _generated(label: str, each: Scene, evaluator: str = "auto") -> Sequence[str]:
+def _rods() -> Scene:
+    """A push on the first of 51 masses, between rods of five lengths and five impedances."""
+    parts: list[dict[str, Any]] = [{"mass": 1, "name": "first"}]
+    for k in range(50):
+        parts.append({"rod": f"{9 + (k * k + k // 3) % 5}/10", "impedance": f"{8 + 7 * k % 5}/10"})
+        parts.append({"mass": f"{5 + 3 * k % 7}/10"})
+    push = {"at": "first", "times": [0], "steps": [1]}
+    return scene("rods", 50, {"type": "chain", "parts": parts}, [push], velocity=["first"])
+
+
+def _generated(label: str, text: str, evaluator: str = "auto") -> Sequence[str]:
     """Wall time and peak memory of `wavesym generate`, start-up included, and what it chose."""
     with TemporaryDirectory() as directory:
         path = Path(directory, "scene.toml")
-        path.write_text(_toml(each), encoding="utf-8")
+        path.write_text(text, encoding="utf-8")
         command = [sys.executable, "-m", "wavesym", "generate", str(path), "-o", directory, "--evaluator", evaluator]
         start = perf_counter()
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
@@ -295,9 +209,11 @@ def _generated(label: str, each: Scene, evaluator: str = "auto") -> Sequence[str
 
 def _toml(each: Scene) -> str:
     """A scene as TOML; what a user would write."""
-    fields = each.model_dump()
+    fields = each.model_dump(exclude_defaults=True)
 
     def value(item: object) -> str:
+        if isinstance(item, Mapping):
+            return "{ " + ", ".join(f"{key} = {value(one)}" for key, one in item.items()) + " }"
         if isinstance(item, list | tuple):
             return "[" + ", ".join(map(value, item)) + "]"
         return str(item) if isinstance(item, int) else f'"{item}"'

@@ -6,7 +6,19 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 
-from wavesym.lab.atlas import endurance, extremes, fronts, gaps, limits, reflections
+from wavesym.lab.atlas import (
+    contacts,
+    dashpots,
+    endurance,
+    extremes,
+    fronts,
+    gaps,
+    lengths,
+    limits,
+    reflections,
+    refusals,
+    stiffness,
+)
 from wavesym.lab.atlas.drawing import draw
 from wavesym.lab.atlas.family import CurveFamily, Progress, to_csv
 from wavesym.report.saving import save
@@ -18,6 +30,11 @@ FAMILIES: Mapping[str, Callable[[Progress], CurveFamily]] = {
     "kappa": extremes.family,
     "springs": limits.family,
     "fronts": fronts.family,
+    "lengths": lengths.family,
+    "stiffness": stiffness.family,
+    "dashpots": dashpots.family,
+    "contacts": contacts.family,
+    "refusals": refusals.family,
     "march": endurance.family,
 }
 """By name, the one that takes longest last."""

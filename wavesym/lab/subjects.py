@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.errors import WavesymError
+from wavesym.errors import UnservedError, WavesymError
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import REALS
 from wavesym.programs.choice import MAKERS
@@ -22,8 +22,7 @@ from wavesym.programs.program import Program
 from wavesym.programs.request import Request
 from wavesym.results.response import Response
 from wavesym.rivals.every import RIVALS
-from wavesym.rivals.problem import Problem, Rival
-from wavesym.rivals.problem import stated as stated_problem
+from wavesym.rivals.problem import P, Rival
 from wavesym.running.native import address, library
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import sources
@@ -121,11 +120,13 @@ def reference(scene: Scene, samples: int) -> Subject:
 
 
 def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
-    """The rivals, each from coarse to fine."""
-    stated = stated_problem(lower(scene))
-    at = taus(stated.until, samples, "double")
+    """The rivals that take the scene, each from coarse to fine."""
+    model = lower(scene)
+    at = taus(model.horizon(), samples, "double")
     for rival in RIVALS:
-        if rival.undamped and stated.dashpots:
+        try:
+            stated = rival.states(model)
+        except UnservedError:
             continue
         for resolution in rival.resolutions:
             subject = opponent(rival, resolution, stated, at)
@@ -137,7 +138,17 @@ def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
                 break
 
 
-def opponent(rival: Rival, resolution: float, stated: Problem, at: Values) -> Subject:
+def left_out(scene: Scene) -> Iterator[str]:
+    """A line for each rival that does not take the scene: which, and why."""
+    model = lower(scene)
+    for rival in RIVALS:
+        try:
+            rival.states(model)
+        except UnservedError as error:
+            yield f"{rival.name}: {error}"
+
+
+def opponent(rival: Rival[P], resolution: float, stated: P, at: Values) -> Subject:
     """A rival at one resolution. The C that any parameter set can use is compiled before the clock starts."""
     rival.prepare(stated, rival.resolutions[0])
     start = perf_counter()
@@ -182,7 +193,7 @@ def _c(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
     call, evaluate = getattr(compiled, f"{name}_sample"), getattr(compiled, f"{name}_eval")
     call.argtypes = [number, number, ctypes.c_size_t, ctypes.c_void_p]
     evaluate.argtypes = [number, ctypes.c_void_p]
-    apart = spacing(float(scene.output.until), samples, precision)
+    apart = spacing(lower(scene).horizon(), samples, precision)
     out = np.empty((outputs, samples), dtype=dtype)
     where = address(out)
 
@@ -201,4 +212,4 @@ def _c(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
 
 def _numpy(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
     evaluate = made.program.evaluate
-    return partial(evaluate, taus(float(scene.output.until), samples, precision)), evaluate
+    return partial(evaluate, taus(lower(scene).horizon(), samples, precision)), evaluate

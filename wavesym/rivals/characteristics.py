@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from wavesym.rivals.line import stated
 from wavesym.rivals.problem import Array, Evaluate, Problem, Rival
 from wavesym.running.native import FAST, address, library
 
@@ -138,5 +139,5 @@ def _lagrange(s: Array, first: int, points: int) -> Array:
 # with divisors of the usual numbers of samples
 _STEPS = (10, 25, 50, 125, 250, 500, 1000, 2000)
 
-SECOND = Rival("characteristics, order 2", "C", "steps per unit of tau", _STEPS, partial(_prepare, 2))
-FOURTH = Rival("characteristics, order 4", "C", "steps per unit of tau", _STEPS, partial(_prepare, 4))
+SECOND = Rival("characteristics, order 2", "C", "steps per unit of tau", _STEPS, stated, partial(_prepare, 2))
+FOURTH = Rival("characteristics, order 4", "C", "steps per unit of tau", _STEPS, stated, partial(_prepare, 4))

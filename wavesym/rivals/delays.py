@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from wavesym.rivals.line import stated
 from wavesym.rivals.problem import FORCE_TERMS, Array, Evaluate, Problem, Rival
 
 # unknowns of a node: its velocity, the waves it sends to the left and right, and the integrals of these
@@ -129,4 +130,4 @@ def _read(problem: Problem, spline: Any, taus: Array) -> Array:
     return np.array(rows)
 
 
-RIVAL = Rival("JiTCDDE, neutral", "C", "relative tolerance", (1e-3, 1e-5, 1e-7), _prepare)
+RIVAL = Rival("JiTCDDE, neutral", "C", "relative tolerance", (1e-3, 1e-5, 1e-7), stated, _prepare)

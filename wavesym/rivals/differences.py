@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from wavesym.rivals.line import stated
 from wavesym.rivals.mesh import Mesh
 from wavesym.rivals.problem import Array, Evaluate, Problem, Rival
 
@@ -56,4 +57,4 @@ def _prepare(problem: Problem, resolution: float) -> Evaluate:
     return evaluate
 
 
-RIVAL = Rival("central differences", "NumPy", "cells per rod", (10, 20, 50, 100, 200, 500, 1000), _prepare)
+RIVAL = Rival("central differences", "NumPy", "cells per rod", (10, 20, 50, 100, 200, 500, 1000), stated, _prepare)

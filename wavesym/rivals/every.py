@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from wavesym.rivals import characteristics, differences, elements, laplace, modes, steps
 from wavesym.rivals.peers import PEERS
 from wavesym.rivals.problem import Rival
 
-RIVALS: tuple[Rival, ...] = (
+RIVALS: tuple[Rival[Any], ...] = (
     characteristics.SECOND,
     characteristics.FOURTH,
     differences.RIVAL,

@@ -1,8 +1,9 @@
-"""Numerical Laplace inversion: the nodes' conditions solved at points s of a line, then a Fourier series in tau.
+"""Numerical Laplace inversion: the network solved at points s of a line, then a Fourier series in tau.
 
-With waves that need a factor exp(-s) over a rod, (2.3) and (2.4) are a linear system in what each node sends. On the
-line s = c + i k pi/T the inversion integral becomes a series (Dubner and Abate) whose error is what the function does
-beyond 2 T, times exp(-2 c T). Its terms are damped towards the last one: what their end rings with stays at fronts.
+With waves that need a factor exp(-delay s) over a rod, the balance of forces at the points is a linear system in what
+they and the rods' ends do. On the line s = c + i k pi/T the inversion integral becomes a series (Dubner and Abate)
+whose error is what the function does beyond 2 T, times exp(-2 c T). Its terms are damped towards the last one: what
+their end rings with stays at fronts.
 """
 
 from __future__ import annotations
@@ -11,7 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import czt
 
-from wavesym.rivals.problem import Array, Evaluate, Problem, Rival
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import fraction
+from wavesym.rivals.network import NetworkProblem, network_problem
+from wavesym.rivals.problem import Array, Evaluate, Rival
 
 _PERIODS = 2.0  # T, in horizons
 _DAMPED = 34.0  # 2 c T: what comes back from beyond 2 T is e^-34 of it
@@ -19,45 +23,64 @@ _ORDER = 6  # of the filter: what is smooth converges as the number of terms to 
 _LAST = 36.0  # the last term keeps e^-36
 _MOST = 1 << 22  # entries of a matrix of exponentials at a time
 
+Complex = NDArray[np.complex128]
 
-def _transforms(problem: Problem, s: NDArray[np.complex128]) -> NDArray[np.complex128]:
+
+def _transforms(problem: NetworkProblem, s: Complex) -> Complex:
     """The outputs' transforms at s (complex, (k,)): shape (outputs, k)."""
-    m = problem.nodes - 1
-    delay = np.exp(-s)
-    left, right = problem.beside(problem.rods)
-    gone = (1 - delay) / s / 2  # the wave 1/2 that is in a rod at tau = 0 and arrives until 1
-    force = np.zeros((problem.nodes, len(s)), dtype=complex)
+    block = max(1, _MOST // (2 * len(problem.delay) + problem.points) ** 2)
+    return np.hstack([_block(problem, s[first : first + block]) for first in range(0, len(s), block)])
+
+
+def _block(problem: NetworkProblem, s: Complex) -> Complex:
+    # unknowns: what the ends of the bars send, left and right by turns, then the points' velocities
+    first = 2 * len(problem.delay)
+    size = first + problem.points
+    points = np.arange(first, size)
+    matrix = np.zeros((len(s), size, size), dtype=complex)
+    known = np.zeros((len(s), size), dtype=complex)
+    matrix[:, first:, first:] = problem.damping + problem.stiffness / s[:, np.newaxis, np.newaxis]
+    matrix[:, points, points] += np.multiply.outer(s, problem.mass)
+    known[:, first:] = problem.mass * problem.velocity
+    for bar, side, point, ratio, impedance in problem.at_ends():
+        sent, met, at = 2 * bar + side, 2 * bar + 1 - side, first + point
+        delay = np.exp(-s * problem.delay[bar])
+        gone = problem.held[bar, 1 - side] * (1 - delay) / s  # what is in the bar at tau = 0 and arrives here
+        matrix[:, sent, sent] = 1.0
+        matrix[:, sent, met] = delay
+        matrix[:, sent, at] = -ratio
+        known[:, sent] = -gone
+        matrix[:, at, met] -= 2 * ratio * impedance * delay
+        matrix[:, at, at] += ratio**2 * impedance
+        known[:, at] += 2 * ratio * impedance * gone
+    for point in problem.told:  # it feels nothing
+        matrix[:, first + point, :] = 0.0
+        matrix[:, first + point, first + point] = 1.0
+        known[:, first + point] = 0.0
     for event in problem.events:
         f0, f1, f2 = event.coefficients
-        force[event.node] += np.exp(-s * float(event.time)) * (f0 / s + f1 / s**2 + 2 * f2 / s**3)
-    force += np.multiply.outer(problem.inertia * problem.velocity, np.ones_like(s))
-    # unknowns: what the nodes 0 ... m send to the left, then to the right
-    matrix = np.zeros((len(s), 2 * (m + 1), 2 * (m + 1)), dtype=complex)
-    known = np.zeros((len(s), 2 * (m + 1)), dtype=complex)
-    for x in range(m + 1):
-        stiff = problem.inertia[x] * s + problem.gamma[x]
-        held = (force[x] + (problem.alpha[x] * left[x] + problem.beta[x] * right[x]) * gone) / stiff
-        for row, old in ((x, left[x]), (m + 1 + x, right[x])):
-            matrix[:, row, row] += 1
-            known[:, row] = held - old * gone
-            if x > 0:  # a, from the left, was sent to the right by x - 1
-                matrix[:, row, m + x] += (float(row == x) - problem.alpha[x] / stiff) * delay
-            if x < m:  # b
-                matrix[:, row, x + 1] += (float(row != x) - problem.beta[x] / stiff) * delay
-    sent = np.linalg.solve(matrix, known[..., np.newaxis])[..., 0].T
-    rows = []
-    for watch in problem.watches:
-        lag, v = watch.offset, problem.rods[watch.rod - 1] / 2
-        to_right = sent[m + watch.rod] * np.exp(-s * lag) + v * (1 - np.exp(-s * lag)) / s
-        to_left = sent[watch.rod] * np.exp(-s * (1 - lag)) + v * (1 - np.exp(-s * (1 - lag))) / s
-        if watch.quantity == "strain":
-            rows.append(to_left - to_right)
-        else:
-            rows.append((to_left + to_right) / (s if watch.quantity == "displacement" else 1))
-    return np.array(rows)
+        known[:, first + event.node] += np.exp(-s * float(event.time)) * (f0 / s + f1 / s**2 + 2 * f2 / s**3)
+    solved = np.asarray(np.linalg.solve(matrix, known[..., np.newaxis])[..., 0].T, dtype=np.complex128)
+    return np.array([_read(problem, probe, s, solved) for probe in problem.probes])
 
 
-def _prepare(problem: Problem, resolution: float) -> Evaluate:
+def _read(problem: NetworkProblem, probe: Probe, s: Complex, solved: Complex) -> Complex:
+    """The transform of an output."""
+    if probe.point is not None:
+        velocity = solved[2 * len(problem.delay) + probe.point]
+        return np.asarray(velocity / s if probe.quantity == "displacement" else velocity)
+    bar, place = probe.rod - 1, float(fraction(probe.place))
+    came = []
+    for side, way in ((0, place), (1, 1 - place)):
+        delay = np.exp(-s * way * problem.delay[bar])
+        came.append(solved[2 * bar + side] * delay + problem.held[bar, side] * (1 - delay) / s)
+    right, left = came
+    if probe.quantity == "strain":
+        return np.asarray((left - right) / problem.speed[bar])
+    return np.asarray((left + right) / (s if probe.quantity == "displacement" else 1))
+
+
+def _prepare(problem: NetworkProblem, resolution: float) -> Evaluate:
     span = _PERIODS * problem.until
     c = _DAMPED / (2 * span)
     k = np.arange(int(resolution))
@@ -81,4 +104,4 @@ def _prepare(problem: Problem, resolution: float) -> Evaluate:
     return evaluate
 
 
-RIVAL = Rival("Laplace inversion", "SciPy", "terms", (100, 300, 1000, 3000, 10000, 30000), _prepare)
+RIVAL = Rival("Laplace inversion", "SciPy", "terms", (100, 300, 1000, 3000, 10000, 30000), network_problem, _prepare)

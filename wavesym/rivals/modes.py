@@ -12,6 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wavesym.errors import UnservedError
+from wavesym.model.model import Model
+from wavesym.rivals.line import stated
 from wavesym.rivals.problem import Array, Evaluate, Problem, Rival
 
 _BISECTIONS = 60
@@ -96,8 +99,6 @@ def _prepare(problem: Problem, resolution: float) -> Evaluate:
                 ground[0, first:] += t * np.polyval((force / [1, 2, 3])[::-1], t)
                 ground[1, first:] += np.polyval(force[::-1], t)
                 force, pushed = np.array([force[1], 2 * force[2], 0.0]), -whole / mass
-                if event.coefficients[0]:
-                    raise NotImplementedError("the base jumps")
             moved = _pushed(w, t, force)
             position[:, first:] += pushed[:, np.newaxis] * moved[0]
             speed[:, first:] += pushed[:, np.newaxis] * moved[1]
@@ -133,4 +134,16 @@ def _pushed(w: Array, t: Array, force: Array) -> tuple[Array, Array]:
     return np.where(free, position, drift[0]), np.where(free, speed, drift[1])
 
 
-RIVAL = Rival("modal superposition", "NumPy", "modes", (10, 30, 100, 300, 1000), _prepare, undamped=True)
+def _undamped(model: Model) -> Problem:
+    """The problem of a model. UnservedError where its modes are not those found here, or not enough."""
+    problem = stated(model)
+    told = problem.alpha + problem.beta == 0
+    if np.any(problem.damping[~told]):
+        raise UnservedError("system: a dashpot given, a chain without them expected")
+    jumps = any(told[event.node] and event.coefficients[0] for event in problem.events)
+    if np.any(told[1:]) or jumps:
+        raise UnservedError("system: an end that moves as told given, none but a first that starts smoothly expected")
+    return problem
+
+
+RIVAL = Rival("modal superposition", "NumPy", "modes", (10, 30, 100, 300, 1000), _undamped, _prepare)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from importlib.util import find_spec
+from typing import Any
 
 from wavesym.rivals import delays
 from wavesym.rivals.problem import Rival
 
-PEERS: tuple[Rival, ...] = (delays.RIVAL,) if find_spec("jitcdde") else ()
+PEERS: tuple[Rival[Any], ...] = (delays.RIVAL,) if find_spec("jitcdde") else ()

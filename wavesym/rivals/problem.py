@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Generic, TypeVar
 
 import numpy as np
 from flint import fmpq
@@ -15,7 +16,6 @@ from numpy.typing import NDArray
 from wavesym.model.chain import Chain
 from wavesym.model.loads import Applied
 from wavesym.model.model import Model
-from wavesym.model.node import UnitLoad
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import fraction, nearest
 
@@ -73,11 +73,6 @@ class Problem:
         """What stands before the velocity once the waves are told apart: damping + (alpha + beta)/2."""
         return np.asarray(self.damping + (self.alpha + self.beta) / 2)
 
-    @property
-    def dashpots(self) -> bool:
-        """Whether something brakes the chain; a base that moves as it is told is no dashpot."""
-        return bool(np.any((self.damping > 0) & (self.alpha + self.beta > 0)))
-
     @cached_property
     def velocity(self) -> Array:
         """The nodes' velocities at tau = 0: a body's are those of its rods, a contact's what balances two rods."""
@@ -101,29 +96,37 @@ class Problem:
 
     def load_mean(self, low: Array, high: Array) -> Array:
         """The loads' means over intervals [low, high], each (n,): shape (n, nodes)."""
-        total = np.zeros((len(low), self.nodes))
-        for event in self.events:
-            start = float(event.time)
-            first, last = np.maximum(low - start, 0.0), np.maximum(high - start, 0.0)
-            for k, c in enumerate(event.coefficients):
-                total[:, event.node] += c / (k + 1) * (last ** (k + 1) - first ** (k + 1)) / (high - low)
-        return total
+        return means(self.events, self.nodes, low, high)
+
+
+P = TypeVar("P")
 
 
 @dataclass(frozen=True)
-class Rival:
+class Rival(Generic[P]):
     """A method: `prepare` does what a new parameter set needs, and gives what is called for values.
 
-    `resolutions`, from coarse to fine, are what its accuracy is bought with; `unit` says of what. One that is
-    `undamped` takes no chain with dashpots.
+    `states` says a model as the method takes it: UnservedError for one that it does not take. `resolutions`, from
+    coarse to fine, are what its accuracy is bought with; `unit` says of what.
     """
 
     name: str
     language: str
     unit: str
     resolutions: tuple[float, ...]
-    prepare: Callable[[Problem, float], Evaluate]
-    undamped: bool = False
+    states: Callable[[Model], P]
+    prepare: Callable[[P, float], Evaluate]
+
+
+def means(events: Sequence[Event], nodes: int, low: Array, high: Array) -> Array:
+    """The means of loads over intervals [low, high], each (n,): shape (n, nodes)."""
+    total = np.zeros((len(low), nodes))
+    for event in events:
+        start = float(event.time)
+        first, last = np.maximum(low - start, 0.0), np.maximum(high - start, 0.0)
+        for k, c in enumerate(event.coefficients):
+            total[:, event.node] += c / (k + 1) * (last ** (k + 1) - first ** (k + 1)) / (high - low)
+    return total
 
 
 def problem(chain: Chain, loads: Sequence[Applied], probes: Sequence[Probe], until: float) -> Problem:
@@ -138,7 +141,7 @@ def problem(chain: Chain, loads: Sequence[Applied], probes: Sequence[Probe], unt
         if load.source not in chain.loaded:
             raise ValueError(f"{load.source}: no such load")
         x, unit = chain.loaded[load.source]
-        events.append(Event(fraction(load.time), x, _coefficients(unit, load.weight)))
+        events.append(Event(fraction(load.time), x, terms([load.weight * c for c in unit.coefficients])))
     column = {
         name: np.array([nearest(getattr(node, name)) for node in chain.nodes])
         for name in ("inertia", "alpha", "beta", "damping")
@@ -153,12 +156,7 @@ def problem(chain: Chain, loads: Sequence[Applied], probes: Sequence[Probe], unt
     )
 
 
-def stated(model: Model) -> Problem:
-    """The problem of a model."""
-    return problem(model.named, model.loads, model.probes, nearest(model.until))
-
-
-def _coefficients(unit: UnitLoad, weight: fmpq) -> tuple[float, float, float]:
-    exact = [weight * c for c in unit.coefficients]
+def terms(exact: Sequence[fmpq]) -> tuple[float, float, float]:
+    """A load's coefficients, as many as every load has."""
     a, b, c = map(nearest, (*exact, *[fmpq(0)] * (FORCE_TERMS - len(exact))))
     return a, b, c

@@ -15,6 +15,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.integrate import OdeSolution, solve_ivp
 
+from wavesym.rivals.line import stated
 from wavesym.rivals.problem import FORCE_TERMS, Array, Evaluate, Problem, Rival
 
 
@@ -157,4 +158,6 @@ class _Wave:
         return np.asarray(sums[at] + inner @ weights * rest)
 
 
-RIVAL = Rival("solve_ivp, linear steps", "SciPy", "relative tolerance", (1e-4, 1e-6, 1e-8, 1e-10, 1e-12), _prepare)
+RIVAL = Rival(
+    "solve_ivp, linear steps", "SciPy", "relative tolerance", (1e-4, 1e-6, 1e-8, 1e-10, 1e-12), stated, _prepare
+)

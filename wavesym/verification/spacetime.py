@@ -28,7 +28,8 @@ from numpy.typing import NDArray
 
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
-from wavesym.rivals.problem import Array, Problem, Watch, stated
+from wavesym.rivals.line import stated
+from wavesym.rivals.problem import Array, Problem, Watch
 
 Instants = NDArray[np.int_]
 

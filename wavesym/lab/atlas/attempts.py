@@ -5,18 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError
-from wavesym.exact.ball import largest, segments, values
-from wavesym.exact.signal import signals
+from wavesym.exact.reference import Reference
 from wavesym.lab.atlas.family import AtlasPoint
 from wavesym.lab.atlas.scenes import AIM
 from wavesym.model.model import Model
-from wavesym.numbers.doubles import rational
+from wavesym.numbers.doubles import midpoint, rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.choice import MAKERS
 from wavesym.programs.closed import ClosedForm
@@ -63,16 +61,13 @@ class Attempt:
 def truth(scene: Scene, per_unit: int, around: Sequence[float] = ()) -> Truth:
     """At `per_unit` places in a unit of tau, at every arrival, and just before it or at these distances from it."""
     model = lower(scene)
-    until = model.horizon()
-    merged = signals(model)
-    arrivals = sorted({DOUBLE.not_below(arrival.time) for signal in merged for arrival in signal.arrivals})
+    reference = Reference(model)
+    until, arrivals = reference.tau_max, reference.breakpoints()
     taus = {float(tau) for tau in np.linspace(0.0, until, round(per_unit * until) + 1)} | set(arrivals)
     taus |= {arrival + by for arrival in arrivals for by in around} or {math.nextafter(tau, 0.0) for tau in arrivals}
     where = sorted(tau for tau in taus if 0.0 <= tau <= until)
-    sources = [partial(segments, signal) for signal in merged]
-    exact = [values(source, where) for source in sources]
-    sizes = [float(largest(source, until).mid()) or 1.0 for source in sources]
-    return Truth(model, np.array(where), np.array(exact), np.array(sizes), np.array(arrivals))
+    sizes = [midpoint(size) or 1.0 for size in reference.largest()]
+    return Truth(model, np.array(where), np.array(reference.values(where)), np.array(sizes), np.array(arrivals))
 
 
 def attempts(known: Truth, names: Sequence[str] = EVALUATORS) -> Iterator[Attempt]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import made
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.peers import PEERS
-from wavesym.rivals.problem import Rival, stated
+from wavesym.rivals.problem import Rival
 from wavesym.scene import Scene
 
 UNTIL = 10
@@ -56,9 +57,9 @@ def family(progress: Progress) -> CurveFamily:
     )
 
 
-def errors(rival: Rival, resolution: float, known: Truth) -> tuple[float, float]:
+def errors(rival: Rival[Any], resolution: float, known: Truth) -> tuple[float, float]:
     """The largest error at fronts, and away from them."""
-    found = rival.prepare(stated(known.model), resolution)(known.taus)
+    found = rival.prepare(rival.states(known.model), resolution)(known.taus)
     wrong = np.max(np.abs(found - known.values) / known.sizes[:, np.newaxis], axis=0)
     distance = np.min(np.abs(known.taus[:, np.newaxis] - known.arrivals), axis=1)
     # at an arrival itself either side of the jump will do
@@ -66,7 +67,7 @@ def errors(rival: Rival, resolution: float, known: Truth) -> tuple[float, float]
     return float(np.max(wrong[near])), float(np.max(wrong[distance >= _FAR]))
 
 
-def refinement(rival: Rival, resolution: float) -> float:
+def refinement(rival: Rival[Any], resolution: float) -> float:
     """How much finer a resolution is than the first."""
     ratio = resolution / rival.resolutions[0]
     return float(ratio**_PER_TOLERANCE if "tolerance" in rival.unit else ratio)

@@ -18,7 +18,7 @@ from wavesym.lab.atlas.lumped import strains
 from wavesym.lab.atlas.scenes import made
 from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import marched
-from wavesym.rivals.problem import stated
+from wavesym.rivals.line import stated
 from wavesym.scene import Scene, lower
 
 KAPPAS = tuple(Fraction(1, 10**k) for k in range(1, 6))

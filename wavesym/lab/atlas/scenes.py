@@ -1,4 +1,4 @@
-"""The scenes of the atlas: small drives and buildings, made from a few numbers."""
+"""The scenes of the atlas: small drives, buildings and chains, made from a few numbers."""
 
 from __future__ import annotations
 
@@ -23,6 +23,13 @@ def drive(kappa: Sequence[Fraction], inertia: Sequence[Fraction | int], until: i
     system = {"type": "drive", "m": len(kappa), "kappa": list(kappa), "inertia": list(inertia)}
     load = [{"body": 1, "times": [0], "steps": [1]}]
     return made(system, load, until, **(outputs or {"strain": ["1/2"]}))
+
+
+def chain(parts: Sequence[Any], until: Fraction | int, **outputs: Any) -> Scene:
+    """A chain on whose first part, a node with the name "first", a unit force acts from tau = 0 on."""
+    return made(
+        {"type": "chain", "parts": list(parts)}, [{"at": "first", "times": [0], "steps": [1]}], until, **outputs
+    )
 
 
 def made(system: dict[str, Any], load: Sequence[dict[str, Any]], until: Fraction | int, **outputs: Any) -> Scene:

@@ -1,0 +1,140 @@
+"""The generated C of a scene in a loop that is C, too, so that nothing else is timed; and what it is compared with."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Callable
+
+import numpy as np
+
+from wavesym.running.native import address, library
+from wavesym.running.toolchain import Compiler, at_hand
+from wavesym.scene import Scene, lower
+
+SAMPLES = 10_001
+PLAIN = ("-O2",)
+# In C, so that nothing else is timed: many calls of sample, as many straight lines of the same size, many of eval.
+CALLS = 20
+_HARNESS = """
+void many(double dtau, size_t count, double *out, int calls)
+{
+    for (int call = 0; call < calls; ++call) {
+        NAME_sample(0.0, dtau, count, out);
+    }
+}
+
+void straight(double v, double d, size_t count, double *out);
+__attribute__((noinline)) void straight(double v, double d, size_t count, double *out)
+{
+    for (size_t k = 0; k < count; ++k) {
+        out[k] = v + d * (double)(int)k;
+    }
+}
+
+void lines(double d, size_t count, double *out, int calls)
+{
+    for (int call = 0; call < calls; ++call) {
+        for (size_t row = 0; row < PREFIX_OUTPUTS; ++row) {
+            straight((double)call, d, count, out + row * count);
+        }
+    }
+}
+
+void each(const double *tau, size_t count, double *out)
+{
+    for (size_t k = 0; k < count; ++k) {
+        NAME_eval(tau[k], out);
+    }
+}
+"""
+_PEAK = """
+#include <stddef.h>
+enum { LANES = 32 };
+void peak(size_t count, double *x)
+{
+    double s[LANES], t[LANES], w[LANES];
+    UNROLLED
+    for (int j = 0; j < LANES; ++j) s[j] = t[j] = w[j] = x[j];
+    for (size_t k = 0; k < count; ++k) {
+        const double next = x[k % 2];
+        UNROLLED
+        for (int j = 0; j < LANES; ++j) s[j] = s[j] * w[j] + next;
+        UNROLLED
+        for (int j = 0; j < LANES; ++j) t[j] = t[j] * w[j] + next;
+    }
+    UNROLLED
+    for (int j = 0; j < LANES; ++j) x[j] = s[j] + t[j];
+}
+"""
+_UNROLLED = {"gcc": 'UNROLLED=_Pragma("GCC unroll 32")', "clang": 'UNROLLED=_Pragma("clang loop unroll(full)")'}
+
+
+def compilers() -> list[Compiler]:
+    """Those that the loops are written for."""
+    return [compiler for compiler in at_hand() if compiler.name in _UNROLLED]
+
+
+class chosen_compiler:
+    """The C compiler that `toolchain` is to choose, for a while."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._before = os.environ.get("CC")
+
+    def __enter__(self) -> None:
+        library.cache_clear()
+        os.environ["CC"] = self._name
+
+    def __exit__(self, *_: object) -> None:
+        library.cache_clear()
+        if self._before is None:
+            del os.environ["CC"]
+        else:
+            os.environ["CC"] = self._before
+
+
+def _library(each: Scene, made: dict[str, str], flags: tuple[str, ...]) -> ctypes.CDLL:
+    name = each.name
+    harness = _HARNESS.replace("NAME", name).replace("PREFIX", name.upper())
+    return library(made[f"{name}.c"] + harness, flags, (f"{name}.h", made[f"{name}.h"]))
+
+
+def many(
+    which: str, each: Scene, made: dict[str, str], flags: tuple[str, ...], calls: int = CALLS, samples: int = SAMPLES
+) -> Callable[[], object]:
+    """So many calls of "many", that is of `sample` for so many samples, or of "lines", which only write."""
+    function = getattr(_library(each, made, flags), which)
+    function.argtypes = [ctypes.c_double, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_int]
+    step = lower(each).horizon() / (samples - 1)
+    out = np.empty((len(each.outputs), samples))
+
+    def call() -> object:
+        return function(step, samples, address(out), calls)
+
+    return call
+
+
+def one_by_one(each: Scene, made: dict[str, str], flags: tuple[str, ...], tau_max: float) -> Callable[[], object]:
+    """`eval` at random tau."""
+    function = _library(each, made, flags).each
+    function.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p]
+    taus = np.random.default_rng(1).uniform(0.0, tau_max, SAMPLES)
+    out = np.empty(len(each.outputs))
+
+    def call() -> object:
+        return function(address(taus), SAMPLES, address(out))
+
+    return call
+
+
+def peak(compiler: str, flags: tuple[str, ...]) -> Callable[[], object]:
+    """As many multiplications with additions as a core can do: 64 times 10 000."""
+    function = library(_PEAK, (*flags, f"-D{_UNROLLED[compiler]}")).peak
+    function.argtypes = [ctypes.c_size_t, ctypes.c_void_p]
+    values = np.full(32, 0.5)
+
+    def call() -> object:
+        return function(10_000, address(values))
+
+    return call
