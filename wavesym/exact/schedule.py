@@ -215,7 +215,7 @@ class _Search:
 
     def _moved(self, course: _Course, start: fmpq, length: fmpq, closed: Closed) -> Moved:
         joint = self._waves.joints[course.number]
-        return joint.moved(self._waves.arriving(course.number, start), start, length, closed)
+        return joint.moved(self._waves.arriving(course.number, start, length), start, length, closed)
 
     def _begin(self, course: _Course, start: fmpq, limit: fmpq) -> None:
         """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""
@@ -354,6 +354,8 @@ class _Search:
                 raise _Undecided(worst, course.gaps[worst].closed, start)
             length = min(length, doubt.next)
             doubt.next *= 1 << _LONGER
+        else:  # what is not known came with a front: it takes about as long again
+            doubt.next = max(doubt.next, 4 * length)
         drifted, stage = self._drifted(course, start, length)
         h = arb(length)
         for n, gap in course.gaps.items():
@@ -373,7 +375,7 @@ class _Search:
 
     def _drifted(self, course: _Course, start: fmpq, length: fmpq) -> tuple[Moved, Stage]:
         """The motion, with all contacts vague that are not certainly open or closed all the time."""
-        joint, arriving = self._waves.joints[course.number], self._waves.arriving(course.number, start)
+        joint, arriving = self._waves.joints[course.number], self._waves.arriving(course.number, start, length)
         vague = {n for n, gap in course.gaps.items() if not gap.shut and not gap.wide}
         while True:
             closed = frozenset(n for n, gap in course.gaps.items() if gap.shut and n not in vague)
