@@ -5,6 +5,8 @@ point, which feels `ratio` times its force. At the points, all at once,
 
     mass u'' + damping u' + stiffness u = sum over ends of ratio * force of the bar + loads.
 
+A contact between two points keeps its gap from being negative; while that is 0 it pushes, and never pulls.
+
 At tau = 0 nothing is displaced: what a bar is strained then is counted besides. Nothing here knows of joints, waves or
 their laws.
 """
@@ -41,7 +43,8 @@ class Graph:
     """Points, and bars with two ends each: end 2 b is the left one of bar b, end 2 b + 1 the right one.
 
     `mass`, `damping` and `stiffness` have no part of the bars in them; the last two are square. `given` are the points
-    whose motion is prescribed, with how many integrals their displacements are away from the loads.
+    whose motion is prescribed, with how many integrals their displacements are away from the loads. The gaps of
+    contacts are `gaps` + `parting` @ displacements, and their pushes act on points by the transpose of `parting`.
     """
 
     network: Network
@@ -56,6 +59,9 @@ class Graph:
     speed: Array
     start_velocity: Array
     start_strain: Array
+    contacts: tuple[str, ...]
+    gaps: Array
+    parting: Array
     events: tuple[GraphEvent, ...]
 
     @cached_property
@@ -98,6 +104,16 @@ class Graph:
         return result
 
     @cached_property
+    def groups(self) -> tuple[tuple[int, ...], ...]:
+        """The points that springs, dashpots and contacts join, as they move together."""
+        size = len(self.mass)
+        pairs = np.eye(size) + (self.damping != 0) + (self.stiffness != 0)
+        for row in self.parting:
+            pairs += np.outer(row != 0, row != 0)
+        reached = np.linalg.matrix_power(pairs > 0, size) if size else pairs > 0
+        return tuple(dict.fromkeys(tuple(np.flatnonzero(row).tolist()) for row in reached))
+
+    @cached_property
     def free(self) -> NDArray[np.int_]:
         """The points that are free to move."""
         return np.array([point for point in range(len(self.mass)) if point not in self.given], dtype=int)
@@ -108,9 +124,13 @@ def graph(model: Model) -> Graph:
     network = model.network
     points, bars = network.points, network.bars
     damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))
+    parting = []
     for link in network.links:
         pair = np.zeros(len(points))
-        pair[link.left], pair[link.right] = nearest(link.ratio), -1.0
+        pair[link.left], pair[link.right] = -nearest(link.ratio), 1.0
+        if link.contact:
+            parting.append(pair)
+            continue
         damping = damping + nearest(link.damping) * np.outer(pair, pair)
         stiffness = stiffness + nearest(link.stiffness) * np.outer(pair, pair)
     return Graph(
@@ -128,6 +148,9 @@ def graph(model: Model) -> Graph:
         speed=_numbers(bars, "speed"),
         start_velocity=_numbers(bars, "velocity"),
         start_strain=_numbers(bars, "strain"),
+        contacts=tuple(link.place for link in network.links if link.contact),
+        gaps=np.array([nearest(link.gap) for link in network.links if link.contact]),
+        parting=np.array(parting).reshape(-1, len(points)),
         events=tuple(_events(model)),
     )
 
