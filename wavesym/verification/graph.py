@@ -39,6 +39,15 @@ class GraphEvent:
 
 
 @dataclass(frozen=True)
+class Change:
+    """The contact with this number opens or closes at tau."""
+
+    contact: int
+    kind: str
+    tau: float
+
+
+@dataclass(frozen=True)
 class Graph:
     """Points, and bars with two ends each: end 2 b is the left one of bar b, end 2 b + 1 the right one.
 

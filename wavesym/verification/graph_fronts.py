@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.model.probe import Probe
-from wavesym.verification.graph import Array, Graph
+from wavesym.verification.graph import Array, Change, Graph
 
 # instants closer than this, and forces and gaps smaller than this part of the largest, are not told apart
 SAME = 1e-10
@@ -33,17 +33,8 @@ _SIGNS = (1e-10, 1e-8, 1e-6)
 _REACH = 4.0
 
 # where signs of pushes and gaps are looked at in a panel: ever closer to its start
-_LOOKED = np.linspace(0, 1, 65)[1:] ** 3
+_LOOKED = np.linspace(0, 1, 65) ** 4
 _HALVINGS = 60
-
-
-@dataclass(frozen=True)
-class Change:
-    """The contact with this number opens or closes at tau."""
-
-    contact: int
-    kind: str
-    tau: float
 
 
 class Undecided(ArithmeticError):
