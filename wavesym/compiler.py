@@ -55,7 +55,8 @@ def evaluator(scene: Scene) -> Response:
     """The outputs of a scene as a function of tau, each value right to the last bit.
 
     Called with an array of tau it gives an array of shape (outputs, *tau.shape). It has `outputs`, their names,
-    `tau_max`, the end of the horizon, and `error_bound`.
+    `tau_max`, the end of the horizon, `error_bound`, and the `events` of contacts that open and close (`x`, `kind`,
+    `tau` as a ball, `double`, `digits`).
     SceneError for what is no Scene; CostError, where it is called, for what would take minutes.
 
     >>> import wavesym
@@ -242,6 +243,11 @@ def grid(model: Model, samples: int) -> Iterator[float]:
     """`samples` equally spaced tau, each rounded once; the last one is the end of the horizon."""
     yield from (nearest(model.until * k / (samples - 1)) for k in range(samples - 1))
     yield model.horizon() if samples > 1 else 0.0
+
+
+def events(scene: Scene) -> list[str]:
+    """A line for each time that a contact opens or closes. CostError where that would take minutes to know."""
+    return [f"contact at x = {each.x} {each.kind} at tau = {each.digits}" for each in Response(lower(scene)).events]
 
 
 def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:

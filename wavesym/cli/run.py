@@ -47,7 +47,7 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
     if out is not None:
         refuse_scene(out)
     with progress(f"run {scene.name}"):
-        warnings = compiler.warnings(scene, taus or ())
+        warnings = [*compiler.warnings(scene, taus or ()), *compiler.events(scene)]
         lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus)
         if out is not None:
             write_whole({out: lines})

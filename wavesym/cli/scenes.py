@@ -7,7 +7,7 @@ import click
 
 @click.command()
 @click.argument("name", required=False)
-@click.option("--explicit", is_flag=True, help="Write it out as a chain, part by part.")
+@click.option("--explicit", is_flag=True, help="Write it out as a chain, part by part; NAME may be any SCENE.")
 def scenes(name: str | None, explicit: bool) -> None:
     """List the built-in scenes, or print one of them as TOML.
 
@@ -17,13 +17,13 @@ def scenes(name: str | None, explicit: bool) -> None:
     """
     from wavesym.scene import Scene, builtin_names, builtin_text
 
-    if name is not None:
-        text = builtin_text(name)
-        if explicit and (scene := Scene.from_toml(name)).system.type != "chain":
-            from wavesym.scene.explicit_text import explicit_text
+    if name is not None and explicit and (scene := Scene.from_toml(name)).system.type != "chain":
+        from wavesym.scene.explicit_text import explicit_text
 
-            text = explicit_text(scene)
-        click.echo(text, nl=False)
+        click.echo(explicit_text(scene), nl=False)
+        return
+    if name is not None:
+        click.echo(builtin_text(name), nl=False)
         return
     if explicit:
         raise click.UsageError("--explicit given without NAME, the name of a built-in scene expected")

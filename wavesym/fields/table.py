@@ -90,8 +90,9 @@ class SceneTable(BaseModel):
         for key in value:
             if key not in fields:
                 *others, last = fields
+                known = f"{', '.join(others)} or {last}" if others else last
                 meant = did_you_mean(str(key)[:_SHOWN], fields)
-                raise wrong(f"unknown key, {', '.join(others)} or {last} expected{meant and f'. {meant}'}", str(key))
+                raise wrong(f"unknown key, {known} expected{meant and f'. {meant}'}", str(key))
         for key, field in fields.items():
             if field.is_required() and key not in value:
                 raise wrong(f"missing, {field.description} expected", key)

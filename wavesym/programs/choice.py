@@ -165,6 +165,7 @@ def _pieces(model: Model, real: Real, asked: bool, windows: int | None, optimize
 
 
 def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator:
+    model.refuse_contacts()
     return marched(model, real, windows=windows)
 
 

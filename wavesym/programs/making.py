@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from wavesym.exact.contact import contact_ends
+from wavesym.exact.events import events
 from wavesym.model.model import Model
 from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import Made, choose
@@ -22,7 +23,8 @@ def make(model: Model, request: Request = _USUAL, *, tested: bool = False) -> Pr
     asked for would cost too much.
     """
     _, form, reason = choose(model, request.evaluator, request.precision, request.windows, request.optimize)
-    provenance = Provenance(model, reason, request.options, contact_ends(model, form.real))
+    happening = events(model, form.real) if model.network.contacts else None
+    provenance = Provenance(model, reason, request.options, contact_ends(model, form.real), happening)
     return _made(model, form, provenance, tested)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wavesym.exact.contact import ContactEnd
+from wavesym.model.event import ContactEvent
 from wavesym.model.model import Model
 from wavesym.numbers.reals import Real
 from wavesym.programs.schemes import SCHEMES, Scheme
@@ -27,13 +28,15 @@ class ProgramOutput:
 class Provenance:
     """What a program was made from, and how: `options` are those of `generate` that it depends on.
 
-    `reason` says why it was taken and what was refused; `contacts` open within the horizon.
+    `reason` says why it was taken and what was refused; `contacts` of a formal continuation open within the horizon.
+    `events` is what contacts that open and close do, None where there are no such contacts.
     """
 
     model: Model
     reason: str
     options: str = ""
     contacts: tuple[ContactEnd, ...] = ()
+    events: tuple[ContactEvent, ...] | None = None
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wavesym.exact.events import events
 from wavesym.exact.reference import Reference
+from wavesym.model.event import ContactEvent
 from wavesym.model.model import Model
 
 if TYPE_CHECKING:
@@ -20,6 +22,7 @@ class Response:
     """A scene's outputs as one function: the exact tables in ball arithmetic, each value rounded once.
 
     `outputs` are their names, `tau_max` the end of the horizon; `error_bound` is relative to an output's largest value.
+    `events` are what contacts do that open and close, in order of time.
     `wavesym.evaluator` makes it.
     """
 
@@ -40,6 +43,10 @@ class Response:
     @property
     def error_bound(self) -> float:
         return 2.0**-53
+
+    @cached_property
+    def events(self) -> tuple[ContactEvent, ...]:
+        return events(self.model) if self.model.network.contacts else ()
 
     def __call__(self, tau: ArrayLike) -> NDArray[np.float64]:
         """Values at tau (dimensionless): shape (len(outputs), *tau.shape), NaN where tau is out of [0, tau_max]."""

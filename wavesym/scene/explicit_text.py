@@ -21,10 +21,10 @@ def explicit_text(scene: Scene) -> str:
 
 def _lines(scene: Scene) -> Iterator[str]:
     model = lower(scene)
-    contacts = [x for x, node in enumerate(model.named.nodes) if node.contact]
     yield f"# {scene.name}, a {scene.system.type}, written out part by part."
-    if contacts:
-        at = ", ".join(map(str, contacts))
+    parted = model.labels.system.get("contacts") == "open"
+    if joined := [] if parted else [x for x, node in enumerate(model.named.nodes) if node.contact]:
+        at = ", ".join(map(str, joined))
         yield f"# Its contacts are closed, as in the paper's formal model: the rods are joined at {at}."
     yield f"name = {json.dumps(scene.name)}"
     yield ""
@@ -47,6 +47,8 @@ def _lines(scene: Scene) -> Iterator[str]:
 
 
 def _parts(network: Network) -> Iterator[str]:
+    rods = {bar.left: bar for bar in network.bars}
+    touching = {link.left for link in network.contacts}
     for number, point in enumerate(network.points):
         if point.motion:
             yield _table({"motion": json.dumps("acceleration" if _accelerated(point) else "velocity")})
@@ -54,8 +56,10 @@ def _parts(network: Network) -> Iterator[str]:
             yield _table({"mass": _number(point.mass), **_other("dashpot", point.damping), **_moving(point.velocity)})
         elif point.damping:
             yield _table({"joint": "true", **_other("dashpot", point.damping)})
-        if number < len(network.bars):
-            bar = network.bars[number]
+        if number in touching:
+            yield '"contact"'
+        elif number in rods:
+            bar = rods[number]
             impedance = {} if bar.impedance == 1 else {"impedance": _number(bar.impedance)}
             yield _table({"rod": _number(bar.length), **impedance, **_moving(bar.velocity)})
 

@@ -87,7 +87,7 @@ def _at_station(
     rods = [(rod, way, end) for rod, way, end in ((station.left, -1, 1), (station.right, 1, 0)) if rod is not None]
     if not rods:
         raise MisplacedError(f"{text} given, a place at a rod expected")
-    divided = len(rods) > 1 and (apart or _divided(drawing, station, loaded))
+    divided = len(rods) > 1 and _divided(drawing, station, loaded)
     if divided and not side:
         raise _one_sided(text)
     rod, way, end = next((each for each in rods if each[1] == side), rods[0])
@@ -99,16 +99,19 @@ def _one_sided(text: str) -> MisplacedError:
 
 
 def _divided(drawing: Drawing, station: Station, loaded: Collection[int]) -> bool:
-    """Whether the strains on both sides of a joint may differ."""
+    """Whether the strains on both sides of a joint may differ; of what parts two points, a contact takes no force."""
     assert station.left is not None
     assert station.right is not None
     left, right = drawing.bars[station.left], drawing.bars[station.right]
-    (point,) = station.points
-    bare = drawing.points[point] == Point(fmpq(0), velocity=drawing.points[point].velocity)
+    links = [link for link in drawing.links if {link.left, link.right} & {*station.points}]
     return (
-        not bare
+        any(not _bare(drawing.points[point]) or point in loaded for point in station.points)
         or (left.impedance, left.speed) != (right.impedance, right.speed)
-        or sum(1 for _ in drawing.ends(point)) > 2
-        or any(point in (link.left, link.right) for link in drawing.links)
-        or point in loaded
+        or sum(1 for point in station.points for _ in drawing.ends(point)) > 2
+        or len(links) != len(station.points) - 1
+        or not all(link.contact for link in links)
     )
+
+
+def _bare(point: Point) -> bool:
+    return point == Point(fmpq(0), velocity=point.velocity)

@@ -1,19 +1,25 @@
 """System I: m/2 rigid bodies with a rod on either side collide at tau = 0; (4.3).
 
-Bodies sit at odd x, contacts at even x, the two ends are free.
+Bodies sit at odd x, contacts at even x, the two ends are free. In the paper's formal model contacts stay closed; as
+"open" ones they open and close, which only a network knows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field, SerializerFunctionWrapHandler, field_validator, model_serializer
 
+from wavesym.fields.loads import Load
 from wavesym.fields.numbers import Numbers, Positives
 from wavesym.fields.table import shown, wrong
+from wavesym.model.chain import Chain
+from wavesym.model.network import Link, Network, network_of
 from wavesym.model.node import Family, Node, Parameters, Quantity, Rod, System, single
+from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.preset import Preset
 
 
@@ -61,6 +67,20 @@ class Collision(Preset):
     type: Literal["collision"] = Field(description='"collision"')
     kappa: Positives = Field(description="a list of m/2 positive numbers")
     velocity: Numbers = Field(description="a list of m/2 numbers")
+    contacts: Literal["closed", "open"] = "closed"
+
+    @field_validator("contacts", mode="before")
+    @classmethod
+    def _known(cls, contacts: object) -> object:
+        if contacts not in ("closed", "open"):
+            raise wrong(f'{shown(contacts)} given, "closed" or "open" expected')
+        return contacts
+
+    @model_serializer(mode="wrap")
+    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """What closed contacts are not said to be: so scenes keep the hash that they have had."""
+        said: dict[str, Any] = handler(self)
+        return {key: value for key, value in said.items() if (key, value) != ("contacts", "closed")}
 
     @field_validator("velocity")
     @classmethod
@@ -72,3 +92,40 @@ class Collision(Preset):
                     f"{shown(velocity[k])} given, at most {left} expected, as on its left (or the bodies part)", k
                 )
         return velocity
+
+    @property
+    def choices(self) -> Mapping[str, str]:
+        """Whether contacts open."""
+        return {"contacts": "open"} if self.contacts == "open" else {}
+
+    def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
+        """The place of an output. MisplacedError."""
+        place = super().located(position, quantity, loads)
+        touching = 0 < place.x < self.m and place.x % 2 == 0
+        if self.contacts == "closed" or quantity == "strain" or not touching:
+            return place
+        if not position.side:
+            at = position.written
+            raise MisplacedError(f'{at} given, a side of the contact there expected: "{at}-" or "{at}+"')
+        beyond = position.side > 0
+        return replace(place, side=position.side, rod=place.rod + beyond, part=Fraction(1 - beyond))
+
+    def made(self, loads: Sequence[Load]) -> tuple[Chain | None, Network]:
+        """The chain as the paper has it, and as a network; with open contacts this alone."""
+        network = network_of(self.chain)
+        return (self.chain, network) if self.contacts == "closed" else (None, _parted(network, range(2, self.m, 2)))
+
+
+def _parted(network: Network, contacts: range) -> Network:
+    """A chain whose points x in `contacts` are two, a contact between them; points stay in their order."""
+    points = [point for x, point in enumerate(network.points) for _ in range(1 + (x in contacts))]
+
+    def right(x: int) -> int:
+        """The point at x from which the rod on the right starts."""
+        return x + sum(1 for contact in contacts if contact <= x)
+
+    bars = [
+        replace(bar, left=right(bar.left), right=right(bar.right) - (bar.right in contacts)) for bar in network.bars
+    ]
+    links = [Link(right(x) - 1, right(x), contact=True, place=str(x)) for x in contacts]
+    return Network(tuple(points), tuple(bars), tuple(links))

@@ -12,11 +12,10 @@ from wavesym.fields.table import shown, wrong
 from wavesym.model.network import Bar, Link, Network, Point
 from wavesym.model.node import UnitLoad
 from wavesym.numbers.doubles import rational
-from wavesym.systems.parts import Branch, ChainPart, LinkPart, MotionPart, PointPart, RodPart
+from wavesym.systems.contacts import refuse_impacts, told_apart
+from wavesym.systems.lines import Keys, PlacedBetween, PlacedNode, alternating
+from wavesym.systems.parts import Branch, ChainPart, ContactPart, LinkPart, MotionPart, PointPart, RodPart
 
-Keys = tuple[str | int, ...]
-Placed = tuple[int, ChainPart | str]
-"""A node of a line, and which of the parts it is."""
 MAIN = ""
 """The name of the line that is no branch."""
 
@@ -95,12 +94,14 @@ class _Pen:
     links: list[Link] = field(default_factory=list)
     names: dict[str, int] = field(default_factory=dict)
     lines: dict[str, tuple[Station, ...]] = field(default_factory=dict)
+    contacts: list[tuple[Link, Keys]] = field(default_factory=list)
 
     def drawing(self) -> Drawing:
         """What was drawn."""
         for k, point in enumerate(self.points):
             self._bearable(k, point)
-        return Drawing(tuple(self.points), tuple(self.bars), tuple(self.links), self.lines, self.names)
+        refuse_impacts(self.points, self.contacts)
+        return Drawing(tuple(self.points), tuple(self.bars), tuple(told_apart(self.links)), self.lines, self.names)
 
     def line(
         self,
@@ -112,31 +113,34 @@ class _Pen:
     ) -> None:
         """Parts from left to right; a branch begins at a point that is there already."""
         self.lines[name] = ()  # so that no node of it has its name
-        nodes, between = _alternating(parts, at)
+        nodes, between = alternating(parts, at, branch=begin is not None)
         if begin is not None and nodes[0] is not None:
             raise wrong("a node given first, what holds the branch to its node expected", *at, nodes[0][0])
         numbers = [self._drawn(nodes, between, k, at) if k or begin is None else begin for k in range(len(nodes))]
         stations = [Station(Fraction(0), (numbers[0],), None, None)]
-        for k, (part, left, right) in enumerate(zip(between, numbers, numbers[1:], strict=False)):
+        for k, ((number, part), left, right) in enumerate(zip(between, numbers, numbers[1:], strict=False)):
             last, turns = stations[-1], ratio if begin is not None and k == 0 else Fraction(1)
             if isinstance(part, RodPart):
                 if part.name and any(part.name == bar.name for bar in self.bars):
-                    number = next(n for n, each in enumerate(parts) if each is part)
                     raise wrong(f"{shown(part.name)} given, a name that is not taken expected", *at, number, "name")
                 bar = self._bar(part, left, right, turns)
                 stations[-1] = replace(last, right=bar)
                 stations.append(Station(last.x + part.rod, (right,), bar, None))
-            else:
+                continue
+            if isinstance(part, LinkPart):
                 self._link(part, left, right, turns)
-                stations[-1] = replace(last, points=(*last.points, right))
+            else:
+                place = f"{name}:{last.x}" if name else str(last.x)
+                self._contact(part, left, right, turns, place, (*at, number))
+            stations[-1] = replace(last, points=(*last.points, right))
         self.lines[name] = tuple(stations)
 
-    def _drawn(self, nodes: Sequence[Placed | None], between: Sequence[RodPart | LinkPart], k: int, at: Keys) -> int:
+    def _drawn(self, nodes: Sequence[PlacedNode | None], between: Sequence[PlacedBetween], k: int, at: Keys) -> int:
         """A new point for a node."""
         self.points.append(Point(fmpq(0)))
         number = len(self.points) - 1
         if (placed := nodes[k]) is not None:
-            beside = [between[n] for n in (k - 1, k) if 0 <= n < len(between)]
+            beside = [between[n][1] for n in (k - 1, k) if 0 <= n < len(between)]
             self._become(number, placed[1], [part for part in beside if isinstance(part, RodPart)], (*at, placed[0]))
         return number
 
@@ -160,6 +164,11 @@ class _Pen:
 
     def _link(self, part: RodPart | LinkPart, left: int, right: int, ratio: Fraction) -> None:
         self.links.append(Link(left, right, rational(part.spring), rational(part.dashpot), rational(ratio)))
+
+    def _contact(self, part: ContactPart, left: int, right: int, ratio: Fraction, place: str, at: Keys) -> None:
+        gap = rational(part.contact)
+        self.links.append(Link(left, right, ratio=rational(ratio), contact=True, gap=gap, place=place))
+        self.contacts.append((self.links[-1], at))
 
     def _become(self, point: int, part: ChainPart | str, rods: Sequence[RodPart], at: Keys) -> None:
         """Give a point what a part says of it; `rods` are those beside it."""
@@ -203,27 +212,3 @@ class _Pen:
         """A point must have something that says how fast it is."""
         if point.mass == 0 and not self._damped(number):
             raise wrong("a joint without mass, rod or dashpot given, one of these at it expected", "parts")
-
-
-def _alternating(parts: Sequence[ChainPart | str], at: Keys) -> tuple[list[Placed | None], list[RodPart | LinkPart]]:
-    """A line as nodes and what is between them; None for a node that is not written: a joint, or a free end."""
-    nodes: list[Placed | None] = [None]
-    between: list[RodPart | LinkPart] = []
-    for k, part in enumerate(parts):
-        if part == "contact":
-            raise wrong('"contact" given, a chain without contacts expected (collisions have them)', *at, k)
-        if isinstance(part, RodPart | LinkPart):
-            between.append(part)
-            nodes.append(None)
-            continue
-        if nodes[-1] is not None:
-            raise wrong("a node given beside another, a rod, a spring or a dashpot between them expected", *at, k)
-        if 0 < k < len(parts) - 1 and (part in ("free", "fixed", "absorbing") or isinstance(part, MotionPart)):
-            raise wrong("an end given between other parts, a mass or a joint expected", *at, k)
-        nodes[-1] = k, part
-    if not any(isinstance(part, RodPart) for part in between):
-        raise wrong("no rod given, at least 1 expected", *at)
-    open_start = nodes[0] is None and at == ("parts",)  # a branch starts at its node
-    if (open_start and isinstance(between[0], LinkPart)) or (nodes[-1] is None and isinstance(between[-1], LinkPart)):
-        raise wrong("a spring or dashpot given at an end, something for it to hold expected", *at)
-    return nodes, between

@@ -132,7 +132,17 @@ class LinkPart(ChainPart):
         return self
 
 
-KINDS: tuple[type[ChainPart], ...] = (RodPart, MassPart, JointPart, MotionPart)
+class ContactPart(ChainPart):
+    """A contact between the parts on its two sides, which at tau = 0 are so far apart."""
+
+    key: ClassVar[str] = "contact"
+
+    contact: NotNegative = Field(description="a gap")
+
+
+KINDS: tuple[type[ChainPart], ...] = (RodPart, MassPart, JointPart, MotionPart, ContactPart)
+BETWEEN = RodPart | LinkPart | ContactPart
+"""What stands between two nodes."""
 
 
 def _part(value: object) -> ChainPart | str:
@@ -146,7 +156,7 @@ def _part(value: object) -> ChainPart | str:
         raise wrong(f"{shown(value)} given, a table, or one of {', '.join(MARKS)}, expected")
     kind: type[ChainPart] = next((kind for kind in KINDS if kind.key in value), LinkPart)
     if kind is LinkPart and not value.keys() & {"spring", "dashpot"}:
-        raise wrong("no kind given, rod, mass, joint, motion, spring or dashpot expected")
+        raise wrong("no kind given, rod, mass, joint, motion, contact, spring or dashpot expected")
     try:
         return kind.model_validate(value)
     except ValidationError as error:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from textwrap import wrap
 
 from wavesym.exact.contact import ContactEnd
+from wavesym.model.event import ContactEvent
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
@@ -38,11 +39,22 @@ class NamedContact:
 
 
 @dataclass(frozen=True)
+class NamedEvent:
+    """What a contact does: its place, "opens" or "closes", tau as a literal of Python, and with 20 digits."""
+
+    x: str
+    kind: str
+    tau: str
+    digits: str
+
+
+@dataclass(frozen=True)
 class Description:
     """Strings for the templates. `prefix` is the name in capitals, `model` the scene in lines of text.
 
     `name_size` is what the longest name of an output takes in C; `command` makes the same file again.
     `real` and `numpy_real` are the type of all values in C and in NumPy; numbers that C reads have its suffix.
+    Where contacts open and close, `events` says what they do, and `event_count` how often; else that is empty.
     """
 
     name: str
@@ -62,6 +74,8 @@ class Description:
     error_bound: str
     c_error_bound: str
     contacts: tuple[NamedContact, ...]
+    events: tuple[NamedEvent, ...]
+    event_count: str
 
 
 def describe(program: Program) -> Description:
@@ -92,6 +106,8 @@ def describe(program: Program) -> Description:
         error_bound=literal(bound, real),
         c_error_bound=c_literal(bound, real),
         contacts=tuple(_contact(end, real) for end in origin.contacts),
+        events=tuple(_event(event, real) for event in origin.events or ()),
+        event_count="" if origin.events is None else str(len(origin.events)),
     )
 
 
@@ -117,6 +133,10 @@ def _not_below(value: float, real: Real) -> float:
 def _contact(end: ContactEnd, real: Real) -> NamedContact:
     tau = real.nearest(rational(end.double))
     return NamedContact(str(end.x), c_literal(tau, real), literal(tau, real), end.digits)
+
+
+def _event(event: ContactEvent, real: Real) -> NamedEvent:
+    return NamedEvent(event.x, event.kind, literal(real.nearest(rational(event.double)), real), event.digits)
 
 
 def _model(model: Model) -> list[str]:

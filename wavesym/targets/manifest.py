@@ -38,8 +38,16 @@ def manifest(description: Description, program: Program) -> str:
         "outputs": [{"name": output.name, "error_bound": output.bound} for output in program.outputs],
         **_driven(program),
         "contact_end": {contact.position: contact.digits for contact in description.contacts},
+        **_events(description),
     }
     return json.dumps(content, indent=2) + "\n"
+
+
+def _events(description: Description) -> dict[str, object]:
+    """What contacts do that open and close."""
+    if not description.event_count:
+        return {}
+    return {"events": [{"x": event.x, "kind": event.kind, "tau": event.digits} for event in description.events]}
 
 
 def _driven(program: Program) -> dict[str, object]:

@@ -23,7 +23,8 @@ def counted(model: Model) -> dict[str, Plain]:
     return {
         "points": len(network.points),
         "bars": len(network.bars),
-        "links": len(network.links),
+        "links": len(network.links) - len(network.contacts),
+        **({"contacts": len(network.contacts)} if network.contacts else {}),
         "joints": len(network.joints),
     }
 
@@ -87,8 +88,24 @@ def parts(model: Model) -> Iterator[Section]:
                 "dashpot": str(link.damping),
             }
             for link in network.links
+            if not link.contact
         ],
     )
+    if network.contacts:
+        yield Listing(
+            "contacts",
+            "Contacts: two points that push each other while they touch, and how far apart they are at tau = 0",
+            [
+                {
+                    "x": link.place,
+                    "left": _named(model, link.left),
+                    "right": _named(model, link.right),
+                    "ratio": str(link.ratio),
+                    "gap": str(link.gap),
+                }
+                for link in network.contacts
+            ],
+        )
 
 
 def graph_cone(model: Model) -> Facts:

@@ -9,6 +9,7 @@ from wavesym.documents.inspection.section import Facts, Listing, Plain, Section,
 from wavesym.documents.inspection.variants import told_degrees, variants
 from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.contact import contact_ends
+from wavesym.exact.events import events
 from wavesym.model.model import Model
 from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import Tried, attempts, best
@@ -58,6 +59,8 @@ def chosen(model: Model, tried: Sequence[Tried]) -> Facts:
 
 def contacts(model: Model) -> Listing:
     """When contacts open, as far as that matters; a scene whose ends are not known in time is refused for that."""
+    if model.network.contacts:
+        return _happening(model)
     words = "Contacts whose opening can reach an output"
     try:
         rows = [{"x": end.x, "tau": end.digits, "refusal": Told(None, "")} for end in contact_ends(model)]
@@ -65,3 +68,14 @@ def contacts(model: Model) -> Listing:
         words = "When contacts open is not known in time, for which generate refuses the scene"
         return Listing("contacts", words, [{"x": None, "tau": None, "refusal": str(error)}], ("refusal",))
     return Listing("contacts", words, rows, ("refusal",))
+
+
+def _happening(model: Model) -> Listing:
+    """What contacts do that open and close."""
+    words = "When contacts open and close, as far as that can reach an output"
+    try:
+        rows = [{"x": e.x, "kind": e.kind, "tau": e.digits, "refusal": Told(None, "")} for e in events(model)]
+    except CostError as error:
+        words = "When contacts open and close is not known in time, for which generate refuses the scene"
+        return Listing("events", words, [{"x": None, "kind": None, "tau": None, "refusal": str(error)}], ("refusal",))
+    return Listing("events", words, rows, ("refusal",))
