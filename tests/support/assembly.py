@@ -73,6 +73,10 @@ class Assembly:
         made.line("", scene["system"]["parts"])
         for branch in scene["system"].get("branch", ()):
             made.line(branch["name"], branch["parts"], made.names[branch["from"]], exact(branch.get("ratio", 1)))
+        for place in {contact.place for contact in made.contacts}:
+            same = [contact for contact in made.contacts if contact.place == place]
+            for contact, side in zip(same, ["-", *[""] * (len(same) - 2), "+"] if len(same) > 1 else [""], strict=True):
+                contact.place += side
         return made
 
     def point(self) -> int:

@@ -13,6 +13,7 @@ their laws.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, reduce
@@ -45,6 +46,21 @@ class Change:
     contact: int
     kind: str
     tau: float
+
+
+Struck = list[tuple[Change, float]]
+"""What happens at contacts in the order of time, and how well it is known when."""
+
+
+def alike(finer: Sequence[Change], coarser: Sequence[Change]) -> Struck | None:
+    """What happens in two solutions, and how far apart in time; None where it is not the same."""
+    found: Struck = []
+    for contact in {change.contact for change in (*finer, *coarser)}:
+        both = [[change for change in changes if change.contact == contact] for changes in (finer, coarser)]
+        if [change.kind for change in both[0]] != [change.kind for change in both[1]]:
+            return None
+        found += [(one, abs(one.tau - other.tau)) for one, other in zip(*both, strict=True)]
+    return sorted(found, key=lambda each: (each[0].tau, each[0].contact))
 
 
 @dataclass(frozen=True)

@@ -122,19 +122,24 @@ class Gauss:
 def gauss(points: int) -> Gauss:
     """Gauss's rule with so many points."""
     nodes, weights = np.polynomial.legendre.leggauss(points)
-    powers = np.polynomial.legendre.legvander(nodes, points - 1)
     integrals = np.stack(
         [np.polynomial.legendre.legval(nodes, np.polynomial.legendre.legint(unit, lbnd=-1)) for unit in np.eye(points)],
         axis=1,
     )
-    return Gauss((nodes + 1) / 2, weights / 2, integrals @ np.linalg.inv(powers) / 2)
+    return Gauss((nodes + 1) / 2, weights / 2, integrals @ _coefficients(points) / 2)
 
 
 def interpolation(points: int, local: Array) -> Array:
     """From values at Gauss's points to values at others: shape (others, points)."""
-    nodes = np.polynomial.legendre.leggauss(points)[0]
-    powers = np.polynomial.legendre.legvander(nodes, points - 1)
-    return np.asarray(np.polynomial.legendre.legvander(2 * local - 1, points - 1) @ np.linalg.inv(powers))
+    return np.asarray(np.polynomial.legendre.legvander(2 * local - 1, points - 1) @ _coefficients(points))
+
+
+@cache
+def _coefficients(points: int) -> Array:
+    """Those of Legendre's polynomials, from values at Gauss's points."""
+    nodes, weights = np.polynomial.legendre.leggauss(points)
+    sizes = np.arange(points)[:, np.newaxis] + 0.5
+    return np.asarray(sizes * weights * np.polynomial.legendre.legvander(nodes, points - 1).T)
 
 
 @cache
@@ -298,46 +303,27 @@ class _Integration:
     ) -> tuple[Array, Array]:
         """The velocities of a group at Gauss's points, and the pushes of its closed contacts: collocation."""
         made, n, rule = self._made, self._points, gauss(self._points)
-        size, pushes = len(group), len(closed)
+        size, until, one = len(group), width * rule.until, np.eye(self._points)
         given = self._given[group]
-        mass, damping, stiffness = (
-            np.diag(made.mass[group]),
-            self._damping[np.ix_(group, group)],
-            made.stiffness[np.ix_(group, group)],
-        )
-        onto = made.parting[np.ix_(closed, group)]
-        right = (acting[group] + np.where(given[:, np.newaxis], 0.0, self._onto[group] @ arriving)).T
-        until, one = width * rule.until, np.eye(n)
         heavy = (made.mass[group] > 0) & ~given
-        # for points with mass the unknown is their acceleration, for others their velocity
-        velocity = np.where(heavy[:, np.newaxis, np.newaxis], until, one)
-        displacement = until @ velocity
-        system = np.zeros((size, n, size + pushes, n))
-        rest = right.T.copy()
-        for i in range(size):
-            if given[i]:
-                system[i, :, i] = one
-                continue
-            for j in range(size):
-                system[i, :, j] = damping[i, j] * velocity[j] + stiffness[i, j] * displacement[j]
-                q0 = self._q[group[j]] if heavy[j] else 0.0
-                u = self._u[group[j]] + q0 * width * rule.nodes
-                rest[i] -= damping[i, j] * q0 + stiffness[i, j] * u
-            if heavy[i]:
-                system[i, :, i] += mass[i, i] * one
-            for k in range(pushes):
-                system[i, :, size + k] = -onto[k, i] * one
-        bound = np.zeros((pushes, n, size + pushes, n))
-        rest_bound = np.zeros((pushes, n))
-        for k in range(pushes):
-            for j in range(size):
-                bound[k, :, j] = onto[k, j] * velocity[j]
-                rest_bound[k] -= onto[k, j] * (self._q[group[j]] if heavy[j] else 0.0)
-        total = (size + pushes) * n
-        matrix = np.concatenate([system, bound]).reshape(total, total)
-        answer = np.linalg.solve(matrix, np.concatenate([rest, rest_bound]).ravel()).reshape(size + pushes, n)
-        start = np.where(heavy, self._q[group], 0.0)[:, np.newaxis]
-        return start + np.einsum("jab,jb->ja", velocity, answer[:size]), answer[size:]
+        mass, bound = np.diag(made.mass[group] * heavy), made.parting[closed][:, group]
+        damping, stiffness = (matrix[group][:, group] * ~given[:, None] for matrix in (self._damping, made.stiffness))
+        # unknown are the accelerations of points with mass, the velocities of others, and pushes
+        velocity = np.where(heavy[:, None, None], until, one)
+        q0 = np.where(heavy, self._q[group], 0.0)[:, None]
+        u0 = self._u[group][:, None] + q0 * (width * rule.nodes)
+        held = np.einsum("ij,jab->iajb", damping, velocity) + np.einsum("ij,jab->iajb", stiffness, until @ velocity)
+        moved = held + np.einsum("ij,ab->iajb", mass + np.diag(given), one)
+        pushed = -np.einsum("ki,ab->iakb", bound * ~given, one)
+        kept = np.einsum("kj,jab->kajb", bound, velocity)
+        nothing = np.zeros((len(closed), n, len(closed), n))
+        system = np.concatenate(
+            [np.concatenate([moved, pushed], axis=2), np.concatenate([kept, nothing], axis=2)]
+        ).reshape((size + len(closed)) * n, -1)
+        right = acting[group] + ~given[:, None] * (self._onto[group] @ arriving) - damping @ q0 - stiffness @ u0
+        right = np.concatenate([right, -(bound @ q0) * np.ones(n)]).ravel()
+        found = np.linalg.solve(system, right).reshape(-1, n)
+        return q0 + np.einsum("jab,jb->ja", velocity, found[:size]), found[size:]
 
     def _fastest(self) -> float:
         """How fast anything decays or swings, at most, roughly."""

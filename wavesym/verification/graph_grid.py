@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
-from wavesym.verification.graph import Array, Change, Graph, graph
+from wavesym.verification.graph import Array, Change, Graph, Struck, alike, graph
 from wavesym.verification.spacetime import (
     COARSEST,
     FINEST_ALIGNED,
@@ -49,6 +49,9 @@ from wavesym.verification.spacetime import (
 
 # what a step costs besides its points, in points
 _STEP = 5000
+
+# what happens at a contact is late by so many steps at most, and what does not last as long did not happen
+_LATE = 4
 
 # pushes and gaps that tell whether a contact is closed, and gaps that are 0
 _TOLD, _ROUNDED = 1e-9, 1e-14
@@ -92,7 +95,7 @@ class GraphGrid:
         points = float(sum(self.graph.delays) / self.step) + len(self.graph.mass) ** 2
         return until / float(self.step) * (points + _STEP)
 
-    def instants(self, until: float, struck: Sequence[tuple[float, float]] = ()) -> Instants:
+    def instants(self, until: float, struck: Sequence[tuple[Change, float]] = ()) -> Instants:
         """Those up to `until` at which what every output is read from has no front inside.
 
         Fronts set out from points at multiples of the delays' common measure after 0, after every load, and after
@@ -110,11 +113,25 @@ class GraphGrid:
                 for cut in cuts:
                     passed = (instants - float((cut + way) / self.step) + window / 2) % window - window / 2
                     free &= np.abs(passed) > reach - SAME
-                for time, slack in struck:
-                    passed = instants - (time - slack + way) / step
+                for change, slack in struck:
+                    passed = instants - (change.tau - slack + way) / step
                     after = passed % window
                     free &= (passed < -reach) | ((after > reach + 2 * slack / step) & (window - after > reach))
         return instants[free]
+
+    def struck(self, until: float, most: float) -> tuple[GraphGrid, Struck] | None:
+        """The coarsest grid which, halved twice, has the same happen at contacts, and that; None if it costs more."""
+        grid = self
+        while grid.finer(4).cost(until) <= most:
+            last = np.array([int(until / float(grid.step))])
+            changes = [grid.finer(k).integrate(k * last).changes for k in (1, 2, 4)]
+            first, then = alike(changes[2], changes[1]), alike(changes[1], changes[0])
+            if first is not None and then is not None:
+                known = [after + before for (_, after), (_, before) in zip(first, then, strict=True)]
+                late = _LATE * float(grid.step) / 4
+                return grid, [(change, each + late) for (change, _), each in zip(first, known, strict=True)]
+            grid = grid.finer(2)
+        return None
 
     def integrate(self, instants: Instants) -> DisplacedGraph:
         """The outputs at positive instants in ascending order. At a front, the mean of what is before and after it."""
@@ -141,8 +158,18 @@ class GraphGrid:
         for output, terms in zip(values, self._terms, strict=True):
             for later, point, weight in terms:
                 output += weight * history[rows + later, np.searchsorted(self._points, point)]
-        changes = tuple(Change(contact, kind, float(step * self.step)) for contact, kind, step in points.changes)
-        return DisplacedGraph(values, largest * self._roundoff(int(instants[-1])), changes)
+        return DisplacedGraph(values, largest * self._roundoff(int(instants[-1])), tuple(self._lasting(points.changes)))
+
+    def _lasting(self, changes: Sequence[tuple[int, str, int]]) -> Iterator[Change]:
+        """What happened at contacts and stayed so for some steps: the rest is what fronts between instants do."""
+        for contact in range(len(self.graph.contacts)):
+            kept: list[tuple[str, int]] = []
+            for _, kind, step in (change for change in changes if change[0] == contact):
+                if kept and step - kept[-1][1] < _LATE:
+                    kept.pop()
+                else:
+                    kept.append((kind, step))
+            yield from (Change(contact, kind, float(step * self.step)) for kind, step in kept)
 
     def _roundoff(self, steps: int) -> Array:
         """What rounding adds to the outputs for displacements of 1, at most (see `spacetime`)."""
@@ -275,14 +302,14 @@ class _Points:
         h, free = self._h, self._free
         right = self._onto @ self._graph.pull + load + self._started - self._start @ (told / h)
         told[free] = h * self._inverse_start @ right[free]
-        self.now = self._kept_apart(told, h * self._inverse_start)
+        self.now = self._kept_apart(told, np.asarray(h * self._inverse_start))
 
     def move(self, beside: Array, load: Array, told: Array) -> None:
         """One step more, from what is beside the ends in the bars."""
         right = self._beside @ beside + self._strained + load
         right += self._now @ self.now - self._behind @ self._before - self._ahead @ told
         told[self._free] = self._inverse @ right[self._free]
-        self._before, self.now = self.now, self._kept_apart(told, self._inverse)
+        self._before, self.now = self.now, self._kept_apart(told, np.asarray(self._inverse))
 
     def _kept_apart(self, after: Array, inverse: Array) -> Array:
         """Displacements with what contacts push: as little as keeps every gap from being negative."""
