@@ -15,7 +15,7 @@ of order 2, and stable for any springs and dashpots. The first step is the balan
 the bars' ends feel nothing but what was in the bars at the start: a mass may be faster than its bars.
 
 Contacts push in the mean from t - h to t + h what keeps gaps at t + h from being negative, and only where they are 0:
-what opens or closes inside a step is late by a part of it.
+what opens inside a step is late by a part of it, which counts among what may be wrong.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ class GraphGrid:
     def struck(self, until: float, most: float) -> tuple[GraphGrid, Struck] | None:
         """The coarsest grid which, halved twice, has the same happen at contacts, and that; None if it costs more."""
         grid = self
-        while grid.finer(4).cost(until) <= most:
+        while grid.finer(4).cost(until) <= most and until > _LATE * float(grid.step):
             last = np.array([int(until / float(grid.step))])
             changes = [grid.finer(k).integrate(k * last).changes for k in (1, 2, 4)]
             first, then = alike(changes[2], changes[1]), alike(changes[1], changes[0])
@@ -158,7 +158,20 @@ class GraphGrid:
         for output, terms in zip(values, self._terms, strict=True):
             for later, point, weight in terms:
                 output += weight * history[rows + later, np.searchsorted(self._points, point)]
-        return DisplacedGraph(values, largest * self._roundoff(int(instants[-1])), tuple(self._lasting(points.changes)))
+        unsure = largest * self._roundoff(int(instants[-1])) + points.missed * self._struck
+        return DisplacedGraph(values, unsure, tuple(self._lasting(points.changes)))
+
+    @cached_property
+    def _struck(self) -> Array:
+        """What an impulse at a contact changes of the outputs, at most: rods' ends move, masses are faster."""
+        impedance, heavy = self.graph.impedance, self.graph.mass[self.graph.mass > 0]
+        slowest, lightest = float(np.min(self.graph.speed)), float(np.min(heavy, initial=np.inf))
+        until = {
+            "displacement": 1 / float(np.min(impedance)),
+            "velocity": 1 / lightest,
+            "strain": 1 / lightest / slowest,
+        }
+        return np.array([until[probe.quantity] for probe in self.probes])
 
     def _lasting(self, changes: Sequence[tuple[int, str, int]]) -> Iterator[Change]:
         """What happened at contacts and stayed so for some steps: the rest is what fronts between instants do."""
@@ -293,6 +306,7 @@ class _Points:
         self._parting = made.parting[:, self._free]
         self._open = made.gaps > 0
         self.changes: list[tuple[int, str, int]] = []
+        self.missed, self._pushed = 0.0, np.zeros((_LATE, len(made.gaps)))
         self._steps = 0
         self.now = np.zeros(size)
         self._before = self.now
@@ -327,5 +341,7 @@ class _Points:
         told = np.where(self._open, pushes > _TOLD, gaps > _TOLD)
         for contact in np.flatnonzero(told):
             self._open[contact] ^= True
+            self.missed += 2 * self._h * float(np.max(self._pushed[:, contact]))
             self.changes.append((int(contact), "opens" if self._open[contact] else "closes", self._steps))
+        self._pushed[self._steps % _LATE] = pushes
         return after
