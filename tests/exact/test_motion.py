@@ -65,7 +65,7 @@ def test_outputs_are_where_they_are_said_to_be(drawn):
 def by_hand(scene, right, left):
     """The motion of a scene whose waves are given: those that nodes send right, and left, a list of one a unit."""
     motion = made(scene)
-    waves = motion._waves(53)
+    waves = motion.waves(53)
     for side, known in ((0, right), (1, left)):
         for x, stretches in known.items():
             held = Enclosed(arb_poly(), arb(0))
@@ -238,7 +238,7 @@ def test_values_that_would_take_minutes_are_refused_before_the_first(monkeypatch
 def test_the_seconds_told_are_those_of_segments_and_values(quantity, taus, monkeypatch):
     """Counted apart, a second for each: of a displacement all segments are needed for any value."""
     motion = made(drive("39/10", [{"body": 2, "times": [0, "1/2"], "steps": [1, 1]}], **{quantity: ["1/2", "3/2"]}))
-    terms = motion._waves(ctx.prec).sent[End(0, 1)].stretches[1].polynomial.length()
+    terms = motion.waves(ctx.prec).sent[End(0, 1)].stretches[1].polynomial.length()
     made_for = sum(len(motion.segments(place, ctx.prec)) for place in motion.probes)
     expected = made_for if quantity == "displacement" else min(made_for, 2 * taus)
     assert terms == motion.first_bits // 4 == 32

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from flint import ctx, fmpq
+from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.exact.knots import Knots
 from wavesym.exact.motion import Motion
-from wavesym.exact.network_waves import NetworkWaves, SentWave
+from wavesym.exact.network_waves import SentWave
 from wavesym.model.model import Model
 from wavesym.model.network import End
 from wavesym.model.probe import Probe
@@ -28,11 +27,8 @@ class Field:
             Probe("", "velocity", number, fmpq(1, 2)) for number in range(1, len(model.network.bars) + 1)
         )
         self._network = model.network
-        bits = Motion(everywhere, model.until).first_bits
-        with ctx.workprec(bits):
-            knots = Knots(everywhere, model.until).joints
-            waves = NetworkWaves(model.network, knots, everywhere.acting(model.until), bits // 4)
-        self._waves = {end: _SampledWave(wave) for end, wave in waves.sent.items()}
+        motion = Motion(everywhere, model.until)
+        self._waves = {end: _SampledWave(wave) for end, wave in motion.waves(motion.first_bits).sent.items()}
 
     def at(self, bar: int, part: Array, tau: Array) -> tuple[Array, Array]:
         """Velocity and force of a bar at parts of its length from the left end; all of one shape."""

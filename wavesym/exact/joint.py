@@ -11,7 +11,13 @@ d = s - (M q' + C q + K u), and with E = (e M e + v K v)/2 for the errors e of q
     dE/dt = e d - e C e <= sqrt(2 E) delta + rho,
 
 where delta is the size of d on points with mass, rho what points without mass can add. So
-sqrt(E(t)) <= sqrt(E(0)) + delta t / sqrt(2) + sqrt(rho t): stiffness does not make errors grow.
+sqrt(E(t)) <= sqrt(E(0)) + delta t / sqrt(2) + sqrt(rho t): stiffness does not make errors grow. On a short stretch with
+large defects another bound is better: with x = C^-1 d on the points without mass, what they add to dE/dt is at most
+v K x <= sqrt(2 E) kappa, kappa = sqrt(x K x), and kappa t / sqrt(2) takes the place of sqrt(rho t).
+
+Contacts that are closed make one `group` of their points, which move with fixed ratios. The defect of a group is the
+sum over its points, each times its ratio, and the energy is the same sum over all points: the proof stays as it is,
+and what is not known goes on unchanged where a contact opens or closes, as no mass changes its velocity then.
 """
 
 from __future__ import annotations
@@ -29,12 +35,20 @@ from wavesym.model.network import Joint, Network
 
 @dataclass(frozen=True)
 class JointLaw:
-    """M, C and K of a joint's points, in their order; `given` are those whose motion is prescribed."""
+    """M, C and K of a joint's points, in their order; `given` are those whose motion is prescribed.
+
+    Where contacts are closed rows are those of groups of points, and so are the columns of C; those of K are points.
+    `members` has the group of each point and how fast the point moves in it, `leaders` the point that a group moves
+    like, and `elastic` the K of all points. They are empty where each point is on its own.
+    """
 
     mass: tuple[fmpq, ...]
     damping: tuple[tuple[fmpq, ...], ...]
     stiffness: tuple[tuple[fmpq, ...], ...]
     given: tuple[str | None, ...]
+    members: tuple[tuple[int, fmpq], ...] = ()
+    leaders: tuple[int, ...] = ()
+    elastic: tuple[tuple[fmpq, ...], ...] = ()
 
     @classmethod
     def of(cls, network: Network, joint: Joint) -> JointLaw:
@@ -65,6 +79,44 @@ class JointLaw:
             tuple(map(tuple, damping)),
             tuple(map(tuple, stiffness)),
             tuple(point.motion for point in points),
+        )
+
+    def grouped(self, members: Sequence[tuple[int, fmpq]], leaders: Sequence[int]) -> JointLaw:
+        """The same with points that move as one: the group of each, its ratio, and the point that each moves like."""
+        of = [[(k, ratio) for k, (group, ratio) in enumerate(members) if group == a] for a in range(len(leaders))]
+        return JointLaw(
+            tuple(self.mass[k] for k in leaders),
+            tuple(
+                tuple(sum((x * y * self.damping[k][j] for k, x in row for j, y in column), fmpq(0)) for column in of)
+                for row in of
+            ),
+            tuple(
+                tuple(sum((x * self.stiffness[k][j] for k, x in row), fmpq(0)) for j in range(len(members)))
+                for row in of
+            ),
+            tuple(self.given[k] for k in leaders),
+            tuple(members),
+            tuple(leaders),
+            self.stiffness,
+        )
+
+    @cached_property
+    def moves(self) -> tuple[tuple[int, fmpq], ...]:
+        """The group of each point, and how fast the point moves in it."""
+        return self.members or tuple((k, fmpq(1)) for k in range(len(self.mass)))
+
+    @cached_property
+    def squared(self) -> tuple[tuple[fmpq, ...], ...]:
+        """K with groups as columns too."""
+        if not self.members:
+            return self.stiffness
+        groups = range(len(self.mass))
+        return tuple(
+            tuple(
+                sum((ratio * c for c, (group, ratio) in zip(row, self.members, strict=True) if group == b), fmpq(0))
+                for b in groups
+            )
+            for row in self.stiffness
         )
 
     @cached_property
@@ -105,10 +157,16 @@ class JointLaw:
 
 @dataclass(frozen=True)
 class Enclosed:
-    """A function on a stretch: |function - polynomial| <= error."""
+    """A function on a stretch: |function - polynomial| <= error. `exact` is the function where that is a polynomial."""
 
     polynomial: arb_poly
     error: arb
+    exact: fmpq_poly | None = None
+
+    @classmethod
+    def of(cls, exact: fmpq_poly) -> Enclosed:
+        """A polynomial that is known."""
+        return cls(arb_poly([arb(c) for c in exact.coeffs()]), arb(0), exact)
 
     def at(self, w: fmpq) -> arb:
         """An enclosure of its value."""
@@ -116,17 +174,29 @@ class Enclosed:
         return value + arb(0, self.error) if self.error != 0 else value
 
 
-STILL = Enclosed(arb_poly(), arb(0))
+STILL = Enclosed(arb_poly(), arb(0), fmpq_poly())
 
 
 @dataclass
 class JointMotion:
-    """A joint as time goes on: where its points are and how fast, and the energy of what is not known of that."""
+    """A joint as time goes on: where its points are and how fast, and the energy of what is not known of that.
+
+    Velocities are those of groups. `places` are the coefficients of the points' displacements on the last stretch;
+    what springs make of these is off by at most sqrt(K_kk) `strained` at point k.
+    """
 
     law: JointLaw
     velocity: list[arb]
     displacement: list[arb]
     unknown: arb = field(default_factory=lambda: arb(0))
+    places: list[list[arb]] = field(default_factory=list)
+    strained: arb = field(default_factory=lambda: arb(0))
+
+    def under(self, law: JointLaw) -> JointMotion:
+        """The same at this instant, with other contacts closed: what has mass goes on as fast as before."""
+        before = {leader: self.velocity[group] for group, leader in enumerate(self.law.leaders)}
+        velocity = [before.get(leader, arb(0)) for leader in law.leaders]
+        return JointMotion(law, velocity, list(self.displacement), self.unknown)
 
     def moved(
         self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int
@@ -138,6 +208,7 @@ class JointMotion:
         q, u = self._series(forces, prescribed, terms)
         errors = self._errors(forces, q, u, length)
         result = [Enclosed(arb_poly(c), e) for c, e in zip(q, errors, strict=True)]
+        self.places = u
         self._move_on(q, u, arb(length))
         return result
 
@@ -149,7 +220,7 @@ class JointMotion:
         self.velocity = [end.mid() for end in ends]
         if law.springs:
             places = [arb_poly(c)(h) for c in u]
-            for a, row in enumerate(law.stiffness):
+            for a, row in enumerate(law.elastic or law.stiffness):
                 lost += sum((abs(arb(k)) * places[a].rad() * places[b].rad() for b, k in enumerate(row)), arb(0))
             self.displacement = [place.mid() for place in places]
         root = self.unknown.sqrt() + (lost / 2).sqrt()
@@ -196,8 +267,9 @@ class JointMotion:
                     value -= c * u[b][n]
                 last[k] = (value / (mass[k] * (n + 1))).mid()
             if law.springs:
-                for k in size:
-                    u[k].append((q[k][n] / (n + 1)).mid())
+                for k, (group, ratio) in enumerate(law.moves):
+                    gained = q[group][n] if ratio == 1 else arb(ratio) * q[group][n]
+                    u[k].append((gained / (n + 1)).mid())
         return q, u
 
     def _errors(self, forces: Sequence[Enclosed], q: list[list[arb]], u: list[list[arb]], length: fmpq) -> list[arb]:
@@ -220,17 +292,27 @@ class JointMotion:
             delta += (defect[k] + more) ** 2 / arb(law.mass[k])
         rho = _dot(light, through) / 4
         before = (2 * self.unknown / arb(law.mass[law.heavy[0]])).sqrt() if law.heavy else arb(0)
-        root = (self.unknown.sqrt() + delta.sqrt() * h / arb(2).sqrt() + (rho * h).sqrt()).upper()
+        kappa = sum(
+            (
+                abs(arb(law.squared[a][b])) * one * other
+                for a, one in zip(law.light, through, strict=True)
+                for b, other in zip(law.light, through, strict=True)
+                if law.squared[a][b] != 0
+            ),
+            arb(0),
+        ).sqrt()
+        added = (rho * h).sqrt().min(kappa * h / arb(2).sqrt())
+        root = (self.unknown.sqrt() + delta.sqrt() * h / arb(2).sqrt() + added).upper()
         self.unknown = (root * root).upper()
-        speed = (root * arb(2).sqrt()).upper()
+        self.strained = speed = (root * arb(2).sqrt()).upper()
         errors = {k: (speed / arb(law.mass[k]).sqrt()).upper() for k in law.heavy}
-        if len(law.mass) == 1 and law.heavy and not law.springs:  # a body alone comes to rest
-            (k,) = law.heavy
+        if len(law.mass) == 1 and law.heavy and not law.springs and law.damping[0][0] != 0:
+            (k,) = law.heavy  # a body alone comes to rest
             errors[k] = errors[k].min((before + defect[k] / arb(law.damping[k][k])).upper())
             self.unknown = (arb(law.mass[k]) * errors[k] ** 2 / 2).upper()
         right = []
         for k in law.light:
-            value = defect[k] + speed * arb(law.stiffness[k][k]).sqrt()
+            value = defect[k] + speed * arb(law.squared[k][k]).sqrt()
             value += sum((abs(arb(law.damping[k][b])) * e for b, e in errors.items()), arb(0))
             right.append(value)
         for row, k in enumerate(law.light):

@@ -8,13 +8,15 @@ are equal, knots are those of a common window: every delay, and the parts of it 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from heapq import heapify, heappop, heappush
 from itertools import pairwise
 
 from flint import fmpq
 
 from wavesym.errors import CostError
+from wavesym.exact.events import scheduled
+from wavesym.exact.schedule import Schedule
 from wavesym.model.loads import Applied
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
@@ -34,11 +36,13 @@ class Knots:
         self._acting = model.acting(until)
         self._last = model.reached(until)
         self._delays = {bar.delay for bar in self._network.bars}
+        self._windowed = len(self._delays) == 1 and not self._network.contacts
+        self._scheduled = partial(scheduled, model, until)
 
     @cached_property
     def stretches(self) -> int:
         """How many stretches there are in all. CostError where there are too many to count."""
-        if len(self._delays) == 1:
+        if self._windowed:
             (delay,) = self._delays
             return len(self._last) * (int((self._until / delay).floor()) + 1) * len(self._parts)
         return sum(len(times) - 1 for times in self.joints.values())
@@ -46,7 +50,7 @@ class Knots:
     @property
     def crossings(self) -> int:
         """How often fronts meet joints, or joints go through windows."""
-        return self.stretches // len(self._parts) if len(self._delays) == 1 else self.stretches
+        return self.stretches // len(self._parts) if self._windowed else self.stretches
 
     def size(self, terms: int, bits: int) -> int:
         """About how many bytes the waves take: of each power middle and radius, and the words of the middle."""
@@ -59,10 +63,19 @@ class Knots:
         return f"{len(self._last)} nodes times {float(self._until):g} units of tau"
 
     @cached_property
+    def schedule(self) -> Schedule | None:
+        """What contacts do, of a chain that has some."""
+        return self._scheduled()
+
+    @cached_property
     def joints(self) -> Mapping[int, Sequence[fmpq]]:
         """The starts of the stretches of every joint, and the end of the last one."""
-        if len(self._delays) == 1:
+        if self._windowed:
             return dict.fromkeys(self._last, self._windows)
+        if (known := self.schedule) is not None:
+            return {
+                number: [*(stage.start for stage in each), known.ends[number]] for number, each in known.stages.items()
+            }
         return {number: sorted({fmpq(0), *times, self._end(number)}) for number, times in self._met().items()}
 
     def longest(self, number: int) -> fmpq:
@@ -79,7 +92,7 @@ class Knots:
     @cache  # noqa: B019 - as long as this object
     def _breakpoints(self, number: int, place: fmpq) -> Sequence[fmpq]:
         bar = self._network.bars[number]
-        if len(self._delays) == 1:
+        if self._windowed:
             return list(self._in_windows(place))
         ways = ((bar.left, place), (bar.right, 1 - place))
         found = {

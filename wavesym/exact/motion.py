@@ -13,7 +13,8 @@ from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
 from wavesym.exact.joint import STILL, Enclosed, JointLaw
 from wavesym.exact.knots import Knots
-from wavesym.exact.network_waves import NetworkWaves
+from wavesym.exact.network_waves import NetworkWaves, Waves
+from wavesym.exact.touching_waves import replayed
 from wavesym.model.model import Model
 from wavesym.model.network import End
 from wavesym.model.probe import Probe
@@ -39,7 +40,7 @@ class Motion:
         self._network = model.network
         self._acting = model.acting(until)
         self._knots = Knots(model, until)
-        self._solved: dict[int, NetworkWaves] = {}
+        self._solved: dict[int, Waves] = {}
         if (kept := self._knots.crossings) > MOST_STRETCHES:
             raise CostError(
                 f"output.until: {self._knots.told} are {kept:g} stretches to keep, at most {MOST_STRETCHES} expected "
@@ -84,11 +85,11 @@ class Motion:
         wanted: Sequence[int] = range(len(starts))
         if taus is not None and probe.order == 0:
             wanted = sorted({bisect_right(starts, tau) - 1 for tau in taus})
-        waves = self._waves(bits)
+        waves = self.waves(bits)
         with ctx.workprec(bits):
             return list(_segments(waves, probe, [(starts[k], ends[k]) for k in wanted]))
 
-    def _waves(self, bits: int) -> NetworkWaves:
+    def waves(self, bits: int) -> Waves:
         """What needs more bits, and so more terms, costs the others nothing."""
         if bits not in self._solved:
             terms = bits // 4
@@ -98,11 +99,16 @@ class Motion:
                     f"most {_LARGEST:.1e} expected (a shorter horizon or fewer load times help)"
                 )
             with ctx.workprec(bits):
-                self._solved[bits] = NetworkWaves(self._network, self._knots.joints, self._acting, terms)
+                known = self._knots.schedule
+                self._solved[bits] = (
+                    NetworkWaves(self._network, self._knots.joints, self._acting, terms)
+                    if known is None
+                    else replayed(self._network, known.stages, known.ends, self._acting)
+                )
         return self._solved[bits]
 
 
-def _segments(waves: NetworkWaves, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]]) -> Iterator[Segment]:
+def _segments(waves: Waves, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]]) -> Iterator[Segment]:
     """An output on each of these stretches, which come in order."""
     displacement = arb(0)
     for start, end in stretches:
@@ -118,7 +124,7 @@ def _segments(waves: NetworkWaves, probe: Probe, stretches: Iterable[tuple[fmpq,
         yield Segment(start, {fmpq(0): polynomial})
 
 
-def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Enclosed:
+def _value(waves: Waves, probe: Probe, start: fmpq) -> Enclosed:
     """Strain, or velocity, from tau = `start` on: the left-going wave less, or plus, the right-going one."""
     polynomial, error = arb_poly(), arb(0)
     if probe.point is not None:
@@ -144,7 +150,7 @@ def _value(waves: NetworkWaves, probe: Probe, start: fmpq) -> Enclosed:
     return Enclosed(polynomial, error)
 
 
-def _velocity(waves: NetworkWaves, point: int, start: fmpq) -> Enclosed:
+def _velocity(waves: Waves, point: int, start: fmpq) -> Enclosed:
     known, offset = waves.velocities[point].at(start)
     return Enclosed(known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial, known.error)
 

@@ -28,20 +28,16 @@ class SentWave:
         return self.stretches[place], tau - self.starts[place]
 
 
-class NetworkWaves:
-    """The waves of the `modelled` joints, whose knots are given, at the working precision."""
+class Waves:
+    """What is sent into the bars of a network: at first what they hold; and the velocities that no bar shows."""
 
-    def __init__(
-        self, network: Network, knots: Mapping[int, Sequence[fmpq]], loads: Sequence[Applied], terms: int
-    ) -> None:
+    def __init__(self, network: Network) -> None:
         self.network = network
-        self._knots = knots
-        self._terms = terms
         self.sent: dict[End, SentWave] = {}
         for number, bar in enumerate(network.bars):
             for side in (0, 1):
                 held = bar.held(side)
-                constant = Enclosed(arb_poly([arb(held)]), arb(0)) if held != 0 else STILL
+                constant = Enclosed.of(fmpq_poly([held])) if held != 0 else STILL
                 self.sent[End(number, side)] = SentWave([-bar.delay], [constant])
         shown = {network.point_at(end) for end in self.sent if network.bars[end.bar].ratios[end.side] == 1}
         self.velocities = {
@@ -49,6 +45,25 @@ class NetworkWaves:
             for number, point in enumerate(network.points)
             if number not in shown or point.motion is not None
         }
+
+    def arriving(self, number: int, start: fmpq) -> list[Enclosed]:
+        """What comes to the ends at a joint from an instant on, in the time since then."""
+        waves = []
+        for end, _ in self.network.joints[number].ends:
+            known, offset = self.sent[self.network.beyond(end)].at(start - self.network.bars[end.bar].delay)
+            waves.append(later(known, offset))
+        return waves
+
+
+class NetworkWaves(Waves):
+    """The waves of the joints whose knots are given, at the working precision."""
+
+    def __init__(
+        self, network: Network, knots: Mapping[int, Sequence[fmpq]], loads: Sequence[Applied], terms: int
+    ) -> None:
+        super().__init__(network)
+        self._knots = knots
+        self._terms = terms
         self._joints = {number: _MovingJoint(network, network.joints[number], loads) for number in knots}
         self._march()
 
@@ -64,11 +79,7 @@ class NetworkWaves:
 
     def _move(self, number: int, start: fmpq, length: fmpq) -> None:
         joint = self.network.joints[number]
-        arriving = []
-        for end, _ in joint.ends:
-            bar = self.network.bars[end.bar]
-            known, offset = self.sent[self.network.beyond(end)].at(start - bar.delay)
-            arriving.append(_later(known, offset))
+        arriving = self.arriving(number, start)
         for (end, _), wave in zip(
             joint.ends, self._joints[number].sends(arriving, start, length, self._terms), strict=True
         ):
@@ -89,7 +100,7 @@ class _MovingJoint:
             [arb(network.points[point].velocity) for point in joint.points],
             [arb(0)] * len(joint.points),
         )
-        self._loads = [_Acting(network, point, loads) for point in joint.points]
+        self._loads = [Acting(network, point, loads) for point in joint.points]
         law = self._motion.law
         self._scatters = not (law.heavy or law.springs) and len(law.light) == len(joint.points)
 
@@ -127,16 +138,16 @@ class _MovingJoint:
         arrived = list(zip(places, factors, arriving, strict=True))
         felt = [[(factor * inverse[k, here], wave) for here, factor, wave in arrived] for k in points]
         pushed = [[(inverse[k, j], forces[j]) for j in points] for k in points]
-        self.velocities = [_sum([*felt[k], *pushed[k]]) for k in points]
+        self.velocities = [weighted([*felt[k], *pushed[k]]) for k in points]
         result = []
         for number, ((end, _), k) in enumerate(zip(self._joint.ends, places, strict=True)):
             ratio = self._network.bars[end.bar].ratios[end.side]
             sent = [(ratio * factor - (n == number), wave) for n, (factor, wave) in enumerate(felt[k])]
-            result.append(_sum([*sent, *((ratio * factor, force) for factor, force in pushed[k])]))
+            result.append(weighted([*sent, *((ratio * factor, force) for factor, force in pushed[k])]))
         return result
 
 
-class _Acting:
+class Acting:
     """What acts on a point (or prescribes its velocity), as an exact polynomial in the time since some instant."""
 
     def __init__(self, network: Network, point: int, loads: Sequence[Applied]) -> None:
@@ -162,7 +173,7 @@ class _Acting:
         return self._total
 
 
-def _sum(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
+def weighted(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
     """A sum with exact factors; what has the factor 0 is not in it."""
     polynomial, error = arb_poly(), arb(0)
     for factor, known in terms:
@@ -172,7 +183,10 @@ def _sum(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
     return Enclosed(polynomial, error.upper())
 
 
-def _later(known: Enclosed, by: fmpq) -> Enclosed:
+def later(known: Enclosed, by: fmpq) -> Enclosed:
+    """The same function in the time since an instant that is `by` later."""
     if by == 0 or known.polynomial.length() <= 1:
         return known
+    if known.exact is not None:
+        return Enclosed.of(known.exact(fmpq_poly([by, 1])))
     return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error)

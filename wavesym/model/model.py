@@ -82,10 +82,23 @@ class Model:
         return light_cone(self.named, self.probes, until)
 
     def reached(self, until: fmpq) -> dict[int, fmpq]:
-        """The joints of the network that can influence an output by then, and until when each can."""
+        """The joints of the network that can influence an output by then, and until when each can.
+
+        A contact counts as if it were closed: it may close. What one does is asked for until the end, as an output is.
+        """
+        return self._felt_at(until, [self.network.links[number].left for number in self.contacts(until)])
+
+    def contacts(self, until: fmpq) -> tuple[int, ...]:
+        """The links that are contacts and can influence an output by then."""
+        if not self.network.contacts:
+            return ()
+        reached, network = self._felt_at(until), self.network
+        return tuple(n for n in network.contacts if network.joint_of[network.links[n].left] in reached)
+
+    def _felt_at(self, until: fmpq, more: Iterable[int] = ()) -> dict[int, fmpq]:
         network = self.network
         places = [(probe.rod - 1, probe.place) for probe in self.probes if probe.point is None]
-        points = [probe.point for probe in self.probes if probe.point is not None]
+        points = [probe.point for probe in self.probes if probe.point is not None] + list(more)
         distances = network.distances(places, points)
         bars = [network.bars[bar] for bar, _ in places]
         beside = {network.joint_of[point] for bar in bars for point in (bar.left, bar.right)}

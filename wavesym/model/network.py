@@ -125,6 +125,11 @@ class Network:
         return tuple(Joint(tuple(points), tuple(self._ends(points))) for points in members.values())
 
     @cached_property
+    def contacts(self) -> tuple[int, ...]:
+        """The links that are contacts."""
+        return tuple(number for number, link in enumerate(self.links) if link.contact)
+
+    @cached_property
     def joint_of(self) -> Mapping[int, int]:
         """The number of each point's joint."""
         return {point: number for number, joint in enumerate(self.joints) for point in joint.points}

@@ -1,0 +1,100 @@
+"""Up to where a function is positive for certain: on polynomials in balls, and exactly where they are known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import cast
+
+from flint import acb, arb, arb_poly, fmpq, fmpq_poly
+
+from wavesym.numbers.doubles import middle
+
+_STEPS = 12  # of Newton's method: each doubles the bits
+
+
+def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: fmpq) -> fmpq | None:
+    """Up to where p - error > 0 is certain from `low` on, within `resolution` of the last such point; None: `high`.
+
+    It is `low` itself where nothing can be said there.
+    """
+    stack = [(low, high)]
+    while stack:
+        a, b = stack.pop()
+        half = (b - a) / 2
+        local = p(arb_poly([arb(a + half), arb(half)])).coeffs() or [arb(0)]
+        if local[0] - sum(map(abs, local[1:]), arb(0)) > error:
+            continue
+        slope = local[1] if len(local) > 1 else arb(0)
+        if abs(slope) > sum((n * abs(c) for n, c in enumerate(local) if n > 1), arb(0)):
+            # it goes one way: the least value is at an end
+            if not p(arb(a)) > error:
+                return a
+            if slope > 0 or p(arb(b)) > error:
+                continue
+            return _last(p, error, a, b, resolution)
+        if b - a <= resolution:
+            return a
+        stack += [(a + half, b), (a, a + half)]
+    return None
+
+
+def _last(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: fmpq) -> fmpq:
+    """The same where p falls steadily, is above at `low` and may not be at `high`."""
+    slope, x = p.derivative(), (low + high) / 2
+    for _ in range(_STEPS):
+        step = middle((p(arb(x)) - error) / slope(arb(x)))
+        x = min(max(middle(arb(x - step)), low), high)
+        if abs(step) < resolution / 4:
+            break
+    for near in (x - resolution / 2, x - resolution):
+        if near > low and p(arb(near)) > error and not p(arb(min(near + 2 * resolution, high))) > error:
+            return near
+    while high - low > resolution:
+        x = (low + high) / 2
+        low, high = (x, high) if p(arb(x)) > error else (low, x)
+    return low
+
+
+def sign_after(p: fmpq_poly, x: fmpq) -> int:
+    """The sign of an exact function right after a place; 0 where it is 0 throughout."""
+    local = p(fmpq_poly([x, 1])) if x != 0 else p
+    first = next((c for c in local.coeffs() if c != 0), fmpq(0))
+    return (first > 0) - (first < 0)
+
+
+def first_fall(p: fmpq_poly, low: fmpq, high: fmpq) -> fmpq | tuple[fmpq, fmpq] | None:
+    """The first place in [low, high) right after which p < 0; None where there is none.
+
+    A place that is no rational is told by a rational on either side, between which there is no other root.
+    """
+    if p.length() == 0:
+        return None
+    if sign_after(p, low) < 0:
+        return low
+    for before, after in _roots(p, low, high):
+        if sign_after(p, after) < 0:
+            return after if before == after else (before, after)
+    return None
+
+
+def _roots(p: fmpq_poly, low: fmpq, high: fmpq) -> Iterator[tuple[fmpq, fmpq]]:
+    """The roots in (low, high), in order: rationals on both sides of each, twice the same where it is one."""
+    _, factors = p.numer().factor()
+    rational, other = [], []
+    for factor, _ in factors:
+        if factor.degree() == 1:
+            rational.append(fmpq(-int(factor[0]), int(factor[1])))
+        else:
+            roots = cast("list[tuple[acb, int]]", factor.complex_roots())
+            real = [z.real for z, _ in roots if z.imag == 0]
+            other += [(fmpq_poly(factor), middle(x.lower()), middle(x.upper())) for x in real]
+    inside = [(x, x) for x in rational if low < x < high]
+    for number, (irreducible, a, b) in enumerate(other):
+        # an irrational root is none of these: halving parts them
+        places = [low, high, *rational, *(x for k, (_, *ends) in enumerate(other) if k != number for x in ends)]
+        while any(a <= x <= b for x in places):
+            half = (a + b) / 2
+            a, b = (a, half) if (irreducible(a) > 0) != (irreducible(half) > 0) else (half, b)
+        if low < a and b < high:
+            inside.append((a, b))
+    yield from sorted(inside)

@@ -1,0 +1,43 @@
+"""What the contacts of a chain do: when they open and close."""
+
+from __future__ import annotations
+
+from flint import arb, ctx, fmpq
+
+from wavesym.exact.schedule import Schedule, schedule
+from wavesym.model.event import ContactEvent
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import rational
+from wavesym.numbers.reals import DOUBLE, Real
+
+_BITS = 320
+
+
+def scheduled(model: Model, until: fmpq) -> Schedule | None:
+    """When what is closed, until then; None for a chain without contacts. CostError, GrazingError as in `schedule`."""
+    if not model.network.contacts:
+        return None
+    return schedule(model.network, model.acting(until), tuple(model.reached(until).items()))
+
+
+def events(model: Model, real: Real = DOUBLE) -> tuple[ContactEvent, ...]:
+    """All openings and closings of contacts that can reach an output, up to the horizon in `real` numbers, in order.
+
+    A contact that is closed from the start is no event. CostError where there are too many, GrazingError where a
+    contact touches and no number of bits tells what follows.
+    """
+    until = rational(model.horizon(real))
+    known = scheduled(model, until)
+    if known is None:
+        return ()
+    seen = model.contacts(until)
+    with ctx.workprec(_BITS):
+        return tuple(
+            ContactEvent(
+                model.network.links[each.link].place,
+                "closes" if each.closes else "opens",
+                arb(each.low) if each.low == each.high else arb(each.low).union(arb(each.high)),
+            )
+            for each in known.found
+            if each.link in seen and each.low <= until
+        )

@@ -1,0 +1,393 @@
+"""When contacts open and close: found once, with so many bits that all later requests can rest on it.
+
+Joints are moved as in `network_waves`, but knots become known only as time goes on: a joint is moved no further than to
+the next knot that is known, nor further than the shortest delay beside it reaches. As nobody has read beyond that, a
+contact that opens or closes on the way cuts the stretch there. `docs/contacts.md` has the argument.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from heapq import heappop, heappush
+from itertools import chain, combinations
+
+from flint import arb, ctx, fmpq
+
+from wavesym.errors import CostError, WavesymError
+from wavesym.exact.crossing import first_fall, positive_until, sign_after
+from wavesym.exact.joint import Enclosed
+from wavesym.exact.touching_joint import Closed, Drifted, Moved
+from wavesym.exact.touching_waves import Stage, TouchingWaves
+from wavesym.model.loads import Applied
+from wavesym.model.network import Network
+from wavesym.numbers.doubles import nearest
+
+MOST_STAGES = 20_000
+# an instant is known this closely, in shortest delays
+_WIDTH = fmpq(1, 2**230)
+# the first stretch on which it is left open what a contact does, and how much longer each next one is, in bits
+_FIRST, _LONGER = 24, 5
+_BITS = 384
+_ATTEMPTS = 3
+# a series is begun anew where it would have to bear more than exp(this)
+_SWING = 24
+
+
+class GrazingError(WavesymError):
+    """A contact that touches and does not, as far as any number of bits shows."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A contact (the number of its link) opens or closes between two instants, or at one."""
+
+    link: int
+    closes: bool
+    low: fmpq
+    high: fmpq
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """The stages of every joint, when its last one ends, and what contacts did, in order of time."""
+
+    stages: Mapping[int, Sequence[Stage]]
+    ends: Mapping[int, fmpq]
+    found: tuple[Found, ...]
+
+
+@lru_cache(maxsize=8)
+def schedule(network: Network, loads: tuple[Applied, ...], last: tuple[tuple[int, fmpq], ...]) -> Schedule:
+    """What happens at the joints, each until its last instant.
+
+    CostError where it would take minutes, GrazingError where no number of bits tells what a contact does.
+    """
+    for attempt in range(_ATTEMPTS):
+        bits = _BITS << attempt
+        try:
+            with ctx.workprec(bits):
+                return _Search(network, loads, dict(last)).found()
+        except _Undecided as doubt:
+            undecided = doubt
+    link = network.links[undecided.link]
+    what = "force" if undecided.closed else "gap"
+    raise GrazingError(
+        f"contact at {link.place}: its {what} is 0 at tau = {nearest(undecided.tau):.17g} and {bits} bits do not show "
+        "what follows (another gap, load or length helps)"
+    )
+
+
+class _Undecided(Exception):
+    """With so many bits."""
+
+    def __init__(self, link: int, closed: bool, tau: fmpq) -> None:
+        super().__init__()
+        self.link, self.closed, self.tau = link, closed, tau
+
+
+@dataclass
+class _Gap:
+    """Of a contact: how wide it is, as far as that is known; and what it was when that was last decided."""
+
+    size: arb
+    exact: fmpq | None
+    closed: bool
+
+    @property
+    def shut(self) -> bool:
+        """It is 0."""
+        return self.exact is not None and self.exact == 0
+
+    @property
+    def wide(self) -> bool:
+        """It is certainly more than 0."""
+        return self.exact > 0 if self.exact is not None else bool(self.size > 0)
+
+
+@dataclass
+class _Doubt:
+    """Since when it is not certain what a contact of a joint does, until when that was left open, and how often."""
+
+    low: fmpq
+    high: fmpq
+    times: int = 0
+
+
+@dataclass
+class _Course:
+    """A joint on its way: since when and how far its present stretch is known, and the knots to come."""
+
+    number: int
+    last: fmpq
+    shortest: fmpq
+    gaps: dict[int, _Gap]
+    since: fmpq
+    reached: fmpq
+    moved: Moved | None = None
+    doubt: _Doubt | None = None
+    drifts: bool = False
+    knots: list[fmpq] = field(default_factory=list)
+    stages: list[Stage] = field(default_factory=list)
+
+    def comes(self, time: fmpq) -> bool:
+        """Whether there is a knot at an instant; it and all before are done with."""
+        found = False
+        while self.knots and self.knots[0] <= time:
+            found = heappop(self.knots) == time or found
+        return found
+
+    def limit(self, start: fmpq) -> fmpq:
+        """How far it can be moved from an instant on."""
+        far = start + self.shortest
+        return min(self.knots[0], far) if self.knots else far
+
+
+class _Search:
+    def __init__(self, network: Network, loads: Sequence[Applied], last: Mapping[int, fmpq]) -> None:
+        self._network = network
+        self._waves = TouchingWaves(network, last, loads)
+        self._found: list[Found] = []
+        self._coming: list[tuple[fmpq, int]] = []
+        self._count = 0
+        self._width = min(bar.delay for bar in network.bars) * _WIDTH
+        self._resolution = self._width / 2 ** (_FIRST + 2)
+        self._courses = {number: self._course(number, until, loads) for number, until in last.items()}
+
+    def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> _Course:
+        network, joint = self._network, self._network.joints[number]
+        beside = [network.bars[end.bar].delay for end, _ in joint.ends]
+        gaps = {
+            n: _Gap(arb(network.links[n].gap), network.links[n].gap, network.links[n].gap == 0)
+            for n in self._waves.joints[number].touches
+        }
+        course = _Course(number, last, min(beside, default=last + 1), gaps, fmpq(0), fmpq(0))
+        sources = {unit.source for point in joint.points for unit in network.points[point].loads}
+        for load in loads:
+            if load.source in sources and 0 < load.time <= last:
+                heappush(course.knots, load.time)
+        return course
+
+    def found(self) -> Schedule:
+        """All of it."""
+        self._coming = [(fmpq(0), number) for number in self._courses]
+        while self._coming:
+            time, number = heappop(self._coming)
+            course = self._courses[number]
+            if time <= course.last:
+                self._advance(course, time)
+                heappush(self._coming, (course.reached, number))
+        return Schedule(
+            {number: course.stages for number, course in self._courses.items()},
+            {number: course.reached for number, course in self._courses.items()},
+            tuple(sorted(self._found, key=lambda each: (each.low, each.link))),
+        )
+
+    def _advance(self, course: _Course, time: fmpq) -> None:
+        """From where a joint's motion is known up to the next limit, or to where a contact may change."""
+        knot, limit = course.comes(time), course.limit(time)
+        if course.moved is not None and not knot and not self._swings(course.moved, limit - course.since):
+            moved = self._moved(course, course.since, limit - course.since, frozenset(course.moved.law.pushes))
+            self._kept(course, moved, time - course.since)
+            return
+        if course.moved is not None:
+            self._take(course, course.moved)
+            course.moved = None
+        self._begin(course, time, limit)
+
+    def _swings(self, moved: Moved, length: fmpq) -> bool:
+        """Whether a stretch would become too long for its series."""
+        return moved.motion is not None and moved.law.law.fastest * length > _SWING
+
+    def _moved(self, course: _Course, start: fmpq, length: fmpq, closed: Closed) -> Moved:
+        joint = self._waves.joints[course.number]
+        return joint.moved(self._waves.arriving(course.number, start), start, length, closed)
+
+    def _begin(self, course: _Course, start: fmpq, limit: fmpq) -> None:
+        """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""
+        moved = None
+        if not course.drifts:
+            moved = self._decided(course, start, limit)
+        course.drifts = False
+        if moved is None:
+            course.reached = self._drift(course, start, limit)
+            return
+        for n, gap in course.gaps.items():
+            closed = n in moved.law.pushes
+            if closed != gap.closed:
+                doubted = course.doubt is not None and course.doubt.high == start
+                low = course.doubt.low if course.doubt is not None and doubted else start
+                self._found.append(Found(n, closed, low, start))
+                gap.closed = closed
+        course.since = start
+        self._staged(course, Stage(start, frozenset(moved.law.pushes)))
+        self._kept(course, moved, fmpq(0))
+
+    def _staged(self, course: _Course, stage: Stage) -> None:
+        course.stages.append(stage)
+        self._count += 1
+        if self._count > MOST_STAGES:
+            raise CostError(
+                f"output.until: fronts and contacts ({len(self._found)} times opened or closed) cut the motion into "
+                f"more than {MOST_STAGES} stretches by tau = {nearest(stage.start):g}, at most {MOST_STAGES} expected "
+                "(a shorter horizon or lengths with a larger common measure help)"
+            )
+
+    def _decided(self, course: _Course, start: fmpq, limit: fmpq) -> Moved | None:
+        """The motion under the choice of closed contacts that is certainly the right one just after `start`."""
+        shut = [n for n, gap in course.gaps.items() if gap.shut]
+        for closed in _most_first(shut):
+            moved = self._moved(course, start, limit - start, closed)
+            if all(_starts_well(moved, n, gap) for n, gap in course.gaps.items()):
+                end = self._end(course, moved, fmpq(0))
+                return moved if end is None or end[0] > 0 else None
+        return None
+
+    def _kept(self, course: _Course, moved: Moved, low: fmpq) -> None:
+        """A stretch up to its end, or to where a contact may change (not before `low`)."""
+        since = course.since
+        if (end := self._end(course, moved, low)) is None:
+            course.moved, course.reached = moved, since + moved.length
+            self._tell(course, since, moved)
+            return
+        length, course.drifts = end
+        if length > 0:
+            moved = self._moved(course, since, length, frozenset(moved.law.pushes))
+            self._tell(course, since, moved)
+            self._take(course, moved)
+        course.moved, course.reached = None, since + length
+
+    def _end(self, course: _Course, moved: Moved, low: fmpq) -> tuple[fmpq, bool] | None:
+        """How long all contacts are certainly what they are said to be, and whether it is not known what comes then."""
+        ends = [end for n, gap in course.gaps.items() if (end := self._certain(moved, n, gap, low)) is not None]
+        if not ends:
+            return None
+        length, vague = min(ends)
+        if vague:  # an instant with a short denominator
+            grid = self._resolution / 4
+            aligned = ((course.since + length) / grid).floor() * grid - course.since
+            length = fmpq(aligned) if aligned > low else length
+        return length, vague
+
+    def _certain(self, moved: Moved, n: int, gap: _Gap, low: fmpq) -> tuple[fmpq, bool] | None:
+        """The same of one contact."""
+        if n in moved.law.pushes:
+            return self._positive(moved.push(n), low, moved.length)
+        rate, error = moved.rate(n), arb(0)
+        if gap.exact is not None and rate.exact is not None:
+            return self._positive(Enclosed.of(rate.exact.integral() + gap.exact), low, moved.length)
+        if not gap.wide and low == 0:  # it opens: as long as it grows it is open
+            grows = self._positive(rate, low, moved.length)
+            if grows is None or grows[0] == 0:
+                return grows
+            low = grows[0]
+        error = (rate.error * arb(moved.length)).upper()
+        return self._positive(Enclosed(rate.polynomial.integral() + gap.size, error), low, moved.length)
+
+    def _positive(self, known: Enclosed, low: fmpq, high: fmpq) -> tuple[fmpq, bool] | None:
+        """Up to where a function that starts well is not negative, and whether that is not exact; None: all the way."""
+        if known.exact is None:
+            end = positive_until(known.polynomial, known.error, low, high, self._resolution)
+            return None if end is None else (end, True)
+        fall = first_fall(known.exact, low, high)
+        if not isinstance(fall, tuple):
+            return None if fall is None else (fall, False)
+        before, after = fall
+        while after - before > self._resolution:
+            middle = (before + after) / 2
+            before, after = (middle, after) if known.exact(middle) > 0 else (before, middle)
+        return before, True
+
+    def _take(self, course: _Course, moved: Moved) -> None:
+        """The joint goes to the end of its stretch; gaps become what they are there."""
+        self._waves.joints[course.number].take(moved)
+        for n, gap in course.gaps.items():
+            if n in moved.law.pushes:
+                gap.size, gap.exact = arb(0), fmpq(0)
+                continue
+            rate, length = moved.rate(n), arb(moved.length)
+            gap.exact = (
+                gap.exact + rate.exact.integral()(moved.length)
+                if gap.exact is not None and rate.exact is not None
+                else None
+            )
+            size = rate.polynomial.integral()(length) + gap.size + arb(0, (rate.error * length).upper())
+            gap.size = _not_negative(size) if gap.exact is None else arb(gap.exact)
+
+    def _tell(self, course: _Course, start: fmpq, moved: Moved | Drifted) -> None:
+        """What a joint sends is kept; what begins there is a knot at the other ends of its bars."""
+        network = self._network
+        begun = self._waves.record(course.number, start, moved)
+        for (end, _), new in zip(network.joints[course.number].ends, begun, strict=True):
+            other = self._courses.get(network.joint_of[network.point_at(network.beyond(end))])
+            time = start + network.bars[end.bar].delay
+            if new and other is not None and time <= other.last:
+                heappush(other.knots, time)
+
+    def _drift(self, course: _Course, start: fmpq, limit: fmpq) -> fmpq:
+        """Over a short stretch, on which it is left open what some contacts do; its end."""
+        length = limit - start
+        doubt = course.doubt
+        if doubt is None or start - doubt.high > 16 * (doubt.high - doubt.low):
+            doubt = course.doubt = _Doubt(start, start)
+        if length > self._width:
+            bits = -_FIRST + _LONGER * doubt.times
+            if bits > 0:
+                worst = next((n for n, gap in course.gaps.items() if not gap.shut and not gap.wide), min(course.gaps))
+                raise _Undecided(worst, course.gaps[worst].closed, start)
+            length = min(length, self._width * fmpq(2) ** bits)
+            doubt.times += 1
+        drifted, stage = self._drifted(course, start, length)
+        h = arb(length)
+        for n, gap in course.gaps.items():
+            if n in stage.closed:
+                continue
+            rate = drifted.rates[n]
+            grown = gap.size + h * rate.union(arb(0))
+            if n in stage.vague and rate < 0 and drifted.pushes[n] > 0 and gap.size + h * rate < 0:
+                gap.size, gap.exact = arb(0), fmpq(0)
+            else:
+                gap.size, gap.exact = _not_negative(grown), None
+        self._staged(course, stage)
+        self._tell(course, start, drifted)
+        self._waves.joints[course.number].take(drifted)
+        doubt.high = start + length
+        return doubt.high
+
+    def _drifted(self, course: _Course, start: fmpq, length: fmpq) -> tuple[Drifted, Stage]:
+        """The motion, with all contacts vague that are not certainly open or closed all the time."""
+        joint, arriving = self._waves.joints[course.number], self._waves.arriving(course.number, start)
+        vague = {n for n, gap in course.gaps.items() if not gap.shut and not gap.wide}
+        while True:
+            closed = frozenset(n for n, gap in course.gaps.items() if gap.shut and n not in vague)
+            drifted = joint.drifted(arriving, start, length, closed, frozenset(vague))
+            wrong = {n for n in closed if not drifted.pushes[n] > 0}
+            for n, gap in course.gaps.items():
+                if n not in closed and n not in vague and not gap.size + arb(length) * drifted.rates[n] > 0:
+                    wrong.add(n)
+            if not wrong:
+                return drifted, Stage(start, closed, frozenset(vague))
+            vague |= wrong
+
+
+def _not_negative(size: arb) -> arb:
+    """A gap, which is not negative, whatever its ball says."""
+    if size >= 0:
+        return size
+    return arb(0).union(size.upper().max(arb(0)))
+
+
+def _most_first(numbers: Sequence[int]) -> Iterator[Closed]:
+    return map(frozenset, chain.from_iterable(combinations(numbers, k) for k in range(len(numbers), -1, -1)))
+
+
+def _starts_well(moved: Moved, n: int, gap: _Gap) -> bool:
+    """Whether a contact is certainly what it is said to be, just after the start of a stretch."""
+    if n in moved.law.pushes:
+        push = moved.push(n)
+        return sign_after(push.exact, fmpq(0)) >= 0 if push.exact is not None else bool(push.at(fmpq(0)) > 0)
+    if gap.wide:
+        return True
+    rate = moved.rate(n)
+    return sign_after(rate.exact, fmpq(0)) > 0 if rate.exact is not None else bool(rate.at(fmpq(0)) > 0)
