@@ -17,7 +17,7 @@ COMMA := ,
 DEMO := collision_m4 drive_m1 building_m2
 CORES := -n auto --dist loadfile
 
-.PHONY: install demo test lint generated bench mutants peers check-all
+.PHONY: install demo test lint generated examples bench mutants peers check-all
 
 # what running and plotting need; `make test` and `make lint` add what they need
 install: .venv/.installed
@@ -78,6 +78,12 @@ generated: install
 		$(BIN)/wavesym tables $$scene -o generated/$$scene/tables.csv; \
 	done
 	$(BIN)/wavesym verify --published --format markdown > generated/errata.md
+
+# the pictures of examples/chains, drawn anew
+examples: install
+	@set -e; for scene in examples/chains/*.toml; do \
+		$(TOLD) $(BIN)/wavesym plot $$scene --kind xt -o $${scene%.toml}.png; \
+	done
 
 check-all: lint .venv/.test
 	$(BIN)/python -m pytest $(CORES) --run-slow

@@ -1,4 +1,4 @@
-"""README.md, CONTRIBUTING.md and docs/: what they tell a reader to type is run, and what they show is what comes out.
+"""README.md, CONTRIBUTING.md, docs/, examples/: what they tell to type is run, and what they show is what comes out.
 
 The first word after ``` says what a block is, a second one the file that it is saved as:
 toml, c     a scene, a program in C; a later command uses the file
@@ -34,9 +34,9 @@ from wavesym.scene import Scene
 
 ROOT = Path(wavesym.__file__).parents[1]
 PAGES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.md"))
-DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES)
+DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, "examples/chains/README.md")
 READ_ELSEWHERE = {"order", "exceptions", "walls"}  # of architecture.md, by test_architecture.py
-TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated)/[\w./-]*$")
+TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
 LONG = re.compile(r"wavesym (chart|stability|plot --published|verify --published)\b")  # half a minute and more
 SHELL = set("|<>;&$`*?~=")  # what a line is for a shell with
 
@@ -70,8 +70,11 @@ def blocks(text: str) -> list[Block]:
 class Reader:
     """Does in a folder what a document says; with `patience` what takes long too, and each command as a process."""
 
-    def __init__(self, folder: Path, patience: bool) -> None:
+    def __init__(self, folder: Path, patience: bool, beside: Path | None = None) -> None:
+        """`beside` is where scenes lie that a document does not show; copies of them are read."""
         self.folder, self.patience = folder, patience
+        for scene in beside.glob("*.toml") if beside else ():
+            shutil.copy(scene, folder)
         self.unused: set[str] = set()
         programs = folder / "bin"
         programs.mkdir()
@@ -150,6 +153,11 @@ class Reader:
         return done.stdout
 
 
+def reader(name: str, folder: Path, patience: bool) -> Reader:
+    """Of a document of the project."""
+    return Reader(folder, patience, (ROOT / name).parent if name.startswith("examples/") else None)
+
+
 def assert_made(targets: list[str]) -> None:
     """These are targets of the Makefile."""
     known = set(re.findall(r"^([a-z-]+):", document("Makefile"), re.MULTILINE))
@@ -178,13 +186,13 @@ def assert_spelt(words: list[str]) -> None:
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_what_a_document_says_works(name: str, tmp_path: Path) -> None:
-    assert Reader(tmp_path, patience=False).read(document(name)) == document(name).count("```") // 2
+    assert reader(name, tmp_path, patience=False).read(document(name)) == document(name).count("```") // 2
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_all_that_a_document_says_works(name: str, tmp_path: Path) -> None:
-    assert Reader(tmp_path, patience=True).read(document(name)) == document(name).count("```") // 2
+    assert reader(name, tmp_path, patience=True).read(document(name)) == document(name).count("```") // 2
 
 
 @pytest.mark.slow
@@ -237,7 +245,11 @@ def test_the_readme_is_one_screen() -> None:
 
 
 def test_no_source_names_a_document_that_is_not_here() -> None:
-    there = {path.name for folder in (".", "docs", "bench", "generated") for path in (ROOT / folder).glob("*.md")}
+    there = {
+        path.name
+        for folder in (".", "docs", "bench", "generated", "examples/chains")
+        for path in (ROOT / folder).glob("*.md")
+    }
     for path in (path for room in ("wavesym", "tests", "templates") for path in (ROOT / room).rglob("*.*")):
         if path.suffix in {".py", ".c", ".h", ".j2", ".toml"}:
             named = re.findall(r"\b(\w+\.md)\b", path.read_text(encoding="utf-8"))

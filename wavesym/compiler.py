@@ -292,7 +292,7 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
     if kind == "xt":
         from wavesym.report import xt
 
-        save(xt.draw(lower(scene)), path)
+        save(xt.draw(lower(scene), scene.system.lines), path)
         return []
     from wavesym.report.histories import histories
     from wavesym.report.panels import draw, notes

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from flint import arb
 
 import wavesym
 from wavesym.exact.field import Field
 from wavesym.exact.reference import Reference
-from wavesym.report import xt
+from wavesym.model.event import ContactEvent
+from wavesym.report import xt, xt_nodes
 from wavesym.scene import Scene, lower
 
 CHAIN = {
@@ -38,10 +40,14 @@ def test_a_field_has_what_outputs_have():
 
 
 def test_lines_are_the_chain_and_its_branches():
-    model = lower(wavesym.Scene(name="lines", system=CHAIN, load=[], output={"until": 1, "velocity": [0]}))
-    main, branch = xt._lines(model.network)
-    assert (main.bars, main.length) == ((0, 1), 2.5)
-    assert (branch.bars, branch.length) == ((2,), 1.0)
+    lines = wavesym.Scene(name="lines", system=CHAIN, load=[], output={"until": 1, "velocity": [0]}).system.lines
+    assert {name: [station.right for station in stations] for name, stations in lines.items()} == {
+        "": [0, 1, None],
+        "b": [2, None],
+    }
+    assert [float(stations[-1].x) for stations in lines.values()] == [2.5, 1.0]
+    drive = Scene.from_toml("drive_m1").system.lines
+    assert [station.points for station in drive[""]] == [(0,), (1,)]
 
 
 @pytest.mark.parametrize("name", ["building_m2"])
@@ -53,3 +59,52 @@ def test_the_same_picture_again(name, tmp_path):
     for file in ("one.png", "other.png"):
         compiler.plot(scene, tmp_path / file, "xt")
     assert (tmp_path / "one.png").read_bytes() == (tmp_path / "other.png").read_bytes()
+
+
+def test_contacts_are_white_while_they_are_open_and_masses_black(tmp_path):
+    """A mass meets a bar: where they stand apart is white from the end of the contact on, and not before."""
+    pytest.importorskip("matplotlib")
+    from matplotlib.image import imread
+
+    parts = [{"mass": 1, "velocity": 1}, {"contact": 2}, {"rod": 10, "velocity": "1/2"}, "fixed"]
+    model, lines = _made(parts, until=8, strain=["5"])
+    assert xt_nodes.open_times(model, Field(model).events) == {"0": [(0.0, 4.0)]}
+    figure = xt.draw(model, lines)
+    figure.savefig(tmp_path / "open.png")
+    picture = imread(tmp_path / "open.png")[:, :, :3]
+    axes = figure.axes[0]
+
+    def colour(points: float, tau: float) -> tuple[float, ...]:
+        """What is to be seen at a time, so many points right of the bar's left end."""
+        x, y = axes.transData.transform((0, tau))
+        return tuple(picture[picture.shape[0] - 1 - int(y), int(x + points / 72 * figure.dpi)])
+
+    assert [colour(-2.5, tau) for tau in (0.5, 2, 3.8)] == [(1, 1, 1)] * 3
+    assert colour(-7, 2) == colour(-7, 6) == (0, 0, 0)
+    assert colour(3, 0.1) != (1, 1, 1)
+
+
+def test_contacts_open_at_first_and_at_last():
+    """A gap is open from the start; what has not closed again is open to the end."""
+    model, _ = _made([{"rod": 1}, {"contact": 1}, {"rod": 1}, "contact", {"rod": 1}], until=9, strain=["1/2"])
+    said = [("1", "closes", 2), ("2", "opens", 3), ("1", "opens", 5), ("1", "closes", 6)]
+    events = [ContactEvent(x, kind, arb(tau)) for x, kind, tau in said]
+    assert xt_nodes.open_times(model, events) == {"1": [(0.0, 2.0), (5.0, 6.0)], "2": [(3.0, 9.0)]}
+
+
+def test_names_do_not_lie_over_one_another():
+    """Nor over the numbers at the axis: the first name begins at its place, the last one ends there."""
+    named = [{"mass": 1, "name": "a_long_name"}, {"rod": "1/50"}, {"mass": 1, "name": "another_name"}, {"rod": 3}]
+    model, lines = _made([*named, {"motion": "velocity", "name": "ground"}], until=2, strain=["1"])
+    figure = xt.draw(model, lines)
+    axes = figure.axes[0]
+    boxes = [text.get_window_extent(figure.canvas.get_renderer()) for text in axes.texts]
+    assert len(boxes) == 3
+    assert not any(one.overlaps(other) for k, one in enumerate(boxes) for other in boxes[:k])
+    ticks = [label.get_window_extent() for label in axes.get_yticklabels()]
+    assert not any(box.overlaps(tick) for box in boxes for tick in ticks)
+
+
+def _made(parts, until, **output):
+    scene = Scene(name="s", system={"type": "chain", "parts": parts}, output={"until": until, **output})
+    return lower(scene), scene.system.lines

@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 from flint import fmpq
 
+import wavesym
 from wavesym.errors import SceneError, UnservedError
 from wavesym.model.model import Model
-from wavesym.model.network import Network
+from wavesym.model.network import Link, Network
 from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text
 
@@ -32,7 +33,11 @@ def collision(system: dict[str, Any] = COLLISION, **output: Any) -> Scene:
 
 
 def touching(network: Network) -> list[tuple[int, int, str, fmpq]]:
-    return [(link.left, link.right, link.place, link.gap) for link in network.contacts]
+    return [(link.left, link.right, link.place, link.gap) for link in contacts(network)]
+
+
+def contacts(network: Network) -> list[Link]:
+    return [network.links[number] for number in network.contacts]
 
 
 def test_a_contact_parts_two_points() -> None:
@@ -50,8 +55,8 @@ def test_a_contact_of_a_branch_is_called_by_it() -> None:
     foot = {"from": "hammer", "name": "foot", "parts": ["contact", ROD]}
     network = chain([ROD, MASS], arm, foot).network
     assert [row[2] for row in touching(network)] == ["arm:1", "foot:0"]
-    assert [link.ratio for link in network.contacts] == [1, 1]
-    assert network.contacts[1].left == next(k for k, point in enumerate(network.points) if point.mass)
+    assert [link.ratio for link in contacts(network)] == [1, 1]
+    assert contacts(network)[1].left == next(k for k, point in enumerate(network.points) if point.mass)
 
 
 def test_sides_of_a_contact() -> None:
@@ -91,6 +96,18 @@ def test_a_tuned_damper_is_a_branch_without_a_rod() -> None:
     assert len(model.network.bars) == 2
     assert [len(joint.points) for joint in model.network.joints] == [1, 2, 1]
     assert model.network.points[model.probes[1].point or 0].mass == fmpq(1, 20)
+
+
+def test_a_damper_on_a_branch_does_what_it_does_in_a_line() -> None:
+    """At the end of a chain it is the same to draw it onwards."""
+    tie, mass, begun = {"spring": 2, "dashpot": "1/10"}, {"mass": "1/3"}, {"rod": 1, "velocity": 1}
+    output = {"until": 7, "velocity": ["hammer", "1/2"], "displacement": ["0"]}
+    hung = {"type": "chain", "parts": [begun, MASS], "branch": [{"from": "hammer", "name": "d", "parts": [tie, mass]}]}
+    drawn = {"type": "chain", "parts": [begun, MASS, tie, mass]}
+    taus = [k / 3 for k in range(22)]
+    one, other = (wavesym.evaluator(Scene(name="s", system=each, output=output))(taus) for each in (hung, drawn))
+    assert one.any()
+    assert one.tobytes() == other.tobytes()
 
 
 def test_an_open_collision_is_its_chain_with_contacts(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
+from wavesym.exact.events import events
 from wavesym.exact.motion import Motion
 from wavesym.exact.network_waves import SentWave
 from wavesym.model.model import Model
@@ -19,7 +20,7 @@ Array = NDArray[np.float64]
 class Field:
     """The velocity and the force (impedance times speed times strain) of every bar until the end of the horizon.
 
-    CostError where the outputs of a model with as many would cost too much.
+    `events` are those of all contacts. CostError where the outputs of a model with as many would cost too much.
     """
 
     def __init__(self, model: Model) -> None:
@@ -27,6 +28,7 @@ class Field:
             Probe("", "velocity", number, fmpq(1, 2)) for number in range(1, len(model.network.bars) + 1)
         )
         self._network = model.network
+        self.events = events(everywhere)
         motion = Motion(everywhere, model.until)
         self._waves = {end: _SampledWave(wave) for end, wave in motion.waves(motion.first_bits).sent.items()}
 

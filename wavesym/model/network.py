@@ -101,11 +101,6 @@ class Network:
     bars: tuple[Bar, ...]
     links: tuple[Link, ...] = ()
 
-    @property
-    def contacts(self) -> tuple[Link, ...]:
-        """The links that open and close."""
-        return tuple(link for link in self.links if link.contact)
-
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
         """The joints, in the order of their first points."""

@@ -46,7 +46,7 @@ class Response:
 
     @cached_property
     def events(self) -> tuple[ContactEvent, ...]:
-        return events(self.model) if self.model.network.contacts else ()
+        return events(self.model)
 
     def __call__(self, tau: ArrayLike) -> NDArray[np.float64]:
         """Values at tau (dimensionless): shape (len(outputs), *tau.shape), NaN where tau is out of [0, tau_max]."""

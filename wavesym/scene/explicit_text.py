@@ -48,7 +48,7 @@ def _lines(scene: Scene) -> Iterator[str]:
 
 def _parts(network: Network) -> Iterator[str]:
     rods = {bar.left: bar for bar in network.bars}
-    touching = {link.left for link in network.contacts}
+    touching = {network.links[number].left for number in network.contacts}
     for number, point in enumerate(network.points):
         if point.motion:
             yield _table({"motion": json.dumps("acceleration" if _accelerated(point) else "velocity")})

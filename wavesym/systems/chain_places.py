@@ -10,8 +10,9 @@ from flint import fmpq
 
 from wavesym.fields.table import Written, shown
 from wavesym.model.network import Point
-from wavesym.systems.drawing import Drawing, Station
+from wavesym.systems.drawing import Drawing
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
+from wavesym.systems.station import Station
 
 
 def node(drawing: Drawing, written: str) -> int:

@@ -15,9 +15,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.systems.contacts import refuse_impacts, told_apart
 from wavesym.systems.lines import Keys, PlacedBetween, PlacedNode, alternating
 from wavesym.systems.parts import Branch, ChainPart, ContactPart, LinkPart, MotionPart, PointPart, RodPart
-
-MAIN = ""
-"""The name of the line that is no branch."""
+from wavesym.systems.station import MAIN, Lines, Station
 
 
 def drawn(parts: Sequence[ChainPart | str], branches: Sequence[Branch]) -> Drawing:
@@ -37,23 +35,13 @@ def drawn(parts: Sequence[ChainPart | str], branches: Sequence[Branch]) -> Drawi
 
 
 @dataclass(frozen=True)
-class Station:
-    """A place of a line where parts meet: x from its start, the points there from left to right, the bars beside it."""
-
-    x: Fraction
-    points: tuple[int, ...]
-    left: int | None
-    right: int | None
-
-
-@dataclass(frozen=True)
 class Drawing:
     """The points, bars and links of a chain; `lines` are the stations of the main line ("") and of the branches."""
 
     points: tuple[Point, ...]
     bars: tuple[Bar, ...]
     links: tuple[Link, ...]
-    lines: Mapping[str, tuple[Station, ...]]
+    lines: Lines
     names: Mapping[str, int]
 
     def network(self, sources: Mapping[int, Sequence[UnitLoad]]) -> Network:

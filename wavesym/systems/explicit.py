@@ -18,6 +18,7 @@ from wavesym.systems.drawing import Drawing, drawn
 from wavesym.systems.node_loads import NodeLoad, SampledNodeLoad
 from wavesym.systems.parts import Branch, Parts, told
 from wavesym.systems.place import MisplacedError, Place, Position
+from wavesym.systems.station import Lines
 
 
 class ExplicitChain(SceneTable):
@@ -39,6 +40,11 @@ class ExplicitChain(SceneTable):
     def drawing(self) -> Drawing:
         """Its points, bars and links, and where they are."""
         return drawn(self.parts, self.branch)
+
+    @property
+    def lines(self) -> Lines:
+        """Its main line and its branches."""
+        return self.drawing.lines
 
     @property
     def choices(self) -> Mapping[str, str]:

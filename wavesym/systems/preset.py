@@ -20,6 +20,7 @@ from wavesym.model.network import Network, network_of
 from wavesym.model.node import Parameters, System
 from wavesym.numbers.doubles import rational
 from wavesym.systems.place import MisplacedError, Place, Position
+from wavesym.systems.station import Lines, straight
 
 
 class Preset(SceneTable):
@@ -105,3 +106,8 @@ class Preset(SceneTable):
     def made(self, loads: Sequence[Load]) -> tuple[Chain | None, Network]:
         """The chain as the paper has it, and as a network."""
         return self.chain, network_of(self.chain)
+
+    @property
+    def lines(self) -> Lines:
+        """Its rods, in a line."""
+        return straight(self.made(())[1])

@@ -103,7 +103,8 @@ def parts(model: Model) -> Iterator[Section]:
                     "ratio": str(link.ratio),
                     "gap": str(link.gap),
                 }
-                for link in network.contacts
+                for link in network.links
+                if link.contact
             ],
         )
 
