@@ -186,37 +186,31 @@ class Unilateral:
         """AssertionError after more than `most` events; Unclear where something only touches 0."""
         self.until, self.events = fmpq(*Fraction(until).as_integer_ratio()), list[Event]()
         self._made, self._most = Assembly.of(scene), most
-        made = self._made
-        size = len(made.mass)
-        self._joints = tuple(self._joined())
-        self._joint_of = {point: joint for joint in self._joints for point in joint.points}
-        self._q = [_History(fmpq(0)) for _ in range(size)]
-        self._sent = {(k, s): _History(rod.begun[1 - s]) for k, rod in enumerate(made.rods) for s in (0, 1)}
         self._loads: list[tuple[fmpq, int, int, fmpq]] = [
-            (fmpq(*time.as_integer_ratio()), made.loaded(str(load["at"])), power, size)
+            (fmpq(*time.as_integer_ratio()), self._made.loaded(str(load["at"])), power, size)
             for load in scene.get("load", ())
             for time, power, size in jumps(load)
         ]
+        with ctx.workprec(BITS):
+            self._begin()
+            self._march()
+
+    def _begin(self) -> None:
+        made = self._made
+        self._joints = tuple(self._joined())
+        self._joint_of = {point: joint for joint in self._joints for point in joint.points}
+        self._q = [_History(fmpq(0)) for _ in made.mass]
+        self._sent = {(k, s): _History(rod.begun[1 - s]) for k, rod in enumerate(made.rods) for s in (0, 1)}
         self.open = [contact.gap > 0 for contact in made.contacts]
         self._speed = [arb(v) for v in made.velocity]
-        self._u = [arb(0)] * size
-        before = ctx.prec
-        ctx.prec = BITS
-        try:
-            self._march()
-        finally:
-            ctx.prec = before
+        self._u = [arb(0)] * len(made.mass)
 
     # what it found
 
     def value(self, quantity: str, place: object, tau: Fraction) -> arb:
         """At tau (at a jump: after it)."""
-        before = ctx.prec
-        ctx.prec = BITS
-        try:
+        with ctx.workprec(BITS):
             return self._value(quantity, place, fmpq(*Fraction(tau).as_integer_ratio()))
-        finally:
-            ctx.prec = before
 
     def _value(self, quantity: str, place: object, tau: fmpq) -> arb:
         made, where = self._made, self._made.shown(quantity, place)

@@ -63,7 +63,7 @@ def happening(known: Known) -> list[Outcome]:
     outcomes = [Outcome("contacts", {}, True, note) for note in notes]
     claimed = events(model)
     reached = model.reached(model.until)
-    for number, link in enumerate(model.network.contacts):
+    for number, link in enumerate(link for link in model.network.links if link.contact):
         joint = model.network.joint_of[link.left]
         if joint in reached:
             found = {name: each and [e for e in each if e[0].contact == number] for name, each in methods.items()}
