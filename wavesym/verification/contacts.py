@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
-from math import inf
 
 import numpy as np
 
 from wavesym.exact.events import events
 from wavesym.model.event import ContactEvent
-from wavesym.numbers.doubles import nearest
 from wavesym.verification.graph import Struck, alike, graph
 from wavesym.verification.graph_fronts import SAME, Fronts, Undecided, integrate_fronts
-from wavesym.verification.graph_grid import graph_grid
+from wavesym.verification.graph_grid import LATE, graph_grid
 from wavesym.verification.outcome import MOST_MOVED, NO_GRID, Outcome
 from wavesym.verification.reference import Known
 from wavesym.verification.refinement import Solutions, shown
@@ -24,6 +23,9 @@ _PANELS = 1500
 
 # a solution is not looked at where fronts are as close as this, nor told apart in time
 _CLOSE = 1e-7
+
+# panels may be as short as what is not told apart: so instants are, and values
+_ROUNDED = 10 * SAME
 
 
 def fronts(known: Known) -> list[Outcome]:
@@ -41,7 +43,7 @@ def fronts(known: Known) -> list[Outcome]:
         clear = np.all([each.apart(output.probe, known.taus) > _CLOSE for each in solved], axis=0)
         seen = taus[clear].tolist()
         coarse, half, quarter = (each.at(output.probe, seen) for each in solved)
-        rounding = SAME * max(1.0, float(np.max(np.abs(quarter), initial=0.0)))
+        rounding = _ROUNDED * max(1.0, float(np.max(np.abs(quarter), initial=0.0)))
         refined = Solutions((coarse, half, quarter), output.values[clear], rounding, output.scale).plain()
         outcomes.append(Outcome(output.probe.name, refined.cells(solved[0].points), refined.right))
     return outcomes
@@ -55,40 +57,76 @@ def happening(known: Known) -> list[Outcome]:
         return []
     solved, stepped = _solved(known), graph_grid(model).struck(known.until, MOST_MOVED)
     methods = {
-        "fronts": None if isinstance(solved, str) else _between(solved),
-        "grid": stepped[1] if stepped else None,
+        "fronts": None if isinstance(solved, str) else _Method(_between(solved), 0.0),
+        "grid": _Method(stepped[1], LATE * float(stepped[0].step)) if stepped else None,
     }
     notes = [f"{model.name}: no integration between fronts, as {solved}"] if isinstance(solved, str) else []
     notes += [] if stepped else [f"{model.name}: {NO_GRID}"]
     outcomes = [Outcome("contacts", {}, True, note) for note in notes]
     claimed = events(model)
-    reached = model.reached(model.until)
-    for number, link in enumerate(link for link in model.network.links if link.contact):
-        joint = model.network.joint_of[link.left]
-        if joint in reached:
-            found = {name: each and [e for e in each if e[0].contact == number] for name, each in methods.items()}
-            outcomes += _compared([e for e in claimed if e.x == link.place], found, link.place, nearest(reached[joint]))
+    seen = model.contacts(model.until)
+    for number, link in enumerate(model.network.contacts):
+        if link in seen:
+            place = model.network.links[link].place
+            ours = [event for event in claimed if event.x == place]
+            outcomes += _compared(
+                place, ours, {name: each and each.at(number) for name, each in methods.items()}, known.until
+            )
     return outcomes
 
 
+@dataclass(frozen=True)
+class _Method:
+    """What a method found, and what it does not see as it does not last as long."""
+
+    struck: Struck
+    shortest: float
+
+    def at(self, contact: int) -> _Method:
+        """At one contact."""
+        return _Method([each for each in self.struck if each[0].contact == contact], self.shortest)
+
+    def visible(self, claimed: Sequence[ContactEvent]) -> list[int]:
+        """The numbers of the events of a contact that it can see."""
+        kept: list[int] = []
+        for k, event in enumerate(claimed):
+            if kept and event.double - claimed[kept[-1]].double < self.shortest:
+                kept.pop()
+            else:
+                kept.append(k)
+        return kept
+
+
 def _compared(
-    claimed: Sequence[ContactEvent], methods: Mapping[str, Struck | None], place: str, last: float
+    place: str, claimed: Sequence[ContactEvent], methods: Mapping[str, _Method | None], until: float
 ) -> Iterator[Outcome]:
-    """A row for each event of a contact; also for those that are not claimed, but would be seen until `last`."""
-    seen = [[each for each in found if each[0].tau + each[1] < last] for found in methods.values() if found]
-    for k in range(max([len(claimed), *map(len, seen)])):
-        event = claimed[k] if k < len(claimed) else None
-        cells, passed = {"tau": f"{event.double:.12g}" if event else "-"}, event is not None
-        for name, found in methods.items():
-            if found is None or k >= len(found):
-                cells[name] = "refused" if found is None else "none"
-                passed &= found is None
-                continue
-            change, slack = found[k]
-            error = abs(change.tau - event.double) if event else inf
-            cells |= {name: shown(error) if event else f"{change.tau:.6g}", f"{name} allowed": shown(slack)}
-            passed &= event is not None and change.kind == event.kind and error <= slack
-        yield Outcome(f"{place} {event.kind if event else 'too much'}", cells, passed)
+    """A row for each event of a contact, and for each that a method has besides."""
+    rows: list[dict[str, str]] = [{"tau": f"{event.double:.12g}"} for event in claimed]
+    passed = [True for _ in claimed]
+    more = []
+    for name, method in methods.items():
+        if method is None:
+            rows = [row | {name: "refused"} for row in rows]
+            continue
+        visible = method.visible(claimed)
+        for k, event in enumerate(claimed):
+            if k not in visible:
+                rows[k] |= {name: "too short"}
+            elif (at := visible.index(k)) < len(method.struck):
+                change, slack = method.struck[at]
+                error = abs(change.tau - event.double)
+                rows[k] |= {name: shown(error), f"{name} allowed": shown(slack)}
+                passed[k] &= change.kind == event.kind and error <= slack
+            else:
+                rows[k] |= {name: "none"}
+                passed[k] &= event.double > until - _CLOSE
+        for change, slack in method.struck[len(visible) :]:
+            if change.tau + slack < until:
+                cells = {"tau": "-", name: f"{change.tau:.6g}", f"{name} allowed": shown(slack)}
+                more.append(Outcome(f"{place} {change.kind}", cells, False))
+    for event, row, right in zip(claimed, rows, passed, strict=True):
+        yield Outcome(f"{place} {event.kind}", row, right)
+    yield from more
 
 
 @lru_cache(maxsize=1)

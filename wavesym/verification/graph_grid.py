@@ -51,7 +51,7 @@ from wavesym.verification.spacetime import (
 _STEP = 5000
 
 # what happens at a contact is late by so many steps at most, and what does not last as long did not happen
-_LATE = 4
+LATE = 4
 
 # pushes and gaps that tell whether a contact is closed, and gaps that are 0
 _TOLD, _ROUNDED = 1e-9, 1e-14
@@ -122,13 +122,13 @@ class GraphGrid:
     def struck(self, until: float, most: float) -> tuple[GraphGrid, Struck] | None:
         """The coarsest grid which, halved twice, has the same happen at contacts, and that; None if it costs more."""
         grid = self
-        while grid.finer(4).cost(until) <= most and until > _LATE * float(grid.step):
+        while grid.finer(4).cost(until) <= most and until > LATE * float(grid.step):
             last = np.array([int(until / float(grid.step))])
             changes = [grid.finer(k).integrate(k * last).changes for k in (1, 2, 4)]
             first, then = alike(changes[2], changes[1]), alike(changes[1], changes[0])
             if first is not None and then is not None:
                 known = [after + before for (_, after), (_, before) in zip(first, then, strict=True)]
-                late = _LATE * float(grid.step) / 4
+                late = LATE * float(grid.step) / 4
                 return grid, [(change, each + late) for (change, _), each in zip(first, known, strict=True)]
             grid = grid.finer(2)
         return None
@@ -178,7 +178,7 @@ class GraphGrid:
         for contact in range(len(self.graph.contacts)):
             kept: list[tuple[str, int]] = []
             for _, kind, step in (change for change in changes if change[0] == contact):
-                if kept and step - kept[-1][1] < _LATE:
+                if kept and step - kept[-1][1] < LATE:
                     kept.pop()
                 else:
                     kept.append((kind, step))
@@ -306,7 +306,7 @@ class _Points:
         self._parting = made.parting[:, self._free]
         self._open = made.gaps > 0
         self.changes: list[tuple[int, str, int]] = []
-        self.missed, self._pushed = 0.0, np.zeros((_LATE, len(made.gaps)))
+        self.missed, self._pushed = 0.0, np.zeros((LATE, len(made.gaps)))
         self._steps = 0
         self.now = np.zeros(size)
         self._before = self.now
@@ -343,5 +343,5 @@ class _Points:
             self._open[contact] ^= True
             self.missed += 2 * self._h * float(np.max(self._pushed[:, contact]))
             self.changes.append((int(contact), "opens" if self._open[contact] else "closes", self._steps))
-        self._pushed[self._steps % _LATE] = pushes
+        self._pushed[self._steps % LATE] = pushes
         return after
