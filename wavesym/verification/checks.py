@@ -45,7 +45,7 @@ _FEWEST_INSTANTS, _MOST_INSTANTS = 20, 200
 _MOST_VALUES, _MOST_WINDOWS = 50_000, 240
 _MOST_GRAPH_VALUES = 30_000
 
-Balances = Callable[[Evaluate, Sequence[float]], tuple[Balance, Balance]]
+Balances = Callable[[Evaluate, Sequence[float]], tuple[Balance, ...]]
 """What evaluates the outputs, and their errors, to the balances of momentum and energy."""
 
 
@@ -199,7 +199,7 @@ def _balanced(seen: Model, balances: Balances, until: str) -> list[Outcome]:
         [_ROUNDED * float(size.upper()) for size in exact.largest()],
     )
     note = ""
-    made: Sequence[Balance | None] = (None, None)
+    made: Sequence[Balance | None] = [None] * len(truth)
     try:
         made = balances(*_program(seen))
     except ToleranceError as error:
@@ -254,7 +254,8 @@ CHECKS = (
     ),
     Check(
         "Momentum less impulse and energy less work of the whole chain at tau = 1, 2, ... (type chain: at parts of\n"
-        "the horizon): in the reference, and in generated NumPy. Allowed is what the errors of their values come to:",
+        "the horizon; that contacts push or are apart): in the reference, and in generated NumPy. Allowed is what the\n"
+        "errors of their values come to:",
         invariants,
     ),
 )
