@@ -14,11 +14,11 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.exact.increments import Increment
 from wavesym.exact.signal import Signal
-from wavesym.numbers.balls import FIRST_BITS, precise
+from wavesym.numbers.balls import FIRST_BITS, MOST_BITS, precise
 from wavesym.numbers.doubles import midpoint, rational, rounded
 
 # a quarter of the smallest double
-_NEGLIGIBLE = arb(2) ** -1076
+NEGLIGIBLE = arb(2) ** -1076
 
 
 @dataclass(frozen=True)
@@ -101,11 +101,18 @@ class Balls:
         return self.segments[place].at(tau - self._starts[place]) if place >= 0 else arb(0)
 
 
-def values(source: Source, taus: Sequence[float], bits: int = FIRST_BITS) -> list[float]:
+def values(
+    source: Source,
+    taus: Sequence[float],
+    bits: int = FIRST_BITS,
+    negligible: arb = NEGLIGIBLE,
+    most: int = MOST_BITS,
+) -> list[float]:
     """The correctly rounded values of an output at doubles tau of its horizon; `source` gives its segments.
 
     Where a value is so near to the middle between two doubles that a ball smaller than all of them does not tell, it is
-    rounded from the middle of the ball.
+    rounded from the middle of the ball; where it may be 0 and the ball is `negligible`, it is 0. ArithmeticError where
+    more than `most` bits are needed.
     """
     exact = [rational(tau) for tau in taus]
 
@@ -116,16 +123,16 @@ def values(source: Source, taus: Sequence[float], bits: int = FIRST_BITS) -> lis
             value = balls.at(tau)
             double = rounded(value)
             if double is None:
-                if not value.rad() < _NEGLIGIBLE:
+                if not value.rad() < negligible:
                     return None
-                double = midpoint(value)
+                double = 0.0 if value.contains(0) else midpoint(value)
             results.append(double + 0.0)  # no -0.0
         return results
 
-    return precise(attempt, bits)
+    return precise(attempt, bits, most)
 
 
-def largest(source: Source, until: float, bits: int = FIRST_BITS) -> arb:
+def largest(source: Source, until: float, bits: int = FIRST_BITS, most: int = MOST_BITS) -> arb:
     """A lower bound, a ball, of an output's largest absolute value on [0, until]; 0 where it is 0 throughout."""
 
     def attempt(bits: int) -> arb | None:
@@ -133,4 +140,4 @@ def largest(source: Source, until: float, bits: int = FIRST_BITS) -> arb:
         size = balls.largest(rational(until))
         return size if size > 0 or balls.zero else None
 
-    return precise(attempt, bits)
+    return precise(attempt, bits, most)

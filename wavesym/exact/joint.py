@@ -81,6 +81,15 @@ class JointLaw:
             tuple(point.motion for point in points),
         )
 
+    def among(self, points: Sequence[int]) -> JointLaw:
+        """The law of some points that nothing connects with the others."""
+        return JointLaw(
+            tuple(self.mass[k] for k in points),
+            tuple(tuple(self.damping[k][j] for j in points) for k in points),
+            tuple(tuple(self.stiffness[k][j] for j in points) for k in points),
+            tuple(self.given[k] for k in points),
+        )
+
     def grouped(self, members: Sequence[tuple[int, fmpq]], leaders: Sequence[int]) -> JointLaw:
         """The same with points that move as one: the group of each, its ratio, and the point that each moves like."""
         of = [[(k, ratio) for k, (group, ratio) in enumerate(members) if group == a] for a in range(len(leaders))]
@@ -157,16 +166,24 @@ class JointLaw:
 
 @dataclass(frozen=True)
 class Enclosed:
-    """A function on a stretch: |function - polynomial| <= error. `exact` is the function where that is a polynomial."""
+    """A function on a stretch: |function - polynomial| <= error.
+
+    Where `choices` are given it is, at each instant, one of these. `exact` is the only one.
+    """
 
     polynomial: arb_poly
     error: arb
-    exact: fmpq_poly | None = None
+    choices: tuple[fmpq_poly, ...] = ()
 
     @classmethod
     def of(cls, exact: fmpq_poly) -> Enclosed:
         """A polynomial that is known."""
-        return cls(arb_poly([arb(c) for c in exact.coeffs()]), arb(0), exact)
+        return cls(arb_poly([arb(c) for c in exact.coeffs()]), arb(0), (exact,))
+
+    @property
+    def exact(self) -> fmpq_poly | None:
+        """The function, where it is known."""
+        return self.choices[0] if len(self.choices) == 1 else None
 
     def at(self, w: fmpq) -> arb:
         """An enclosure of its value."""
@@ -174,7 +191,7 @@ class Enclosed:
         return value + arb(0, self.error) if self.error != 0 else value
 
 
-STILL = Enclosed(arb_poly(), arb(0), fmpq_poly())
+STILL = Enclosed(arb_poly(), arb(0), (fmpq_poly(),))
 
 
 @dataclass
@@ -191,12 +208,6 @@ class JointMotion:
     unknown: arb = field(default_factory=lambda: arb(0))
     places: list[list[arb]] = field(default_factory=list)
     strained: arb = field(default_factory=lambda: arb(0))
-
-    def under(self, law: JointLaw) -> JointMotion:
-        """The same at this instant, with other contacts closed: what has mass goes on as fast as before."""
-        before = {leader: self.velocity[group] for group, leader in enumerate(self.law.leaders)}
-        velocity = [before.get(leader, arb(0)) for leader in law.leaders]
-        return JointMotion(law, velocity, list(self.displacement), self.unknown)
 
     def moved(
         self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int

@@ -59,6 +59,22 @@ class Motion:
         law = JointLaw.of(self._network, self._network.joints[number])
         return law.fastest * self._knots.longest(number) * 3
 
+    @cached_property
+    def size(self) -> arb:
+        """The largest wave, at most, as a velocity."""
+        with ctx.workprec(self.first_bits):
+            return max(
+                (
+                    abs(known.polynomial(arb(0).union(arb(end - start)))).upper()
+                    for wave in self.waves(self.first_bits).sent.values()
+                    for start, end, known in zip(
+                        wave.starts, [*wave.starts[1:], self.until], wave.stretches, strict=True
+                    )
+                    if start < end
+                ),
+                default=arb(0),
+            )
+
     def refuse_long(self, taus: int) -> None:
         """CostError where values of all outputs at so many tau would take minutes."""
         terms = self.first_bits // 4

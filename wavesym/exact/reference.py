@@ -12,7 +12,7 @@ from functools import cached_property, partial
 from flint import arb, fmpq
 
 from wavesym.errors import CostError, RangeError
-from wavesym.exact.ball import Source, largest, segments, values
+from wavesym.exact.ball import Balls, Source, largest, segments, values
 from wavesym.exact.motion import Motion, waves_size
 from wavesym.exact.signal import Signal, refuse_many, signals
 from wavesym.model.model import Model
@@ -25,6 +25,8 @@ _QUICK = 10**8
 # coefficients of the tables from which on windows are cheaper
 _MODERATE = 50_000
 _SHORTEST = fmpq(8)
+# more bits tell nothing more where contacts open and close
+_MOST_KNOWN = 2048
 
 
 def beginning(model: Model) -> Model:
@@ -72,6 +74,11 @@ class Reference:
         if self.signals is None:
             self._motion.refuse_long(len(taus))
         try:
+            if self.model.network.contacts:
+                return [
+                    self._as_known(source, whole, taus)
+                    for source, whole in zip(self._sources(taus), self._sources(), strict=True)
+                ]
             return [values(source, taus, self._first_bits) for source in self._sources(taus)]
         except RangeError:
             raise
@@ -79,6 +86,13 @@ class Reference:
             raise CostError(
                 f"output.until: for values right to the last bit, {error} (a shorter horizon helps)"
             ) from None
+
+    def _as_known(self, source: Source, whole: Source, taus: Sequence[float]) -> list[float]:
+        """Where contacts open and close, as far as it is known when they do: to 2^-200 of the largest value."""
+        size = Balls(whole(self._first_bits)).largest(rational(self.tau_max))
+        if not size > 0:  # it may be 0 throughout
+            size = self._motion.size
+        return values(source, taus, self._first_bits, size * arb(2) ** -200, _MOST_KNOWN)
 
     def largest(self) -> list[arb]:
         """A lower bound of the largest absolute value of each output; 0 where it is 0 throughout."""

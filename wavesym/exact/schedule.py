@@ -16,9 +16,10 @@ from itertools import chain, combinations
 from flint import arb, ctx, fmpq
 
 from wavesym.errors import CostError, WavesymError
+from wavesym.exact.cluster import Closed
 from wavesym.exact.crossing import first_fall, positive_until, sign_after
 from wavesym.exact.joint import Enclosed
-from wavesym.exact.touching_joint import Closed, Drifted, Moved
+from wavesym.exact.touching_joint import Moved
 from wavesym.exact.touching_waves import Stage, TouchingWaves
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
@@ -188,7 +189,7 @@ class _Search:
         """From where a joint's motion is known up to the next limit, or to where a contact may change."""
         knot, limit = course.comes(time), course.limit(time)
         if course.moved is not None and not knot and not self._swings(course.moved, limit - course.since):
-            moved = self._moved(course, course.since, limit - course.since, frozenset(course.moved.law.pushes))
+            moved = self._moved(course, course.since, limit - course.since, course.moved.closed)
             self._kept(course, moved, time - course.since)
             return
         if course.moved is not None:
@@ -198,7 +199,7 @@ class _Search:
 
     def _swings(self, moved: Moved, length: fmpq) -> bool:
         """Whether a stretch would become too long for its series."""
-        return moved.motion is not None and moved.law.law.fastest * length > _SWING
+        return moved.swing * length > _SWING
 
     def _moved(self, course: _Course, start: fmpq, length: fmpq, closed: Closed) -> Moved:
         joint = self._waves.joints[course.number]
@@ -214,14 +215,14 @@ class _Search:
             course.reached = self._drift(course, start, limit)
             return
         for n, gap in course.gaps.items():
-            closed = n in moved.law.pushes
+            closed = n in moved.closed
             if closed != gap.closed:
                 doubted = course.doubt is not None and course.doubt.high == start
                 low = course.doubt.low if course.doubt is not None and doubted else start
                 self._found.append(Found(n, closed, low, start))
                 gap.closed = closed
         course.since = start
-        self._staged(course, Stage(start, frozenset(moved.law.pushes)))
+        self._staged(course, Stage(start, moved.closed))
         self._kept(course, moved, fmpq(0))
 
     def _staged(self, course: _Course, stage: Stage) -> None:
@@ -253,7 +254,7 @@ class _Search:
             return
         length, course.drifts = end
         if length > 0:
-            moved = self._moved(course, since, length, frozenset(moved.law.pushes))
+            moved = self._moved(course, since, length, moved.closed)
             self._tell(course, since, moved)
             self._take(course, moved)
         course.moved, course.reached = None, since + length
@@ -272,9 +273,9 @@ class _Search:
 
     def _certain(self, moved: Moved, n: int, gap: _Gap, low: fmpq) -> tuple[fmpq, bool] | None:
         """The same of one contact."""
-        if n in moved.law.pushes:
-            return self._positive(moved.push(n), low, moved.length)
-        rate, error = moved.rate(n), arb(0)
+        if n in moved.closed:
+            return self._positive(moved.pushes[n], low, moved.length)
+        rate, error = moved.rates[n], arb(0)
         if gap.exact is not None and rate.exact is not None:
             return self._positive(Enclosed.of(rate.exact.integral() + gap.exact), low, moved.length)
         if not gap.wide and low == 0:  # it opens: as long as it grows it is open
@@ -288,6 +289,8 @@ class _Search:
     def _positive(self, known: Enclosed, low: fmpq, high: fmpq) -> tuple[fmpq, bool] | None:
         """Up to where a function that starts well is not negative, and whether that is not exact; None: all the way."""
         if known.exact is None:
+            if known.choices and all(first_fall(p, low, high) is None for p in known.choices):
+                return None
             end = positive_until(known.polynomial, known.error, low, high, self._resolution)
             return None if end is None else (end, True)
         fall = first_fall(known.exact, low, high)
@@ -303,10 +306,10 @@ class _Search:
         """The joint goes to the end of its stretch; gaps become what they are there."""
         self._waves.joints[course.number].take(moved)
         for n, gap in course.gaps.items():
-            if n in moved.law.pushes:
+            if n in moved.closed:
                 gap.size, gap.exact = arb(0), fmpq(0)
                 continue
-            rate, length = moved.rate(n), arb(moved.length)
+            rate, length = moved.rates[n], arb(moved.length)
             gap.exact = (
                 gap.exact + rate.exact.integral()(moved.length)
                 if gap.exact is not None and rate.exact is not None
@@ -315,7 +318,7 @@ class _Search:
             size = rate.polynomial.integral()(length) + gap.size + arb(0, (rate.error * length).upper())
             gap.size = _not_negative(size) if gap.exact is None else arb(gap.exact)
 
-    def _tell(self, course: _Course, start: fmpq, moved: Moved | Drifted) -> None:
+    def _tell(self, course: _Course, start: fmpq, moved: Moved) -> None:
         """What a joint sends is kept; what begins there is a knot at the other ends of its bars."""
         network = self._network
         begun = self._waves.record(course.number, start, moved)
@@ -343,9 +346,9 @@ class _Search:
         for n, gap in course.gaps.items():
             if n in stage.closed:
                 continue
-            rate = drifted.rates[n]
+            rate = _range(drifted.rates[n], length)
             grown = gap.size + h * rate.union(arb(0))
-            if n in stage.vague and rate < 0 and drifted.pushes[n] > 0 and gap.size + h * rate < 0:
+            if n in stage.vague and rate < 0 and _range(drifted.pushes[n], length) > 0 and gap.size + h * rate < 0:
                 gap.size, gap.exact = arb(0), fmpq(0)
             else:
                 gap.size, gap.exact = _not_negative(grown), None
@@ -355,16 +358,20 @@ class _Search:
         doubt.high = start + length
         return doubt.high
 
-    def _drifted(self, course: _Course, start: fmpq, length: fmpq) -> tuple[Drifted, Stage]:
+    def _drifted(self, course: _Course, start: fmpq, length: fmpq) -> tuple[Moved, Stage]:
         """The motion, with all contacts vague that are not certainly open or closed all the time."""
         joint, arriving = self._waves.joints[course.number], self._waves.arriving(course.number, start)
         vague = {n for n, gap in course.gaps.items() if not gap.shut and not gap.wide}
         while True:
             closed = frozenset(n for n, gap in course.gaps.items() if gap.shut and n not in vague)
-            drifted = joint.drifted(arriving, start, length, closed, frozenset(vague))
-            wrong = {n for n in closed if not drifted.pushes[n] > 0}
+            drifted = joint.moved(arriving, start, length, closed, frozenset(vague))
+            wrong = {n for n in closed if not _pushes(drifted.pushes[n], length)}
             for n, gap in course.gaps.items():
-                if n not in closed and n not in vague and not gap.size + arb(length) * drifted.rates[n] > 0:
+                if (
+                    n not in closed
+                    and n not in vague
+                    and not (gap.size + arb(length) * _range(drifted.rates[n], length) > 0)
+                ):
                     wrong.add(n)
             if not wrong:
                 return drifted, Stage(start, closed, frozenset(vague))
@@ -384,10 +391,26 @@ def _most_first(numbers: Sequence[int]) -> Iterator[Closed]:
 
 def _starts_well(moved: Moved, n: int, gap: _Gap) -> bool:
     """Whether a contact is certainly what it is said to be, just after the start of a stretch."""
-    if n in moved.law.pushes:
-        push = moved.push(n)
-        return sign_after(push.exact, fmpq(0)) >= 0 if push.exact is not None else bool(push.at(fmpq(0)) > 0)
+    if n in moved.closed:
+        push = moved.pushes[n]
+        if push.choices:
+            return all(sign_after(p, fmpq(0)) >= 0 for p in push.choices)
+        return bool(push.at(fmpq(0)) > 0)
     if gap.wide:
         return True
-    rate = moved.rate(n)
-    return sign_after(rate.exact, fmpq(0)) > 0 if rate.exact is not None else bool(rate.at(fmpq(0)) > 0)
+    rate = moved.rates[n]
+    if rate.choices:
+        return all(sign_after(p, fmpq(0)) > 0 for p in rate.choices)
+    return bool(rate.at(fmpq(0)) > 0)
+
+
+def _range(known: Enclosed, length: fmpq) -> arb:
+    """All values on a stretch."""
+    return known.polynomial(arb(0).union(arb(length))) + arb(0, known.error)
+
+
+def _pushes(known: Enclosed, length: fmpq) -> bool:
+    """Whether a force is certainly not negative on a stretch."""
+    if known.choices:
+        return all(first_fall(p, fmpq(0), length) is None for p in known.choices)
+    return bool(_range(known, length) > 0)

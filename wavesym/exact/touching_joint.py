@@ -1,7 +1,7 @@
 """A joint with contacts: closed ones make one of their points, open ones leave them apart.
 
 A closed contact pushes with a force N >= 0, the right point forwards and the left one backwards; an open one has a gap
->= 0, which changes at a `rate`. With the balance of a point k, M q' + C q + K u = s + what contacts push, N is the sum
+>= 0, which grows at a `rate`. With the balance of a point k, M q' + C q + K u = s + what contacts push, N is the sum
 of C q + K u - s over the points on one side of the contact, which have no mass.
 
 On a stretch so short that it does not matter which contacts are closed when, these are `vague`. Whatever they do, the
@@ -14,167 +14,74 @@ and displacements are continuous, no force can have been the first to pass it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import chain, combinations
-from math import log2
+from dataclasses import dataclass, field
+from itertools import chain, combinations, product
+from math import log2, prod
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
-from wavesym.errors import WavesymError
-from wavesym.exact.exact_joint import ExactMotion
-from wavesym.exact.joint import Enclosed, JointLaw, JointMotion
+from wavesym.exact.cluster import Closed, Cluster, Touch, parted
+from wavesym.exact.exact_joint import exact_motion
+from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
 from wavesym.exact.network_waves import Acting, weighted
 from wavesym.exact.node_rules import joint_rule
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
 
-Closed = frozenset[int]
-"""Contacts, by the numbers of their links."""
+Terms = list[tuple[fmpq, Enclosed]]
+"""A sum with exact factors."""
 
+_NOTHING, _ONE = fmpq(0), fmpq(1)
 _SLACK = fmpq(1, 2**20)
 _ROUNDS = 8  # in which a bound of the forces must hold
+_CHOICES = 8  # of functions, that are told apart
 
 
 @dataclass(frozen=True)
-class Touch:
-    """A contact between two points of a joint, told by their places in it: closed, right moves `ratio` times left."""
+class PointState:
+    """How fast a point is, and where: exact where that is known, and the energy of what is not known of its set."""
 
-    left: int
-    right: int
-    ratio: fmpq
+    velocity: arb
+    displacement: arb
+    exact: tuple[fmpq, fmpq] | None
+    unknown: arb
 
-
-@dataclass(frozen=True)
-class TouchingLaw:
-    """The law of a joint with some contacts closed; `pushes` has the points and factors that make each one's force."""
-
-    law: JointLaw
-    pushes: Mapping[int, Sequence[tuple[int, fmpq]]]
+    @property
+    def place(self) -> fmpq:
+        """The displacement, where it is known exactly."""
+        assert self.exact is not None
+        return self.exact[1]
 
     @classmethod
-    def of(cls, law: JointLaw, touches: Mapping[int, Touch], closed: Closed) -> TouchingLaw:
-        """From the law with all contacts open."""
-        size = len(law.mass)
-        rigid = [k for k in range(size) if law.mass[k] != 0 or law.given[k] is not None]
-        ways: dict[int, list[tuple[int, fmpq]]] = {k: [] for k in range(size)}
-        for number in closed:
-            touch = touches[number]
-            ways[touch.left].append((touch.right, touch.ratio))
-            ways[touch.right].append((touch.left, 1 / touch.ratio))
-        members: dict[int, tuple[int, fmpq]] = {}
-        leaders: list[int] = []
-        for leader in chain(rigid, range(size)):
-            if leader in members:
-                if leader in rigid and leader not in leaders:
-                    raise WavesymError("contacts: two rigid bodies would touch each other, a rod between them expected")
-                continue
-            for k, ratio in _reached(leader, ways):
-                members[k] = (len(leaders), ratio)
-            leaders.append(leader)
-        pushes = {}
-        for number in closed:
-            touch = touches[number]
-            cut = {
-                k: [(j, ratio) for j, ratio in way if {k, j} != {touch.left, touch.right}] for k, way in ways.items()
-            }
-            beyond = [k for k, _ in _reached(touch.right, cut)]
-            sign = fmpq(1)
-            if leaders[members[touch.right][0]] in beyond:
-                beyond, sign = [k for k, _ in _reached(touch.left, cut)], fmpq(-1)
-            pushes[number] = [(k, sign * members[k][1] / members[touch.right][1]) for k in beyond]
-        order = sorted(range(len(leaders)), key=leaders.__getitem__)
-        place = {group: n for n, group in enumerate(order)}
-        return cls(
-            law.grouped(
-                [(place[group], ratio) for group, ratio in (members[k] for k in range(size))],
-                [leaders[group] for group in order],
-            ),
-            pushes,
-        )
+    def of(cls, velocity: fmpq, displacement: fmpq) -> PointState:
+        """Known exactly."""
+        return cls(arb(velocity), arb(displacement), (velocity, displacement), arb(0))
 
 
-def _reached(start: int, ways: Mapping[int, Sequence[tuple[int, fmpq]]]) -> Iterator[tuple[int, fmpq]]:
-    """The points that move with one, and how fast."""
-    known = {start}
-    coming = [(start, fmpq(1))]
-    while coming:
-        here, ratio = coming.pop()
-        yield here, ratio
-        for other, factor in ways[here]:
-            if other not in known:
-                known.add(other)
-                coming.append((other, ratio * factor))
-
-
-@dataclass(frozen=True)
+@dataclass
 class Moved:
-    """A joint on a stretch: the velocities of its points, what it sends, and its state at the end."""
+    """A joint on a stretch: the velocities of its points, what it sends, and its state at the end.
 
-    joint: TouchingJoint
-    law: TouchingLaw
-    length: fmpq
-    velocities: list[Enclosed]
-    sent: list[Enclosed]
-    forces: list[Enclosed]
-    motion: JointMotion | None
-    exact: ExactMotion | None
-    exact_places: list[fmpq_poly] | None
-
-    def rate(self, number: int) -> Enclosed:
-        """How fast the gap of an open contact grows."""
-        touch = self.joint.touches[number]
-        return _together([(fmpq(1), self.velocities[touch.right]), (-touch.ratio, self.velocities[touch.left])])
-
-    def push(self, number: int) -> Enclosed:
-        """The force of a closed contact."""
-        open_law = self.joint.law
-        terms: list[tuple[fmpq, Enclosed]] = []
-        for k, factor in self.law.pushes[number]:
-            terms.append((-factor, self.forces[k]))
-            terms += [(factor * c, q) for c, q in zip(open_law.damping[k], self.velocities, strict=True)]
-        total = _together(terms)
-        if not open_law.springs:
-            return total
-        if self.exact_places is not None and total.exact is not None:
-            return Enclosed.of(
-                total.exact
-                + sum(
-                    (
-                        factor * c * u
-                        for k, factor in self.law.pushes[number]
-                        for c, u in zip(open_law.stiffness[k], self.exact_places, strict=True)
-                    ),
-                    fmpq_poly(),
-                )
-            )
-        assert self.motion is not None  # a joint with springs is not without state
-        polynomial, error = total.polynomial, total.error
-        for k, factor in self.law.pushes[number]:
-            for c, places in zip(open_law.stiffness[k], self.motion.places, strict=True):
-                if c != 0:
-                    polynomial += arb(factor * c) * arb_poly(places)
-            error += abs(arb(factor)) * arb(open_law.stiffness[k][k]).sqrt() * self.motion.strained
-        return Enclosed(polynomial, error.upper())
-
-
-@dataclass(frozen=True)
-class Drifted:
-    """A joint on a short stretch with vague contacts: as `Moved`, and the ranges of rates and forces, while open and
-    while closed, under every choice."""
+    `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
+    choice of closed contacts.
+    """
 
     length: fmpq
-    velocities: list[Enclosed]
-    sent: list[Enclosed]
-    motion: JointMotion
-    rates: Mapping[int, arb]
-    pushes: Mapping[int, arb]
+    closed: Closed
+    vague: Closed
+    velocities: dict[int, Terms]
+    sent: list[Enclosed] = field(default_factory=list)
+    state: dict[int, PointState] = field(default_factory=dict)
+    rates: dict[int, Enclosed] = field(default_factory=dict)
+    pushes: dict[int, Enclosed] = field(default_factory=dict)
+    swing: fmpq = _NOTHING
 
 
 class TouchingJoint:
     """A joint as time goes on, at the working precision."""
 
     def __init__(self, network: Network, number: int, loads: Sequence[Applied]) -> None:
-        self._joint = joint = network.joints[number]
+        joint = network.joints[number]
         place = {point: k for k, point in enumerate(joint.points)}
         self.law = JointLaw.of(network, joint)
         self.touches = {
@@ -182,7 +89,7 @@ class TouchingJoint:
             for n, link in enumerate(network.links)
             if link.contact and link.left in place
         }
-        self._laws: dict[Closed, TouchingLaw] = {}
+        self._clusters: dict[tuple[Closed, Closed], list[Cluster]] = {}
         self._loads = [Acting(network, point, loads) for point in joint.points]
         rule = joint_rule()
         bars = [network.bars[end.bar] for end, _ in joint.ends]
@@ -190,236 +97,321 @@ class TouchingJoint:
             (place[point], bar.ratios[end.side], rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance)
             for bar, (end, point) in zip(bars, joint.ends, strict=True)
         ]
-        begun = {k: network.points[point].velocity for k, point in enumerate(joint.points)}
-        self._exact: ExactMotion | None = ExactMotion(begun, [fmpq(0)] * len(joint.points))
-        self._motion: JointMotion | None = None
+        self._state = {k: PointState.of(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
+        self._sets = parted(self.law, self.touches, frozenset())
 
-    def under(self, closed: Closed) -> TouchingLaw:
-        """The law with these contacts closed."""
-        if closed not in self._laws:
-            self._laws[closed] = TouchingLaw.of(self.law, self.touches, closed)
-        return self._laws[closed]
-
-    @property
-    def _stateless(self) -> bool:
-        return not (self.law.heavy or self.law.springs)
-
-    def take(self, moved: Moved | Drifted) -> None:
+    def take(self, moved: Moved) -> None:
         """Go on to the end of a stretch."""
-        if not self._stateless:
-            self._motion = moved.motion
-            self._exact = moved.exact if isinstance(moved, Moved) else None
+        self._state |= moved.state
 
-    def moved(self, arriving: Sequence[Enclosed], start: fmpq, length: fmpq, closed: Closed) -> Moved:
-        """Its motion on a stretch on which just these contacts are closed."""
-        touching = self.under(closed)
-        law = touching.law
+    def moved(
+        self,
+        arriving: Sequence[Enclosed],
+        start: fmpq,
+        length: fmpq,
+        closed: Closed,
+        vague: Closed = frozenset(),
+    ) -> Moved:
+        """Its motion on a stretch on which just these contacts are closed, and the `vague` ones now and then."""
         acting = [load.on(start) for load in self._loads]
         forces = self._forces(arriving, acting)
-        grouped = [self._on_group(law, forces, a) for a in range(len(law.mass))]
-        prescribed = [acting[k] for k in law.leaders]
-        if self._exact is not None and all(wave.exact is not None for wave in arriving):
-            given = [force.exact for force in grouped if force.exact is not None]
-            if (q := self._exact.moved(law, given, prescribed)) is not None:
-                return self._exactly(touching, q, arriving, forces, length)
-        motion = None
-        if self._stateless and len(law.light) == len(law.mass):
-            velocities = [
-                weighted([(law.inverse[k, j], force) for j, force in enumerate(grouped)]) for k in range(len(law.mass))
+        result = Moved(length, closed, vague, {})
+        for cluster in self._parted(closed, vague):
+            if any(self.touches[n].left in cluster.points for n in vague):
+                self._drift(cluster, result, forces, acting)
+            else:
+                self._move(cluster, result, forces, acting)
+        for n, touch in self.touches.items():
+            if n not in closed and n not in vague:
+                result.rates[n] = together(_rate(touch, result.velocities))
+        result.sent = [
+            together([*scaled(result.velocities[k], ratio), (fmpq(-1), wave)])
+            for (k, ratio, _), wave in zip(self._ends, arriving, strict=True)
+        ]
+        return result
+
+    def _parted(self, closed: Closed, vague: Closed) -> list[Cluster]:
+        if (closed, vague) not in self._clusters:
+            self._clusters[closed, vague] = [
+                Cluster.of(self.law, points, self.touches, closed)
+                for points in parted(self.law, self.touches, closed | vague)
             ]
-            sent = self._scattered(law, arriving, acting)
+        return self._clusters[closed, vague]
+
+    # with contacts closed and open
+
+    def _move(self, cluster: Cluster, result: Moved, forces: Sequence[Terms], acting: Sequence[fmpq_poly]) -> None:
+        law, points = cluster.law, cluster.points
+        pushed = grouped(cluster, forces)
+        prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
+        motion, places = None, None
+        if cluster.stateless:
+            q = scattered(law, pushed, _given(law, prescribed))
+        elif (exact := self._exactly(cluster, pushed, prescribed)) is not None:
+            q = [[(_ONE, Enclosed.of(p))] for p in exact]
+            places = {
+                k: ratio * exact[group].integral() + self._state[k].place
+                for k, (group, ratio) in zip(points, law.moves, strict=True)
+            }
+            for k, (group, ratio) in zip(points, law.moves, strict=True):
+                place = places[k](result.length) if self._elastic(k) else fmpq(0)
+                result.state[k] = PointState.of(ratio * exact[group](result.length), place)
         else:
-            motion = self._state(law)
-            waves = [_shortened(force, length) for force in grouped]
-            terms = _terms(law.fastest * length, max(wave.polynomial.length() for wave in waves))
-            velocities = motion.moved(waves, prescribed, length, terms)
-            sent = self._sent(law, velocities, arriving)
-        points = [_scaled(velocities[group], ratio) for group, ratio in law.moves]
-        return Moved(self, touching, length, points, sent, forces, motion, None, None)
+            motion = self._balls(cluster)
+            waves = [_shortened(together(force), result.length) for force in pushed]
+            terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in waves))
+            q = [[(_ONE, each)] for each in motion.moved(waves, prescribed, result.length, terms)]
+            result.state |= self._after(cluster, motion)
+            result.swing = max(result.swing, law.fastest)
+        for k, (group, ratio) in zip(points, law.moves, strict=True):
+            result.velocities[k] = scaled(q[group], ratio)
+        for n, push in cluster.pushes.items():
+            pull = self._pull(cluster, push, result.velocities, forces)
+            if places is not None:
+                pull += [
+                    (factor * self.law.stiffness[k][j], Enclosed.of(places[j])) for k, factor in push for j in points
+                ]
+            result.pushes[n] = together(pull)
+            if motion is not None:
+                result.pushes[n] = self._sprung(cluster, push, motion, result.pushes[n])
+
+    def _elastic(self, k: int) -> bool:
+        return any(c != 0 for c in self.law.stiffness[k])
 
     def _exactly(
-        self,
-        touching: TouchingLaw,
-        q: Sequence[fmpq_poly],
-        arriving: Sequence[Enclosed],
-        forces: list[Enclosed],
-        length: fmpq,
-    ) -> Moved:
-        assert self._exact is not None  # or it would not be known exactly
-        law = touching.law
-        points = [Enclosed.of(ratio * q[group]) for group, ratio in law.moves]
-        sent = [
-            Enclosed.of(ratio * velocity - wave.exact)
-            for (k, ratio, _), wave in zip(self._ends, arriving, strict=True)
-            if (velocity := points[k].exact) is not None and wave.exact is not None
-        ]
-        places = [
-            u + point.exact.integral()
-            for u, point in zip(self._exact.displacement, points, strict=True)
-            if point.exact is not None
-        ]
-        return Moved(self, touching, length, points, sent, forces, None, self._exact.after(law, q, length), places)
+        self, cluster: Cluster, pushed: Sequence[Terms], prescribed: Sequence[fmpq_poly]
+    ) -> list[fmpq_poly] | None:
+        """The velocities of groups, where all is known exactly and they are polynomials."""
+        known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
+        forces = [force for terms in pushed if (force := together(terms).exact) is not None]
+        if len(known) < len(cluster.points) or len(forces) < len(pushed):
+            return None
+        velocity = [known[leader][0] for leader in cluster.law.leaders]
+        return exact_motion(cluster.law, velocity, [u for _, u in known], forces, prescribed)
 
-    def drifted(
-        self, arriving: Sequence[Enclosed], start: fmpq, length: fmpq, closed: Closed, vague: Closed
-    ) -> Drifted:
-        """Its motion on a short stretch on which `closed` are closed, and the `vague` ones now and then."""
-        law = self.under(closed).law
-        acting = [load.on(start) for load in self._loads]
-        forces = self._forces([_shortened(wave, length) for wave in arriving], acting)
-        span = arb(0).union(arb(length))
-        prescribed = {k: _range(Enclosed.of(acting[k]), span) for k, kind in enumerate(self.law.given) if kind}
+    def _pull(
+        self,
+        cluster: Cluster,
+        push: Sequence[tuple[int, fmpq]],
+        velocities: Mapping[int, Terms],
+        forces: Sequence[Terms],
+    ) -> Terms:
+        """The force of a closed contact, but for what springs do."""
+        terms: Terms = []
+        for k, factor in push:
+            terms += scaled(forces[k], -factor)
+            for j in cluster.points:
+                terms += scaled(velocities[j], factor * self.law.damping[k][j])
+        return terms
+
+    def _sprung(
+        self, cluster: Cluster, push: Sequence[tuple[int, fmpq]], motion: JointMotion, force: Enclosed
+    ) -> Enclosed:
+        """With what springs do."""
+        springs = [(factor, self._spring(cluster, motion, k)) for k, factor in push if self._elastic(k)]
+        return together([(_ONE, force), *springs])
+
+    def _spring(self, cluster: Cluster, motion: JointMotion, k: int) -> Enclosed:
+        """What springs pull at a point on a stretch."""
+        if not self._elastic(k):
+            return STILL
+        polynomial = arb_poly()
+        for j, series in zip(cluster.points, motion.places, strict=True):
+            polynomial += arb(self.law.stiffness[k][j]) * arb_poly(series)
+        return Enclosed(polynomial, (arb(self.law.stiffness[k][k]).sqrt() * motion.strained).upper())
+
+    # in balls
+
+    def _balls(self, cluster: Cluster) -> JointMotion:
+        """The state of a cluster; what rounding loses of one that was exact is energy not known."""
+        points = cluster.points
+        state = [self._state[k] for k in points]
+        lost = sum((arb(self.law.mass[k]) * self._state[k].velocity.rad() ** 2 for k in points), arb(0))
+        for k in points:
+            for j in points:
+                spread = self._state[k].displacement.rad() * self._state[j].displacement.rad()
+                lost += abs(arb(self.law.stiffness[k][j])) * spread
+        unknown = sum((self._state[each[0]].unknown for each in self._sets if each[0] in points), arb(0))
+        root = unknown.sqrt() + (lost / 2).sqrt()
+        return JointMotion(
+            cluster.law,
+            [state[leader].velocity.mid() for leader in cluster.law.leaders],
+            [each.displacement.mid() for each in state],
+            (root * root).upper(),
+        )
+
+    def _after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
+        leaders = dict(zip(cluster.law.leaders, motion.velocity, strict=True))
+        return {
+            k: PointState(leaders.get(n, arb(0)), motion.displacement[n], None, motion.unknown)
+            for n, k in enumerate(cluster.points)
+        }
+
+    # with vague contacts
+
+    def _drift(self, cluster: Cluster, result: Moved, forces: Sequence[Terms], acting: Sequence[fmpq_poly]) -> None:
+        law, points = cluster.law, cluster.points
+        vague = frozenset(n for n in result.vague if self.touches[n].left in points)
+        closed = frozenset(n for n in result.closed if self.touches[n].left in points)
+        span = arb(0).union(arb(result.length))
+        prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
         bounds = dict.fromkeys(vague, arb(0))
         for _ in range(_ROUNDS):
-            motion = self._state(law)
-            pushed = self._pushed(forces, bounds)
-            waves = [self._on_group(law, pushed, a) for a in range(len(law.mass))]
-            terms = _terms(law.fastest * length, max(wave.polynomial.length() for wave in waves))
-            found = motion.moved(waves, [acting[k] for k in law.leaders], length, terms)
-            known = prescribed | {law.leaders[a]: _range(found[a], span) for a in law.heavy}
-            pulls = [_range(force, span) - self._spring(motion, k, span) for k, force in enumerate(forces)]
-            velocities, rates, pushes = self._choices(closed, vague, known, pulls)
-            largest = {n: pushes[n].upper().max(arb(0)) for n in vague}
+            motion = self._balls(cluster)
+            pushed = [
+                _shortened(together(each), result.length) for each in grouped(cluster, self._with(forces, bounds))
+            ]
+            terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in pushed))
+            q = motion.moved(pushed, prescribed, result.length, terms)
+            known = {cluster.leader(a): [(_ONE, q[a])] for a in law.heavy}
+            known |= {cluster.leader(a): each for a, each in _given(law, prescribed).items()}
+            pulls = list(forces)
+            for k in points:
+                pulls[k] = [*forces[k], (fmpq(-1), self._spring(cluster, motion, k))]
+            found = self._under_every_choice(points, closed, vague, known, pulls, span)
+            largest = {n: found.pushes[n].at(fmpq(0)).upper().max(arb(0)) for n in vague}
             if all(largest[n] < bounds[n] or largest[n] == 0 for n in vague):
                 break
             bounds = {n: (largest[n] * arb(1 + _SLACK)).upper() for n in vague}
         else:
             raise ArithmeticError("the force of a contact has no bound")
-        points = [Enclosed(arb_poly([v.mid()]), v.rad()) for v in velocities]
-        sent = [
-            _together([(ratio, points[k]), (fmpq(-1), wave)])
-            for (k, ratio, _), wave in zip(self._ends, arriving, strict=True)
-        ]
-        return Drifted(length, points, sent, motion, rates, pushes)
+        result.velocities |= found.velocities
+        result.rates |= found.rates
+        result.pushes |= found.pushes
+        if not cluster.stateless:
+            result.state |= self._after(cluster, motion)
 
-    def _choices(
-        self, closed: Closed, vague: Closed, known: Mapping[int, arb], pulls: Sequence[arb]
-    ) -> tuple[list[arb], dict[int, arb], dict[int, arb]]:
+    def _under_every_choice(
+        self,
+        points: Sequence[int],
+        closed: Closed,
+        vague: Closed,
+        known: Mapping[int, Terms],
+        pulls: Sequence[Terms],
+        span: arb,
+    ) -> Moved:
         """Velocities, rates and forces, over all choices of closed contacts; `known` are those of rigid points."""
-        velocities: list[arb] = []
-        rates: dict[int, arb] = {}
-        pushes: dict[int, arb] = {}
+        velocities: dict[int, list[Enclosed]] = {k: [] for k in points}
+        rates: dict[int, list[Enclosed]] = {}
+        pushes: dict[int, list[Enclosed]] = {}
         for chosen in _subsets(vague):
-            touching = self.under(closed | chosen)
-            law = touching.law
-            right = [
-                sum((arb(ratio) * pulls[k] for k, (group, ratio) in enumerate(law.moves) if group == a), arb(0))
-                - sum((arb(law.damping[a][b]) * known[law.leaders[b]] for b in self._stiff(law)), arb(0))
-                for a in law.light
-            ]
-            groups = {b: known[law.leaders[b]] for b in self._stiff(law)}
-            for row, a in enumerate(law.light):
-                groups[a] = sum((arb(law.inverse[row, j]) * value for j, value in enumerate(right)), arb(0))
-            here = [arb(ratio) * groups[group] for group, ratio in law.moves]
-            velocities = [old.union(new) for old, new in zip(velocities, here, strict=True)] if velocities else here
+            cluster = Cluster.of(self.law, points, self.touches, closed | chosen)
+            rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
+            q = scattered(cluster.law, grouped(cluster, pulls), rigid)
+            moving = {k: scaled(q[a], ratio) for k, (a, ratio) in zip(points, cluster.law.moves, strict=True)}
+            for k in points:
+                velocities[k].append(together(moving[k]))
             for n, touch in self.touches.items():
-                if n in touching.pushes:
-                    force = arb(0)
-                    for k, factor in touching.pushes[n]:
-                        drag = sum((arb(c) * q for c, q in zip(self.law.damping[k], here, strict=True)), arb(0))
-                        force += arb(factor) * (drag - pulls[k])
-                    pushes[n] = pushes[n].union(force) if n in pushes else force
-                else:
-                    rate = here[touch.right] - arb(touch.ratio) * here[touch.left]
-                    rates[n] = rates[n].union(rate) if n in rates else rate
-        return velocities, rates, pushes
+                if n in cluster.pushes:
+                    force = together(self._pull(cluster, cluster.pushes[n], moving, pulls))
+                    pushes.setdefault(n, []).append(force)
+                elif touch.left in moving and touch.right in moving:
+                    rates.setdefault(n, []).append(together(_rate(touch, moving)))
+        result = Moved(fmpq(0), closed, vague, {k: [(_ONE, _either(each, span))] for k, each in velocities.items()})
+        result.rates = {n: _either(each, span) for n, each in rates.items()}
+        result.pushes = {n: _either(each, span) for n, each in pushes.items()}
+        return result
 
-    def _stiff(self, law: JointLaw) -> list[int]:
-        return [a for a in range(len(law.mass)) if a not in law.light]
-
-    def _spring(self, motion: JointMotion, k: int, span: arb) -> arb:
-        """What springs pull at a point on a stretch."""
-        if not self.law.springs:
-            return arb(0)
-        row = self.law.stiffness[k]
-        pull = sum((arb(c) * arb_poly(motion.places[j])(span) for j, c in enumerate(row) if c != 0), arb(0))
-        return pull + arb(0, (arb(row[k]).sqrt() * motion.strained).upper())
-
-    def _pushed(self, forces: Sequence[Enclosed], bounds: Mapping[int, arb]) -> list[Enclosed]:
+    def _with(self, forces: Sequence[Terms], bounds: Mapping[int, arb]) -> list[Terms]:
         """With contacts that push with anything between 0 and their bounds."""
         result = list(forces)
         for n, bound in bounds.items():
-            touch = self.touches[n]
-            between = Enclosed(arb_poly([bound / 2]), (bound / 2).upper())
-            for k, factor in ((touch.right, fmpq(1)), (touch.left, -touch.ratio)):
-                result[k] = _together([(fmpq(1), result[k]), (factor, between)])
+            half = (bound / 2).upper()
+            between = Enclosed(arb_poly([half]), half)
+            result[self.touches[n].right] = [*result[self.touches[n].right], (_ONE, between)]
+            result[self.touches[n].left] = [*result[self.touches[n].left], (-self.touches[n].ratio, between)]
         return result
 
-    def _state(self, law: JointLaw) -> JointMotion:
-        """In balls."""
-        if self._motion is not None:
-            return self._motion.under(law)
-        assert self._exact is not None  # one of them is
-        velocity = [arb(self._exact.velocity[leader]) for leader in law.leaders]
-        displacement = [arb(u) for u in self._exact.displacement]
-        lost = sum((arb(m) * v.rad() ** 2 for m, v in zip(law.mass, velocity, strict=True)), arb(0))
-        for a, row in enumerate(self.law.stiffness):
-            lost += sum(
-                (abs(arb(c)) * displacement[a].rad() * displacement[b].rad() for b, c in enumerate(row)), arb(0)
-            )
-        unknown = (lost / 2).upper()
-        return JointMotion(law, [v.mid() for v in velocity], [u.mid() for u in displacement], unknown)
-
-    def _forces(self, arriving: Sequence[Enclosed], acting: Sequence[fmpq_poly]) -> list[Enclosed]:
+    def _forces(self, arriving: Sequence[Enclosed], acting: Sequence[fmpq_poly]) -> list[Terms]:
         """What acts on each point: loads, and waves that arrive."""
-        rule = joint_rule()
-        terms: list[list[tuple[fmpq, Enclosed]]] = [[(rule.load, Enclosed.of(p))] for p in acting]
+        terms: list[Terms] = [[(joint_rule().load, Enclosed.of(p))] for p in acting]
         for (k, _, factor), wave in zip(self._ends, arriving, strict=True):
             terms[k].append((factor, wave))
-        return list(map(_together, terms))
+        return terms
 
-    def _on_group(self, law: JointLaw, forces: Sequence[Enclosed], a: int) -> Enclosed:
-        return _together(
-            [(ratio, force) for (group, ratio), force in zip(law.moves, forces, strict=True) if group == a]
-        )
 
-    def _sent(self, law: JointLaw, velocities: Sequence[Enclosed], arriving: Sequence[Enclosed]) -> list[Enclosed]:
-        result = []
-        for (k, ratio, _), wave in zip(self._ends, arriving, strict=True):
-            group, share = law.moves[k]
-            result.append(weighted([(ratio * share, velocities[group]), (fmpq(-1), wave)]))
-        return result
+def grouped(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:
+    """What acts on the groups of a cluster."""
+    terms: list[Terms] = [[] for _ in cluster.law.mass]
+    for k, (group, ratio) in zip(cluster.points, cluster.law.moves, strict=True):
+        terms[group] += scaled(forces[k], ratio)
+    return terms
 
-    def _scattered(self, law: JointLaw, arriving: Sequence[Enclosed], acting: Sequence[fmpq_poly]) -> list[Enclosed]:
-        """Where nothing has mass or springs: sums with exact factors, so that an absorbing end sends back exactly 0."""
-        result = []
-        for number, (k, ratio, _) in enumerate(self._ends):
-            group, share = law.moves[k]
-            terms = []
-            for n, ((j, _, factor), wave) in enumerate(zip(self._ends, arriving, strict=True)):
-                other, part = law.moves[j]
-                terms.append((ratio * share * law.inverse[group, other] * part * factor - (n == number), wave))
-            for j, p in enumerate(acting):
-                other, part = law.moves[j]
-                terms.append((ratio * share * law.inverse[group, other] * part * joint_rule().load, Enclosed.of(p)))
-            result.append(weighted(terms))
-        return result
+
+def scattered(law: JointLaw, forces: Sequence[Terms], known: Mapping[int, Terms]) -> list[Terms]:
+    """The velocities of groups: of those without mass they follow from what acts and from the others, `known`."""
+    q = [known.get(a, []) for a in range(len(law.mass))]
+    for row, a in enumerate(law.light):
+        for column, b in enumerate(law.light):
+            share = law.inverse[row, column]
+            q[a] = [*q[a], *scaled(forces[b], share)]
+            for c, velocity in known.items():
+                q[a] += scaled(velocity, -share * law.damping[b][c])
+    return q
+
+
+def _given(law: JointLaw, prescribed: Sequence[fmpq_poly]) -> dict[int, Terms]:
+    return {a: [(_ONE, Enclosed.of(p))] for a, p in enumerate(prescribed) if law.given[a] is not None}
+
+
+def _rate(touch: Touch, velocities: Mapping[int, Terms]) -> Terms:
+    return [*velocities[touch.right], *scaled(velocities[touch.left], -touch.ratio)]
+
+
+def scaled(terms: Terms, factor: fmpq) -> Terms:
+    """Each times a factor."""
+    return [(factor * each, known) for each, known in terms] if factor != 0 else []
+
+
+def together(terms: Terms) -> Enclosed:
+    """A sum with exact factors; exact where all of it is. What is in it twice is one."""
+    factors: dict[int, fmpq] = {}
+    parts: dict[int, Enclosed] = {}
+    for factor, known in terms:
+        parts[id(known)] = known
+        factors[id(known)] = factors.get(id(known), fmpq(0)) + factor
+    counted = [(factor, parts[each]) for each, factor in factors.items() if factor != 0]
+    choices = _chosen(counted)
+    if len(choices) == 1:
+        return Enclosed.of(choices[0])
+    total = weighted(counted)
+    return Enclosed(total.polynomial, total.error, choices)
+
+
+def _chosen(terms: Terms) -> tuple[fmpq_poly, ...]:
+    """What a sum may be, where its parts are one of a few functions each."""
+    if not 0 < prod(len(known.choices) for _, known in terms) <= _CHOICES:
+        return ()
+    sums = (
+        sum((factor * p for (factor, _), p in zip(terms, chosen, strict=True)), fmpq_poly())
+        for chosen in product(*(known.choices for _, known in terms))
+    )
+    return _different(sums)
+
+
+def _different(functions: Iterable[fmpq_poly]) -> tuple[fmpq_poly, ...]:
+    found: list[fmpq_poly] = []
+    for each in functions:
+        if each not in found:
+            found.append(each)
+    return tuple(found)
+
+
+def _either(functions: Sequence[Enclosed], span: arb) -> Enclosed:
+    """One of these at each instant: all their values on a stretch."""
+    values = [known.polynomial(span) + arb(0, known.error) for known in functions]
+    hull = values[0]
+    for value in values[1:]:
+        hull = hull.union(value)
+    choices = _different(p for known in functions for p in known.choices)
+    if any(not known.choices for known in functions) or len(choices) > _CHOICES:
+        choices = ()
+    return Enclosed(arb_poly([hull.mid()]), hull.rad(), choices)
 
 
 def _subsets(numbers: Iterable[int]) -> Iterator[Closed]:
     every = sorted(numbers)
     return map(frozenset, chain.from_iterable(combinations(every, k) for k in range(len(every) + 1)))
-
-
-def _range(known: Enclosed, span: arb) -> arb:
-    """All values on a stretch."""
-    return known.polynomial(span) + arb(0, known.error)
-
-
-def _together(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
-    """A sum with exact factors; exact where all of it is."""
-    exact = fmpq_poly()
-    for factor, known in terms:
-        if factor == 0:
-            continue
-        if known.exact is None:
-            return weighted(terms)
-        exact += factor * known.exact
-    return Enclosed.of(exact)
-
-
-def _scaled(known: Enclosed, factor: fmpq) -> Enclosed:
-    return known if factor == 1 else _together([(factor, known)])
 
 
 def _shortened(known: Enclosed, length: fmpq) -> Enclosed:

@@ -8,9 +8,10 @@ from heapq import heapify, heappop, heappush
 
 from flint import fmpq, fmpq_poly
 
+from wavesym.exact.cluster import Closed
 from wavesym.exact.joint import Enclosed
 from wavesym.exact.network_waves import SentWave, Waves
-from wavesym.exact.touching_joint import Closed, Drifted, Moved, TouchingJoint
+from wavesym.exact.touching_joint import Moved, TouchingJoint, together
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
 
@@ -31,7 +32,7 @@ class TouchingWaves(Waves):
         super().__init__(network)
         self.joints = {number: TouchingJoint(network, number, loads) for number in joints}
 
-    def record(self, number: int, start: fmpq, moved: Moved | Drifted) -> list[bool]:
+    def record(self, number: int, start: fmpq, moved: Moved) -> list[bool]:
         """Keep what a joint sends from an instant on; for each end, whether another function begins there.
 
         Where one goes on that is known exactly, nothing is kept.
@@ -40,7 +41,7 @@ class TouchingWaves(Waves):
         begun = [self._kept(self.sent[end], start, wave) for (end, _), wave in zip(joint.ends, moved.sent, strict=True)]
         for k, point in enumerate(joint.points):
             if point in self.velocities:
-                self._kept(self.velocities[point], start, moved.velocities[k])
+                self._kept(self.velocities[point], start, together(moved.velocities[k]))
         return begun
 
     @staticmethod
@@ -76,10 +77,7 @@ def replayed(
         last = place + 1 == len(stages[number])
         length = (ends[number] if last else stages[number][place + 1].start) - start
         joint, arriving = waves.joints[number], waves.arriving(number, start)
-        if stage.vague:
-            moved: Moved | Drifted = joint.drifted(arriving, start, length, stage.closed, stage.vague)
-        else:
-            moved = joint.moved(arriving, start, length, stage.closed)
+        moved = joint.moved(arriving, start, length, stage.closed, stage.vague)
         waves.record(number, start, moved)
         joint.take(moved)
         if not last:
