@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -87,13 +88,14 @@ class _Method:
         return _Method([each for each in self.struck if each[0].contact == contact], self.shortest)
 
     def visible(self, claimed: Sequence[ContactEvent]) -> list[int]:
-        """The numbers of the events of a contact that it can see."""
-        kept: list[int] = []
-        for k, event in enumerate(claimed):
-            if kept and event.double - claimed[kept[-1]].double < self.shortest:
-                kept.pop()
-            else:
-                kept.append(k)
+        """The numbers of the events of a contact that it can have seen: without those that hardly last, if it must."""
+        kept = list(range(len(claimed)))
+        while len(kept) > max(len(self.struck), 1):
+            lasting = [claimed[then].double - claimed[now].double for now, then in pairwise(kept)]
+            if min(lasting) >= self.shortest:
+                break
+            at = lasting.index(min(lasting))
+            del kept[at : at + 2]
         return kept
 
 
