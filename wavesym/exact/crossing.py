@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import cast
 
-from flint import acb, arb, arb_poly, fmpq, fmpq_poly
+from flint import acb, arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.numbers.doubles import middle
 
+_COARSE = 64  # bits that do, where the interval is no shorter than this part of the whole
+_CLOSE = fmpq(1, 2**24)
 _STEPS = 12  # of Newton's method: each doubles the bits
 
 
@@ -17,25 +19,40 @@ def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: f
 
     It is `low` itself where nothing can be said there.
     """
+    with ctx.workprec(_COARSE):
+        rough = p * arb(1)
     stack = [(low, high)]
     while stack:
         a, b = stack.pop()
         half = (b - a) / 2
-        local = p(arb_poly([arb(a + half), arb(half)])).coeffs() or [arb(0)]
-        if local[0] - sum(map(abs, local[1:]), arb(0)) > error:
+        if b - a > high * _CLOSE:
+            with ctx.workprec(_COARSE):
+                positive, way = _told(rough, error, a + half, half)
+        else:
+            positive, way = _told(p, error, a + half, half)
+        if positive:
             continue
-        slope = local[1] if len(local) > 1 else arb(0)
-        if abs(slope) > sum((n * abs(c) for n, c in enumerate(local) if n > 1), arb(0)):
-            # it goes one way: the least value is at an end
+        if way:  # the least value is at an end
             if not p(arb(a)) > error:
                 return a
-            if slope > 0 or p(arb(b)) > error:
+            if way > 0 or p(arb(b)) > error:
                 continue
             return _last(p, error, a, b, resolution)
         if b - a <= resolution:
             return a
         stack += [(a + half, b), (a, a + half)]
     return None
+
+
+def _told(p: arb_poly, error: arb, centre: fmpq, half: fmpq) -> tuple[bool, int]:
+    """Whether p > error on an interval, and which way it goes there: 1 up, -1 down, 0 where that is not certain."""
+    local = p(arb_poly([arb(centre), arb(half)])).coeffs() or [arb(0)]
+    sizes = [abs(c).upper() for c in local[1:]]
+    if local[0] - sum(sizes, arb(0)) > error:
+        return True, 0
+    if not sizes or not abs(local[1]) > sum((n * size for n, size in enumerate(sizes, 1) if n > 1), arb(0)):
+        return False, 0
+    return False, 1 if local[1] > 0 else -1
 
 
 def _last(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: fmpq) -> fmpq:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from heapq import heappop, heappush
 from itertools import chain, combinations
+from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
@@ -23,15 +24,16 @@ from wavesym.exact.touching_joint import Moved
 from wavesym.exact.touching_waves import Stage, TouchingWaves
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
-from wavesym.numbers.doubles import nearest
+from wavesym.numbers.doubles import middle, nearest
 
 MOST_STAGES = 20_000
 # an instant is known this closely, in shortest delays
 _WIDTH = fmpq(1, 2**230)
-# the first stretch on which it is left open what a contact does, and how much longer each next one is, in bits
-_FIRST, _LONGER = 24, 5
-_BITS = 384
-_ATTEMPTS = 3
+# how much longer each next stretch is on which it is left open what a contact does, in bits
+_LONGER = 3
+# working precision at first, and how much of it is beyond the first of these stretches
+_BITS, _SPARE = 448, 128
+_ATTEMPTS = 2
 # a series is begun anew where it would have to bear more than exp(this)
 _SWING = 24
 
@@ -107,13 +109,20 @@ class _Gap:
         return self.exact > 0 if self.exact is not None else bool(self.size > 0)
 
 
+class _End(NamedTuple):
+    """How long something is certain; and how far off that may be, in time, unless it is exact."""
+
+    length: fmpq
+    spread: fmpq | None
+
+
 @dataclass
 class _Doubt:
-    """Since when it is not certain what a contact of a joint does, until when that was left open, and how often."""
+    """Since when it is not certain what a contact of a joint does, until when that was left open; how long next."""
 
     low: fmpq
     high: fmpq
-    times: int = 0
+    next: fmpq
 
 
 @dataclass
@@ -128,7 +137,7 @@ class _Course:
     reached: fmpq
     moved: Moved | None = None
     doubt: _Doubt | None = None
-    drifts: bool = False
+    spread: fmpq | None = None
     knots: list[fmpq] = field(default_factory=list)
     stages: list[Stage] = field(default_factory=list)
 
@@ -153,7 +162,9 @@ class _Search:
         self._coming: list[tuple[fmpq, int]] = []
         self._count = 0
         self._width = min(bar.delay for bar in network.bars) * _WIDTH
-        self._resolution = self._width / 2 ** (_FIRST + 2)
+        # the first stretch on which it is left open what a contact does
+        self._least = min(bar.delay for bar in network.bars) / fmpq(2) ** (ctx.prec - _SPARE)
+        self._resolution = self._least / 4
         self._courses = {number: self._course(number, until, loads) for number, until in last.items()}
 
     def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> _Course:
@@ -208,11 +219,11 @@ class _Search:
     def _begin(self, course: _Course, start: fmpq, limit: fmpq) -> None:
         """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""
         moved = None
-        if not course.drifts:
+        if course.spread is None:
             moved = self._decided(course, start, limit)
-        course.drifts = False
         if moved is None:
-            course.reached = self._drift(course, start, limit)
+            course.reached = self._drift(course, start, limit, course.spread or fmpq(0))
+            course.spread = None
             return
         for n, gap in course.gaps.items():
             closed = n in moved.closed
@@ -242,7 +253,7 @@ class _Search:
             moved = self._moved(course, start, limit - start, closed)
             if all(_starts_well(moved, n, gap) for n, gap in course.gaps.items()):
                 end = self._end(course, moved, fmpq(0))
-                return moved if end is None or end[0] > 0 else None
+                return moved if end is None or end.length > 0 else None
         return None
 
     def _kept(self, course: _Course, moved: Moved, low: fmpq) -> None:
@@ -252,26 +263,26 @@ class _Search:
             course.moved, course.reached = moved, since + moved.length
             self._tell(course, since, moved)
             return
-        length, course.drifts = end
-        if length > 0:
-            moved = self._moved(course, since, length, moved.closed)
+        if end.length > 0:
+            moved = self._moved(course, since, end.length, moved.closed)
             self._tell(course, since, moved)
             self._take(course, moved)
-        course.moved, course.reached = None, since + length
+        course.moved, course.reached, course.spread = None, since + end.length, end.spread
 
-    def _end(self, course: _Course, moved: Moved, low: fmpq) -> tuple[fmpq, bool] | None:
-        """How long all contacts are certainly what they are said to be, and whether it is not known what comes then."""
+    def _end(self, course: _Course, moved: Moved, low: fmpq) -> _End | None:
+        """How long all contacts are certainly what they are said to be; None: all the way."""
         ends = [end for n, gap in course.gaps.items() if (end := self._certain(moved, n, gap, low)) is not None]
         if not ends:
             return None
-        length, vague = min(ends)
-        if vague:  # an instant with a short denominator
+        first = min(ends, key=lambda end: end.length)
+        if first.spread is not None:  # an instant with a short denominator
             grid = self._resolution / 4
-            aligned = ((course.since + length) / grid).floor() * grid - course.since
-            length = fmpq(aligned) if aligned > low else length
-        return length, vague
+            aligned = ((course.since + first.length) / grid).floor() * grid - course.since
+            if aligned > low:
+                return _End(fmpq(aligned), max(end.spread or first.spread for end in ends))
+        return first
 
-    def _certain(self, moved: Moved, n: int, gap: _Gap, low: fmpq) -> tuple[fmpq, bool] | None:
+    def _certain(self, moved: Moved, n: int, gap: _Gap, low: fmpq) -> _End | None:
         """The same of one contact."""
         if n in moved.closed:
             return self._positive(moved.pushes[n], low, moved.length)
@@ -280,27 +291,27 @@ class _Search:
             return self._positive(Enclosed.of(rate.exact.integral() + gap.exact), low, moved.length)
         if not gap.wide and low == 0:  # it opens: as long as it grows it is open
             grows = self._positive(rate, low, moved.length)
-            if grows is None or grows[0] == 0:
+            if grows is None or grows.length == 0:
                 return grows
-            low = grows[0]
+            low = grows.length
         error = (rate.error * arb(moved.length)).upper()
         return self._positive(Enclosed(rate.polynomial.integral() + gap.size, error), low, moved.length)
 
-    def _positive(self, known: Enclosed, low: fmpq, high: fmpq) -> tuple[fmpq, bool] | None:
-        """Up to where a function that starts well is not negative, and whether that is not exact; None: all the way."""
+    def _positive(self, known: Enclosed, low: fmpq, high: fmpq) -> _End | None:
+        """Up to where a function that starts well is certainly not negative; None: all the way."""
         if known.exact is None:
             if known.choices and all(first_fall(p, low, high) is None for p in known.choices):
                 return None
             end = positive_until(known.polynomial, known.error, low, high, self._resolution)
-            return None if end is None else (end, True)
+            return None if end is None else _End(end, _spread(known, end))
         fall = first_fall(known.exact, low, high)
         if not isinstance(fall, tuple):
-            return None if fall is None else (fall, False)
+            return None if fall is None else _End(fall, None)
         before, after = fall
         while after - before > self._resolution:
-            middle = (before + after) / 2
-            before, after = (middle, after) if known.exact(middle) > 0 else (before, middle)
-        return before, True
+            half = (before + after) / 2
+            before, after = (half, after) if known.exact(half) > 0 else (before, half)
+        return _End(before, fmpq(0))
 
     def _take(self, course: _Course, moved: Moved) -> None:
         """The joint goes to the end of its stretch; gaps become what they are there."""
@@ -328,19 +339,18 @@ class _Search:
             if new and other is not None and time <= other.last:
                 heappush(other.knots, time)
 
-    def _drift(self, course: _Course, start: fmpq, limit: fmpq) -> fmpq:
+    def _drift(self, course: _Course, start: fmpq, limit: fmpq, spread: fmpq) -> fmpq:
         """Over a short stretch, on which it is left open what some contacts do; its end."""
         length = limit - start
         doubt = course.doubt
         if doubt is None or start - doubt.high > 16 * (doubt.high - doubt.low):
-            doubt = course.doubt = _Doubt(start, start)
+            doubt = course.doubt = _Doubt(start, start, max(self._least, 4 * spread))
         if length > self._width:
-            bits = -_FIRST + _LONGER * doubt.times
-            if bits > 0:
+            if doubt.next > self._width:
                 worst = next((n for n, gap in course.gaps.items() if not gap.shut and not gap.wide), min(course.gaps))
                 raise _Undecided(worst, course.gaps[worst].closed, start)
-            length = min(length, self._width * fmpq(2) ** bits)
-            doubt.times += 1
+            length = min(length, doubt.next)
+            doubt.next *= 1 << _LONGER
         drifted, stage = self._drifted(course, start, length)
         h = arb(length)
         for n, gap in course.gaps.items():
@@ -402,6 +412,14 @@ def _starts_well(moved: Moved, n: int, gap: _Gap) -> bool:
     if rate.choices:
         return all(sign_after(p, fmpq(0)) > 0 for p in rate.choices)
     return bool(rate.at(fmpq(0)) > 0)
+
+
+def _spread(known: Enclosed, x: fmpq) -> fmpq:
+    """How far off the place is where a function comes to 0; 0 where that is not known."""
+    slope = abs(known.polynomial.derivative()(arb(x))).lower()
+    if not slope > 0:
+        return fmpq(0)
+    return middle(2 * (known.error + known.polynomial(arb(x)).rad()) / slope)
 
 
 def _range(known: Enclosed, length: fmpq) -> arb:
