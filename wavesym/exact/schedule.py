@@ -26,7 +26,8 @@ from wavesym.model.loads import Applied
 from wavesym.model.network import Network
 from wavesym.numbers.doubles import middle, nearest
 
-MOST_STAGES = 20_000
+# stretches in all, and those whose motion is a series: half a minute
+MOST_STAGES, MOST_SERIES = 20_000, 8_000
 # an instant is known this closely, in shortest delays
 _WIDTH = fmpq(1, 2**230)
 # how much longer each next stretch is on which it is left open what a contact does, in bits
@@ -160,7 +161,7 @@ class _Search:
         self._waves = TouchingWaves(network, last, loads)
         self._found: list[Found] = []
         self._coming: list[tuple[fmpq, int]] = []
-        self._count = 0
+        self._counts = {MOST_STAGES: 0, MOST_SERIES: 0}
         self._width = min(bar.delay for bar in network.bars) * _WIDTH
         # the first stretch on which it is left open what a contact does
         self._least = min(bar.delay for bar in network.bars) / fmpq(2) ** (ctx.prec - _SPARE)
@@ -233,18 +234,20 @@ class _Search:
                 self._found.append(Found(n, closed, low, start))
                 gap.closed = closed
         course.since = start
-        self._staged(course, Stage(start, moved.closed))
+        self._staged(course, Stage(start, moved.closed), moved)
         self._kept(course, moved, fmpq(0))
 
-    def _staged(self, course: _Course, stage: Stage) -> None:
+    def _staged(self, course: _Course, stage: Stage, moved: Moved) -> None:
         course.stages.append(stage)
-        self._count += 1
-        if self._count > MOST_STAGES:
-            raise CostError(
-                f"output.until: fronts and contacts ({len(self._found)} times opened or closed) cut the motion into "
-                f"more than {MOST_STAGES} stretches by tau = {nearest(stage.start):g}, at most {MOST_STAGES} expected "
-                "(a shorter horizon or lengths with a larger common measure help)"
-            )
+        self._counts[MOST_STAGES] += 1
+        self._counts[MOST_SERIES] += moved.swing > 0
+        for most, count in self._counts.items():
+            if count > most:
+                raise CostError(
+                    f"output.until: fronts and contacts ({len(self._found)} times opened or closed) cut the motion into "
+                    f"more than {most} stretches by tau = {nearest(stage.start):g}, at most {most} expected (a shorter "
+                    "horizon or lengths with a larger common measure help)"
+                )
 
     def _decided(self, course: _Course, start: fmpq, limit: fmpq) -> Moved | None:
         """The motion under the choice of closed contacts that is certainly the right one just after `start`."""
@@ -362,7 +365,7 @@ class _Search:
                 gap.size, gap.exact = arb(0), fmpq(0)
             else:
                 gap.size, gap.exact = _not_negative(grown), None
-        self._staged(course, stage)
+        self._staged(course, stage, drifted)
         self._tell(course, start, drifted)
         self._waves.joints[course.number].take(drifted)
         doubt.high = start + length

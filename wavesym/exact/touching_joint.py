@@ -98,7 +98,12 @@ class TouchingJoint:
             for bar, (end, point) in zip(bars, joint.ends, strict=True)
         ]
         self._state = {k: PointState.of(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
-        self._sets = parted(self.law, self.touches, frozenset())
+        # sets of points that have energy: mass or springs
+        self._sets = [
+            points
+            for points in parted(self.law, self.touches, frozenset())
+            if any(self.law.mass[k] != 0 or self._elastic(k) for k in points)
+        ]
 
     def take(self, moved: Moved) -> None:
         """Go on to the end of a stretch."""
