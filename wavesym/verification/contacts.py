@@ -18,9 +18,9 @@ from wavesym.verification.outcome import MOST_MOVED, NO_GRID, Outcome
 from wavesym.verification.reference import Known
 from wavesym.verification.refinement import Solutions, shown
 
-# with so many points a panel at first, and at most; so many panels, at most
-_FEWEST, _MOST = 8, 16
-_PANELS = 1500
+# with so many points a panel, or so many; so many panels, at most
+_POINTS = (8, 12)
+_PANELS = 600
 
 # a solution is not looked at where fronts are as close as this, nor told apart in time
 _CLOSE = 1e-7
@@ -136,8 +136,7 @@ def _solved(known: Known) -> list[Fronts] | str:
     """Three solutions in which the same happens at contacts, or why there are none."""
     made = graph(known.model)
     why = ""
-    points = _FEWEST
-    while points <= _MOST:
+    for points in _POINTS:
         try:
             found = [integrate_fronts(made, known.until, k * points, _PANELS) for k in (1, 2, 4)]
         except Undecided as undecided:
@@ -146,7 +145,6 @@ def _solved(known: Known) -> list[Fronts] | str:
             if None not in (alike(found[2].changes, found[1].changes), alike(found[1].changes, found[0].changes)):
                 return found
             why = "more points a panel have other things happen at contacts"
-        points *= 2
     return why
 
 

@@ -30,7 +30,7 @@ SAME = 1e-10
 _SIGNS = (1e-10, 1e-8, 1e-6)
 
 # panels are no longer than this over the fastest rate of anything
-_REACH = 4.0
+_REACH = 2.0
 
 # where signs of pushes and gaps are looked at in a panel: ever closer to its start
 _LOOKED = np.linspace(0, 1, 65) ** 4
