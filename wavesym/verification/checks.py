@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from wavesym.errors import ToleranceError
+from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.reference import Reference
 from wavesym.model.model import Model
 from wavesym.programs.making import make
@@ -178,7 +178,10 @@ def invariants(known: Known) -> list[Outcome]:
         made = Balancing(model, _MOST_GRAPH_VALUES)
         if not made.struck:
             return [_unbalanced(model, "fronts come too often")]
-        return _balanced(made.model, made.balances, f"{float(made.struck[-1]):.4g}")
+        try:
+            return _balanced(made.model, made.balances, f"{float(made.struck[-1]):.4g}")
+        except CostError as error:  # all ends are watched, and not only outputs
+            return [_unbalanced(model, f"to watch all ends is too much: {error}")]
     outputs, values = values_per_window(model)
     windows = min(int(known.until), _MOST_VALUES // values, _MOST_WINDOWS // outputs)
     if windows < 1:

@@ -20,7 +20,7 @@ from wavesym.verification.refinement import Solutions, shown
 
 # with so many points a panel, or so many; so many panels, at most
 _POINTS = (8, 12)
-_PANELS = 600
+_PANELS = 400
 
 # a solution is not looked at where fronts are as close as this, nor told apart in time
 _CLOSE = 1e-7

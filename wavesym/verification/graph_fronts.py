@@ -267,13 +267,17 @@ class _Integration:
         choices = [(o, not o) if gap == 0 else (True,) for gap, o in zip(apart, self._open[here], strict=True)]
         states = [np.array(each, dtype=bool) for each in product(*choices)]
         states.sort(key=lambda each: int(np.sum(each != self._open[here])))
-        solved = []
-        for state in states:
+
+        @cache
+        def solved(number: int) -> tuple[Array, list[Array]]:
+            state = states[number]
             moved, pushes = self._moved(group, here[~state], width, arriving, acting)
             gaps = apart[state, np.newaxis] + parting[here[state]] @ moved @ (width * gauss(self._points).until.T)
-            solved.append((state, moved, [*gaps, *pushes]))
+            return moved, [*gaps, *pushes]
+
         for tolerance in _SIGNS:
-            for state, moved, positive in solved:
+            for number, state in enumerate(states):
+                moved, positive = solved(number)
                 part = min((self._falls(values, tolerance * self._size) for values in positive), default=1.0)
                 if part > 0:
                     self._velocities[group], self._states[here] = moved, state
