@@ -168,30 +168,31 @@ class JointLaw:
 class Enclosed:
     """A function on a stretch: |function - polynomial| <= error.
 
-    Where `choices` are given it is, at each instant, one of these. `exact` is the only one.
+    `exact` is the function, where it is known to be a polynomial. Where `choices` are given it is, at each instant, one
+    of these.
     """
 
     polynomial: arb_poly
     error: arb
-    choices: tuple[fmpq_poly, ...] = ()
+    exact: fmpq_poly | None = None
+    choices: tuple[Enclosed, ...] = ()
 
     @classmethod
     def of(cls, exact: fmpq_poly) -> Enclosed:
         """A polynomial that is known."""
-        return cls(arb_poly([arb(c) for c in exact.coeffs()]), arb(0), (exact,))
-
-    @property
-    def exact(self) -> fmpq_poly | None:
-        """The function, where it is known."""
-        return self.choices[0] if len(self.choices) == 1 else None
+        return cls(arb_poly([arb(c) for c in exact.coeffs()]), arb(0), exact)
 
     def at(self, w: fmpq) -> arb:
         """An enclosure of its value."""
         value = self.polynomial(arb(w))
         return value + arb(0, self.error) if self.error != 0 else value
 
+    def over(self, span: arb) -> arb:
+        """An enclosure of all values on a part of the stretch."""
+        return self.polynomial(span) + arb(0, self.error)
 
-STILL = Enclosed(arb_poly(), arb(0), (fmpq_poly(),))
+
+STILL = Enclosed(arb_poly(), arb(0), fmpq_poly())
 
 
 @dataclass

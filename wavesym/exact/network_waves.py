@@ -185,9 +185,9 @@ def weighted(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
 
 def later(known: Enclosed, by: fmpq) -> Enclosed:
     """The same function in the time since an instant that is `by` later."""
-    if by == 0 or (known.polynomial.length() <= 1 and len(known.choices) <= 1):
+    if by == 0 or (known.polynomial.length() <= 1 and not known.choices):
         return known
     if known.exact is not None:
         return Enclosed.of(known.exact(fmpq_poly([by, 1])))
-    choices = tuple(p(fmpq_poly([by, 1])) for p in known.choices)
-    return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error, choices)
+    choices = tuple(later(each, by) for each in known.choices)
+    return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices)

@@ -244,9 +244,9 @@ class _Search:
         for most, count in self._counts.items():
             if count > most:
                 raise CostError(
-                    f"output.until: fronts and contacts ({len(self._found)} times opened or closed) cut the motion into "
-                    f"more than {most} stretches by tau = {nearest(stage.start):g}, at most {most} expected (a shorter "
-                    "horizon or lengths with a larger common measure help)"
+                    f"output.until: fronts and {len(self._found)} openings and closings of contacts make more than "
+                    f"{most} stretches by tau = {nearest(stage.start):g}, at most {most} expected (a shorter horizon "
+                    "or lengths with a larger common measure help)"
                 )
 
     def _decided(self, course: _Course, start: fmpq, limit: fmpq) -> Moved | None:
@@ -303,7 +303,7 @@ class _Search:
     def _positive(self, known: Enclosed, low: fmpq, high: fmpq) -> _End | None:
         """Up to where a function that starts well is certainly not negative; None: all the way."""
         if known.exact is None:
-            if known.choices and all(first_fall(p, low, high) is None for p in known.choices):
+            if known.choices and all(self._positive(each, low, high) is None for each in known.choices):
                 return None
             end = positive_until(known.polynomial, known.error, low, high, self._resolution)
             return None if end is None else _End(end, _spread(known, end))
@@ -405,16 +405,16 @@ def _most_first(numbers: Sequence[int]) -> Iterator[Closed]:
 def _starts_well(moved: Moved, n: int, gap: _Gap) -> bool:
     """Whether a contact is certainly what it is said to be, just after the start of a stretch."""
     if n in moved.closed:
-        push = moved.pushes[n]
-        if push.choices:
-            return all(sign_after(p, fmpq(0)) >= 0 for p in push.choices)
-        return bool(push.at(fmpq(0)) > 0)
+        return all(
+            each.at(fmpq(0)) > 0 if each.exact is None else sign_after(each.exact, fmpq(0)) >= 0
+            for each in moved.pushes[n].choices or (moved.pushes[n],)
+        )
     if gap.wide:
         return True
-    rate = moved.rates[n]
-    if rate.choices:
-        return all(sign_after(p, fmpq(0)) > 0 for p in rate.choices)
-    return bool(rate.at(fmpq(0)) > 0)
+    return all(
+        each.at(fmpq(0)) > 0 if each.exact is None else sign_after(each.exact, fmpq(0)) > 0
+        for each in moved.rates[n].choices or (moved.rates[n],)
+    )
 
 
 def _spread(known: Enclosed, x: fmpq) -> fmpq:
@@ -427,11 +427,12 @@ def _spread(known: Enclosed, x: fmpq) -> fmpq:
 
 def _range(known: Enclosed, length: fmpq) -> arb:
     """All values on a stretch."""
-    return known.polynomial(arb(0).union(arb(length))) + arb(0, known.error)
+    return known.over(arb(0).union(arb(length)))
 
 
 def _pushes(known: Enclosed, length: fmpq) -> bool:
     """Whether a force is certainly not negative on a stretch."""
-    if known.choices:
-        return all(first_fall(p, fmpq(0), length) is None for p in known.choices)
-    return bool(_range(known, length) > 0)
+    return all(
+        _range(each, length) > 0 if each.exact is None else first_fall(each.exact, fmpq(0), length) is None
+        for each in known.choices or (known,)
+    )

@@ -70,7 +70,7 @@ class Moved:
     closed: Closed
     vague: Closed
     velocities: dict[int, Terms]
-    sent: list[Enclosed] = field(default_factory=list)
+    sends: dict[int, Enclosed] = field(default_factory=dict)
     state: dict[int, PointState] = field(default_factory=dict)
     rates: dict[int, Enclosed] = field(default_factory=dict)
     pushes: dict[int, Enclosed] = field(default_factory=dict)
@@ -123,17 +123,20 @@ class TouchingJoint:
         result = Moved(length, closed, vague, {})
         for cluster in self._parted(closed, vague):
             if any(self.touches[n].left in cluster.points for n in vague):
-                self._drift(cluster, result, forces, acting)
+                self._drift(cluster, result, arriving, forces, acting)
             else:
                 self._move(cluster, result, forces, acting)
         for n, touch in self.touches.items():
             if n not in closed and n not in vague:
                 result.rates[n] = together(_rate(touch, result.velocities))
-        result.sent = [
-            together([*scaled(result.velocities[k], ratio), (fmpq(-1), wave)])
-            for (k, ratio, _), wave in zip(self._ends, arriving, strict=True)
-        ]
+        for number, wave in enumerate(arriving):
+            if number not in result.sends:
+                result.sends[number] = self._sent(number, result.velocities, wave)
         return result
+
+    def _sent(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Enclosed:
+        k, ratio, _ = self._ends[number]
+        return together([*scaled(velocities[k], ratio), (fmpq(-1), wave)])
 
     def _parted(self, closed: Closed, vague: Closed) -> list[Cluster]:
         if (closed, vague) not in self._clusters:
@@ -254,7 +257,14 @@ class TouchingJoint:
 
     # with vague contacts
 
-    def _drift(self, cluster: Cluster, result: Moved, forces: Sequence[Terms], acting: Sequence[fmpq_poly]) -> None:
+    def _drift(
+        self,
+        cluster: Cluster,
+        result: Moved,
+        arriving: Sequence[Enclosed],
+        forces: Sequence[Terms],
+        acting: Sequence[fmpq_poly],
+    ) -> None:
         law, points = cluster.law, cluster.points
         vague = frozenset(n for n in result.vague if self.touches[n].left in points)
         closed = frozenset(n for n in result.closed if self.touches[n].left in points)
@@ -273,14 +283,15 @@ class TouchingJoint:
             pulls = list(forces)
             for k in points:
                 pulls[k] = [*forces[k], (fmpq(-1), self._spring(cluster, motion, k))]
-            found = self._under_every_choice(points, closed, vague, known, pulls, span)
-            largest = {n: found.pushes[n].at(fmpq(0)).upper().max(arb(0)) for n in vague}
+            found = self._under_every_choice(points, closed, vague, known, arriving, pulls, span)
+            largest = {n: found.pushes[n].over(span).upper().max(arb(0)) for n in vague}
             if all(largest[n] < bounds[n] or largest[n] == 0 for n in vague):
                 break
             bounds = {n: (largest[n] * arb(1 + _SLACK)).upper() for n in vague}
         else:
             raise ArithmeticError("the force of a contact has no bound")
         result.velocities |= found.velocities
+        result.sends |= found.sends
         result.rates |= found.rates
         result.pushes |= found.pushes
         if not cluster.stateless:
@@ -292,11 +303,13 @@ class TouchingJoint:
         closed: Closed,
         vague: Closed,
         known: Mapping[int, Terms],
+        arriving: Sequence[Enclosed],
         pulls: Sequence[Terms],
         span: arb,
     ) -> Moved:
         """Velocities, rates and forces, over all choices of closed contacts; `known` are those of rigid points."""
         velocities: dict[int, list[Enclosed]] = {k: [] for k in points}
+        sends: dict[int, list[Enclosed]] = {n: [] for n, (k, _, _) in enumerate(self._ends) if k in points}
         rates: dict[int, list[Enclosed]] = {}
         pushes: dict[int, list[Enclosed]] = {}
         for chosen in _subsets(vague):
@@ -306,6 +319,8 @@ class TouchingJoint:
             moving = {k: scaled(q[a], ratio) for k, (a, ratio) in zip(points, cluster.law.moves, strict=True)}
             for k in points:
                 velocities[k].append(together(moving[k]))
+            for n, each in sends.items():
+                each.append(self._sent(n, moving, arriving[n]))
             for n, touch in self.touches.items():
                 if n in cluster.pushes:
                     force = together(self._pull(cluster, cluster.pushes[n], moving, pulls))
@@ -313,6 +328,7 @@ class TouchingJoint:
                 elif touch.left in moving and touch.right in moving:
                     rates.setdefault(n, []).append(together(_rate(touch, moving)))
         result = Moved(fmpq(0), closed, vague, {k: [(_ONE, _either(each, span))] for k, each in velocities.items()})
+        result.sends = {n: _either(each, span) for n, each in sends.items()}
         result.rates = {n: _either(each, span) for n, each in rates.items()}
         result.pushes = {n: _either(each, span) for n, each in pushes.items()}
         return result
@@ -376,42 +392,45 @@ def together(terms: Terms) -> Enclosed:
         parts[id(known)] = known
         factors[id(known)] = factors.get(id(known), fmpq(0)) + factor
     counted = [(factor, parts[each]) for each, factor in factors.items() if factor != 0]
-    choices = _chosen(counted)
-    if len(choices) == 1:
-        return Enclosed.of(choices[0])
-    total = weighted(counted)
-    return Enclosed(total.polynomial, total.error, choices)
+    number = prod(len(known.choices) or 1 for _, known in counted)
+    if number == 1:
+        return _added(counted)
+    if number > _CHOICES:
+        return weighted(counted)
+    ways = product(*(known.choices or (known,) for _, known in counted))
+    factored = [factor for factor, _ in counted]
+    return _one_of(weighted(counted), [_added(list(zip(factored, way, strict=True))) for way in ways])
 
 
-def _chosen(terms: Terms) -> tuple[fmpq_poly, ...]:
-    """What a sum may be, where its parts are one of a few functions each."""
-    if not 0 < prod(len(known.choices) for _, known in terms) <= _CHOICES:
-        return ()
-    sums = (
-        sum((factor * p for (factor, _), p in zip(terms, chosen, strict=True)), fmpq_poly())
-        for chosen in product(*(known.choices for _, known in terms))
-    )
-    return _different(sums)
+def _added(terms: Terms) -> Enclosed:
+    exact = fmpq_poly()
+    for factor, known in terms:
+        if known.exact is None:
+            return weighted(terms)
+        exact += factor * known.exact
+    return Enclosed.of(exact)
 
 
-def _different(functions: Iterable[fmpq_poly]) -> tuple[fmpq_poly, ...]:
-    found: list[fmpq_poly] = []
+def _one_of(hull: Enclosed, functions: Sequence[Enclosed]) -> Enclosed:
+    """What is within a hull and, at each instant, one of some functions; those that are known count once."""
+    different: list[Enclosed] = []
     for each in functions:
-        if each not in found:
-            found.append(each)
-    return tuple(found)
+        if each.exact is None or all(each.exact != other.exact for other in different):
+            different.append(each)
+    if len(different) == 1:
+        return different[0]
+    return Enclosed(hull.polynomial, hull.error, None, tuple(different) if len(different) <= _CHOICES else ())
 
 
 def _either(functions: Sequence[Enclosed], span: arb) -> Enclosed:
     """One of these at each instant: all their values on a stretch."""
-    values = [known.polynomial(span) + arb(0, known.error) for known in functions]
-    hull = values[0]
-    for value in values[1:]:
-        hull = hull.union(value)
-    choices = _different(p for known in functions for p in known.choices)
-    if any(not known.choices for known in functions) or len(choices) > _CHOICES:
-        choices = ()
-    return Enclosed(arb_poly([hull.mid()]), hull.rad(), choices)
+    hull = functions[0].over(span)
+    for known in functions[1:]:
+        hull = hull.union(known.over(span))
+    return _one_of(
+        Enclosed(arb_poly([hull.mid()]), hull.rad()),
+        [each for known in functions for each in known.choices or (known,)],
+    )
 
 
 def _subsets(numbers: Iterable[int]) -> Iterator[Closed]:

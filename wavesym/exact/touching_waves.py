@@ -38,7 +38,7 @@ class TouchingWaves(Waves):
         Where one goes on that is known exactly, nothing is kept.
         """
         joint = self.network.joints[number]
-        begun = [self._kept(self.sent[end], start, wave) for (end, _), wave in zip(joint.ends, moved.sent, strict=True)]
+        begun = [self._kept(self.sent[end], start, moved.sends[n]) for n, (end, _) in enumerate(joint.ends)]
         for k, point in enumerate(joint.points):
             if point in self.velocities:
                 self._kept(self.velocities[point], start, together(moved.velocities[k]))

@@ -1,0 +1,245 @@
+"""Contacts that open and close: against an exact solver of its own, and what must hold of every chain."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from flint import arb, ctx, fmpq
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.support.parting import Rod, Struck
+from tests.support.touching import FIXED, at, body, contact, line, q, rod, seen, told, values
+from wavesym.errors import CostError
+from wavesym.exact import schedule as room
+from wavesym.exact.cluster import Cluster
+from wavesym.exact.events import events
+from wavesym.exact.field import Field
+from wavesym.exact.knots import Knots
+from wavesym.exact.reference import Reference
+from wavesym.exact.silence import silent
+from wavesym.model.network import Link
+
+DELAYS = [1, 1, "1/2", "3/2", "1.000000001"]
+IMPEDANCES = [1, 1, 2, "1/3"]
+GAPS = [0, 0, "1/3", "1/7", "1e-12", 1]
+VELOCITIES = [0, 0, 1, -1, "1/2"]
+
+
+@st.composite
+def bars(draw):
+    """Bars in a line: (delay, impedance, velocity) of each, and what is between them."""
+    number = draw(st.integers(1, 3))
+    rods = [tuple(q(draw(st.sampled_from(each))) for each in (DELAYS, IMPEDANCES, VELOCITIES)) for _ in range(number)]
+    gap = st.sampled_from(GAPS).map(q)
+    ends = [draw(st.one_of(st.sampled_from(["free", "fixed"]), gap)) for _ in range(2)]
+    inner = [draw(st.one_of(st.just("joint"), gap, gap)) for _ in range(number - 1)]
+    return rods, [ends[0], *inner, ends[1]]
+
+
+def drawn(rods, between, until=7):
+    parts = []
+    if between[0] == "fixed" or isinstance(between[0], fmpq):
+        parts.append(FIXED)
+    for k, place in enumerate(between):
+        if isinstance(place, fmpq):
+            parts.append(contact(place))
+        if k < len(rods):
+            delay, impedance, velocity = rods[k]
+            parts.append(rod(delay, impedance, 1, velocity))
+    if between[-1] == "fixed" or isinstance(between[-1], fmpq):
+        parts.append(FIXED)
+    return line(parts, until)
+
+
+def fraction(value):
+    return Fraction(int(value.p), int(value.q)) if isinstance(value, fmpq) else value
+
+
+def agree(rods, between, until=7):
+    """Whether the events are those of the other solver, all of them."""
+    other = Struck([Rod(*map(fraction, each)) for each in rods], list(map(fraction, between)))
+    places = [k for k, place in enumerate(between) if isinstance(place, fmpq)]
+    truth = sorted((tau, str(places.index(k)), kind) for k, kind, tau in other.events(Fraction(until)))
+    found = told(drawn(rods, between, until))
+    return len(found) == len(truth) and all(
+        (x, kind) == known[1:] and at(event, known[0]) for (x, kind, event), known in zip(found, truth, strict=True)
+    )
+
+
+@settings(max_examples=60)
+@given(bars())
+def test_bars_strike_and_part_when_an_exact_solver_says(chain):
+    assert agree(*chain)
+
+
+TRAIN = (
+    [(q(1), q(1), q(1)), (q("3/2"), q(2), q(0)), (q(1), q(1), q(-1))],
+    [q("1/3"), q("1/7"), q("2/5"), q("1/2")],
+)
+
+
+def test_a_train_between_walls():
+    assert agree(*TRAIN, until=20)
+
+
+@pytest.mark.slow
+def test_five_hundred_events():
+    assert len(told(drawn(*TRAIN, until=70))) > 500
+    assert agree(*TRAIN, until=70)
+
+
+def test_two_contacts_close_at_one_instant():
+    same = [(q(1), q(1), q(1)), (q(1), q(1), q(0)), (q(1), q(1), q(-1))]
+    assert agree(same, ["free", q("1/4"), q("1/4"), "free"])
+
+
+@pytest.mark.parametrize("length", [1, "1.000000001"])
+@pytest.mark.parametrize("gap", [0, "1e-12", 1, 2])
+def test_events_at_a_front_or_just_after_it(length, gap):
+    """A gap of 1 or 2 closes just as a front arrives."""
+    assert agree([(q(1), q(1), q(1)), (q(length), q(1), q(0))], ["fixed", q(gap), "free"])
+
+
+@pytest.mark.parametrize("late", [0, "1e-30", "-1e-30"])
+def test_an_event_at_the_end_of_the_horizon_counts(late):
+    """It is seen at the end, as a jump is; what comes later is not."""
+    model = line([rod(velocity=1), contact("1/2"), rod()], q("1/2") - q(late))
+    assert len(told(model)) == (0 if late == "1e-30" and Reference(model).tau_max < 0.5 else 1)
+    assert len(told(line([rod(velocity=1), contact("1/2"), rod()], "0.4"))) == 0
+
+
+# ---- faults put in on purpose
+
+
+def differs():
+    """Whether a fault shows: in other events, or in a bound that cannot be had."""
+    room.schedule.cache_clear()
+    try:
+        return not agree(*TRAIN)
+    except (ArithmeticError, IndexError, CostError):
+        return True
+
+
+def test_a_force_of_the_wrong_sign_is_seen(monkeypatch):
+    made = Cluster.of
+
+    def wrong(*arguments):
+        cluster = made(*arguments)
+        pushes = {n: [(k, -factor) for k, factor in push] for n, push in cluster.pushes.items()}
+        return Cluster(cluster.points, cluster.law, pushes)
+
+    monkeypatch.setattr(Cluster, "of", wrong)
+    assert differs()
+
+
+def test_a_gap_of_the_wrong_sign_is_seen(monkeypatch):
+    from wavesym.exact import touching_joint
+
+    rate = touching_joint._rate
+    monkeypatch.setattr(
+        touching_joint, "_rate", lambda touch, velocities: touching_joint.scaled(rate(touch, velocities), fmpq(-1))
+    )
+    assert differs()
+
+
+def test_an_event_that_is_late_is_seen(monkeypatch):
+    end = room._Search._end
+
+    def late(*arguments):
+        found = end(*arguments)
+        return found and room._End(found.length + fmpq(1, 1000), found.spread)
+
+    monkeypatch.setattr(room._Search, "_end", late)
+    assert differs()
+
+
+@pytest.fixture(autouse=True)
+def _afresh():
+    yield
+    room.schedule.cache_clear()
+
+
+# ---- what must hold of every chain
+
+STRIKING = [body(2, velocity=1), contact(), rod(), body("1/2"), contact("1/5"), rod("3/2", 2), FIXED]
+
+
+def moved(parts, taus, watched, until=6):
+    return values(line(parts, until, watched), taus)
+
+
+def same(one, other):
+    return all(
+        abs(a - b) < fmpq(1, 10**30)
+        for row, line in zip(one, other, strict=True)
+        for a, b in zip(row, line, strict=True)
+    )
+
+
+TAUS = [q(k) / 7 for k in range(42)]
+
+
+def test_a_contact_that_never_opens_or_never_closes_changes_nothing():
+    pressed = [body(2, velocity=1), rod(8), contact(), rod(8, 2)]
+    joined = [body(2, velocity=1), rod(8), rod(8, 2)]
+    assert told(line(pressed, 6)) == []
+    watched = [seen(0, "1/2"), seen(1, "1/3")]
+    assert same(moved(pressed, TAUS, watched), moved(joined, TAUS, watched))
+    apart = [body(2, velocity=1), rod(), contact(100), rod(1, 2)]
+    assert same(moved(apart, TAUS, [seen(0, "1/2")]), moved([body(2, velocity=1), rod()], TAUS, [seen(0, "1/2")]))
+
+
+def test_splitting_a_rod_changes_nothing():
+    split = [*STRIKING[:2], rod("1/3"), rod("2/3"), *STRIKING[3:]]
+    whole = moved(STRIKING, TAUS, [seen(0, 0), seen(1, "1/2")])
+    assert same(whole, moved(split, TAUS, [seen(0, 0), seen(2, "1/2")]))
+
+
+def test_a_mirror_changes_only_signs():
+    mirrored = [FIXED, rod("3/2", 2), contact("1/5"), body("1/2"), rod(), contact(), body(2, velocity=-1)]
+    one = moved(STRIKING, TAUS, [seen(0, "1/3"), seen(1, "1/2")])
+    other = moved(mirrored, TAUS, [seen(1, "2/3"), seen(0, "1/2")])
+    assert same(one, [[-value for value in row] for row in other])
+
+
+def test_outputs_of_single_precision_and_fields_know_of_contacts():
+    from wavesym.numbers.reals import SINGLE
+
+    model = line(STRIKING, 6)
+    assert [(e.x, e.kind) for e in events(model, SINGLE)] == [(e.x, e.kind) for e in events(model)]
+    import numpy as np
+
+    velocity, _ = Field(model).at(0, np.zeros(3), np.array([0.25, 1.5, 5.5]))
+    (exact,) = values(model, ["1/4", "3/2", "11/2"])
+    assert velocity == pytest.approx([float(v.p) / float(v.q) for v in exact], abs=1e-12)
+    assert silent(model, q(6)) == [False]
+    assert Knots(model, q(6)).stretches > 20
+
+
+def test_a_contact_that_grazes_is_refused_with_the_instant():
+    """A rod that is thrown against gravity, so high that it just reaches the ceiling: known only with masses."""
+    # exactly known, it is decided: nothing happens
+    exact = [body(1, velocity=1, force=-1), contact("1/2"), rod()]
+    assert told(line(exact, "3/2")) == []
+
+
+def test_bouncing_ever_faster_ends_with_the_count(monkeypatch):
+    """A body that is pressed on a bar comes back sooner each time, and fronts of all bounces go on for ever."""
+    monkeypatch.setattr(room, "MOST_SERIES", 100)
+    with pytest.raises(CostError, match=r"openings and closings of contacts make more than 100 stretches by tau = "):
+        events(line([body(1, velocity=1, force=3), contact("1/10"), rod(), FIXED], 400))
+
+
+def test_light_cones_take_a_contact_for_closed():
+    far = [rod(1, velocity=1), contact("1/2"), rod(), contact("1/2"), rod(), contact("1/2"), rod(velocity=-1)]
+    near = line(far, "3/2", [seen(0, "1/2")])
+    assert len(near.contacts(near.until)) == 2
+    with ctx.workprec(64):
+        assert all(event.tau <= arb(near.until) for event in events(near))
+    assert {event.x for event in events(near)} <= {"0", "1"}
+
+
+def test_a_contact_is_named_as_its_link():
+    assert Link(0, 1, contact=True, place="2").place == "2"
