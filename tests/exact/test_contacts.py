@@ -11,13 +11,14 @@ from hypothesis import strategies as st
 
 from tests.support.parting import Rod, Struck
 from tests.support.touching import FIXED, at, body, contact, line, q, rod, seen, told, values
-from wavesym.errors import CostError
+from wavesym.errors import CostError, WavesymError
 from wavesym.exact import schedule as room
 from wavesym.exact.cluster import Cluster
 from wavesym.exact.events import events
 from wavesym.exact.field import Field
 from wavesym.exact.knots import Knots
 from wavesym.exact.reference import Reference
+from wavesym.exact.schedule import GrazingError
 from wavesym.exact.silence import silent
 from wavesym.model.network import Link
 
@@ -68,7 +69,7 @@ def agree(rods, between, until=7):
     )
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(bars())
 def test_bars_strike_and_part_when_an_exact_solver_says(chain):
     assert agree(*chain)
@@ -118,7 +119,7 @@ def differs():
     room.schedule.cache_clear()
     try:
         return not agree(*TRAIN)
-    except (ArithmeticError, IndexError, CostError):
+    except (ArithmeticError, IndexError, WavesymError):
         return True
 
 
@@ -218,11 +219,57 @@ def test_outputs_of_single_precision_and_fields_know_of_contacts():
     assert Knots(model, q(6)).stretches > 20
 
 
-def test_a_contact_that_grazes_is_refused_with_the_instant():
-    """A rod that is thrown against gravity, so high that it just reaches the ceiling: known only with masses."""
-    # exactly known, it is decided: nothing happens
-    exact = [body(1, velocity=1, force=-1), contact("1/2"), rod()]
-    assert told(line(exact, "3/2")) == []
+def test_a_gap_that_is_touched_exactly_stays_open():
+    """A body thrown against its weight that just reaches a rod: rational data tell that nothing happens."""
+    assert told(line([body(1, velocity=1, force=-1), contact("1/2"), rod()], "3/2")) == []
+    struck = told(line([body(1, velocity=1, force=-1), contact(q("1/2") - fmpq(1, 10**40)), rod()], "3/2"))
+    assert [kind for _, kind, _ in struck] == ["closes", "opens"]
+
+
+def test_a_contact_that_no_bits_decide_is_refused_with_the_instant(monkeypatch):
+    """The same where nothing is known exactly."""
+    monkeypatch.setattr(room, "first_fall", lambda p, low, high: (low, high) if p(high) < p(low) else None)
+    monkeypatch.setattr(room, "_BITS", 384)
+    model = line([body(1, velocity=1, force=-1), contact("1/2"), rod()], "3/2")
+    inexact = room.Enclosed.of
+
+    def blurred(exact):
+        known = inexact(exact)
+        return room.Enclosed(known.polynomial, arb(2) ** -300) if exact.length() > 1 else known
+
+    monkeypatch.setattr("wavesym.exact.touching_joint.Enclosed.of", blurred)
+    with pytest.raises(
+        GrazingError, match=r"^contact at 0: its gap is 0 at tau = (1|0\.9+\d*) and \d+ bits do not show"
+    ):
+        events(model)
+
+
+def energy(parts, tau):
+    """Of all rods and bodies: Z/2 (p^2 + r^2) over each rod, from its waves at places between all fronts."""
+    model = line(parts, 8)
+    network = model.network
+    cuts = sorted({fmpq(k, 64) for k in range(65)})
+    total = 0.0
+    watched = [
+        seen(k, place, kind) for k in range(len(network.bars)) for place in cuts for kind in ("velocity", "strain")
+    ]
+    rows = values(line(parts, 8, watched), [tau])
+    numbers = [float(row[0].p) / float(row[0].q) for row in rows]
+    for k, bar in enumerate(network.bars):
+        each = numbers[130 * k : 130 * k + 130]
+        density = [(v * v + e * e) / 2 for v, e in zip(each[::2], each[1::2], strict=True)]
+        mean = (sum(density[1:-1]) + (density[0] + density[-1]) / 2) / 64
+        total += float(bar.impedance.p) / float(bar.impedance.q) * mean * float(bar.length.p) / float(bar.length.q)
+    return total
+
+
+def test_energy_is_lost_where_a_body_strikes_only_at_fronts_and_never_grows():
+    """Rods that strike each other lose none; on a grid of a rod it is had but for its fronts."""
+    parts = [FIXED, contact("1/3"), rod(velocity=-1), contact("1/8"), rod("3/2", 2), FIXED]
+    begun = energy(parts, q(0))
+    assert begun == pytest.approx(0.5, rel=0.05)
+    for tau in (1, 2, "7/2", 5, 7):
+        assert energy(parts, q(tau)) == pytest.approx(begun, rel=0.05)
 
 
 def test_bouncing_ever_faster_ends_with_the_count(monkeypatch):
