@@ -45,8 +45,8 @@ _FEWEST_INSTANTS, _MOST_INSTANTS = 20, 200
 _MOST_VALUES, _MOST_WINDOWS = 50_000, 240
 _MOST_GRAPH_VALUES = 30_000
 
-Balances = Callable[[Evaluate, Sequence[float]], tuple[Balance, ...]]
-"""What evaluates the outputs, and their errors, to the balances of momentum and energy."""
+Balances = Callable[[Evaluate, Sequence[float] | None], tuple[Balance, ...]]
+"""What evaluates the outputs, and their errors (None: each value is rounded once), to the balances."""
 
 
 def generated(known: Known) -> list[Outcome]:
@@ -197,10 +197,9 @@ def _unbalanced(model: Model, why: str) -> Outcome:
 def _balanced(seen: Model, balances: Balances, until: str) -> list[Outcome]:
     """The balances of a watched model, in the reference and in its program."""
     exact = Reference(seen)
-    truth = balances(
-        lambda taus: np.array(exact.values(taus.tolist())),
-        [_ROUNDED * float(size.upper()) for size in exact.largest()],
-    )
+    # what is no named system is watched where it may be 0 throughout, and only what it is at some instants
+    errors = [_ROUNDED * float(size.upper()) for size in exact.largest()] if seen.chain else None
+    truth = balances(lambda taus: np.array(exact.values(taus.tolist())), errors)
     note = ""
     made: Sequence[Balance | None] = [None] * len(truth)
     try:

@@ -107,13 +107,13 @@ class Balancing:
         if self.struck:
             self.model = self.model.shortened(rational(self.struck[-1]))
 
-    def balances(self, evaluate: Evaluate, errors: Sequence[float]) -> tuple[Balance, ...]:
+    def balances(self, evaluate: Evaluate, errors: Sequence[float] | None = None) -> tuple[Balance, ...]:
         """The balances of momentum and energy, as `evaluate` has the watched model, and what contacts must keep.
 
-        `errors` are the proved errors of the outputs, absolute: what they come to is allowed, and what quadrature
-        misses.
+        `errors` are the proved errors of the outputs, absolute, None where each value is rounded once: what they come
+        to is allowed, and what quadrature misses.
         """
-        fine, coarse = (_Books(self, evaluate, np.array(errors), points) for points in (_POINTS, _FEWER))
+        fine, coarse = (_Books(self, evaluate, errors, points) for points in (_POINTS, _FEWER))
         largest = fine.largest
         unit = _ROUNDINGS * len(self._cut) * float(UNIT_ROUNDOFF)
 
@@ -189,7 +189,7 @@ class Balancing:
 class _Books:
     """What is stored and what comes in, with so many points a panel."""
 
-    def __init__(self, balancing: Balancing, evaluate: Evaluate, errors: Array, points: int) -> None:
+    def __init__(self, balancing: Balancing, evaluate: Evaluate, errors: Sequence[float] | None, points: int) -> None:
         made = self._graph = balancing.graph
         self._struck = np.array([float(time) for time in balancing.struck])
         self._delays = [float(delay) for delay in made.delays]
@@ -198,7 +198,9 @@ class _Books:
 
         def at(times: Array) -> tuple[Within, Within, Within]:
             values = evaluate(times)
-            known = Within(values, np.zeros_like(values) + errors[:, np.newaxis])
+            rounded = float(UNIT_ROUNDOFF) * np.max(np.abs(values), axis=1)
+            allowed = rounded if errors is None else np.array(errors)
+            known = Within(values, np.zeros_like(values) + allowed[:, np.newaxis])
             speeds = np.repeat(made.speed, 2)
             scale = np.array([made.ratios[list(made.ends).index(p)] if p in made.ends else 1.0 for p in range(size)])
             both = [known.part(slice(k * size, (k + 1) * size)).through(np.diag(1 / scale)) for k in (0, 1)]
