@@ -7,7 +7,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-LENGTHS = [1, 1, 1, "3/2", "1.001", "1/2", 2]
+LENGTHS = [1, 1, 1, "3/2", "1.001", "1.000000001", "1/2", 2]
 IMPEDANCES = [1, 1, 1, 2, "1/2", "1.001", "1/4"]
 SPEEDS = [1, 1, 1, 2, "1/2"]
 MASSES = [1, "1/2", 2, "1.001", 40]

@@ -12,22 +12,17 @@ coefficients, and its residues (of poles of any order) are the value, in balls. 
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
 from math import factorial
 from typing import Any
 
 from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly, fmpz_poly
 
+from tests.support.assembly import Assembly, exact, jumps
+
 _S = fmpq_poly([0, 1])
-_ONE = fmpq(1)
-
-
-def _q(number: object) -> fmpq:
-    """A number of a scene."""
-    return fmpq(*Fraction(str(number)).as_integer_ratio())
 
 
 class Ratio:
@@ -66,100 +61,6 @@ def _add(series: Series, delay: Fraction, gain: Ratio) -> None:
     series[delay] = series.get(delay, _NOTHING) + gain
 
 
-@dataclass
-class _Rod:
-    """Two points with a rod between them; each end moves `ratio` times as fast as its point."""
-
-    ends: tuple[int, int]
-    ratios: tuple[fmpq, fmpq]
-    length: Fraction
-    speed: Fraction
-    impedance: fmpq
-    begun: tuple[fmpq, fmpq]
-    """The waves in it at first: to the left, which arrives at its left end, and to the right."""
-
-    @property
-    def delay(self) -> Fraction:
-        return self.length / self.speed
-
-
-@dataclass
-class _Assembly:
-    """M, C, K of a chain, as they are read part by part."""
-
-    mass: list[fmpq] = field(default_factory=list)
-    velocity: list[fmpq] = field(default_factory=list)
-    damping: dict[tuple[int, int], fmpq] = field(default_factory=dict)
-    stiffness: dict[tuple[int, int], fmpq] = field(default_factory=dict)
-    motion: dict[int, str] = field(default_factory=dict)
-    rods: list[_Rod] = field(default_factory=list)
-    names: dict[str, int] = field(default_factory=dict)
-    lines: dict[str, list[tuple[Fraction, int]]] = field(default_factory=dict)
-    """The points of each line with their places; those that a spring or dashpot holds together have the same place."""
-    on: dict[str, list[int | None]] = field(default_factory=dict)
-    """What follows each of them: a rod, or None for a spring or dashpot."""
-
-    def point(self) -> int:
-        self.mass.append(fmpq(0))
-        self.velocity.append(fmpq(0))
-        return len(self.mass) - 1
-
-    def tied(self, spring: fmpq, dashpot: fmpq, stretch: Mapping[int, fmpq]) -> None:
-        """A spring and a dashpot whose lengthening is sum of factor times displacement."""
-        for matrix, size in ((self.stiffness, spring), (self.damping, dashpot)):
-            for i, left in stretch.items():
-                for j, right in stretch.items():
-                    matrix[i, j] = matrix.get((i, j), fmpq(0)) + size * left * right
-
-    def line(self, name: str, parts: Sequence[Any], begin: int | None = None, ratio: fmpq = _ONE) -> None:
-        """Read the parts of a line."""
-        here = self.point() if begin is None else begin
-        x, points, follows = Fraction(0), [(Fraction(0), here)], []
-        for k, part in enumerate(parts):
-            table = part if isinstance(part, Mapping) else {}
-            beside = [p for p in parts[max(k - 1, 0) : k + 2] if isinstance(p, Mapping) and "rod" in p]
-            if "rod" in table:
-                there = self.point()
-                self._rod(table, here, there, ratio)
-                x += Fraction(str(table["rod"]))
-                follows.append(len(self.rods) - 1)
-            elif not table or table.keys() & {"mass", "joint", "motion"}:
-                self._node(here, part, table, beside)
-                continue
-            else:
-                there = self.point()
-                self.tied(_q(table.get("spring", 0)), _q(table.get("dashpot", 0)), {here: -ratio, there: _ONE})
-                follows.append(None)
-            points.append((x, there))
-            here, ratio = there, _ONE
-        self.lines[name], self.on[name] = points, follows
-
-    def _rod(self, table: Mapping[str, Any], here: int, there: int, ratio: fmpq) -> None:
-        speed, v, strain = (_q(table.get(key, 0 if key != "speed" else 1)) for key in ("speed", "velocity", "strain"))
-        length, impedance = Fraction(str(table["rod"])), _q(table.get("impedance", 1))
-        begun = ((v + speed * strain) / 2, (v - speed * strain) / 2)
-        self.rods.append(
-            _Rod((here, there), (ratio, _ONE), length, Fraction(str(table.get("speed", 1))), impedance, begun)
-        )
-        self.tied(_q(table.get("spring", 0)), _q(table.get("dashpot", 0)), {here: -ratio, there: _ONE})
-        for point, n in ((here, ratio), (there, _ONE)):
-            self.tied(fmpq(0), impedance * n * n, {point: _ONE})
-
-    def _node(self, point: int, part: object, table: Mapping[str, Any], beside: Sequence[Mapping[str, Any]]) -> None:
-        if part == "fixed":
-            self.motion[point] = "fixed"
-        if part == "absorbing":
-            self.tied(fmpq(0), _q(beside[0].get("impedance", 1)), {point: _ONE})
-        if "motion" in table:
-            self.motion[point] = table["motion"]
-        self.mass[point] = _q(table.get("mass", 0))
-        own = table.get("velocity", beside[0].get("velocity", 0) if beside and "mass" in table else 0)
-        self.velocity[point] = _q(own)
-        self.tied(_q(table.get("spring", 0)), _q(table.get("dashpot", 0)), {point: _ONE})
-        if "name" in table:
-            self.names[table["name"]] = point
-
-
 def _inverse(matrix: list[list[Ratio]]) -> list[list[Ratio]]:
     """By elimination."""
     size = len(matrix)
@@ -177,29 +78,13 @@ def _inverse(matrix: list[list[Ratio]]) -> list[list[Ratio]]:
     return [row[size:] for row in rows]
 
 
-def _loads(table: Mapping[str, Any]) -> Iterator[tuple[Fraction, Ratio]]:
-    """The jumps and the changes of slope of a load."""
-    if "samples" in table:
-        spacing, samples = Fraction(str(table["spacing"])), [_q(sample) for sample in table["samples"]]
-        slopes = [fmpq(0), *((b - a) / _q(spacing) for a, b in pairwise(samples)), fmpq(0)]
-        yield Fraction(0), Ratio(samples[0], _S)
-        for k, (before, after) in enumerate(pairwise(slopes)):
-            yield k * spacing, Ratio(after - before, _S**2)
-        return
-    for power, key in ((1, "steps"), (2, "ramps")):
-        for time, size in zip(table["times"], table.get(key, ()), strict=False):
-            yield Fraction(str(time)), Ratio(_q(size), _S**power)
-
-
 class Laplace:
     """A chain of a scene, given as the table that its text is, for 0 <= tau <= until."""
 
     def __init__(self, scene: Mapping[str, Any], until: Fraction | int) -> None:
         self.until = Fraction(until)
-        self._made = made = _Assembly()
-        made.line("", scene["system"]["parts"])
-        for branch in scene["system"].get("branch", ()):
-            made.line(branch["name"], branch["parts"], made.names[branch["from"]], _q(branch.get("ratio", 1)))
+        self._made = made = Assembly.of(scene)
+        assert not made.contacts, "contacts are not linear"
         self._velocity: list[Series] = [{} for _ in made.mass]
         """Of each point."""
         self._sent: dict[tuple[int, int], Series] = {(k, side): {} for k in range(len(made.rods)) for side in (0, 1)}
@@ -208,23 +93,10 @@ class Laplace:
 
     def terms(self, quantity: str, place: object) -> Terms:
         """A velocity, displacement or strain at a place, as it is written in a scene."""
-        text = str(place)
-        side = text[-1] if text[-1] in "-+" else ""
-        line, _, at = text.rstrip("+-").rpartition(":") if ":" in text else ("", "", text.rstrip("+-"))
-        names = self._made.names
-        if at in names and quantity != "strain":
-            return self._finished(self._velocity[names[at]], quantity)
-        points, follows = self._made.lines[line], self._made.on[line]
-        x = next(x for x, point in points if point == names[at]) if at in names else Fraction(at)
-        rods = [(points[k][0], rod) for k, rod in enumerate(follows) if rod is not None]
-        if quantity != "strain":
-            there = [point for where, point in points if where == x]
-            # a branch begins with the end of its rod, which moves as its ratio says
-            if there and not (line and x == 0 and len(there) == 1):
-                return self._finished(self._velocity[there[-1 if side == "+" else 0]], quantity)
-        inside = [(start, rod) for start, rod in rods if start <= x <= start + self._made.rods[rod].length]
-        start, number = inside[0] if side == "-" or len(inside) == 1 else inside[-1]
-        return self._finished(self._inside(number, x - start, quantity), quantity)
+        where = self._made.shown(quantity, place)
+        return self._finished(
+            self._velocity[where] if isinstance(where, int) else self._inside(*where, quantity), quantity
+        )
 
     def _finished(self, series: Series, quantity: str) -> Terms:
         over = Ratio(1, _S) if quantity == "displacement" else Ratio(1)
@@ -235,7 +107,7 @@ class Laplace:
         rod, series = self._made.rods[number], {}
         strain = quantity == "strain"
         for side, far, sign in ((0, x, -1 if strain else 1), (1, rod.length - x, 1)):
-            size = Ratio(fmpq(sign) / (_q(rod.speed) if strain else 1))
+            size = Ratio(fmpq(sign) / (exact(rod.speed) if strain else 1))
             late = far / rod.speed
             begun = size * Ratio(rod.begun[1 - side], _S)
             _add(series, Fraction(0), begun)
@@ -255,19 +127,12 @@ class Laplace:
             if begun:
                 found[Fraction(0)][point] = begun
         for load in loads:
-            point = self._loaded(str(load["at"]))
+            point = made.loaded(str(load["at"]))
             over = Ratio(1, _S) if made.motion.get(point) == "acceleration" else Ratio(1)
-            for time, gain in _loads(load):
+            for time, power, size in jumps(load):
                 row = found.setdefault(time, {})
-                row[point] = row.get(point, _NOTHING) + gain * over
+                row[point] = row.get(point, _NOTHING) + Ratio(size, _S ** (power + 1)) * over
         return found
-
-    def _loaded(self, at: str) -> int:
-        if at in self._made.names:
-            return self._made.names[at]
-        line, _, bare = at.rstrip("+-").rpartition(":")
-        there = [point for x, point in self._made.lines[line] if x == Fraction(bare)]
-        return there[-1 if at[-1] == "+" else 0]
 
     def _response(self) -> list[list[Ratio]]:
         """The velocities of points by what stands on the right of their rows."""

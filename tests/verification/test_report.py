@@ -7,6 +7,7 @@ import pytest
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks
 from wavesym.verification.checks import CHECKS
+from wavesym.verification.contacts import fronts, happening
 from wavesym.verification.report import verify
 
 
@@ -20,9 +21,9 @@ def drive(until=3, tolerance="1e-10", **outputs):
 
 
 def found(text):
-    """The tables of a report, one for each check, as rows by column."""
+    """The tables of a report, one for each check that has something to say, as rows by column."""
     tables = [block.splitlines() for block in text.split("\n\n") if block.startswith("scene ")]
-    assert len(tables) == len(CHECKS)
+    assert len(tables) == sum(check.title in text for check in CHECKS)
     rows = []
     for header, *lines in tables:
         columns = re.split("  +", header)
@@ -35,8 +36,8 @@ def test_all_is_well():
     assert passed
     assert text.isascii()
     assert max(map(len, text.splitlines())) <= 120
-    for check in CHECKS:
-        assert check.title in text
+    for check in CHECKS:  # two are for chains that are written out
+        assert (check.title in text) == (check.run not in (fronts, happening))
     generated, integration, spacetime, invariants = found(text)
     for table in (generated, integration, spacetime):
         assert [row["of"] for row in table] == ["strain@0", "strain@1/3", "displacement@1"] * 2
@@ -115,7 +116,7 @@ def test_values_that_are_no_numbers_fail(monkeypatch):
 
 
 def test_an_integration_too_coarse_to_tell_fails(monkeypatch):
-    monkeypatch.setattr(checks, "_FINE", 1e-12)
+    monkeypatch.setattr(checks, "FINE", 1e-12)
     monkeypatch.setattr(checks, "_MOST_DOUBLES", 1)
     text, passed = verify(map(lower, [drive()]))
     assert not passed

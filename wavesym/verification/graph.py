@@ -5,12 +5,15 @@ point, which feels `ratio` times its force. At the points, all at once,
 
     mass u'' + damping u' + stiffness u = sum over ends of ratio * force of the bar + loads.
 
+A contact between two points keeps its gap from being negative; while that is 0 it pushes, and never pulls.
+
 At tau = 0 nothing is displaced: what a bar is strained then is counted besides. Nothing here knows of joints, waves or
 their laws.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, reduce
@@ -37,11 +40,36 @@ class GraphEvent:
 
 
 @dataclass(frozen=True)
+class Change:
+    """The contact with this number opens or closes at tau."""
+
+    contact: int
+    kind: str
+    tau: float
+
+
+Struck = list[tuple[Change, float]]
+"""What happens at contacts in the order of time, and how well it is known when."""
+
+
+def alike(finer: Sequence[Change], coarser: Sequence[Change]) -> Struck | None:
+    """What happens in two solutions, and how far apart in time; None where it is not the same."""
+    found: Struck = []
+    for contact in {change.contact for change in (*finer, *coarser)}:
+        both = [[change for change in changes if change.contact == contact] for changes in (finer, coarser)]
+        if [change.kind for change in both[0]] != [change.kind for change in both[1]]:
+            return None
+        found += [(one, abs(one.tau - other.tau)) for one, other in zip(*both, strict=True)]
+    return sorted(found, key=lambda each: (each[0].tau, each[0].contact))
+
+
+@dataclass(frozen=True)
 class Graph:
     """Points, and bars with two ends each: end 2 b is the left one of bar b, end 2 b + 1 the right one.
 
     `mass`, `damping` and `stiffness` have no part of the bars in them; the last two are square. `given` are the points
-    whose motion is prescribed, with how many integrals their displacements are away from the loads.
+    whose motion is prescribed, with how many integrals their displacements are away from the loads. The gaps of
+    contacts are `gaps` + `parting` @ displacements, and their pushes act on points by the transpose of `parting`.
     """
 
     network: Network
@@ -56,6 +84,9 @@ class Graph:
     speed: Array
     start_velocity: Array
     start_strain: Array
+    contacts: tuple[str, ...]
+    gaps: Array
+    parting: Array
     events: tuple[GraphEvent, ...]
 
     @cached_property
@@ -98,6 +129,16 @@ class Graph:
         return result
 
     @cached_property
+    def groups(self) -> tuple[tuple[int, ...], ...]:
+        """The points that springs, dashpots and contacts join, as they move together."""
+        size = len(self.mass)
+        pairs = np.eye(size) + (self.damping != 0) + (self.stiffness != 0)
+        for row in self.parting:
+            pairs += np.outer(row != 0, row != 0)
+        reached = np.linalg.matrix_power(pairs > 0, size) if size else pairs > 0
+        return tuple(dict.fromkeys(tuple(np.flatnonzero(row).tolist()) for row in reached))
+
+    @cached_property
     def free(self) -> NDArray[np.int_]:
         """The points that are free to move."""
         return np.array([point for point in range(len(self.mass)) if point not in self.given], dtype=int)
@@ -108,9 +149,13 @@ def graph(model: Model) -> Graph:
     network = model.network
     points, bars = network.points, network.bars
     damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))
+    parting = []
     for link in network.links:
         pair = np.zeros(len(points))
-        pair[link.left], pair[link.right] = nearest(link.ratio), -1.0
+        pair[link.left], pair[link.right] = -nearest(link.ratio), 1.0
+        if link.contact:
+            parting.append(pair)
+            continue
         damping = damping + nearest(link.damping) * np.outer(pair, pair)
         stiffness = stiffness + nearest(link.stiffness) * np.outer(pair, pair)
     return Graph(
@@ -128,6 +173,9 @@ def graph(model: Model) -> Graph:
         speed=_numbers(bars, "speed"),
         start_velocity=_numbers(bars, "velocity"),
         start_strain=_numbers(bars, "strain"),
+        contacts=tuple(link.place for link in network.links if link.contact),
+        gaps=np.array([nearest(link.gap) for link in network.links if link.contact]),
+        parting=np.array(parting).reshape(-1, len(points)),
         events=tuple(_events(model)),
     )
 

@@ -10,6 +10,9 @@ where right = (v - c U_x)/2 came in at the left end of a bar and left = (v + c U
 the work of loads and of prescribed motion, less what dashpots take; momentum by the impulse of loads, dashpots and
 springs. The weights w are 1 at the first point; a bar counts `ratio` times as much as its point, so that forces
 between bars and points cancel through gears, too. Nothing asks how long the delays are.
+
+A contact pushes what is on its two sides alike, and takes no energy: what it pushes with follows from the balance of
+the sides without mass. Where one moves as it is told, that is an impulse, and work.
 """
 
 from __future__ import annotations
@@ -24,6 +27,7 @@ from itertools import product
 import numpy as np
 from flint import fmpq
 
+from wavesym.exact.events import events
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, rational
@@ -78,7 +82,10 @@ class Balancing:
     """A model as it is watched here: at the ends of all bars, and at all points, until the last balance is struck."""
 
     def __init__(self, model: Model, most: int) -> None:
-        """With as many balances as take at most so many values of outputs; none where not even one does."""
+        """With as many balances as take at most so many values of outputs; none where not even one does.
+
+        CostError, GrazingError where it is not known when contacts open and close.
+        """
         self._graph = graph(model)
         network = model.network
         seen: list[Probe] = []
@@ -88,7 +95,7 @@ class Balancing:
         seen += [Probe(f"strain@end{k}", "strain", bar + 1, fmpq(side)) for k, (bar, side) in enumerate(ends)]
         until = fraction(model.until)
         limit = most // ((_POINTS + _FEWER) * len(seen))
-        fronts, last = self._fronts(until, limit)
+        fronts, last = self._fronts(until, limit, self._struck(model.watching(seen)))
         self.struck: list[Fraction] = []
         for end, count in product([until / 2**k for k in range(_HALVED)], _STRUCK):
             struck = [end * k / count for k in range(1, count + 1)]
@@ -100,14 +107,14 @@ class Balancing:
         if self.struck:
             self.model = self.model.shortened(rational(self.struck[-1]))
 
-    def balances(self, evaluate: Evaluate, errors: Sequence[float]) -> tuple[Balance, Balance]:
-        """The balances of momentum and energy, as `evaluate` has the watched model.
+    def balances(self, evaluate: Evaluate, errors: Sequence[float] | None = None) -> tuple[Balance, ...]:
+        """The balances of momentum and energy, as `evaluate` has the watched model, and what contacts must keep.
 
-        `errors` are the proved errors of the outputs, absolute: what they come to is allowed, and what quadrature
-        misses.
+        `errors` are the proved errors of the outputs, absolute, None where each value is rounded once: what they come
+        to is allowed, and what quadrature misses.
         """
-        fine, coarse = (_Books(self, evaluate, np.array(errors), points) for points in (_POINTS, _FEWER))
-        largest = max(float(np.max(fine.stored.value)), fine.started) or 1.0
+        fine, coarse = (_Books(self, evaluate, errors, points) for points in (_POINTS, _FEWER))
+        largest = fine.largest
         unit = _ROUNDINGS * len(self._cut) * float(UNIT_ROUNDOFF)
 
         def balance(name: str, scale: float) -> Balance:
@@ -116,7 +123,8 @@ class Balancing:
             error, slack = float(np.max(np.abs(ours.value))), float(np.max(ours.error))
             return Balance(name, error / scale, (slack + missed) / scale + unit)
 
-        return balance("momentum", (2 * largest * fine.mass) ** 0.5), balance("energy", largest)
+        found = balance("momentum", (2 * largest * fine.mass) ** 0.5), balance("energy", largest)
+        return (*found, balance("contacts", largest)) if self._graph.contacts else found
 
     @property
     def graph(self) -> Graph:
@@ -142,10 +150,18 @@ class Balancing:
         came_in = {time - delay for time in struck for delay in (Fraction(0), *self._graph.delays)}
         return sorted({Fraction(0), *(time for time in (*fronts, *came_in) if struck and 0 < time <= struck[-1])})
 
-    def _fronts(self, until: Fraction, most: int) -> tuple[set[Fraction], Fraction]:
+    def _struck(self, seen: Model) -> list[tuple[Fraction, int]]:
+        """When contacts open and close, and a point of each: where panels end, and nothing else."""
+        sides = {link.place: link.left for link in seen.network.links if link.contact}
+        return [(Fraction(event.double), sides[event.x]) for event in events(seen)] if sides else []
+
+    def _fronts(
+        self, until: Fraction, most: int, struck: Sequence[tuple[Fraction, int]]
+    ) -> tuple[set[Fraction], Fraction]:
         """When something not smooth can come to a point, so often at most, and until when that is all of them."""
         made = self._graph
-        coming = [(event.time, event.point) for event in made.events]
+        coming = [*struck]
+        coming += [(event.time, event.point) for event in made.events]
         coming += [(Fraction(0), point) for point in range(len(made.mass))]
         heapify(coming)
         met: set[tuple[Fraction, int]] = set()
@@ -167,14 +183,13 @@ class Balancing:
         return times, until
 
     def _linked(self, point: int) -> Iterator[int]:
-        coupled = np.flatnonzero(self._graph.damping[point] + self._graph.stiffness[point])
-        yield from (int(other) for other in coupled if other != point)
+        yield from (other for group in self._graph.groups if point in group for other in group if other != point)
 
 
 class _Books:
     """What is stored and what comes in, with so many points a panel."""
 
-    def __init__(self, balancing: Balancing, evaluate: Evaluate, errors: Array, points: int) -> None:
+    def __init__(self, balancing: Balancing, evaluate: Evaluate, errors: Sequence[float] | None, points: int) -> None:
         made = self._graph = balancing.graph
         self._struck = np.array([float(time) for time in balancing.struck])
         self._delays = [float(delay) for delay in made.delays]
@@ -183,7 +198,9 @@ class _Books:
 
         def at(times: Array) -> tuple[Within, Within, Within]:
             values = evaluate(times)
-            known = Within(values, np.zeros_like(values) + errors[:, np.newaxis])
+            rounded = float(UNIT_ROUNDOFF) * np.max(np.abs(values), axis=1)
+            allowed = rounded if errors is None else np.array(errors)
+            known = Within(values, np.zeros_like(values) + allowed[:, np.newaxis])
             speeds = np.repeat(made.speed, 2)
             scale = np.array([made.ratios[list(made.ends).index(p)] if p in made.ends else 1.0 for p in range(size)])
             both = [known.part(slice(k * size, (k + 1) * size)).through(np.diag(1 / scale)) for k in (0, 1)]
@@ -240,6 +257,11 @@ class _Books:
         total = self._content(2, made.impedance) + (q * q).through(made.mass / 2)
         return total + (u * u.through(made.stiffness)).through(np.full(len(made.mass), 0.5))
 
+    @property
+    def largest(self) -> float:
+        """The largest energy, at tau = 0 or when balances are struck; 1 where all are 0."""
+        return max(float(np.max(self.stored.value)), self.started) or 1.0
+
     @cached_property
     def started(self) -> float:
         """The energy at tau = 0."""
@@ -257,6 +279,7 @@ class _Books:
             np.full(len(q.value), -1.0)
         )
         told = (self._force * self._v).through(-(1 - self._free)[made.ends])
+        told += (self._pushed * q).through(self._free - 1)
         lost = q.through(made.damping) + self._end_u_all.through(made.stiffness)
         power = power + told + (q * lost).through(1 - self._free)
         came = self._since(power)
@@ -285,6 +308,11 @@ class _Books:
                     if not known[there]:
                         points[there], known[there] = bars[bar] / ratios[bar, 1 - side], True
                         waiting.append(int(there))
+                for row in made.parting[made.parting[:, here] != 0]:
+                    for other in np.flatnonzero(row):
+                        if not known[other]:
+                            points[other], known[other] = -row[here] / row[other] * points[here], True
+                            waiting.append(int(other))
                 for other in np.flatnonzero((made.damping[here] != 0) | (made.stiffness[here] != 0)):
                     if not known[other]:
                         points[other], known[other] = points[here], True
@@ -302,11 +330,52 @@ class _Books:
         """By how much momentum is not what was there and what came."""
         made = self._graph
         points, bars = self._counted
-        counted = points * self._free
+        counted = points * self._free * self._unheld
         value = self._content(1, bars * made.impedance) + self._end_q.through(counted * made.mass)
         rate = (self._load + self._q.through(-made.damping) + self._end_u_all.through(-made.stiffness)).through(counted)
-        across = made.ratios * counted[made.ends] - np.repeat(bars, 2)  # 0 but at prescribed motion
+        across = made.ratios * counted[made.ends] - np.repeat(bars, 2)  # 0 but where prescribed motion holds
         came = self._since(rate + self._force.through(across))
         moving = bars * made.impedance * np.array(self._delays)
         before = float(counted * made.mass @ made.velocity + moving @ made.start_velocity)
         return value + came.times(-1.0) + Within(np.full(len(self._struck), -before), np.zeros(1))
+
+    # contacts
+
+    @cached_property
+    def _unheld(self) -> Array:
+        """0 for points without mass that contacts may hold to a prescribed motion, 1 for others."""
+        made, held = self._graph, 1 - self._free
+        touching = made.parting != 0
+        for _ in made.parting:
+            held = np.maximum(held, np.any(touching[np.any(touching & (held > 0), axis=1)], axis=0))
+        return np.where(made.mass == 0, 1 - held, 1.0)
+
+    @cached_property
+    def _push(self) -> Within:
+        """What contacts push with: what points without mass need to be in balance."""
+        made = self._graph
+        onto = np.zeros((len(made.mass), len(made.ends)))
+        onto[made.ends, np.arange(len(made.ends))] = made.ratios
+        acting = self._load + self._force.through(onto) + self._q.through(-made.damping)
+        acting += self._end_u_all.through(-made.stiffness)
+        light = (made.mass == 0) & (self._free > 0)
+        return acting.part(np.flatnonzero(light).tolist()).through(
+            np.asarray(-np.linalg.pinv(made.parting[:, light].T))
+        )
+
+    @cached_property
+    def _pushed(self) -> Within:
+        """What contacts do to points."""
+        return self._push.through(self._graph.parting.T)
+
+    @cached_property
+    def contacts(self) -> Within:
+        """How far a push or a gap is negative, or neither is 0, at any time; as an energy."""
+        made, push = self._graph, self._push
+        gap = self._end_u_all.through(made.parting) + Within(made.gaps[:, np.newaxis], np.zeros(1))
+        length = (2 * self.largest / self.mass) ** 0.5 * max(self._delays)
+        parts = [push.times(length), gap.times(self.largest / length)]
+        wrong = [np.maximum(-part.value, 0.0) for part in parts]
+        both = np.minimum(*(np.abs(part.value) for part in parts))
+        errors = np.maximum(*(part.error for part in parts))
+        return Within(np.max(np.maximum(np.maximum(*wrong), both), axis=1), np.max(errors, axis=1))

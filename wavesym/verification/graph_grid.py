@@ -13,11 +13,14 @@ which is no approximation: fronts stay as sharp as they are. A point carries hal
 
 of order 2, and stable for any springs and dashpots. The first step is the balance of momentum from 0 to h, in which
 the bars' ends feel nothing but what was in the bars at the start: a mass may be faster than its bars.
+
+Contacts push in the mean from t - h to t + h what keeps gaps at t + h from being negative, and only where they are 0:
+what opens inside a step is late by a part of it, which counts among what may be wrong.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -29,7 +32,7 @@ from numpy.typing import NDArray
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
-from wavesym.verification.graph import Array, Graph, graph
+from wavesym.verification.graph import Array, Change, Graph, Struck, alike, graph
 from wavesym.verification.spacetime import (
     COARSEST,
     FINEST_ALIGNED,
@@ -46,6 +49,19 @@ from wavesym.verification.spacetime import (
 
 # what a step costs besides its points, in points
 _STEP = 5000
+
+# what happens at a contact is late by so many steps at most, and what does not last as long did not happen
+LATE = 4
+
+# pushes and gaps that tell whether a contact is closed, and gaps that are 0
+_TOLD, _ROUNDED = 1e-9, 1e-14
+
+
+@dataclass(frozen=True)
+class DisplacedGraph(Displaced):
+    """What was found besides: which contacts opened and closed, at the ends of steps."""
+
+    changes: tuple[Change, ...]
 
 
 @dataclass(frozen=True)
@@ -79,26 +95,45 @@ class GraphGrid:
         points = float(sum(self.graph.delays) / self.step) + len(self.graph.mass) ** 2
         return until / float(self.step) * (points + _STEP)
 
-    def instants(self, until: float) -> Instants:
+    def instants(self, until: float, struck: Sequence[tuple[Change, float]] = ()) -> Instants:
         """Those up to `until` at which what every output is read from has no front inside.
 
-        Fronts set out from points at multiples of the delays' common measure after 0 and after every load.
+        Fronts set out from points at multiples of the delays' common measure after 0, after every load, and after
+        what happened at contacts: `struck` has when, and how well that is known.
         """
         measure, step = self.graph.measure, float(self.step)
         cuts = {event.time % measure for event in self.graph.events} | {Fraction(0)}
         reaches = [1 if whole(self._place(probe)) else STENCIL for probe in self.probes]
         instants = np.arange(1, int(until / step) - max(reaches) + 1)
         free = np.ones(len(instants), dtype=bool)
+        window = float(measure / self.step)
         for probe, reach in zip(self.probes, reaches, strict=True):
             offset = fraction(probe.place) * (0 if probe.point is not None else self.graph.delays[probe.rod - 1])
-            for cut in cuts:
-                for way in (offset, -offset):
-                    window = float(measure / self.step)
+            for way in (offset, -offset):
+                for cut in cuts:
                     passed = (instants - float((cut + way) / self.step) + window / 2) % window - window / 2
                     free &= np.abs(passed) > reach - SAME
+                for change, slack in struck:
+                    passed = instants - (change.tau - slack + way) / step
+                    after = passed % window
+                    free &= (passed < -reach) | ((after > reach + 2 * slack / step) & (window - after > reach))
         return instants[free]
 
-    def integrate(self, instants: Instants) -> Displaced:
+    def struck(self, until: float, most: float) -> tuple[GraphGrid, Struck] | None:
+        """The coarsest grid which, halved twice, has the same happen at contacts, and that; None if it costs more."""
+        grid = self
+        while grid.finer(4).cost(until) <= most and until > LATE * float(grid.step):
+            last = np.array([int(until / float(grid.step))])
+            changes = [grid.finer(k).integrate(k * last).changes for k in (1, 2, 4)]
+            first, then = alike(changes[2], changes[1]), alike(changes[1], changes[0])
+            if first is not None and then is not None:
+                known = [after + before for (_, after), (_, before) in zip(first, then, strict=True)]
+                late = LATE * float(grid.step) / 4
+                return grid, [(change, each + late) for (change, _), each in zip(first, known, strict=True)]
+            grid = grid.finer(2)
+        return None
+
+    def integrate(self, instants: Instants) -> DisplacedGraph:
         """The outputs at positive instants in ascending order. At a front, the mean of what is before and after it."""
         h = float(self.step)
         times = h * np.arange(instants[-1] + 2)
@@ -123,7 +158,31 @@ class GraphGrid:
         for output, terms in zip(values, self._terms, strict=True):
             for later, point, weight in terms:
                 output += weight * history[rows + later, np.searchsorted(self._points, point)]
-        return Displaced(values, largest * self._roundoff(int(instants[-1])))
+        unsure = largest * self._roundoff(int(instants[-1])) + points.missed * self._struck
+        return DisplacedGraph(values, unsure, tuple(self._lasting(points.changes)))
+
+    @cached_property
+    def _struck(self) -> Array:
+        """What an impulse at a contact changes of the outputs, at most: rods' ends move, masses are faster."""
+        impedance, heavy = self.graph.impedance, self.graph.mass[self.graph.mass > 0]
+        slowest, lightest = float(np.min(self.graph.speed)), float(np.min(heavy, initial=np.inf))
+        until = {
+            "displacement": 1 / float(np.min(impedance)),
+            "velocity": 1 / lightest,
+            "strain": 1 / lightest / slowest,
+        }
+        return np.array([until[probe.quantity] for probe in self.probes])
+
+    def _lasting(self, changes: Sequence[tuple[int, str, int]]) -> Iterator[Change]:
+        """What happened at contacts and stayed so for some steps: the rest is what fronts between instants do."""
+        for contact in range(len(self.graph.contacts)):
+            kept: list[tuple[str, int]] = []
+            for _, kind, step in (change for change in changes if change[0] == contact):
+                if kept and step - kept[-1][1] < LATE:
+                    kept.pop()
+                else:
+                    kept.append((kind, step))
+            yield from (Change(contact, kind, float(step * self.step)) for kind, step in kept)
 
     def _roundoff(self, steps: int) -> Array:
         """What rounding adds to the outputs for displacements of 1, at most (see `spacetime`)."""
@@ -244,6 +303,11 @@ class _Points:
         self._beside = self._onto * impedance / h
         free = np.ix_(self._free, self._free)
         self._inverse, self._inverse_start = np.linalg.inv(self._ahead[free]), np.linalg.inv(self._start[free])
+        self._parting = made.parting[:, self._free]
+        self._open = made.gaps > 0
+        self.changes: list[tuple[int, str, int]] = []
+        self.missed, self._pushed = 0.0, np.zeros((LATE, len(made.gaps)))
+        self._steps = 0
         self.now = np.zeros(size)
         self._before = self.now
 
@@ -252,11 +316,32 @@ class _Points:
         h, free = self._h, self._free
         right = self._onto @ self._graph.pull + load + self._started - self._start @ (told / h)
         told[free] = h * self._inverse_start @ right[free]
-        self.now = told
+        self.now = self._kept_apart(told, np.asarray(h * self._inverse_start))
 
     def move(self, beside: Array, load: Array, told: Array) -> None:
         """One step more, from what is beside the ends in the bars."""
         right = self._beside @ beside + self._strained + load
         right += self._now @ self.now - self._behind @ self._before - self._ahead @ told
         told[self._free] = self._inverse @ right[self._free]
-        self._before, self.now = self.now, told
+        self._before, self.now = self.now, self._kept_apart(told, np.asarray(self._inverse))
+
+    def _kept_apart(self, after: Array, inverse: Array) -> Array:
+        """Displacements with what contacts push: as little as keeps every gap from being negative."""
+        self._steps += 1
+        gaps = self._graph.gaps + self._graph.parting @ after
+        pushes = np.zeros(len(gaps))
+        yields = self._parting @ inverse @ self._parting.T
+        pushing = np.zeros(len(gaps), dtype=bool)
+        while len(wrong := np.flatnonzero(np.where(pushing, pushes < 0, gaps + yields @ pushes < -_ROUNDED))):
+            pushing[wrong[0]] ^= True  # the first of all: this comes to an end
+            pushes = np.zeros(len(gaps))
+            pushes[pushing] = np.linalg.solve(yields[np.ix_(pushing, pushing)], -gaps[pushing])
+        after[self._free] += inverse @ self._parting.T @ pushes
+        gaps += yields @ pushes
+        told = np.where(self._open, pushes > _TOLD, gaps > _TOLD)
+        for contact in np.flatnonzero(told):
+            self._open[contact] ^= True
+            self.missed += 2 * self._h * float(np.max(self._pushed[:, contact]))
+            self.changes.append((int(contact), "opens" if self._open[contact] else "closes", self._steps))
+        self._pushed[self._steps % LATE] = pushes
+        return after

@@ -40,7 +40,7 @@ class KnownOutput:
         return float(np.max(np.abs(values - self.values))) / self.scale
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Known:
     """The outputs of a model at `taus`, doubles in [0, until]."""
 

@@ -32,5 +32,6 @@ def verify(models: Iterable[Model]) -> tuple[str, bool]:
                 passed = passed and outcome.passed
     lines = [_LEGEND, f"The C compiler is {chosen.version}.", *dict.fromkeys(notes), ""]
     for check, rows in zip(CHECKS, tables, strict=True):
-        lines += [check.title, "", *table(rows, ("scene", "of", "verdict")), ""]
+        if rows:
+            lines += [check.title, "", *table(rows, ("scene", "of", "verdict")), ""]
     return "\n".join(lines[:-1]) + "\n", passed

@@ -1,0 +1,95 @@
+"""Chains with contacts against a solver that shares nothing with the package: events to 18 digits, values to a bit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from flint import arb, ctx
+from hypothesis import given, reject, settings
+
+from tests.support.striking import seeded, striking
+from tests.support.unilateral import Unclear, Unilateral
+from wavesym.errors import WavesymError
+from wavesym.exact.events import events
+from wavesym.exact.reference import Reference
+from wavesym.scene import Scene, lower
+
+BITS = 300
+CLOSE = arb("1e-18")
+"""How near events are to the truth; what happens this near to the horizon may count or not."""
+
+# walls, masses, a branch; what parts at once, parts and strikes again; what is nearly as long
+KEPT = (5, 18, 24, 39)
+
+
+def wrong(table: Mapping[str, Any], claimed: Mapping[str, Any] | None = None) -> list[str]:
+    """What is not as the truth has it; `claimed` is another scene to take the package's word for."""
+    model = lower(Scene(**(claimed or table)))
+    until = Fraction(model.horizon())
+    made = Unilateral(table, until)
+    found, reference = events(model), Reference(model)
+    with ctx.workprec(BITS):
+        faults = []
+        for number in model.contacts(model.until):
+            place = model.network.links[number].place
+            ours = [(event.kind, event.tau) for event in found if event.x == place]
+            true = [(event.kind, arb(event.tau)) for event in made.events if event.place == place]
+            true = true[: len(ours)] + [
+                (kind, tau) for kind, tau in true[len(ours) :] if tau < arb(model.until) - CLOSE
+            ]
+            kinds = [kind for kind, _ in ours] == [kind for kind, _ in true]
+            if not kinds or any(abs(one - other) > CLOSE for (_, one), (_, other) in zip(ours, true, strict=True)):
+                faults.append(f"at {place}: {ours}, not {true}")
+    taus = instants(made, until)
+    for probe, values in zip(model.probes, reference.values(taus), strict=True):
+        for tau, value in zip(taus, values, strict=True):
+            with ctx.workprec(BITS):
+                exact = made.value(*probe.name.split("@"), Fraction(tau))
+                if not abs(exact - arb(value)) <= abs(arb(value)) * arb(2) ** -53 + arb("1e-24"):
+                    faults.append(f"{probe.name} at {tau}: {value}, not {exact}")
+    return faults
+
+
+def instants(made: Unilateral, until: Fraction) -> list[float]:
+    """Some in the horizon, and soon after what happened."""
+    after = [int(event.tau.p) / int(event.tau.q) + 1e-9 for event in made.events[:4]]
+    return sorted(
+        tau for tau in [*(float(until) * part for part in (0.1234, 0.377, 0.71, 0.97)), *after] if tau <= until
+    )
+
+
+@pytest.mark.parametrize("seed", KEPT)
+def test_contacts_open_and_close_as_they_should(seed: int) -> None:
+    assert wrong(seeded(seed)) == []
+
+
+def judged(table: Mapping[str, Any]) -> list[str]:
+    """The same, where it can be decided and costs little."""
+    try:
+        return wrong(table)
+    except (Unclear, WavesymError):
+        reject()
+
+
+@settings(max_examples=2)
+@given(striking())
+def test_any_contacts_open_and_close_as_they_should(table: Mapping[str, Any]) -> None:
+    assert judged(table) == []
+
+
+@pytest.mark.slow
+@settings(max_examples=150)
+@given(striking())
+def test_many_contacts_open_and_close_as_they_should(table: Mapping[str, Any]) -> None:
+    assert judged(table) == []
+
+
+def test_a_gap_that_is_a_little_wider_is_seen() -> None:
+    parts = [{"rod": 1, "velocity": 1}, {"contact": "1/4"}, {"rod": 2}]
+    table = {"name": "bars", "system": {"type": "chain", "parts": parts}, "output": {"until": 3, "velocity": ["1+"]}}
+    wider = [parts[0], {"contact": "0.2500000000001"}, parts[2]]
+    assert wrong(table) == []
+    assert wrong(table, {**table, "system": {"type": "chain", "parts": wider}})
