@@ -204,7 +204,7 @@ class Unilateral:
     def _begin(self) -> None:
         made = self._made
         self._joints = tuple(self._joined())
-        self._joint_of = {point: joint for joint in self._joints for point in joint.points}
+        self._joint_of = {point: number for number, joint in enumerate(self._joints) for point in joint.points}
         self._q = [_History(fmpq(0)) for _ in made.mass]
         self._sent = {(k, s): _History(rod.begun[1 - s]) for k, rod in enumerate(made.rods) for s in (0, 1)}
         self.open = [contact.gap > 0 for contact in made.contacts]
@@ -238,12 +238,11 @@ class Unilateral:
         made = self._made
         delays = [fmpq(*rod.delay.as_integer_ratio()) for rod in made.rods]
         longest = min([*delays, fmpq(_REACH) / fmpq(ceil(self._rate() * 1024), 1024)])
-        self._terms = _TERMS
         knots: list[tuple[fmpq, int]] = []
         for number in range(len(self._joints)):
             heappush(knots, (fmpq(0), number))
         for time, point, _, _ in self._loads:
-            heappush(knots, (time, self._joints.index(self._joint_of[point])))
+            heappush(knots, (time, self._joint_of[point]))
         now = fmpq(0)
         while now <= self.until:
             met = set()
@@ -261,7 +260,7 @@ class Unilateral:
             for k, rod in enumerate(self._made.rods):
                 for side in (0, 1):
                     if rod.ends[side] in self._joints[number].points:
-                        there = self._joints.index(self._joint_of[rod.ends[1 - side]])
+                        there = self._joint_of[rod.ends[1 - side]]
                         if all(abs(time - now - delays[k]) > SAME or other != there for time, other in knots):
                             heappush(knots, (now + delays[k], there))
 
@@ -285,7 +284,7 @@ class Unilateral:
                 self._q[point].add(_Piece(now, _middle(series)))
         for (k, side), wave in arriving.items():
             rod = made.rods[k]
-            q = solved[self._joints.index(self._joint_of[rod.ends[side]])][rod.ends[side]]
+            q = solved[self._joint_of[rod.ends[side]]][rod.ends[side]]
             self._sent[k, side].add(_Piece(now, _middle(q * arb(rod.ratios[side]) - wave)))
         last = min([step, *first.values()])
         for found in solved:
@@ -346,7 +345,7 @@ class Unilateral:
             rod = made.rods[k]
             if rod.ends[side] in acting:
                 acting[rod.ends[side]] += wave * arb(2 * rod.ratios[side] * rod.impedance)
-        terms = self._terms
+        terms = _TERMS
         if not joint.lasting:
             terms = max([1, *(len(series.coeffs()) for series in (*acting.values(), *given.values()))])
         q = {p: [self._speed[p]] if p not in given else given[p].coeffs() for p in joint.points if p not in light}
@@ -382,15 +381,12 @@ class Unilateral:
     def _held(self, p: int, q: Mapping[int, list[arb]], u: Mapping[int, list[arb]], k: int, but: Any) -> arb:
         """C q + K u of a point, order k, without the dashpots at some points."""
         total = arb(0)
-        for other, c, stiff in self._beside(p):
+        for other, c, stiff in self._rows[p]:
             if c and other not in but and k < len(q[other]):
                 total += q[other][k] * c
             if stiff:
                 total += u[other][k] * stiff
         return total
-
-    def _beside(self, p: int) -> list[tuple[int, arb | None, arb | None]]:
-        return self._rows[p]
 
     def _inverse(self, light: tuple[int, ...], closed: tuple[int, ...]) -> list[list[arb]]:
         """Of [C, -B^T; B, 0] for points without mass."""

@@ -64,6 +64,18 @@ def test_central_differences_find_when_a_bar_bounces() -> None:
     assert float(grid.step) < 0.1
 
 
+@pytest.mark.parametrize(("velocity", "impedance", "length"), [("1e-9", "1e6", 1), ("1e6", "1e-6", 1000)])
+def test_units_do_not_matter(velocity: str, impedance: str, length: int) -> None:
+    body = {"mass": f"{length}e{impedance[2:]}", "velocity": velocity}
+    small = model([body, "contact", {"rod": length, "impedance": impedance}, "fixed"], 4 * length, velocity=["0-"])
+    (change,) = integrate_fronts(graph(small), 4.0 * length, 12, 200).changes
+    assert change.tau / length == pytest.approx(3.06766764161830635, rel=1e-12)
+    stepped = graph_grid(small).struck(4.0 * length, MANY)
+    assert stepped is not None
+    ((late, slack),) = stepped[1]
+    assert abs(late.tau - change.tau) <= slack
+
+
 @pytest.mark.parametrize("points", [8, 16])
 def test_collocation_is_exact_where_all_is_polynomial(points: int) -> None:
     parts = [{"rod": 1, "velocity": 1}, {"contact": "1/4"}, {"rod": 2}, {"contact": "1/8"}, {"rod": 1, "impedance": 2}]

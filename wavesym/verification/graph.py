@@ -129,6 +129,22 @@ class Graph:
         return result
 
     @cached_property
+    def pace(self) -> float:
+        """A velocity that the start and the loads are worth: what is far smaller is noise. 1 where nothing moves."""
+        longest = float(max(self.delays))
+        found = [*self.velocity, *self.start_velocity, *(self.speed * self.start_strain)]
+        for event in self.events:
+            size = sum(abs(c) * longest**k for k, c in enumerate(event.coefficients))
+            held = {0: 1 / float(np.min(self.impedance)), 1: 1.0, 2: longest}
+            found.append(size * held[self.given.get(event.point, 0)])
+        return float(np.max(np.abs(found))) or 1.0
+
+    @cached_property
+    def worth(self) -> tuple[float, float]:
+        """A displacement and a force that this is worth."""
+        return self.pace * float(max(self.delays)), self.pace * float(np.max(self.impedance))
+
+    @cached_property
     def groups(self) -> tuple[tuple[int, ...], ...]:
         """The points that springs, dashpots and contacts join, as they move together."""
         size = len(self.mass)

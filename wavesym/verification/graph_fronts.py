@@ -170,21 +170,21 @@ class _Integration:
         self._u, self._q = np.zeros(len(made.mass)), made.velocity.copy()
         self._open = made.gaps > 0
         self._sums = np.zeros((2, len(made.delays) + len(made.mass)))
-        self._size = 1.0
 
     def motion(self, until: float) -> Fronts:
         made, found = self._made, self._found
         fronts = [(0.0, number) for number in range(len(self._groups))]
         fronts += [(float(event.time), self._group_of[event.point]) for event in made.events]
         heapify(fronts)
-        longest = min([*self._delays, _REACH / self._fastest()])
+        fastest, same = self._fastest(), SAME * max(self._delays)
+        longest = min([*self._delays, *([_REACH / fastest] if fastest else [])])
         now = 0.0
         while now <= until:
             met: set[int] = set()
-            while fronts and fronts[0][0] <= now + SAME:
+            while fronts and fronts[0][0] <= now + same:
                 met.add(heappop(fronts)[1])
             for time, group in self._sent_on(now, met):
-                if not any(group == other and abs(time - when) <= SAME for when, other in fronts):
+                if not any(group == other and abs(time - when) <= same for when, other in fronts):
                     heappush(fronts, (time, group))
             end = min(now + longest, fronts[0][0]) if fronts else now + longest
             happened = self._panel(now, end - now)
@@ -238,7 +238,6 @@ class _Integration:
         self._sums += width * waves @ rule.weights
         self._u += width * velocities @ rule.weights
         self._q = velocities @ interpolation(self._points, np.ones(1))[0]
-        self._size = max(self._size, float(np.max(np.abs(velocities))), float(np.max(np.abs(arriving))))
 
     def _arriving(self, times: Array) -> Array:
         """What arrives at all ends: shape (ends, times)."""
@@ -263,7 +262,8 @@ class _Integration:
         parting = self._made.parting[:, group]
         here = np.flatnonzero(np.any(parting != 0, axis=1))
         apart = self._made.gaps[here] + self._made.parting[here] @ self._u
-        apart[np.abs(apart) <= SAME * self._size] = 0.0
+        length, force = self._made.worth
+        apart[np.abs(apart) <= SAME * length] = 0.0
         choices = [(o, not o) if gap == 0 else (True,) for gap, o in zip(apart, self._open[here], strict=True)]
         states = [np.array(each, dtype=bool) for each in product(*choices)]
         states.sort(key=lambda each: int(np.sum(each != self._open[here])))
@@ -273,12 +273,12 @@ class _Integration:
             state = states[number]
             moved, pushes = self._moved(group, here[~state], width, arriving, acting)
             gaps = apart[state, np.newaxis] + parting[here[state]] @ moved @ (width * gauss(self._points).until.T)
-            return moved, [*gaps, *pushes]
+            return moved, [*(gaps / length), *(pushes / force)]
 
         for tolerance in _SIGNS:
             for number, state in enumerate(states):
                 moved, positive = solved(number)
-                part = min((self._falls(values, tolerance * self._size) for values in positive), default=1.0)
+                part = min((self._falls(values, tolerance) for values in positive), default=1.0)
                 if part > 0:
                     self._velocities[group], self._states[here] = moved, state
                     return part
@@ -336,4 +336,4 @@ class _Integration:
         heavy = (made.mass > 0) & ~self._given
         with np.errstate(divide="ignore", invalid="ignore"):
             rates = np.where(heavy, np.maximum(c / made.mass, np.sqrt(k / made.mass)), np.where(k > 0, k / c, 0.0))
-        return float(max(1.0, 2 * np.max(rates)))
+        return float(2 * np.max(rates))

@@ -53,7 +53,7 @@ _STEP = 5000
 # what happens at a contact is late by so many steps at most, and what does not last as long did not happen
 LATE = 4
 
-# pushes and gaps that tell whether a contact is closed, and gaps that are 0
+# parts of what pushes and gaps are worth that tell whether a contact is closed, and gaps that are 0
 _TOLD, _ROUNDED = 1e-9, 1e-14
 
 
@@ -329,16 +329,17 @@ class _Points:
         """Displacements with what contacts push: as little as keeps every gap from being negative."""
         self._steps += 1
         gaps = self._graph.gaps + self._graph.parting @ after
+        length, force = self._graph.worth
         pushes = np.zeros(len(gaps))
         yields = self._parting @ inverse @ self._parting.T
         pushing = np.zeros(len(gaps), dtype=bool)
-        while len(wrong := np.flatnonzero(np.where(pushing, pushes < 0, gaps + yields @ pushes < -_ROUNDED))):
+        while len(wrong := np.flatnonzero(np.where(pushing, pushes < 0, gaps + yields @ pushes < -_ROUNDED * length))):
             pushing[wrong[0]] ^= True  # the first of all: this comes to an end
             pushes = np.zeros(len(gaps))
             pushes[pushing] = np.linalg.solve(yields[np.ix_(pushing, pushing)], -gaps[pushing])
         after[self._free] += inverse @ self._parting.T @ pushes
         gaps += yields @ pushes
-        told = np.where(self._open, pushes > _TOLD, gaps > _TOLD)
+        told = np.where(self._open, pushes > _TOLD * force, gaps > _TOLD * length)
         for contact in np.flatnonzero(told):
             self._open[contact] ^= True
             self.missed += 2 * self._h * float(np.max(self._pushed[:, contact]))
