@@ -8,12 +8,12 @@ from typing import TypeVar
 from flint import ctx
 
 FIRST_BITS = 128
-MOST_BITS = 1 << 17
+_MOST_BITS = 1 << 17
 
 T = TypeVar("T")
 
 
-def precise(attempt: Callable[[int], T | None], bits: int = FIRST_BITS, most: int = MOST_BITS) -> T:
+def precise(attempt: Callable[[int], T | None], bits: int = FIRST_BITS, most: int = _MOST_BITS) -> T:
     """The first result of `attempt(bits)` that is not None, each time with twice the bits of working precision.
 
     ArithmeticError where `most` are not enough.
