@@ -23,14 +23,20 @@ NEGLIGIBLE = arb(2) ** -1076
 
 @dataclass(frozen=True)
 class Segment:
-    """An output between two arrivals: sum over rates of exp(-rate u) * polynomial(u), u = tau - start."""
+    """An output between two arrivals: sum over rates of exp(-rate u) * polynomial(u), u = tau - start.
+
+    `from_zero`: it is exactly 0 at the start, whatever is not known of it later.
+    """
 
     start: fmpq
     families: dict[fmpq, arb_poly]
+    from_zero: bool = False
 
     def at(self, u: fmpq | arb) -> arb:
         """The value, a ball, at a point or on an interval."""
         local = arb(u)
+        if self.from_zero and local == 0:
+            return arb(0)
         return sum(
             (
                 polynomial(local) * (-local * arb(rate)).exp() if rate else polynomial(local)

@@ -14,6 +14,7 @@ from wavesym.exact.ball import Segment
 from wavesym.exact.joint import STILL, Enclosed, JointLaw
 from wavesym.exact.knots import Knots
 from wavesym.exact.network_waves import NetworkWaves, Waves, later
+from wavesym.exact.silence import smooth_starts
 from wavesym.exact.touching_waves import replayed
 from wavesym.model.model import Model
 from wavesym.model.network import End
@@ -37,7 +38,7 @@ class Motion:
     def __init__(self, model: Model, until: fmpq) -> None:
         self.until = until
         self.probes = model.probes
-        self._network = model.network
+        self._model, self._network = model, model.network
         self._acting = model.acting(until)
         self._knots = Knots(model, until)
         self._solved: dict[int, Waves] = {}
@@ -103,7 +104,12 @@ class Motion:
             wanted = sorted({bisect_right(starts, tau) - 1 for tau in taus})
         waves = self.waves(bits)
         with ctx.workprec(bits):
-            return list(_segments(waves, probe, [(starts[k], ends[k]) for k in wanted]))
+            begins = self._smooth_starts[self.probes.index(probe)]
+            return list(_segments(waves, probe, [(starts[k], ends[k]) for k in wanted], begins))
+
+    @cached_property
+    def _smooth_starts(self) -> Sequence[fmpq | None]:
+        return smooth_starts(self._model, self.until)
 
     def waves(self, bits: int) -> Waves:
         """What needs more bits, and so more terms, costs the others nothing."""
@@ -124,20 +130,22 @@ class Motion:
         return self._solved[bits]
 
 
-def _segments(waves: Waves, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]]) -> Iterator[Segment]:
-    """An output on each of these stretches, which come in order."""
+def _segments(
+    waves: Waves, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]], begins: fmpq | None
+) -> Iterator[Segment]:
+    """An output on each of these stretches, which come in order; where it `begins` it is 0."""
     displacement = arb(0)
     for start, end in stretches:
         value = _value(waves, probe, start)
         polynomial = value.polynomial
-        if probe.order < 0:
-            polynomial = polynomial.integral() + displacement + arb(0, (value.error * arb(end - start)).upper())
-            displacement = polynomial(arb(end - start))
-        elif value.error != 0:
+        if value.error != 0:
             polynomial = polynomial + arb(0, value.error)
+        if probe.order < 0:
+            polynomial = polynomial.integral() + displacement
+            displacement = polynomial(arb(end - start))
         if start == end:  # of what begins at the end of the horizon only the first value is seen
             polynomial = arb_poly(polynomial.coeffs()[:1])
-        yield Segment(start, {fmpq(0): polynomial})
+        yield Segment(start, {fmpq(0): polynomial}, start == begins)
 
 
 def _value(waves: Waves, probe: Probe, start: fmpq) -> Enclosed:

@@ -43,6 +43,21 @@ def silent(model: Model, until: fmpq) -> list[bool]:
     ]
 
 
+def smooth_starts(model: Model, until: fmpq) -> list[fmpq | None]:
+    """When each output, 0 until then, begins to differ from 0 without a jump; None where it jumps, or is 0 throughout.
+
+    None, too, where contacts open and close.
+    """
+    if model.network.contacts:
+        return [None] * len(model.probes)
+    arriving, jumping = _Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums()
+    return [
+        first if first is not None and (probe.order < 0 or not jumps[first]) else None
+        for probe, sums, jumps in zip(model.probes, arriving, jumping, strict=True)
+        for first in [min((time for time in sums if sums[time]), default=None)]
+    ]
+
+
 class _Fronts:
     """All that leaves joints, front by front, at one t."""
 
