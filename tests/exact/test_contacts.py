@@ -20,7 +20,6 @@ from wavesym.exact.knots import Knots
 from wavesym.exact.reference import Reference
 from wavesym.exact.schedule import GrazingError
 from wavesym.exact.silence import silent
-from wavesym.model.network import Link
 
 DELAYS = [1, 1, "1/2", "3/2", "1.000000001"]
 IMPEDANCES = [1, 1, 2, "1/3"]
@@ -286,7 +285,3 @@ def test_light_cones_take_a_contact_for_closed():
     with ctx.workprec(64):
         assert all(event.tau <= arb(near.until) for event in events(near))
     assert {event.x for event in events(near)} <= {"0", "1"}
-
-
-def test_a_contact_is_named_as_its_link():
-    assert Link(0, 1, contact=True, place="2").place == "2"

@@ -51,7 +51,7 @@ class Struck:
                 if k in gaps:
                     left, right = self._sides(k, free)
                     if gaps[k] == 0:
-                        shut = right < left or (right == left and k in closed)
+                        shut = right <= left  # at rest beside each other they touch
                         if shut != (k in closed):
                             found.append((k, "closes" if shut else "opens", now))
                         closed = closed | {k} if shut else closed - {k}

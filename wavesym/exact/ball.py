@@ -14,7 +14,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from wavesym.exact.increments import Increment
 from wavesym.exact.signal import Signal
-from wavesym.numbers.balls import FIRST_BITS, MOST_BITS, precise
+from wavesym.numbers.balls import FIRST_BITS, precise
 from wavesym.numbers.doubles import midpoint, rational, rounded
 
 # a quarter of the smallest double
@@ -106,7 +106,7 @@ def values(
     taus: Sequence[float],
     bits: int = FIRST_BITS,
     negligible: arb = NEGLIGIBLE,
-    most: int = MOST_BITS,
+    most: int | None = None,
 ) -> list[float]:
     """The correctly rounded values of an output at doubles tau of its horizon; `source` gives its segments.
 
@@ -129,10 +129,10 @@ def values(
             results.append(double + 0.0)  # no -0.0
         return results
 
-    return precise(attempt, bits, most)
+    return precise(attempt, bits) if most is None else precise(attempt, bits, most)
 
 
-def largest(source: Source, until: float, bits: int = FIRST_BITS, most: int = MOST_BITS) -> arb:
+def largest(source: Source, until: float, bits: int = FIRST_BITS) -> arb:
     """A lower bound, a ball, of an output's largest absolute value on [0, until]; 0 where it is 0 throughout."""
 
     def attempt(bits: int) -> arb | None:
@@ -140,4 +140,4 @@ def largest(source: Source, until: float, bits: int = FIRST_BITS, most: int = MO
         size = balls.largest(rational(until))
         return size if size > 0 or balls.zero else None
 
-    return precise(attempt, bits, most)
+    return precise(attempt, bits)

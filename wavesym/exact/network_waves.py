@@ -7,12 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 
-from flint import arb, arb_poly, fmpq, fmpq_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
 from wavesym.exact.node_rules import joint_rule
 from wavesym.model.loads import Applied
 from wavesym.model.network import End, Joint, Network
+
+# on a stretch that is shorter a few powers are enough
+_BRIEF = fmpq(1, 2**64)
 
 
 @dataclass
@@ -46,12 +49,14 @@ class Waves:
             if number not in shown or point.motion is not None
         }
 
-    def arriving(self, number: int, start: fmpq) -> list[Enclosed]:
-        """What comes to the ends at a joint from an instant on, in the time since then."""
+    def arriving(self, number: int, start: fmpq, length: fmpq | None = None) -> list[Enclosed]:
+        """What comes to the ends at a joint from an instant on, in the time since then (and for so long)."""
         waves = []
         for end, _ in self.network.joints[number].ends:
             known, offset = self.sent[self.network.beyond(end)].at(start - self.network.bars[end.bar].delay)
-            waves.append(later(known, offset))
+            waves.append(
+                briefly(known, offset, length) if length is not None and length < _BRIEF else later(known, offset)
+            )
         return waves
 
 
@@ -191,3 +196,18 @@ def later(known: Enclosed, by: fmpq) -> Enclosed:
         return Enclosed.of(known.exact(fmpq_poly([by, 1])))
     choices = tuple(later(each, by) for each in known.choices)
     return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices)
+
+
+def briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:
+    """The same as `later` on a short stretch: Taylor's first powers, and what the others can add."""
+    terms = 2 + ctx.prec // 64
+    if known.exact is not None or known.polynomial.length() <= terms:
+        return later(known, by)
+    choices = tuple(briefly(each, by, length) for each in known.choices)
+    here, derivative, powers, share = arb(by), known.polynomial, [], arb(1)
+    for n in range(1, terms):
+        powers.append(derivative(here) * share)
+        derivative, share = derivative.derivative(), share / n
+    span = here.union(arb(by + length))
+    rest = abs(derivative(span) * share) * arb(length) ** (terms - 1)
+    return Enclosed(arb_poly(powers), (known.error + rest).upper(), None, choices)

@@ -92,7 +92,7 @@ class Reference:
         size = Balls(whole(self._first_bits)).largest(rational(self.tau_max))
         if not size > 0:  # it may be 0 throughout
             size = self._motion.size
-        return values(source, taus, self._first_bits, size * arb(2) ** -200, _MOST_KNOWN)
+        return values(source, taus, self._first_bits, size * arb(2) ** -200, max(self._first_bits, _MOST_KNOWN))
 
     def largest(self) -> list[arb]:
         """A lower bound of the largest absolute value of each output; 0 where it is 0 throughout."""

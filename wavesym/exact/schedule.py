@@ -109,6 +109,16 @@ class _Gap:
         """It is certainly more than 0."""
         return self.exact > 0 if self.exact is not None else bool(self.size > 0)
 
+    def grow(self, rate: Enclosed, length: fmpq) -> None:
+        """To what it is at the end of a stretch on which it is open."""
+        h = arb(length)
+        size = rate.polynomial.integral()(h) + self.size + arb(0, (rate.error * h).upper())
+        if self.exact is not None and rate.exact is not None:
+            self.exact = self.exact + rate.exact.integral()(length)
+            self.size = arb(self.exact)
+        else:
+            self.size, self.exact = _not_negative(size), None
+
 
 class _End(NamedTuple):
     """How long something is certain; and how far off that may be, in time, unless it is exact."""
@@ -215,7 +225,7 @@ class _Search:
 
     def _moved(self, course: _Course, start: fmpq, length: fmpq, closed: Closed) -> Moved:
         joint = self._waves.joints[course.number]
-        return joint.moved(self._waves.arriving(course.number, start), start, length, closed)
+        return joint.moved(self._waves.arriving(course.number, start, length), start, length, closed)
 
     def _begin(self, course: _Course, start: fmpq, limit: fmpq) -> None:
         """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""
@@ -289,7 +299,7 @@ class _Search:
         """The same of one contact."""
         if n in moved.closed:
             return self._positive(moved.pushes[n], low, moved.length)
-        rate, error = moved.rates[n], arb(0)
+        rate = moved.rates[n]
         if gap.exact is not None and rate.exact is not None:
             return self._positive(Enclosed.of(rate.exact.integral() + gap.exact), low, moved.length)
         if not gap.wide and low == 0:  # it opens: as long as it grows it is open
@@ -322,15 +332,8 @@ class _Search:
         for n, gap in course.gaps.items():
             if n in moved.closed:
                 gap.size, gap.exact = arb(0), fmpq(0)
-                continue
-            rate, length = moved.rates[n], arb(moved.length)
-            gap.exact = (
-                gap.exact + rate.exact.integral()(moved.length)
-                if gap.exact is not None and rate.exact is not None
-                else None
-            )
-            size = rate.polynomial.integral()(length) + gap.size + arb(0, (rate.error * length).upper())
-            gap.size = _not_negative(size) if gap.exact is None else arb(gap.exact)
+            else:
+                gap.grow(moved.rates[n], moved.length)
 
     def _tell(self, course: _Course, start: fmpq, moved: Moved) -> None:
         """What a joint sends is kept; what begins there is a knot at the other ends of its bars."""
@@ -354,14 +357,19 @@ class _Search:
                 raise _Undecided(worst, course.gaps[worst].closed, start)
             length = min(length, doubt.next)
             doubt.next *= 1 << _LONGER
+        else:  # what is not known came with a front: it takes about as long again
+            doubt.next = max(doubt.next, 4 * length)
         drifted, stage = self._drifted(course, start, length)
         h = arb(length)
         for n, gap in course.gaps.items():
             if n in stage.closed:
                 continue
+            if n not in stage.vague:
+                gap.grow(drifted.rates[n], length)
+                continue
             rate = _range(drifted.rates[n], length)
             grown = gap.size + h * rate.union(arb(0))
-            if n in stage.vague and rate < 0 and _range(drifted.pushes[n], length) > 0 and gap.size + h * rate < 0:
+            if rate < 0 and _range(drifted.pushes[n], length) > 0 and gap.size + h * rate < 0:
                 gap.size, gap.exact = arb(0), fmpq(0)
             else:
                 gap.size, gap.exact = _not_negative(grown), None
@@ -373,7 +381,7 @@ class _Search:
 
     def _drifted(self, course: _Course, start: fmpq, length: fmpq) -> tuple[Moved, Stage]:
         """The motion, with all contacts vague that are not certainly open or closed all the time."""
-        joint, arriving = self._waves.joints[course.number], self._waves.arriving(course.number, start)
+        joint, arriving = self._waves.joints[course.number], self._waves.arriving(course.number, start, length)
         vague = {n for n, gap in course.gaps.items() if not gap.shut and not gap.wide}
         while True:
             closed = frozenset(n for n, gap in course.gaps.items() if gap.shut and n not in vague)

@@ -76,7 +76,7 @@ def replayed(
         stage = stages[number][place]
         last = place + 1 == len(stages[number])
         length = (ends[number] if last else stages[number][place + 1].start) - start
-        joint, arriving = waves.joints[number], waves.arriving(number, start)
+        joint, arriving = waves.joints[number], waves.arriving(number, start, length)
         moved = joint.moved(arriving, start, length, stage.closed, stage.vague)
         waves.record(number, start, moved)
         joint.take(moved)
