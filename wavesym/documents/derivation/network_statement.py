@@ -226,15 +226,15 @@ class _Author:
         return f"({within})^{power}" if power > 1 else f"({within})"
 
     def _answer(self, made: LoneJoint) -> Iterator[str]:
-        """The inverse in partial fractions, where the polynomial splits; s, where it has more than arrives and loads."""
+        """The inverse in partial fractions where the polynomial splits; s, where it is more than waves and loads."""
         law = made.law
         if len(law.mass) > MOST_POINTS or rates(law) is None:
             return
         response: JointResponse = joint_response(law)
         for i in sorted((*law.heavy, *law.light)):
             if moved := list(self._moved(made, i)):
-                pushed = [*self._arriving(made, i), *self._force(made, i), *moved]
-                yield self._balanced([(Integer(1), self.n.indexed("s", i + 1))], pushed)
+                all_of_it = [*self._arriving(made, i), *self._force(made, i), *moved]
+                yield self._balanced([(Integer(1), self.n.indexed("s", i + 1))], all_of_it)
         for i in sorted((*law.heavy, *law.light)):
             terms = []
             for j in sorted((*law.heavy, *law.light)):
