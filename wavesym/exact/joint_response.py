@@ -26,7 +26,7 @@ Matrix = Mapping[tuple[int, int], fmpq]
 """Entries by (moved point, pushed point); those that are 0 are left out."""
 _S = fmpq_poly([0, 1])
 _ZERO = fmpq(0)
-LONGEST_WRITTEN = 20  # characters of a number in a message
+LONGEST_WRITTEN = 32  # characters of a number in a message
 
 
 @dataclass(frozen=True)
