@@ -13,6 +13,7 @@ from sympy import Rational, Symbol
 from tests.support.chains import chains
 from wavesym.cli import main
 from wavesym.compiler import derive
+from wavesym.derivation import numbers
 from wavesym.derivation.node_law import node_law
 from wavesym.derivation.numbers import symbol
 from wavesym.documents.derivation.joint_kinds import alone, kinds, values
@@ -21,6 +22,7 @@ from wavesym.documents.derivation.notation import Text
 from wavesym.exact.joint import JointLaw
 from wavesym.exact.joint_response import joint_polynomial
 from wavesym.model.network import Bar, Link, Network, Point
+from wavesym.numbers.ratio import Ring
 from wavesym.scene import Scene, lower
 
 STEP = {
@@ -74,6 +76,37 @@ def test_a_spring_between_rods_by_hand() -> None:
         "q_1 = 1/5 s_1 - 2/25 s_1/(D + 12/5) + 2/5 s_2/(D + 12/5)",
         "q_2 = 2/5 s_1/(D + 12/5) + s_2 - 2 s_2/(D + 12/5)",
     ]
+
+
+def test_what_moves_as_prescribed_pushes_through_springs_and_dashpots() -> None:
+    """3/2 q + u = 2 a + q_1/2 + u_1: the answer is to all of the right side, so s has to say it."""
+    table = {
+        "name": "shaker",
+        "system": {
+            "type": "chain",
+            "parts": [
+                {"motion": "acceleration", "name": "table"},
+                {"spring": 1, "dashpot": "1/2"},
+                {"rod": 1},
+                {"mass": 1, "name": "mass"},
+                {"spring": 1, "dashpot": 1},
+                "fixed",
+            ],
+        },
+        "output": {"until": 1, "velocity": ["mass"]},
+    }
+    shaken, held = (each["joints"][0] for each in told(table))
+    assert shaken["answer"] == ["s_2 = 2 a_1 + 1/2 q_1 + u_1", "q_2 = 2/3 s_2 - 4/9 s_2/(D + 2/3)"]
+    assert held["answer"] == ["q_1 = s_1/(D + 1) - s_1/(D + 1)^2"]  # what is fixed pushes nothing
+
+
+def test_an_expression_makes_the_symbols_of_its_own_terms_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A joint of hundreds of points has as many symbols, each of its coefficients a few."""
+    made: list[str] = []
+    monkeypatch.setattr(numbers, "symbol", lambda name: made.append(name) or symbol(name))
+    a, b, *_ = Ring(tuple(f"k_{i}" for i in range(1, 301))).symbols().values()
+    assert numbers.expression(a * a + b * 3) == symbol("k_1") ** 2 + 3 * symbol("k_2")
+    assert sorted(made) == ["k_1", "k_2"]
 
 
 def test_ends_and_what_does_not_split() -> None:

@@ -116,7 +116,13 @@ def test_partial_fractions_add_up(roots: list[fmpq], above: list[object], leadin
 
 @pytest.mark.parametrize(
     ("coefficients", "text"),
-    [([Q(3, 5), 0, 1], "s^2 + 3/5"), ([-1, -2], "-2 s - 1"), ([7], "7"), ([1] * 9, "s^8 + s^7 + ... (9 terms)")],
+    [
+        ([Q(3, 5), 0, 1], "s^2 + 3/5"),
+        ([-1, -2], "-2 s - 1"),
+        ([7], "7"),
+        ([1] * 9, "s^8 + s^7 + ... (9 terms)"),
+        ([Q(-1, 3 * 10**299), 10**300], "1.0000e+300 s - 3.3333e-300"),
+    ],
 )
 def test_polynomials_are_written(coefficients: list[object], text: str) -> None:
     assert written(fmpq_poly(coefficients), most=2) == text

@@ -56,6 +56,11 @@ MISTAKES = [
         '"1/2" }, { spring = 1 }]',
         "system.branch[0].parts: a spring or dashpot given",
     ),
+    (
+        'impedance = "1/2" }',
+        'impedance = "1/2", velocity = 1 }',
+        "system.parts[4].velocity: missing, the velocity of a mass between rods of two velocities expected",
+    ),
     # parts that cannot stand where they are
     (ROD, "{ mass = 1 }, { rod = 1 }, { spring = 3 }", "system.parts[1]: a node given beside another"),
     (ROD, '{ rod = 1 }, "joint", { joint = true }, { spring = 3 }', "system.parts[3]: a node given beside another"),
@@ -190,6 +195,15 @@ def test_the_scene_that_mistakes_are_made_in_is_right(tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
     path.write_text(GOOD)
     assert Scene.from_toml(path).name == "good"
+
+
+def test_a_mass_moves_as_its_rods_do_those_of_branches_too() -> None:
+    """At 3, with a branch that turns -2 times as fast: nothing is left to happen at tau = 0."""
+    rods, branch = [{"rod": 1, "velocity": v} for v in (3, -6)], {"from": "gear", "name": "side", "ratio": -2}
+    system = {"type": "chain", "parts": [rods[0], {"mass": 1, "name": "gear"}]}
+    system["branch"] = [branch | {"parts": rods[1:]}]
+    scene = Scene(name="s", system=system, output={"until": 2, "velocity": ["gear", "side:1"], "strain": ["side:1/2"]})
+    assert [list(row) for row in Reference(lower(scene)).values([0.0, 1.5])] == [[0, 0], [3, 3], [-6, -6]]
 
 
 def test_no_rod_and_no_parts() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import prod
 from typing import TYPE_CHECKING
 
@@ -50,14 +50,16 @@ def expression(value: Ratio | fmpq | int) -> Expr:
     """An exact number or rational function as an expression, kappa[3] for its symbol kappa_3."""
     if isinstance(value, (int, fmpq)):
         return _rational(fmpq(value))
-    letters = [symbol(name) for name in value.ring.names]
-    below = [_polynomial(value.ring.forms[form], letters) ** power for form, power in sorted(value.denominator.items())]
-    return _polynomial(value.numerator, letters) / prod(below, start=Integer(1))
+    names = value.ring.names
+    below = [_polynomial(value.ring.forms[form], names) ** power for form, power in sorted(value.denominator.items())]
+    return _polynomial(value.numerator, names) / prod(below, start=Integer(1))
 
 
-def _polynomial(polynomial: fmpq_mpoly, letters: list[Expr]) -> Expr:
+def _polynomial(polynomial: fmpq_mpoly, names: Sequence[str]) -> Expr:
+    # of hundreds of names, a term has a few
     terms = (
-        _rational(value) * prod((s ** int(e) for s, e in zip(letters, powers, strict=True)), start=Integer(1))
+        _rational(value)
+        * prod((symbol(name) ** int(e) for name, e in zip(names, powers, strict=True) if e), start=Integer(1))
         for powers, value in polynomial.to_dict().items()
     )
     return sum(terms, Integer(0))

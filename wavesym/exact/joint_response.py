@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import product
 
-from flint import fmpq, fmpq_poly
+from flint import arb, ctx, fmpq, fmpq_poly
 
 from wavesym.derivation.exact_rule import Weights
 from wavesym.exact.increments import Increment, add, solve, trimmed
@@ -26,6 +26,7 @@ Matrix = Mapping[tuple[int, int], fmpq]
 """Entries by (moved point, pushed point); those that are 0 are left out."""
 _S = fmpq_poly([0, 1])
 _ZERO = fmpq(0)
+LONGEST_WRITTEN = 32  # characters of a number in a message
 
 
 @dataclass(frozen=True)
@@ -179,13 +180,21 @@ def _divided(above: fmpq_poly, below: fmpq_poly) -> fmpq_poly:
 
 
 def written(polynomial: fmpq_poly, most: int = 6) -> str:
-    """A polynomial in s, its highest powers first; of a long one not all."""
+    """A polynomial in s, its highest powers first; of a long one not all, of a long number the first digits."""
     terms: Sequence[tuple[int, fmpq]] = [(k, c) for k, c in enumerate(polynomial.coeffs()) if c != 0][::-1]
     shown = ""
     for k, c in terms[:most]:
         power = "" if k == 0 else "s" if k == 1 else f"s^{k}"
-        size = "" if abs(c) == 1 and k else str(abs(c))
+        size = "" if abs(c) == 1 and k else _digits(abs(c))
         sign = "-" if c < 0 else "+"
         shown += f" {sign} " if shown else sign.removesuffix("+")
         shown += f"{size} {power}".strip()
     return shown + (f" + ... ({len(terms)} terms)" if len(terms) > most else "")
+
+
+def _digits(value: fmpq) -> str:
+    exact = str(value)
+    if len(exact) <= LONGEST_WRITTEN:
+        return exact
+    with ctx.workprec(64):
+        return str(arb(value).str(5, radius=False))

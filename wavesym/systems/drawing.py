@@ -30,6 +30,7 @@ def drawn(parts: Sequence[ChainPart | str], branches: Sequence[Branch]) -> Drawi
             raise wrong(f"{shown(branch.name)} given, a name that is not taken expected", *at, "name")
         if branch.ratio == 0:
             raise wrong("0 given, a ratio other than 0 expected", *at, "ratio")
+        pen.agree(pen.names[branch.from_], branch)
         pen.line(branch.name, branch.parts, (*at, "parts"), pen.names[branch.from_], branch.ratio)
     return pen.drawing()
 
@@ -83,12 +84,16 @@ class Drawing:
                 yield number, 1
 
 
+_UNSAID = "missing, the velocity of a mass between rods of two velocities expected"
+
+
 @dataclass
 class _Pen:
     """Draws lines of parts one after another."""
 
     points: list[Point] = field(default_factory=list)
     bars: list[Bar] = field(default_factory=list)
+    unsaid: dict[int, Keys] = field(default_factory=dict)  # masses whose velocity is that of their rods
     links: list[Link] = field(default_factory=list)
     names: dict[str, int] = field(default_factory=dict)
     lines: dict[str, tuple[Station, ...]] = field(default_factory=dict)
@@ -168,12 +173,22 @@ class _Pen:
         self.links.append(Link(left, right, ratio=rational(ratio), contact=True, gap=gap, place=place))
         self.contacts.append((self.links[-1], at))
 
+    def agree(self, point: int, branch: Branch) -> None:
+        """A mass that takes its velocity from its rods takes it from that of a branch, too."""
+        first = next(iter(branch.parts), None)
+        if point not in self.unsaid or not isinstance(first, RodPart):
+            return
+        if rational(first.velocity) != rational(branch.ratio) * self.points[point].velocity:
+            raise wrong(_UNSAID, *self.unsaid[point], "velocity")
+
     def _become(self, point: int, part: ChainPart | str, rods: Sequence[RodPart], at: Keys) -> None:
         """Give a point what a part says of it; `rods` are those beside it."""
         if isinstance(part, PointPart):
             velocities = {rod.velocity for rod in rods}
             if part.velocity is None and len(velocities) > 1 and part.inertia:
-                raise wrong("missing, the velocity of a mass between rods of two velocities expected", *at, "velocity")
+                raise wrong(_UNSAID, *at, "velocity")
+            if part.velocity is None and part.inertia:
+                self.unsaid[point] = at
             velocity = part.velocity if part.velocity is not None else min(velocities, default=Fraction(0))
             mass, damping, spring = map(rational, (part.inertia, part.dashpot, part.spring))
             self.points[point] = Point(mass, damping, spring, rational(velocity), name=part.name or "")

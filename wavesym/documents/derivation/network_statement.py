@@ -157,23 +157,36 @@ class _Author:
 
     def _laws(self, made: LoneJoint) -> Iterator[str]:
         """M q' + C q + K u = sum of 2 n Z a + F, row by row; what is prescribed, as it is."""
-        law, rule = made.law, joint_rule()
-        for i, point in enumerate(made.network.points[:-1]):
-            force = [(Integer(1), self.n.indexed("F", i + 1))] if point.loads else []
+        law = made.law
+        for i in range(len(law.mass)):
             if law.given[i] is not None:
                 prime = "'" if law.given[i] == "acceleration" else ""
-                yield self._balanced([(Integer(1), self.n.indexed("q", i + 1) + prime)], force)
+                yield self._balanced([(Integer(1), self.n.indexed("q", i + 1) + prime)], self._force(made, i))
                 continue
             own = [(_expression(law.mass[i]), self.n.indexed("q", i + 1) + "'")]
             for letter, matrix in (("q", law.damping), ("u", law.stiffness)):
                 own += [(_expression(c), self.n.indexed(letter, j + 1)) for j, c in enumerate(matrix[i])]
-            arriving = []
-            for e, (end, at) in enumerate(made.joint.ends, 1):
-                if at == i:
-                    bar = made.network.bars[end.bar]
-                    factor = rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance
-                    arriving.append((_expression(factor), self.n.indexed("a", e)))
-            yield self._balanced(own, [*arriving, *force])
+            yield self._balanced(own, [*self._arriving(made, i), *self._force(made, i)])
+
+    def _arriving(self, made: LoneJoint, i: int) -> Iterator[tuple[Expr, str]]:
+        """2 n Z a of the rod ends at a point."""
+        rule = joint_rule()
+        for e, (end, at) in enumerate(made.joint.ends, 1):
+            if at == i:
+                bar = made.network.bars[end.bar]
+                factor = rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance
+                yield _expression(factor), self.n.indexed("a", e)
+
+    def _force(self, made: LoneJoint, i: int) -> list[tuple[Expr, str]]:
+        return [(Integer(1), self.n.indexed("F", i + 1))] if made.network.points[i].loads else []
+
+    def _moved(self, made: LoneJoint, i: int) -> Iterator[tuple[Expr, str]]:
+        """What points whose motion is prescribed do to another, through springs and dashpots."""
+        law = made.law
+        for letter, matrix in (("q", law.damping), ("u", law.stiffness)):
+            for j, given in enumerate(law.given):
+                if given not in (None, "fixed") and matrix[i][j] != 0:
+                    yield -_expression(matrix[i][j]), self.n.indexed(letter, j + 1)
 
     def _sent(self, made: LoneJoint) -> Iterator[str]:
         """n q - a into each end."""
@@ -213,11 +226,15 @@ class _Author:
         return f"({within})^{power}" if power > 1 else f"({within})"
 
     def _answer(self, made: LoneJoint) -> Iterator[str]:
-        """The inverse in partial fractions, where the polynomial splits."""
+        """The inverse in partial fractions where the polynomial splits; s, where it is more than waves and loads."""
         law = made.law
         if len(law.mass) > MOST_POINTS or rates(law) is None:
             return
         response: JointResponse = joint_response(law)
+        for i in sorted((*law.heavy, *law.light)):
+            if moved := list(self._moved(made, i)):
+                all_of_it = [*self._arriving(made, i), *self._force(made, i), *moved]
+                yield self._balanced([(Integer(1), self.n.indexed("s", i + 1))], all_of_it)
         for i in sorted((*law.heavy, *law.light)):
             terms = []
             for j in sorted((*law.heavy, *law.light)):

@@ -1,7 +1,5 @@
 """The march of any chain in NumPy: rings of windows for the waves, joints as blocks."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
