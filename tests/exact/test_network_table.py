@@ -384,8 +384,8 @@ def test_contacts_are_refused(speed: int) -> None:
     bars = Bar(0, 1, one, one, one, velocity=fmpq(speed)), Bar(2, 3, one, one, one)
     network = Network(points, bars, (Link(1, 2, contact=True, gap=one, place="1"),))
     line = (
-        "system: the contact at 1 opens and closes, a chain without contacts expected for exact tables (pieces and "
-        "`run` serve it)"
+        "system: the contact at 1 opens and closes, none that does expected (pieces and `run` serve it, not tables, "
+        "closed form or march)"
     )
     assert refusal(network) == line
     model = replace(lower(Scene.from_toml("stepped_shaft")), network=network, loads=())

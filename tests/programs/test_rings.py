@@ -206,9 +206,7 @@ def test_the_finest_step_is_a_64th() -> None:
 def test_contacts_are_refused() -> None:
     model = lower(drive())
     touching = replace(model.network, links=(Link(0, 1, contact=True, place="3/2"),))
-    assert "a contact at 3/2 given, a chain without contacts expected" in refused(
-        drive(), UnservedError, network=touching
-    )
+    assert "the contact at 3/2 opens and closes" in refused(drive(), UnservedError, network=touching)
 
 
 def test_springs_too_stiff_are_refused_with_the_figure() -> None:

@@ -35,7 +35,7 @@ EVERY: dict[str, Any] = {
         {"rod": "1/2", "speed": 2, "impedance": "1/3", "strain": "1/5"},
         {"joint": True, "spring": 2, "name": "seat"},
         {"rod": "3/4"},
-        {"mass": "1/2", "dashpot": "1/10", "name": "gear"},
+        {"mass": "1/2", "velocity": 0, "dashpot": "1/10", "name": "gear"},
         {"spring": 40, "dashpot": "1/7"},
         {"mass": 2, "name": "hung"},
     ],

@@ -29,18 +29,10 @@ def unit_at(point: Point, source: str) -> Increment:
 
 
 class NetworkJoints:
-    """What the joints of a network answer, each made when it is first asked for. UnservedError where it has contacts.
-
-    (A contact may close without any front, where what it parts moves at constant speed.)
-    """
+    """What the joints of a network answer, made when they are first asked for. UnservedError where it has contacts."""
 
     def __init__(self, network: Network) -> None:
-        for link in network.links:
-            if link.contact:
-                raise UnservedError(
-                    f"system: the contact at {link.place} opens and closes, a chain without contacts expected for "
-                    "exact tables (pieces and `run` serve it)"
-                )
+        network.refuse_contacts()
         self.network = network
         self._responses: dict[int, JointResponse] = {}
 

@@ -50,25 +50,12 @@ class Model:
     def named(self) -> Chain:
         """The chain as the paper has it. UnservedError for one that is written out, part by part."""
         if self.chain is None:
-            self.refuse_contacts()
+            self.network.refuse_contacts()
             raise UnservedError(
                 "system.type: chain given, collision, drive or building expected "
                 "(a chain has pieces, a march and `run`)"
             )
         return self.chain
-
-    def refuse_contacts(self) -> None:
-        """UnservedError where contacts open and close: for what is one law from the start to the end."""
-        if not self.network.contacts:
-            return
-        if self.labels.system["type"] == "chain":
-            at, given, expected = "system.parts", "contacts", "none"
-        else:
-            at, given, expected = "system.contacts", "open", "closed"
-        raise UnservedError(
-            f"{at}: {given} given, {expected} expected (contacts that open have pieces and `run`, not tables, "
-            "derivation, closed form or march)"
-        )
 
     def horizon(self, real: Real = DOUBLE) -> float:
         """The last tau in `real` numbers: the smallest of them that is not below `until`."""

@@ -6,7 +6,7 @@ impedance) and a force 2 Z a. A bar's end may move `ratio` times as fast as its 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from heapq import heapify, heappop, heappush
@@ -14,6 +14,7 @@ from typing import Literal, NamedTuple
 
 from flint import fmpq
 
+from wavesym.errors import UnservedError
 from wavesym.model.chain import Chain
 from wavesym.model.node import Node, UnitLoad
 
@@ -119,12 +120,27 @@ class Network:
         members: dict[int, list[int]] = {}
         for point in range(len(self.points)):
             members.setdefault(of(point), []).append(point)
-        return tuple(Joint(tuple(points), tuple(self._ends(points))) for points in members.values())
+        ends: dict[int, list[tuple[End, int]]] = {first: [] for first in members}
+        for number, bar in enumerate(self.bars):
+            for side, point in enumerate((bar.left, bar.right)):
+                ends[of(point)].append((End(number, side), point))
+        return tuple(Joint(tuple(points), tuple(ends[first])) for first, points in members.items())
 
     @cached_property
     def contacts(self) -> tuple[int, ...]:
         """The links that are contacts."""
         return tuple(number for number, link in enumerate(self.links) if link.contact)
+
+    def refuse_contacts(self) -> None:
+        """UnservedError where contacts open and close: for what is one law from the start to the end.
+
+        (One may close without any front, where what it parts moves at constant speed.)
+        """
+        for number in self.contacts:
+            raise UnservedError(
+                f"system: the contact at {self.links[number].place} opens and closes, none that does expected (pieces "
+                "and `run` serve it, not tables, closed form or march)"
+            )
 
     @cached_property
     def joint_of(self) -> Mapping[int, int]:
@@ -184,12 +200,6 @@ class Network:
         alone = self.joints[self.joint_of[number]] == Joint((number,), ((end, number),))
         bare = point.mass == point.damping == point.stiffness == 0 and point.motion is None and not point.loads
         return alone and bare and not any(number in (link.left, link.right) for link in self.links)
-
-    def _ends(self, points: list[int]) -> Iterator[tuple[End, int]]:
-        for number, bar in enumerate(self.bars):
-            for side, point in enumerate((bar.left, bar.right)):
-                if point in points:
-                    yield End(number, side), point
 
     def beyond(self, end: End) -> End:
         """The other end of a bar."""

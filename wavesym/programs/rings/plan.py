@@ -15,7 +15,7 @@ from math import gcd, lcm
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.errors import CostError, UnservedError
+from wavesym.errors import CostError
 from wavesym.exact.node_rules import joint_rule
 from wavesym.model.model import Model
 from wavesym.model.network import End
@@ -148,11 +148,7 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
     UnservedError for contacts; CostError where the step would be too small, or load times have too many remainders.
     """
     network = model.network
-    if contact := next((link for link in network.links if link.contact), None):
-        raise UnservedError(
-            f"system.parts: a contact at {contact.place} given, a chain without contacts expected in a march "
-            "(pieces serve contacts)"
-        )
+    network.refuse_contacts()
     tau_max = model.horizon(real)
     until = rational(tau_max)
     reached = model.reached(until)
