@@ -179,6 +179,14 @@ def test_what_stays_0_is_0() -> None:
     assert (made.outputs[0].bound, made.outputs[0].largest) == (0, 0)
 
 
+def test_a_chain_that_stays_at_rest_asks_for_no_higher_degree() -> None:
+    parts = [{"mass": 1, "spring": "1/40"}, {"rod": 3, "impedance": "3/20", "spring": 7}, "absorbing"]
+    scene = Scene(name="rest", system={"type": "chain", "parts": parts}, output={"until": 10, "velocity": [0]})
+    made = ring_march(lower(scene), SINGLE)
+    assert made.error_bound == 0
+    assert made.degree < 30
+
+
 def refused(scene: Scene, error: type[WavesymError], **changes: object) -> str:
     with pytest.raises(error) as raised:
         ring_march(replace(lower(scene), **changes))

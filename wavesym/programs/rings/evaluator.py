@@ -118,7 +118,7 @@ def ring_march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> 
     while True:
         spent = _refuse_long(plan, degree, spent, real)
         made, verdict = _made(plan, degree, real)
-        if verdict.truncated <= verdict.rounded or _SETTLED * before < made.error_bound < math.inf:
+        if verdict.truncated <= verdict.rounded or _SETTLED * before <= made.error_bound < math.inf:
             return made
         before = made.error_bound
         degree += max(2, degree // 6)
