@@ -225,6 +225,11 @@ def test_springs_too_stiff_are_refused_with_the_figure() -> None:
     assert "e+06 bytes of tables, at most 4.2e+06 expected in a march" in line
 
 
+def test_rings_too_long_are_refused_whatever_the_joints() -> None:
+    line = refused(chain(1, "1e-9"), CostError)
+    assert "the rings of a march on a step of 1/1000000000 would have" in line
+
+
 def test_load_times_with_many_remainders_are_refused() -> None:
     load = [{"at": "hit", "times": [f"{k}/17" for k in range(1, 18)], "steps": [1] * 17}]
     assert "leave 17 different remainders of the step 1, at most 16 expected" in refused(chain(1, load=load), CostError)
