@@ -110,7 +110,7 @@ static void read_at(const march *state, real t, real out[OUTPUTS])
 }
 
 /* What acts on a point on a panel: three coefficients. */
-static void acts(const march *state, int force, int panel, real c[3])
+static void acts(const march *state, int force, int panel, real *c)
 {
     const real *const power = state->load[force];
     const int *const then = state->changed[force];

@@ -179,6 +179,14 @@ def test_what_stays_0_is_0() -> None:
     assert (made.outputs[0].bound, made.outputs[0].largest) == (0, 0)
 
 
+def test_a_chain_that_stays_at_rest_asks_for_no_higher_degree() -> None:
+    parts = [{"mass": 1, "spring": "1/40"}, {"rod": 3, "impedance": "3/20", "spring": 7}, "absorbing"]
+    scene = Scene(name="rest", system={"type": "chain", "parts": parts}, output={"until": 10, "velocity": [0]})
+    made = ring_march(lower(scene), SINGLE)
+    assert made.error_bound == 0
+    assert made.degree < 30
+
+
 def refused(scene: Scene, error: type[WavesymError], **changes: object) -> str:
     with pytest.raises(error) as raised:
         ring_march(replace(lower(scene), **changes))
@@ -213,6 +221,11 @@ def test_springs_too_stiff_are_refused_with_the_figure() -> None:
     line = refused(chain(2, spring=10**6), CostError)
     assert "joints as fast as 1e+03 on a step of 2 need polynomials of degree" in line
     assert "e+06 bytes of tables, at most 4.2e+06 expected in a march" in line
+
+
+def test_rings_too_long_are_refused_whatever_the_joints() -> None:
+    line = refused(chain(1, "1e-9"), CostError)
+    assert "the rings of a march on a step of 1/1000000000 would have" in line
 
 
 def test_load_times_with_many_remainders_are_refused() -> None:

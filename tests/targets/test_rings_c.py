@@ -74,6 +74,24 @@ def test_it_is_strict_c_and_cpp(language: str, precision: str, tmp_path: Path) -
     chain(precision).built((*LANGUAGES[language], *STRICT, "-O1"), tmp_path)
 
 
+# what compilers make of sizes that they can tell: no state, and one
+FEW_STATES = {
+    "none": ["fixed", {"rod": 2, "impedance": 40}, "absorbing"],
+    "one": [{"mass": 2, "name": "body"}, {"rod": 2}, "fixed"],
+}
+
+
+@pytest.mark.parametrize("states", FEW_STATES)
+@pytest.mark.parametrize("level", ["-O0", "-O1", "-O2", "-O3", "-Os"])
+def test_few_states_are_no_warning(level: str, states: str, tmp_path: Path) -> None:
+    load = [{"at": "body", "times": [0, "1/3"], "steps": [1, 2]}] if states == "one" else []
+    system = {"type": "chain", "parts": FEW_STATES[states]}
+    scene = Scene(name="few", system=system, load=load, output={"until": 5, "tolerance": 1e-6, "velocity": [1]})
+    for file, text in files(make(lower(scene), Request(evaluator="march")), "c").items():
+        (tmp_path / file).write_text(text)
+    compiler().run([*LANGUAGES["c99"], *STRICT, level, "-c", "few.c", "-o", "few.o"], tmp_path)
+
+
 @pytest.mark.parametrize(
     ("build", "precision"), [("plain", "double"), ("contracted", "double"), ("contracted", "single")]
 )

@@ -118,7 +118,7 @@ def ring_march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> 
     while True:
         spent = _refuse_long(plan, degree, spent, real)
         made, verdict = _made(plan, degree, real)
-        if verdict.truncated <= verdict.rounded or _SETTLED * before < made.error_bound < math.inf:
+        if verdict.truncated <= verdict.rounded or _SETTLED * before <= made.error_bound < math.inf:
             return made
         before = made.error_bound
         degree += max(2, degree // 6)
@@ -173,17 +173,14 @@ def _multiplications(plan: RingPlan, degree: int) -> int:
 
 def _refuse_long(plan: RingPlan, degree: int, spent: float, real: Real) -> float:
     """What trying a degree costs, with what is `spent` already; CostError where that is too much."""
+    _refuse_rings(plan, _LEAST_DEGREE, real)  # it is not the joints then
     if (size := table_bytes(plan, degree, real)) > _MOST_BYTES:
         raise CostError(
             f"system.parts: joints as fast as {_fastest(plan):.3g} on a step of {plan.step} need polynomials of degree "
             f"{degree} to tau = {plan.tau_max:g}, and so {size:.1e} bytes of tables, at most {_MOST_BYTES:.1e} "
             "expected in a march (softer springs, heavier bodies, or lengths with a smaller common measure, help)"
         )
-    if (size := state_bytes(plan, degree, real)) > _MOST_BYTES:
-        raise CostError(
-            f"system.parts: the rings of a march on a step of {plan.step} would have {size:.1e} bytes, at most "
-            f"{_MOST_BYTES:.1e} expected (fewer rods, or lengths with a larger common measure, help)"
-        )
+    _refuse_rings(plan, degree, real)
     # two matrices are multiplied with: the answers, and their sizes
     work = plan.windows * (3.0 * _multiplications(plan, degree) + _JOINT * len(plan.joints) * len(plan.panels))
     spent += work
@@ -193,3 +190,11 @@ def _refuse_long(plan: RingPlan, degree: int, spent: float, real: Real) -> float
             f"{spent:.1e} operations, at most {_MOST_WORK:.1e} expected (a shorter horizon helps)"
         )
     return spent
+
+
+def _refuse_rings(plan: RingPlan, degree: int, real: Real) -> None:
+    if (size := state_bytes(plan, degree, real)) > _MOST_BYTES:
+        raise CostError(
+            f"system.parts: the rings of a march on a step of {plan.step} would have {size:.1e} bytes, at most "
+            f"{_MOST_BYTES:.1e} expected (fewer rods, or lengths with a larger common measure, help)"
+        )

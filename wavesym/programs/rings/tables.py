@@ -106,8 +106,9 @@ class RingTables:
             "events": len(plan.events),
             "tracks": len(plan.tracks),
             "slots": sum(track.steps + 1 for track in plan.tracks),
+            # where no joint has a state as well: a compiler may look at what is never run then
             "widest": max(
-                joint.space.points * (self._degree + 1) + joint.space.states if joint.space.states else 1
+                joint.space.points * (self._degree + 1) + joint.space.states if joint.space.states else self._degree + 1
                 for joint in plan.joints
             ),
             "cycle": plan.cycle[0],
