@@ -10,6 +10,7 @@ import pytest
 from flint import fmpq
 
 from wavesym.errors import ToleranceError
+from wavesym.exact import reference
 from wavesym.exact import table as tables
 from wavesym.exact.table import Function, full_table
 from wavesym.programs.making import make
@@ -52,6 +53,21 @@ def test_all_is_well(scene):
     truth = known(lower(scene))
     for check in checks.CHECKS:
         assert all(verdicts(check.run, truth)), check.title
+
+
+def test_of_a_long_horizon_the_beginning_is_compared(monkeypatch):
+    """The code is that of the whole horizon; and the displacement goes on to grow, so that its bound is large here."""
+    monkeypatch.setattr(reference, "_QUICK", 10_000)
+    monkeypatch.setattr(reference, "_SHORTEST", fmpq(1))
+    whole = lower(
+        Scene(name="far", system=DRIVE.system, load=DRIVE.load, output=DRIVE.output.model_copy(update={"until": 40}))
+    )
+    truth = known(whole)
+    assert 1 <= truth.until == truth.model.until < truth.whole.until == whole.until
+    assert truth.notes == [f"far: compared to tau = {truth.until:g}; exact values of all of it would take too long"]
+    assert all(verdicts(checks.generated, truth))
+    halved = replace(truth.outputs[0], values=truth.outputs[0].values / 2)
+    assert not all(verdicts(checks.generated, replace(truth, outputs=(halved, *truth.outputs[1:]))))
 
 
 def made_with(monkeypatch, evaluator, change=lambda made: made):

@@ -51,12 +51,13 @@ Balances = Callable[[Evaluate, Sequence[float] | None], tuple[Balance, ...]]
 
 def generated(known: Known) -> list[Outcome]:
     """The generated C, compiled and run, and the generated NumPy, against their proved bound."""
-    model = known.model
+    model = known.whole
     try:
-        made = files(make(model, tested=True), "all")
+        form = make(model, tested=True)
     except ToleranceError as error:  # an evaluator that says where it ends has not failed
         cells = {"C": "refused", "NumPy": "refused", "bound": "-"}
         return [Outcome(output.probe.name, cells, True, str(error)) for output in known.outputs]
+    made = files(form, "all")
     bounds = [output["error_bound"] for output in json.loads(made[f"{model.name}.json"])["outputs"]]
     numpy = imported(made[f"{model.name}.py"], model.name).evaluate(np.array(known.taus))
     with compiled(made, len(known.outputs)) as program:
@@ -64,9 +65,10 @@ def generated(known: Known) -> list[Outcome]:
         sound = program.selftest() == 0
     note = "" if sound else f"{model.name}: the self-test of the generated C fails"
     outcomes = []
-    for output, bound, *values in zip(known.outputs, bounds, c, numpy, strict=True):
+    for output, whole, bound, *values in zip(known.outputs, form.outputs, bounds, c, numpy, strict=True):
         errors = [output.error(each) for each in values]
-        allowed = 0.0 if output.zero else bound + _ROUNDED
+        # the bound is relative to the largest value of the whole horizon, known or not
+        allowed = 0.0 if whole.largest == 0 else bound * max(1.0, whole.largest / output.scale) + _ROUNDED
         cells = dict(zip(("C", "NumPy", "bound"), map(shown, (*errors, bound)), strict=True))
         passed = sound and all(error <= allowed for error in errors)
         outcomes.append(Outcome(output.probe.name, cells, passed, note))

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.exact.reference import Reference
+from wavesym.exact.reference import Reference, beginning
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 
@@ -42,22 +42,33 @@ class KnownOutput:
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """The outputs of a model at `taus`, doubles in [0, until]."""
+    """The outputs of a model at `taus`, doubles in [0, until]; it is the `whole` one, or its beginning."""
 
+    whole: Model
     model: Model
     until: float
     taus: Sequence[float]
     outputs: tuple[KnownOutput, ...]
 
+    @property
+    def notes(self) -> Sequence[str]:
+        """What a reader should know of it."""
+        if self.model.until == self.whole.until:
+            return []
+        return [f"{self.whole.name}: compared to tau = {self.until:g}; exact values of all of it would take too long"]
+
 
 def known(model: Model) -> Known:
-    """A model's outputs at a few hundred spread taus, at every arrival, and at the doubles just before and after."""
-    exact = Reference(model)
+    """A model's outputs at a few hundred spread taus, at every arrival, and at the doubles just before and after.
+
+    Of a long horizon the beginning, as far as it can be known in moderate time.
+    """
+    exact = Reference(beginning(model))
     taus = sorted(set(_taus(exact)))
     outputs = (
         KnownOutput(probe, np.array(values)) for probe, values in zip(model.probes, exact.values(taus), strict=True)
     )
-    return Known(model, exact.tau_max, taus, tuple(outputs))
+    return Known(model, exact.model, exact.tau_max, taus, tuple(outputs))
 
 
 def _taus(exact: Reference) -> Iterator[float]:

@@ -24,6 +24,7 @@ def verify(models: Iterable[Model]) -> tuple[str, bool]:
     passed = True
     for model in models:
         truth = known(model)
+        notes += truth.notes
         for check, rows in zip(CHECKS, tables, strict=True):
             for outcome in check.run(truth):
                 verdict = "PASS" if outcome.passed else "FAIL"
