@@ -32,6 +32,9 @@ from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 from wavesym.exact.node_rules import joint_rule
 from wavesym.model.network import Joint, Network
 
+# springs swing so far on a stretch, at most: what a series has to bear, exp(this), costs bits
+SWING = 24
+
 
 @dataclass(frozen=True)
 class JointLaw:
@@ -156,6 +159,11 @@ class JointLaw:
                     else stiff / self.damping[k][k]
                 )
         return max(rates)
+
+    @cached_property
+    def longest(self) -> fmpq | None:
+        """How long a stretch may be for the sake of springs; None where there are none."""
+        return SWING / self.fastest if self.springs and self.fastest != 0 else None
 
     @cached_property
     def inverse(self) -> fmpq_mat:
