@@ -32,7 +32,7 @@ from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 from wavesym.exact.node_rules import joint_rule
 from wavesym.model.network import Joint, Network
 
-# springs swing so far on a stretch, at most: what a series has to bear, exp(this), costs bits
+# a series is begun anew where it would have to bear more than exp(this)
 SWING = 24
 
 

@@ -19,7 +19,7 @@ from flint import arb, ctx, fmpq
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.cluster import Closed
 from wavesym.exact.crossing import first_fall, positive_until, sign_after
-from wavesym.exact.joint import Enclosed
+from wavesym.exact.joint import SWING, Enclosed
 from wavesym.exact.touching_joint import Moved
 from wavesym.exact.touching_waves import Stage, TouchingWaves
 from wavesym.model.loads import Applied
@@ -35,8 +35,6 @@ _LONGER = 3
 # working precision at first, and how much of it is beyond the first of these stretches
 _BITS, _SPARE = 448, 128
 _ATTEMPTS = 2
-# a series is begun anew where it would have to bear more than exp(this)
-_SWING = 24
 
 
 class GrazingError(WavesymError):
@@ -128,7 +126,10 @@ class _Doubt:
 
 @dataclass
 class _Course:
-    """A joint on its way: since when and how far its present stretch is known, and the knots to come."""
+    """A joint on its way: since when and how far its present stretch is known, and the knots to come.
+
+    It is moved no further at a time than `shortest`: nobody reads what is sent before, and springs do not swing more.
+    """
 
     number: int
     last: fmpq
@@ -170,12 +171,14 @@ class _Search:
 
     def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> _Course:
         network, joint = self._network, self._network.joints[number]
-        beside = [network.bars[end.bar].delay for end, _ in joint.ends]
+        far = [network.bars[end.bar].delay for end, _ in joint.ends]
+        if (longest := self._waves.joints[number].law.longest) is not None:
+            far.append(longest)
         gaps = {
             n: _Gap(arb(network.links[n].gap), network.links[n].gap, network.links[n].gap == 0)
             for n in self._waves.joints[number].touches
         }
-        course = _Course(number, last, min(beside, default=last + 1), gaps, fmpq(0), fmpq(0))
+        course = _Course(number, last, min(far, default=last + 1), gaps, fmpq(0), fmpq(0))
         sources = {unit.source for point in joint.points for unit in network.points[point].loads}
         for load in loads:
             if load.source in sources and 0 < load.time <= last:
@@ -211,7 +214,7 @@ class _Search:
 
     def _swings(self, moved: Moved, length: fmpq) -> bool:
         """Whether a stretch would become too long for its series."""
-        return moved.swing * length > _SWING
+        return moved.swing * length > SWING
 
     def _moved(self, course: _Course, start: fmpq, length: fmpq, closed: Closed) -> Moved:
         joint = self._waves.joints[course.number]
