@@ -20,7 +20,7 @@ from flint import fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.events import scheduled
-from wavesym.exact.joint import JointLaw
+from wavesym.exact.joint import SWING, JointLaw
 from wavesym.exact.schedule import Schedule
 from wavesym.model.loads import Applied
 from wavesym.model.model import Model
@@ -139,9 +139,7 @@ class Knots:
         gaps = [high - low for low, high in pairwise([*parts, self._span])]
         longest = min(self._bearable.values())
         cuts = [1 if gap <= longest else int((gap / longest).ceil()) for gap in gaps]
-        if (
-            len(cuts) < sum(cuts) and (count := len(self._last) * self._count * sum(cuts)) > MOST_KNOTS
-        ):
+        if len(cuts) < sum(cuts) and (count := len(self._last) * self._count * sum(cuts)) > MOST_KNOTS:
             raise self._too_stiff(str(count))
         return [part + gap * k / n for part, gap, n in zip(parts, gaps, cuts, strict=True) for k in range(n)]
 
