@@ -80,7 +80,18 @@ class Knots:
             return {
                 number: [*(stage.start for stage in each), known.ends[number]] for number, each in known.stages.items()
             }
-        return {number: sorted({fmpq(0), *times, self._end(number)}) for number, times in self._met().items()}
+        natural = {
+            number: sorted({fmpq(0), *times, self._last[number] + 1}) for number, times in self._met(False).items()
+        }
+        if all(
+            high - low <= longest
+            for number, longest in self._bearable.items()
+            for low, high in pairwise(natural[number])
+        ):
+            return natural
+        return {
+            number: sorted({fmpq(0), *times, self._end(number, times)}) for number, times in self._met(True).items()
+        }
 
     def longest(self, number: int) -> fmpq:
         """The longest stretch of a joint."""
@@ -170,9 +181,10 @@ class Knots:
 
     # any delays
 
-    def _end(self, number: int) -> fmpq:
-        """Later than anything that is asked of a joint."""
-        return self._last[number] + 1
+    def _end(self, number: int, times: set[fmpq]) -> fmpq:
+        """Later than anything that is asked of a joint, but no later than the stretches before it let it be known."""
+        end = max(times) + self._reach(number) if number in self._bearable else self._last[number] + self._apart
+        return min(self._last[number] + 1, end)
 
     def _loaded(self) -> Iterator[tuple[int, Applied]]:
         for number in self._last:
@@ -182,14 +194,19 @@ class Knots:
                         if load.source == unit.source:
                             yield number, load
 
-    def _met(self) -> dict[int, set[fmpq]]:
+    def _met(self, cutting: bool) -> dict[int, set[fmpq]]:
+        """When fronts meet joints; with cuts, where these are made, too."""
         network = self._network
         found: dict[int, set[fmpq]] = {number: set() for number in self._last}
         latest: dict[int, fmpq] = {}
         coming = [(load.time, number, False) for number, load in self._loaded()]
-        coming += [(fmpq(0), number, False) for number in self._last if not network.at_rest(network.joints[number])]
+        coming += [
+            (fmpq(0), number, False)
+            for number in self._last
+            if (cutting and number in self._bearable) or not network.at_rest(network.joints[number])
+        ]
         heapify(coming)
-        count = cuts = 0
+        count = 0
         while coming:
             time, number, cut = heappop(coming)
             if number not in found or time > self._last[number] or time in found[number]:
@@ -199,15 +216,14 @@ class Knots:
             found[number].add(time)
             latest[number] = time
             count += 1
-            cuts += cut
             if count > MOST_KNOTS:
-                if cuts:
+                if cutting:
                     raise self._too_stiff(f"more than {MOST_KNOTS}")
                 raise CostError(
                     f"output.until: fronts meet joints more than {MOST_KNOTS} times by tau = {float(time):g}, at most "
                     f"{MOST_KNOTS} expected (a shorter horizon or lengths with a larger common measure help)"
                 )
-            if number in self._bearable:
+            if cutting and number in self._bearable:
                 heappush(coming, (time + self._reach(number), number, True))
             for end, _ in network.joints[number].ends:
                 bar = network.bars[end.bar]
