@@ -128,11 +128,13 @@ class _Doubt:
 class _Course:
     """A joint on its way: since when and how far its present stretch is known, and the knots to come.
 
-    It is moved no further at a time than `shortest`: nobody reads what is sent before, and springs do not swing more.
+    It is moved no further at a time than `shortest`: nobody reads what is sent before, and springs do not swing more;
+    and not beyond `end`, later than its `last` instant that matters: until then it is known what comes to it.
     """
 
     number: int
     last: fmpq
+    end: fmpq
     shortest: fmpq
     gaps: dict[int, _Gap]
     since: fmpq
@@ -152,7 +154,7 @@ class _Course:
 
     def limit(self, start: fmpq) -> fmpq:
         """How far it can be moved from an instant on."""
-        far = start + self.shortest
+        far = min(start + self.shortest, self.end)
         return min(self.knots[0], far) if self.knots else far
 
 
@@ -167,6 +169,9 @@ class _Search:
         # the first stretch on which it is left open what a contact does
         self._least = min(bar.delay for bar in network.bars) / fmpq(2) ** (ctx.prec - _SPARE)
         self._resolution = self._least / 4
+        # what nothing is asked of is not moved on, so that what comes from there goes on as no spring swings
+        springs = [joint.law.longest for joint in self._waves.joints.values() if joint.law.longest is not None]
+        self._beyond = min([bar.delay for bar in network.bars] + springs)
         self._courses = {number: self._course(number, until, loads) for number, until in last.items()}
 
     def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> _Course:
@@ -178,7 +183,7 @@ class _Search:
             n: _Gap(arb(network.links[n].gap), network.links[n].gap, network.links[n].gap == 0)
             for n in self._waves.joints[number].touches
         }
-        course = _Course(number, last, min(far, default=last + 1), gaps, fmpq(0), fmpq(0))
+        course = _Course(number, last, last + self._beyond, min(far, default=last + 1), gaps, fmpq(0), fmpq(0))
         sources = {unit.source for point in joint.points for unit in network.points[point].loads}
         for load in loads:
             if load.source in sources and 0 < load.time <= last:
