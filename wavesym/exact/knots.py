@@ -80,18 +80,24 @@ class Knots:
             return {
                 number: [*(stage.start for stage in each), known.ends[number]] for number, each in known.stages.items()
             }
-        natural = {
-            number: sorted({fmpq(0), *times, self._last[number] + 1}) for number, times in self._met(False).items()
-        }
-        if all(
-            high - low <= longest
-            for number, longest in self._bearable.items()
-            for low, high in pairwise(natural[number])
-        ):
-            return natural
+        if not self.cut:
+            return self._natural
         return {
             number: sorted({fmpq(0), *times, self._end(number, times)}) for number, times in self._met(True).items()
         }
+
+    @cached_property
+    def cut(self) -> bool:
+        """Whether stretches are cut for the sake of springs."""
+        if self._windowed:
+            return len(self._natural_parts) < len(self._parts)
+        if self._network.contacts:  # stages bear what they have to
+            return False
+        return any(
+            high - low > longest
+            for number, longest in self._bearable.items()
+            for low, high in pairwise(self._natural[number])
+        )
 
     def longest(self, number: int) -> fmpq:
         """The longest stretch of a joint."""
@@ -140,19 +146,24 @@ class Knots:
     # equal delays
 
     @cached_property
-    def _parts(self) -> Sequence[fmpq]:
-        """Where in a window stretches start."""
+    def _natural_parts(self) -> Sequence[fmpq]:
+        """Where in a window stretches start for the sake of loads."""
         (delay,) = self._delays
         times = {load.time for _, load in self._loaded()}
-        parts = sorted({fmpq(0), *(time - (time / delay).floor() * delay for time in times)})
+        return sorted({fmpq(0), *(time - (time / delay).floor() * delay for time in times)})
+
+    @cached_property
+    def _parts(self) -> Sequence[fmpq]:
+        """Where in a window stretches start."""
+        natural = self._natural_parts
         if not self._bearable:
-            return parts
-        gaps = [high - low for low, high in pairwise([*parts, self._span])]
+            return natural
+        gaps = [high - low for low, high in pairwise([*natural, self._span])]
         longest = min(self._bearable.values())
-        cuts = [1 if gap <= longest else int((gap / longest).ceil()) for gap in gaps]
+        cuts = [max(1, int((gap / longest).ceil())) for gap in gaps]
         if len(cuts) < sum(cuts) and (count := len(self._last) * self._count * sum(cuts)) > MOST_KNOTS:
             raise self._too_stiff(str(count))
-        return [part + gap * k / n for part, gap, n in zip(parts, gaps, cuts, strict=True) for k in range(n)]
+        return [part + gap * k / n for part, gap, n in zip(natural, gaps, cuts, strict=True) for k in range(n)]
 
     @cached_property
     def _count(self) -> int:
@@ -180,6 +191,10 @@ class Knots:
             yield from (n * delay + part for part in parts if n * delay + part <= self._until)
 
     # any delays
+
+    @cached_property
+    def _natural(self) -> Mapping[int, Sequence[fmpq]]:
+        return {number: sorted({fmpq(0), *times, self._last[number] + 1}) for number, times in self._met(False).items()}
 
     def _end(self, number: int, times: set[fmpq]) -> fmpq:
         """Later than anything that is asked of a joint, but no later than the stretches before it let it be known."""
