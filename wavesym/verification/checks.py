@@ -41,6 +41,9 @@ _LONGEST = 60.0
 # of the instants away from fronts, so many are enough to begin with, and so many are looked at
 _FEWEST_INSTANTS, _MOST_INSTANTS = 20, 200
 
+# central differences tell nothing of springs that swing more radians than this in a step
+_SWING = 0.25
+
 # what is kept is looked at as long as it takes no more values at nodes, and no more windows of outputs
 _MOST_VALUES, _MOST_WINDOWS = 50_000, 240
 _MOST_GRAPH_VALUES = 30_000
@@ -138,6 +141,12 @@ def spacetime(known: Known) -> list[Outcome]:
 
     while len(clear()) < _FEWEST_INSTANTS and first.finer(8).cost(until) <= MOST_MOVED:
         first = first.finer(2)
+    finest = first
+    while finest.finer(8).cost(until) <= MOST_MOVED:
+        finest = finest.finer(2)
+    if isinstance(first, GraphGrid) and (swing := first.graph.swings * finest.tau(1) / 4) > _SWING:
+        note = f"{model.name}: springs swing {swing:.2g} radians in the shortest step that central differences can take"
+        return [Outcome(output.probe.name, {"to": "refused"}, True, note) for output in known.outputs]
     instants = _some(clear())
     if not len(instants):
         step = f"at {first.tau(1):.1g} a step"
