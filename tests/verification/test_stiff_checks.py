@@ -28,7 +28,7 @@ def test_balances_of_a_stiff_spring_are_sharp() -> None:
 
 def test_panels_on_which_springs_swing_far_tell_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(graph_balance, "_SWING", 1e9)
-    assert all(float(outcome.cells["allowed"]) > 1e-7 for outcome in invariants(made(10**4)))
+    assert any(float(outcome.cells["allowed"]) > 1e-7 for outcome in invariants(made(10**5)))
 
 
 def test_central_differences_refuse_springs_that_they_cannot_follow(monkeypatch: pytest.MonkeyPatch) -> None:
