@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import numpy as np
-from flint import fmpq
+from flint import arb, fmpq
 from numpy.typing import NDArray
 
 from wavesym.exact.events import events
 from wavesym.exact.motion import Motion
-from wavesym.exact.network_waves import SentWave
+from wavesym.exact.network_waves import SentWave, Waves
 from wavesym.model.model import Model
 from wavesym.model.network import End
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import middle, nearest
 
 Array = NDArray[np.float64]
+
+# errors this small, relative to the largest wave, are seen in no picture
+_UNSEEN = arb(2) ** -20
+_MORE = (1, 2, 4)
 
 
 class Field:
@@ -30,7 +34,7 @@ class Field:
         self._network = model.network
         self.events = events(everywhere)
         motion = Motion(everywhere, model.until)
-        self._waves = {end: _SampledWave(wave) for end, wave in motion.waves(motion.first_bits).sent.items()}
+        self._waves = {end: _SampledWave(wave) for end, wave in _seen(motion).sent.items()}
 
     def at(self, bar: int, part: Array, tau: Array) -> tuple[Array, Array]:
         """Velocity and force of a bar at parts of its length from the left end; all of one shape."""
@@ -38,6 +42,21 @@ class Field:
         right = self._waves[End(bar, 0)](tau - part * delay)
         left = self._waves[End(bar, 1)](tau - (1 - part) * delay)
         return right + left, nearest(self._network.bars[bar].impedance) * (left - right)
+
+
+def _seen(motion: Motion) -> Waves:
+    """The waves, with as many bits as a picture needs: the first ones do not always bear what springs swing."""
+    for more in _MORE:
+        waves = motion.waves(more * motion.first_bits)
+        stretches = [
+            (known, abs(known.polynomial(arb(end - start))))
+            for wave in waves.sent.values()
+            for start, end, known in zip(wave.starts, [*wave.starts[1:], motion.until], wave.stretches, strict=True)
+        ]
+        size = max((value.upper() for _, value in stretches), default=arb(0))
+        if all(known.error <= _UNSEEN * size for known, _ in stretches):
+            break
+    return waves
 
 
 class _SampledWave:

@@ -32,6 +32,9 @@ from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 from wavesym.exact.node_rules import joint_rule
 from wavesym.model.network import Joint, Network
 
+# a series is begun anew where it would have to bear more than exp(this)
+SWING = 24
+
 
 @dataclass(frozen=True)
 class JointLaw:
@@ -156,6 +159,11 @@ class JointLaw:
                     else stiff / self.damping[k][k]
                 )
         return max(rates)
+
+    @cached_property
+    def longest(self) -> fmpq | None:
+        """How long a stretch may be for the sake of springs; None where there are none."""
+        return SWING / self.fastest if self.springs and self.fastest != 0 else None
 
     @cached_property
     def inverse(self) -> fmpq_mat:

@@ -3,12 +3,16 @@
 A knot t of one joint is a knot t + T of the next, T being the delay of the bar between them: exact rationals. Between
 two knots a joint's motion is one smooth function, and it rests only on stretches that start earlier. Where all delays
 are equal, knots are those of a common window: every delay, and the parts of it at which loads act.
+
+What stiff springs do between two knots is smooth, but no series of moderate length. There stretches are cut, and as the
+waves that are sent begin anew then, a cut travels as a knot does. Cuts are as far apart as a part or a multiple of the
+common measure of all delays, so that most of those that come back meet others.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache, cached_property, partial
+from functools import cache, cached_property, partial, reduce
 from heapq import heapify, heappop, heappush
 from itertools import pairwise
 
@@ -16,6 +20,7 @@ from flint import fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.events import scheduled
+from wavesym.exact.joint import SWING, JointLaw
 from wavesym.exact.schedule import Schedule
 from wavesym.model.loads import Applied
 from wavesym.model.model import Model
@@ -43,8 +48,7 @@ class Knots:
     def stretches(self) -> int:
         """How many stretches there are in all. CostError where there are too many to count."""
         if self._windowed:
-            (delay,) = self._delays
-            return len(self._last) * (int((self._until / delay).floor()) + 1) * len(self._parts)
+            return len(self._last) * self._count * len(self._parts)
         return sum(len(times) - 1 for times in self.joints.values())
 
     @property
@@ -76,7 +80,24 @@ class Knots:
             return {
                 number: [*(stage.start for stage in each), known.ends[number]] for number, each in known.stages.items()
             }
-        return {number: sorted({fmpq(0), *times, self._end(number)}) for number, times in self._met().items()}
+        if not self.cut:
+            return self._natural
+        return {
+            number: sorted({fmpq(0), *times, self._end(number, times)}) for number, times in self._met(True).items()
+        }
+
+    @cached_property
+    def cut(self) -> bool:
+        """Whether stretches are cut for the sake of springs."""
+        if self._windowed:
+            return len(self._natural_parts) < len(self._parts)
+        if self._network.contacts:  # stages bear what they have to
+            return False
+        return any(
+            high - low > longest
+            for number, longest in self._bearable.items()
+            for low, high in pairwise(self._natural[number])
+        )
 
     def longest(self, number: int) -> fmpq:
         """The longest stretch of a joint."""
@@ -100,22 +121,65 @@ class Knots:
         }
         return sorted({fmpq(0), *(time for time in found if 0 <= time <= self._until)})
 
+    # stiff springs
+
+    @cached_property
+    def _bearable(self) -> Mapping[int, fmpq]:
+        """How long stretches of joints with springs may be."""
+        laws = {number: JointLaw.of(self._network, self._network.joints[number]) for number in self._last}
+        return {number: law.longest for number, law in laws.items() if law.longest is not None}
+
+    @cached_property
+    def _apart(self) -> fmpq:
+        """How far cuts are apart, of a network with springs."""
+        measure, shortest = reduce(fmpq.gcd, self._delays), min(self._bearable.values())
+        return measure / (measure / shortest).ceil() if measure > shortest else (shortest / measure).floor() * measure
+
+    def _too_stiff(self, count: str) -> CostError:
+        return CostError(
+            f"output.until: springs make {len(self._last)} nodes swing at a rate of up to "
+            f"{float(SWING / min(self._bearable.values())):.3g}, which are {count} stretches by tau = "
+            f"{float(self._until):g}, at most {MOST_KNOTS} expected (softer springs, heavier bodies or a shorter "
+            "horizon help)"
+        )
+
     # equal delays
 
     @cached_property
-    def _parts(self) -> Sequence[fmpq]:
-        """Where in a window stretches start."""
+    def _natural_parts(self) -> Sequence[fmpq]:
+        """Where in a window stretches start for the sake of loads."""
         (delay,) = self._delays
         times = {load.time for _, load in self._loaded()}
         return sorted({fmpq(0), *(time - (time / delay).floor() * delay for time in times)})
 
     @cached_property
-    def _windows(self) -> Sequence[fmpq]:
+    def _parts(self) -> Sequence[fmpq]:
+        """Where in a window stretches start."""
+        natural = self._natural_parts
+        if not self._bearable:
+            return natural
+        gaps = [high - low for low, high in pairwise([*natural, self._span])]
+        longest = min(self._bearable.values())
+        cuts = [max(1, int((gap / longest).ceil())) for gap in gaps]
+        if len(cuts) < sum(cuts) and (count := len(self._last) * self._count * sum(cuts)) > MOST_KNOTS:
+            raise self._too_stiff(str(count))
+        return [part + gap * k / n for part, gap, n in zip(natural, gaps, cuts, strict=True) for k in range(n)]
+
+    @cached_property
+    def _count(self) -> int:
         (delay,) = self._delays
-        count = int((self._until / delay).floor()) + 1
-        starts = [n * delay + part for n in range(count) for part in self._parts]
-        # of a rod that is crossed not once no more is moved than is asked for
-        return [*starts, min(delay, self._until + 1) if count == 1 else count * delay]
+        return int((self._until / delay).floor()) + 1
+
+    @cached_property
+    def _span(self) -> fmpq:
+        """How long a window is; of a rod that is crossed not once no more is moved than is asked for."""
+        (delay,) = self._delays
+        return min(delay, self._until + 1) if self._count == 1 else delay
+
+    @cached_property
+    def _windows(self) -> Sequence[fmpq]:
+        starts = [n * self._span + part for n in range(self._count) for part in self._parts]
+        return [*starts, self._count * self._span]
 
     def _in_windows(self, place: fmpq) -> Iterator[fmpq]:
         (delay,) = self._delays
@@ -123,14 +187,19 @@ class Knots:
         parts = sorted({moment - (moment / delay).floor() * delay for moment in moments})
         if parts[0] != 0:
             yield fmpq(0)
-        for n in range(int((self._until / delay).floor()) + 1):
+        for n in range(self._count):
             yield from (n * delay + part for part in parts if n * delay + part <= self._until)
 
     # any delays
 
-    def _end(self, number: int) -> fmpq:
-        """Later than anything that is asked of a joint."""
-        return self._last[number] + 1
+    @cached_property
+    def _natural(self) -> Mapping[int, Sequence[fmpq]]:
+        return {number: sorted({fmpq(0), *times, self._last[number] + 1}) for number, times in self._met(False).items()}
+
+    def _end(self, number: int, times: set[fmpq]) -> fmpq:
+        """Later than anything that is asked of a joint, but no later than the stretches before it let it be known."""
+        end = max(times) + self._reach(number) if number in self._bearable else self._last[number] + self._apart
+        return min(self._last[number] + 1, end)
 
     def _loaded(self) -> Iterator[tuple[int, Applied]]:
         for number in self._last:
@@ -140,25 +209,42 @@ class Knots:
                         if load.source == unit.source:
                             yield number, load
 
-    def _met(self) -> dict[int, set[fmpq]]:
+    def _met(self, cutting: bool) -> dict[int, set[fmpq]]:
+        """When fronts meet joints; with cuts, where these are made, too."""
         network = self._network
         found: dict[int, set[fmpq]] = {number: set() for number in self._last}
-        coming = [(load.time, number) for number, load in self._loaded()]
-        coming += [(fmpq(0), number) for number in self._last if not network.at_rest(network.joints[number])]
+        latest: dict[int, fmpq] = {}
+        coming = [(load.time, number, False) for number, load in self._loaded()]
+        coming += [
+            (fmpq(0), number, False)
+            for number in self._last
+            if (cutting and number in self._bearable) or not network.at_rest(network.joints[number])
+        ]
         heapify(coming)
         count = 0
         while coming:
-            time, number = heappop(coming)
+            time, number, cut = heappop(coming)
             if number not in found or time > self._last[number] or time in found[number]:
                 continue
+            if cut and time - latest[number] < self._reach(number):
+                continue  # something has come since
             found[number].add(time)
+            latest[number] = time
             count += 1
             if count > MOST_KNOTS:
+                if cutting:
+                    raise self._too_stiff(f"more than {MOST_KNOTS}")
                 raise CostError(
                     f"output.until: fronts meet joints more than {MOST_KNOTS} times by tau = {float(time):g}, at most "
                     f"{MOST_KNOTS} expected (a shorter horizon or lengths with a larger common measure help)"
                 )
+            if cutting and number in self._bearable:
+                heappush(coming, (time + self._reach(number), number, True))
             for end, _ in network.joints[number].ends:
                 bar = network.bars[end.bar]
-                heappush(coming, (time + bar.delay, network.joint_of[network.point_at(network.beyond(end))]))
+                heappush(coming, (time + bar.delay, network.joint_of[network.point_at(network.beyond(end))], False))
         return found
+
+    def _reach(self, number: int) -> fmpq:
+        """How long a stretch may be until it is cut."""
+        return (self._bearable[number] / self._apart).floor() * self._apart

@@ -26,6 +26,8 @@ MOST_SECONDS = 60
 _COMPOSED, _EVALUATED = 2.5e-7, 6e-7
 # bits that a crossing of a bar takes from what is known of its wave
 _CROSSING = 2
+# bits for each unit that a series swings: what cancels, and what leaves 60 bits at the end of its terms
+_CANCELLED, _BORNE = 3, 16
 _LARGEST = 5 << 27  # bytes
 
 
@@ -52,13 +54,16 @@ class Motion:
     def first_bits(self) -> int:
         """With fewer bits nothing would be left at the end of the horizon; a power of 2, up to more than is had."""
         shortest = min(bar.delay for bar in self._network.bars)
-        lost = 64 + int(_CROSSING * self.until / shortest + max(map(self._swing, self._knots.joints)))
+        swing = max(map(self._swing, self._knots.joints))
+        lost = 64 + int(_CROSSING * self.until / shortest + _CANCELLED * swing)
+        if self._knots.cut:  # the terms that so many bits have must bear the swing, too
+            lost = max(lost, int(_BORNE * swing))
         return 1 << min(max(lost.bit_length(), 7), 20)
 
     def _swing(self, number: int) -> fmpq:
-        """The bits that cancel in the series of a joint on its longest stretch."""
+        """What the series of a joint has to bear on its longest stretch: exp(this)."""
         law = JointLaw.of(self._network, self._network.joints[number])
-        return law.fastest * self._knots.longest(number) * 3
+        return law.fastest * self._knots.longest(number)
 
     @cached_property
     def size(self) -> arb:

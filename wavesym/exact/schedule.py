@@ -19,7 +19,7 @@ from flint import arb, ctx, fmpq
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.cluster import Closed
 from wavesym.exact.crossing import first_fall, positive_until, sign_after
-from wavesym.exact.joint import Enclosed
+from wavesym.exact.joint import SWING, Enclosed
 from wavesym.exact.touching_joint import Moved
 from wavesym.exact.touching_waves import Stage, TouchingWaves
 from wavesym.model.loads import Applied
@@ -35,8 +35,6 @@ _LONGER = 3
 # working precision at first, and how much of it is beyond the first of these stretches
 _BITS, _SPARE = 448, 128
 _ATTEMPTS = 2
-# a series is begun anew where it would have to bear more than exp(this)
-_SWING = 24
 
 
 class GrazingError(WavesymError):
@@ -138,10 +136,15 @@ class _Doubt:
 
 @dataclass
 class _Course:
-    """A joint on its way: since when and how far its present stretch is known, and the knots to come."""
+    """A joint on its way: since when and how far its present stretch is known, and the knots to come.
+
+    It is moved no further at a time than `shortest`: nobody reads what is sent before, and springs do not swing more;
+    and not beyond `end`, later than its `last` instant that matters: until then it is known what comes to it.
+    """
 
     number: int
     last: fmpq
+    end: fmpq
     shortest: fmpq
     gaps: dict[int, _Gap]
     since: fmpq
@@ -161,7 +164,7 @@ class _Course:
 
     def limit(self, start: fmpq) -> fmpq:
         """How far it can be moved from an instant on."""
-        far = start + self.shortest
+        far = min(start + self.shortest, self.end)
         return min(self.knots[0], far) if self.knots else far
 
 
@@ -176,16 +179,21 @@ class _Search:
         # the first stretch on which it is left open what a contact does
         self._least = min(bar.delay for bar in network.bars) / fmpq(2) ** (ctx.prec - _SPARE)
         self._resolution = self._least / 4
+        # what nothing is asked of is not moved on, so that what comes from there goes on as no spring swings
+        springs = [joint.law.longest for joint in self._waves.joints.values() if joint.law.longest is not None]
+        self._beyond = min([bar.delay for bar in network.bars] + springs)
         self._courses = {number: self._course(number, until, loads) for number, until in last.items()}
 
     def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> _Course:
         network, joint = self._network, self._network.joints[number]
-        beside = [network.bars[end.bar].delay for end, _ in joint.ends]
+        far = [network.bars[end.bar].delay for end, _ in joint.ends]
+        if (longest := self._waves.joints[number].law.longest) is not None:
+            far.append(longest)
         gaps = {
             n: _Gap(arb(network.links[n].gap), network.links[n].gap, network.links[n].gap == 0)
             for n in self._waves.joints[number].touches
         }
-        course = _Course(number, last, min(beside, default=last + 1), gaps, fmpq(0), fmpq(0))
+        course = _Course(number, last, last + self._beyond, min(far, default=last + 1), gaps, fmpq(0), fmpq(0))
         sources = {unit.source for point in joint.points for unit in network.points[point].loads}
         for load in loads:
             if load.source in sources and 0 < load.time <= last:
@@ -221,7 +229,7 @@ class _Search:
 
     def _swings(self, moved: Moved, length: fmpq) -> bool:
         """Whether a stretch would become too long for its series."""
-        return moved.swing * length > _SWING
+        return moved.swing * length > SWING
 
     def _moved(self, course: _Course, start: fmpq, length: fmpq, closed: Closed) -> Moved:
         joint = self._waves.joints[course.number]

@@ -133,7 +133,8 @@ def pieces(model: Model, real: Real, tolerance: fmpq, optimize: str = "speed") -
     fits = _Fits(model, real, max(tolerance, real.roundoff / 8))
     found = _smallest(fits, tolerance) if optimize == "size" else _fastest(fits)
     for shorter in _SHORTER:
-        if shorter > found.per_unit and rational(found.error_bound) > tolerance > real.roundoff / 8:
+        missed = rational(found.error_bound) > tolerance > real.roundoff / 8
+        if shorter > found.per_unit and missed and fits.differ(shorter, found.per_unit):
             found = fits.fitted(shorter)
     if found.bytes > MOST_BYTES:
         raise _too_large(found.bytes, MOST_BYTES)
@@ -154,6 +155,8 @@ def _too_large(size: int, most: int) -> _TooLarge:
 def _fastest(fits: _Fits) -> Pieces:
     *shorter, longest = _USUAL
     for per_unit in shorter:
+        if not fits.differ(per_unit, longest):
+            break
         with suppress(_TooLarge):
             found = fits.fitted(per_unit, _FAST_BYTES)
             if found.bytes <= _FAST_BYTES:
@@ -215,6 +218,10 @@ class _Fits:
             raise
         except ArithmeticError as error:
             raise CostError(f"output.until: to fit pieces, {error} (a shorter horizon helps)") from None
+
+    def differ(self, per_unit: int, other: int) -> bool:
+        """Whether pieces are others; where breakpoints are close they are not."""
+        return self._least(per_unit) != self._least(other)
 
     def _least(self, per_unit: int) -> int:
         """How many pieces there are at least, of all outputs."""

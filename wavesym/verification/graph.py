@@ -145,6 +145,13 @@ class Graph:
         return self.pace * float(max(self.delays)), self.pace * float(np.max(self.impedance))
 
     @cached_property
+    def swings(self) -> float:
+        """How fast masses swing on their springs, at most, roughly; radians per unit of tau."""
+        heavy = self.mass > 0
+        stiff = np.sum(np.abs(self.stiffness), axis=1)
+        return float(np.sqrt(np.max(stiff[heavy] / self.mass[heavy], initial=0.0)))
+
+    @cached_property
     def groups(self) -> tuple[tuple[int, ...], ...]:
         """The points that springs, dashpots and contacts join, as they move together."""
         size = len(self.mass)

@@ -22,7 +22,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from heapq import heapify, heappop, heappush
-from itertools import product
+from itertools import pairwise, product
+from math import ceil
 
 import numpy as np
 from flint import fmpq
@@ -42,6 +43,9 @@ _POINTS, _FEWER = 24, 16
 
 # at so many instants balances are struck, on the horizon or on what is left when it is halved less often than this
 _STRUCK, _HALVED = (8, 4, 2, 1), 6
+
+# springs swing no further in a panel, in radians
+_SWING = 12
 
 # a sum rounds no more often than this for every panel
 _ROUNDINGS = 100
@@ -148,7 +152,12 @@ class Balancing:
     def _cuts(self, fronts: Iterable[Fraction], struck: Sequence[Fraction]) -> list[Fraction]:
         """Where panels end: at fronts, and where what is in a bar when a balance is struck has come in."""
         came_in = {time - delay for time in struck for delay in (Fraction(0), *self._graph.delays)}
-        return sorted({Fraction(0), *(time for time in (*fronts, *came_in) if struck and 0 < time <= struck[-1])})
+        ends = sorted({Fraction(0), *(time for time in (*fronts, *came_in) if struck and 0 < time <= struck[-1])})
+        cuts = ends[:1]
+        for low, high in pairwise(ends):
+            parts = max(1, ceil(float(high - low) * self._graph.swings / _SWING))
+            cuts += [low + (high - low) * k / parts for k in range(1, parts + 1)]
+        return cuts
 
     def _struck(self, seen: Model) -> list[tuple[Fraction, int]]:
         """When contacts open and close, and a point of each: where panels end, and nothing else."""

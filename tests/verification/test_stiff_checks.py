@@ -1,0 +1,38 @@
+"""What `verify` makes of stiff springs: balances stay sharp, and central differences that cannot keep up say so."""
+
+from __future__ import annotations
+
+import pytest
+
+import wavesym
+from wavesym.scene import lower
+from wavesym.verification import checks, graph_balance
+from wavesym.verification.checks import invariants, spacetime
+from wavesym.verification.reference import Known, known
+
+
+def made(stiffness: int) -> Known:
+    parts = ["fixed", {"rod": 1}, {"mass": 1, "spring": stiffness, "name": "body"}, {"rod": 1}]
+    load = [{"at": "body", "times": [0], "steps": [1]}]
+    output = {"until": 2, "tolerance": 1e-9, "velocity": ["body"]}
+    scene = wavesym.Scene(name="stiff", system={"type": "chain", "parts": parts}, load=load, output=output)
+    return known(lower(scene))
+
+
+def test_balances_of_a_stiff_spring_are_sharp() -> None:
+    for outcome in invariants(made(10**4)):
+        assert outcome.passed
+        assert not outcome.note
+        assert float(outcome.cells["allowed"]) < 1e-11
+
+
+def test_panels_on_which_springs_swing_far_tell_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(graph_balance, "_SWING", 1e9)
+    assert any(float(outcome.cells["allowed"]) > 1e-7 for outcome in invariants(made(10**5)))
+
+
+def test_central_differences_refuse_springs_that_they_cannot_follow(monkeypatch: pytest.MonkeyPatch) -> None:
+    stiff = made(10**4)
+    monkeypatch.setattr(checks, "MOST_MOVED", checks.MOST_MOVED // 1000)
+    assert all("radians" in outcome.note and outcome.cells == {"to": "refused"} for outcome in spacetime(stiff))
+    assert all("radians" not in outcome.note for outcome in spacetime(made(100)))
