@@ -16,7 +16,7 @@ from wavesym.model.model import Model
 from wavesym.model.network import Link, Network
 from wavesym.scene import Scene, lower
 from wavesym.verification.checks import integration, invariants, spacetime
-from wavesym.verification.contacts import fronts, happening
+from wavesym.verification.contacts import _compared, _Method, fronts, happening
 from wavesym.verification.graph import Change, alike, graph
 from wavesym.verification.graph_fronts import Undecided, integrate_fronts
 from wavesym.verification.graph_grid import graph_grid
@@ -96,6 +96,31 @@ def test_what_happens_is_found_by_both_integrations() -> None:
     assert [outcome.subject for outcome in outcomes] == ["0 opens", "0 closes", "0 opens"]
     assert all(outcome.passed and float(outcome.cells["fronts"]) < 1e-9 for outcome in outcomes)
     assert all(float(outcome.cells["grid"]) < float(outcome.cells["grid allowed"]) < 0.2 for outcome in outcomes)
+
+
+def train() -> Model:
+    """Equal bars at rest that touch, struck by one and later by another: inner contacts carry no force for long."""
+    bar = {"rod": 1}
+    parts = [bar | {"velocity": 1}, "contact", bar, "contact", bar, "contact", bar, "contact", bar]
+    parts += [{"contact": 1}, bar | {"velocity": -1}]
+    return model(parts, 12, velocity=["0", "3-", "5+"])
+
+
+def test_a_contact_without_force_may_part_by_nothing_on_a_grid() -> None:
+    """But no method may part it that is exact there, nor the grid where it is alone."""
+    outcomes = happening(known(train()))
+    assert all(outcome.passed for outcome in outcomes)
+    parted = [outcome for outcome in outcomes if outcome.cells["tau"] == "-"]
+    assert parted
+    struck = [(Change(0, "opens", 8.0), 0.1)]
+    methods = {"fronts": _Method([], 0.0), "grid": _Method(struck, 0.0)}
+    verdicts = {
+        "both see it": {"fronts": _Method(struck, 0.0), "grid": _Method(struck, 0.0)},
+        "only the grid": methods,
+        "the grid alone": methods | {"fronts": None},
+    }
+    found = {name: [each.passed for each in _compared("2", [], seen, 12.0)] for name, seen in verdicts.items()}
+    assert found == {"both see it": [False, True], "only the grid": [True], "the grid alone": [False]}
 
 
 def test_characteristics_leave_contacts_to_others() -> None:

@@ -102,7 +102,10 @@ class _Method:
 def _compared(
     place: str, claimed: Sequence[ContactEvent], methods: Mapping[str, _Method | None], until: float
 ) -> Iterator[Outcome]:
-    """A row for each event of a contact, and for each that a method has besides."""
+    """A row for each event of a contact, and for each that a method has besides.
+
+    A contact that carries no force may part by nothing on a grid: collocation decides, where there is one.
+    """
     rows: list[dict[str, str]] = [{"tau": f"{event.double:.12g}"} for event in claimed]
     passed = [True for _ in claimed]
     more = []
@@ -125,7 +128,8 @@ def _compared(
         for change, slack in method.struck[len(visible) :]:
             if change.tau + slack < until:
                 cells = {"tau": "-", name: f"{change.tau:.6g}", f"{name} allowed": shown(slack)}
-                more.append(Outcome(f"{place} {change.kind}", cells, False))
+                parts_by_nothing = name == "grid" and methods["fronts"] is not None
+                more.append(Outcome(f"{place} {change.kind}", cells, parts_by_nothing))
     for event, row, right in zip(claimed, rows, passed, strict=True):
         yield Outcome(f"{place} {event.kind}", row, right)
     yield from more
