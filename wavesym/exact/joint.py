@@ -30,6 +30,7 @@ from math import isqrt
 from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 
 from wavesym.exact.node_rules import joint_rule
+from wavesym.exact.onset import Onset
 from wavesym.model.network import Joint, Network
 
 
@@ -169,13 +170,19 @@ class Enclosed:
     """A function on a stretch: |function - polynomial| <= error.
 
     `exact` is the function, where it is known to be a polynomial. Where `choices` are given it is, at each instant, one
-    of these.
+    of these. `onset` tells how it begins, where that is known.
     """
 
     polynomial: arb_poly
     error: arb
     exact: fmpq_poly | None = None
     choices: tuple[Enclosed, ...] = ()
+    onset: Onset | None = None
+
+    @property
+    def begins(self) -> Onset | None:
+        """How it begins, of a polynomial too."""
+        return self.onset if self.exact is None else Onset.of(self.exact)
 
     @classmethod
     def of(cls, exact: fmpq_poly) -> Enclosed:

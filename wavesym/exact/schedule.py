@@ -315,6 +315,10 @@ class _Search:
         if known.exact is None:
             if known.choices and all(self._positive(each, low, high) is None for each in known.choices):
                 return None
+            if low == 0 and known.onset is not None:
+                low = known.onset.positive_until(high)
+                if low == high:
+                    return None
             end = positive_until(known.polynomial, known.error, low, high, self._resolution)
             return None if end is None else _End(end, _spread(known, end))
         fall = first_fall(known.exact, low, high)
@@ -414,15 +418,19 @@ def _starts_well(moved: Moved, n: int, gap: _Gap) -> bool:
     """Whether a contact is certainly what it is said to be, just after the start of a stretch."""
     if n in moved.closed:
         return all(
-            each.at(fmpq(0)) > 0 if each.exact is None else sign_after(each.exact, fmpq(0)) >= 0
+            _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) >= 0
             for each in moved.pushes[n].choices or (moved.pushes[n],)
         )
     if gap.wide:
         return True
     return all(
-        each.at(fmpq(0)) > 0 if each.exact is None else sign_after(each.exact, fmpq(0)) > 0
+        _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) > 0
         for each in moved.rates[n].choices or (moved.rates[n],)
     )
+
+
+def _begins_positive(known: Enclosed) -> bool:
+    return known.at(fmpq(0)) > 0 or (known.onset is not None and known.onset.sign() > 0)
 
 
 def _spread(known: Enclosed, x: fmpq) -> fmpq:

@@ -14,7 +14,7 @@ and displacements are continuous, no force can have been the first to pass it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain, combinations, product
 from math import log2, prod
 
@@ -23,8 +23,10 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 from wavesym.exact.cluster import Closed, Cluster, Touch, parted
 from wavesym.exact.exact_joint import exact_motion
 from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
+from wavesym.exact.joint_onset import onsets
 from wavesym.exact.network_waves import Acting, weighted
 from wavesym.exact.node_rules import joint_rule
+from wavesym.exact.onset import Onset, combined
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
 
@@ -168,7 +170,8 @@ class TouchingJoint:
             motion = self._balls(cluster)
             waves = [_shortened(together(force), result.length) for force in pushed]
             terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in waves))
-            q = [[(_ONE, each)] for each in motion.moved(waves, prescribed, result.length, terms)]
+            moving = motion.moved(waves, prescribed, result.length, terms)
+            q = [[(_ONE, each)] for each in self._begun(cluster, pushed, prescribed, moving, result.length)]
             result.state |= self._after(cluster, motion)
             result.swing = max(result.swing, law.fastest)
         for k, (group, ratio) in zip(points, law.moves, strict=True):
@@ -196,6 +199,31 @@ class TouchingJoint:
             return None
         velocity = [known[leader][0] for leader in cluster.law.leaders]
         return exact_motion(cluster.law, velocity, [u for _, u in known], forces, prescribed)
+
+    def _begun(
+        self,
+        cluster: Cluster,
+        pushed: Sequence[Terms],
+        prescribed: Sequence[fmpq_poly],
+        velocities: Sequence[Enclosed],
+        length: fmpq,
+    ) -> Sequence[Enclosed]:
+        """The velocities of groups, with how they begin, where that is known."""
+        known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
+        forces = [begins for terms in pushed if (begins := together(terms).begins) is not None]
+        given = [begins for p in prescribed if (begins := Onset.of(p)) is not None]
+        if len(known) < len(cluster.points) or len(forces) < len(pushed) or len(given) < len(prescribed):
+            return velocities
+        span = arb(0).union(arb(length))
+        begin = onsets(
+            cluster.law,
+            ([known[leader][0] for leader in cluster.law.leaders], [u for _, u in known]),
+            forces,
+            given,
+            [abs(each.over(span)).upper() for each in velocities],
+            length,
+        )
+        return [replace(each, onset=onset) for each, onset in zip(velocities, begin, strict=True)]
 
     def _pull(
         self,
@@ -406,7 +434,8 @@ def _added(terms: Terms) -> Enclosed:
     exact = fmpq_poly()
     for factor, known in terms:
         if known.exact is None:
-            return weighted(terms)
+            begin = [(factor, begins) for factor, known in terms if (begins := known.begins) is not None]
+            return replace(weighted(terms), onset=combined(begin) if len(begin) == len(terms) else None)
         exact += factor * known.exact
     return Enclosed.of(exact)
 
