@@ -170,7 +170,8 @@ class Enclosed:
     """A function on a stretch: |function - polynomial| <= error.
 
     `exact` is the function, where it is known to be a polynomial. Where `choices` are given it is, at each instant, one
-    of these. `onset` tells how it begins, where that is known.
+    of these. `onset` tells how it begins, where that is known. `least` and `most` are polynomials below and above it, as
+    far as such are known exactly.
     """
 
     polynomial: arb_poly
@@ -178,6 +179,13 @@ class Enclosed:
     exact: fmpq_poly | None = None
     choices: tuple[Enclosed, ...] = ()
     onset: Onset | None = None
+    least: fmpq_poly | None = None
+    most: fmpq_poly | None = None
+
+    @property
+    def bounds(self) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+        """Exact bounds, of a polynomial too."""
+        return (self.least, self.most) if self.exact is None else (self.exact, self.exact)
 
     @property
     def begins(self) -> Onset | None:

@@ -190,12 +190,18 @@ def weighted(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
 
 def later(known: Enclosed, by: fmpq) -> Enclosed:
     """The same function in the time since an instant that is `by` later."""
-    if by == 0 or (known.polynomial.length() <= 1 and not known.choices):
+    if by == 0 or (known.polynomial.length() <= 1 and not known.choices and known.least is known.most is None):
         return known
     if known.exact is not None:
         return Enclosed.of(known.exact(fmpq_poly([by, 1])))
     choices = tuple(later(each, by) for each in known.choices)
-    return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices)
+    least, most = _bounds_later(known, by)
+    return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices, None, least, most)
+
+
+def _bounds_later(known: Enclosed, by: fmpq) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+    least, most = (None if p is None else p(fmpq_poly([by, 1])) for p in (known.least, known.most))
+    return least, most
 
 
 def briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:
@@ -210,4 +216,5 @@ def briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:
         derivative, share = derivative.derivative(), share / n
     span = here.union(arb(by + length))
     rest = abs(derivative(span) * share) * arb(length) ** (terms - 1)
-    return Enclosed(arb_poly(powers), (known.error + rest).upper(), None, choices)
+    least, most = _bounds_later(known, by)
+    return Enclosed(arb_poly(powers), (known.error + rest).upper(), None, choices, None, least, most)

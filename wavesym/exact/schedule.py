@@ -313,6 +313,8 @@ class _Search:
     def _positive(self, known: Enclosed, low: fmpq, high: fmpq) -> _End | None:
         """Up to where a function that starts well is certainly not negative; None: all the way."""
         if known.exact is None:
+            if known.least is not None and first_fall(known.least, low, high) is None:
+                return None
             if known.choices and all(self._positive(each, low, high) is None for each in known.choices):
                 return None
             if low == 0 and known.onset is not None:
@@ -417,6 +419,8 @@ def _most_first(numbers: Sequence[int]) -> Iterator[Closed]:
 def _starts_well(moved: Moved, n: int, gap: _Gap) -> bool:
     """Whether a contact is certainly what it is said to be, just after the start of a stretch."""
     if n in moved.closed:
+        if (least := moved.pushes[n].least) is not None and sign_after(least, fmpq(0)) >= 0:
+            return True
         return all(
             _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) >= 0
             for each in moved.pushes[n].choices or (moved.pushes[n],)
@@ -448,6 +452,8 @@ def _range(known: Enclosed, length: fmpq) -> arb:
 
 def _pushes(known: Enclosed, length: fmpq) -> bool:
     """Whether a force is certainly not negative on a stretch."""
+    if known.least is not None and first_fall(known.least, fmpq(0), length) is None:
+        return True
     return all(
         _range(each, length) > 0 if each.exact is None else first_fall(each.exact, fmpq(0), length) is None
         for each in known.choices or (known,)

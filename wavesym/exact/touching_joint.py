@@ -320,10 +320,47 @@ class TouchingJoint:
             raise ArithmeticError("the force of a contact has no bound")
         result.velocities |= found.velocities
         result.sends |= found.sends
+        self._bounded(cluster, result, closed, vague, arriving, forces)
         result.rates |= found.rates
         result.pushes |= found.pushes
         if not cluster.stateless:
             result.state |= self._after(cluster, motion)
+
+    def _bounded(
+        self,
+        cluster: Cluster,
+        result: Moved,
+        closed: Closed,
+        vague: Closed,
+        arriving: Sequence[Enclosed],
+        forces: Sequence[Terms],
+    ) -> None:
+        """What is sent is on one side of what would be, were all vague contacts open: they push, and never pull."""
+        for alone in self._parted(closed, frozenset()):
+            law, points = alone.law, alone.points
+            pushed = [together(each) for each in grouped(alone, forces)] if set(points) <= set(cluster.points) else []
+            if not pushed or len(law.light) < len(pushed) or law.springs or any(each.exact is None for each in pushed):
+                continue
+            free = scattered(law, [[(_ONE, each)] for each in pushed], {})
+            moves = dict(zip(points, law.moves, strict=True))
+            gained = [self._gained(n, moves, law) for n in vague]
+            for n, (k, factor, _) in enumerate(self._ends):
+                if k in moves and result.sends[n].exact is None:
+                    group, ratio = moves[k]
+                    exact = self._sent(n, {k: scaled(free[group], ratio)}, arriving[n]).exact
+                    signs = [factor * ratio * gains[group] for gains in gained]
+                    least = exact if all(sign >= 0 for sign in signs) else None
+                    most = exact if all(sign <= 0 for sign in signs) else None
+                    result.sends[n] = _told(result.sends[n], None, least, most)
+
+    def _gained(self, n: int, moves: Mapping[int, tuple[int, fmpq]], law: JointLaw) -> list[fmpq]:
+        """The velocities that groups without mass gain where a contact pushes with 1."""
+        touch, push = self.touches[n], [fmpq(0)] * len(law.mass)
+        for place, factor in ((touch.right, _ONE), (touch.left, -touch.ratio)):
+            if place in moves:
+                group, ratio = moves[place]
+                push[group] += factor * ratio
+        return [sum((law.inverse[a, b] * x for b, x in enumerate(push)), fmpq(0)) for a in range(len(push))]
 
     def _under_every_choice(
         self,
@@ -427,7 +464,8 @@ def together(terms: Terms) -> Enclosed:
         return weighted(counted)
     ways = product(*(known.choices or (known,) for _, known in counted))
     factored = [factor for factor, _ in counted]
-    return _one_of(weighted(counted), [_added(list(zip(factored, way, strict=True))) for way in ways])
+    hull = _told(weighted(counted), None, *_bounds(counted))
+    return _one_of(hull, [_added(list(zip(factored, way, strict=True))) for way in ways])
 
 
 def _added(terms: Terms) -> Enclosed:
@@ -435,9 +473,27 @@ def _added(terms: Terms) -> Enclosed:
     for factor, known in terms:
         if known.exact is None:
             begin = [(factor, begins) for factor, known in terms if (begins := known.begins) is not None]
-            return replace(weighted(terms), onset=combined(begin) if len(begin) == len(terms) else None)
+            least, most = _bounds(terms)
+            onset = combined(begin) if len(begin) == len(terms) else None
+            return _told(weighted(terms), onset, least, most)
         exact += factor * known.exact
     return Enclosed.of(exact)
+
+
+def _bounds(terms: Terms) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+    """What a sum is not below, and not above, as far as that is known exactly."""
+    found: list[fmpq_poly | None] = []
+    for side in (0, 1):
+        parts = [(factor, known.bounds[side if factor > 0 else 1 - side]) for factor, known in terms]
+        bounds = [factor * p for factor, p in parts if p is not None]
+        found.append(sum(bounds, fmpq_poly()) if len(bounds) == len(terms) else None)
+    return found[0], found[1]
+
+
+def _told(hull: Enclosed, onset: Onset | None, least: fmpq_poly | None, most: fmpq_poly | None) -> Enclosed:
+    if onset is least is most is None:
+        return hull
+    return replace(hull, onset=onset, least=least, most=most)
 
 
 def _one_of(hull: Enclosed, functions: Sequence[Enclosed]) -> Enclosed:
@@ -448,7 +504,7 @@ def _one_of(hull: Enclosed, functions: Sequence[Enclosed]) -> Enclosed:
             different.append(each)
     if len(different) == 1:
         return different[0]
-    return Enclosed(hull.polynomial, hull.error, None, tuple(different) if len(different) <= _CHOICES else ())
+    return replace(hull, choices=tuple(different) if len(different) <= _CHOICES else ())
 
 
 def _either(functions: Sequence[Enclosed], span: arb) -> Enclosed:
