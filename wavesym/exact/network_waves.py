@@ -49,6 +49,10 @@ class Waves:
             if number not in shown or point.motion is not None
         }
 
+    def is_bare(self, end: End, tau: fmpq) -> bool:
+        """Whether nothing acts at an end of a bar from an instant on, so that it is not strained."""
+        return self.network.is_free(end)
+
     def arriving(self, number: int, start: fmpq, length: fmpq | None = None) -> list[Enclosed]:
         """What comes to the ends at a joint from an instant on, in the time since then (and for so long)."""
         waves = []

@@ -64,7 +64,7 @@ class PointState:
 class Moved:
     """A joint on a stretch: the velocities of its points, what it sends, and its state at the end.
 
-    `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
+    `bare` are the ends on which nothing acts. `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
     choice of closed contacts.
     """
 
@@ -76,6 +76,7 @@ class Moved:
     state: dict[int, PointState] = field(default_factory=dict)
     rates: dict[int, Enclosed] = field(default_factory=dict)
     pushes: dict[int, Enclosed] = field(default_factory=dict)
+    bare: set[int] = field(default_factory=set)
     swing: fmpq = _NOTHING
 
 
@@ -134,11 +135,18 @@ class TouchingJoint:
         for number, wave in enumerate(arriving):
             if number not in result.sends:
                 result.sends[number] = self._sent(number, result.velocities, wave)
+                if not _collected(self._strained(number, result.velocities, wave)):
+                    result.bare.add(number)
         return result
 
     def _sent(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Enclosed:
         k, ratio, _ = self._ends[number]
         return together([*scaled(velocities[k], ratio), (fmpq(-1), wave)])
+
+    def _strained(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Terms:
+        """What is sent less what arrives: up to a factor, what acts on the end."""
+        k, ratio, _ = self._ends[number]
+        return [*scaled(velocities[k], ratio), (fmpq(-2), wave)]
 
     def _parted(self, closed: Closed, vague: Closed) -> list[Cluster]:
         if (closed, vague) not in self._clusters:
@@ -451,12 +459,7 @@ def scaled(terms: Terms, factor: fmpq) -> Terms:
 
 def together(terms: Terms) -> Enclosed:
     """A sum with exact factors; exact where all of it is. What is in it twice is one."""
-    factors: dict[int, fmpq] = {}
-    parts: dict[int, Enclosed] = {}
-    for factor, known in terms:
-        parts[id(known)] = known
-        factors[id(known)] = factors.get(id(known), fmpq(0)) + factor
-    counted = [(factor, parts[each]) for each, factor in factors.items() if factor != 0]
+    counted = _collected(terms)
     number = prod(len(known.choices) or 1 for _, known in counted)
     if number == 1:
         return _added(counted)
@@ -466,6 +469,16 @@ def together(terms: Terms) -> Enclosed:
     factored = [factor for factor, _ in counted]
     hull = _told(weighted(counted), None, *_bounds(counted))
     return _one_of(hull, [_added(list(zip(factored, way, strict=True))) for way in ways])
+
+
+def _collected(terms: Terms) -> Terms:
+    """Each known function once, and none whose factors cancel."""
+    factors: dict[int, fmpq] = {}
+    parts: dict[int, Enclosed] = {}
+    for factor, known in terms:
+        parts[id(known)] = known
+        factors[id(known)] = factors.get(id(known), fmpq(0)) + factor
+    return [(factor, parts[each]) for each, factor in factors.items() if factor != 0]
 
 
 def _added(terms: Terms) -> Enclosed:
