@@ -335,8 +335,10 @@ class JointMotion:
         errors = {k: (speed / arb(law.mass[k]).sqrt()).upper() for k in law.heavy}
         if len(law.mass) == 1 and law.heavy and not law.springs and law.damping[0][0] != 0:
             (k,) = law.heavy  # a body alone comes to rest
-            errors[k] = errors[k].min((before + defect[k] / arb(law.damping[k][k])).upper())
-            self.unknown = (arb(law.mass[k]) * errors[k] ** 2 / 2).upper()
+            held = defect[k] / arb(law.damping[k][k])
+            errors[k] = errors[k].min((before + held).upper())
+            left = before * (-arb(law.damping[k][k]) * h / arb(law.mass[k])).exp() + held
+            self.unknown = (arb(law.mass[k]) * errors[k].min(left.upper()) ** 2 / 2).upper()
         right = []
         for k in law.light:
             value = defect[k] + speed * arb(law.squared[k][k]).sqrt()

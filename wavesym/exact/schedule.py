@@ -20,7 +20,7 @@ from wavesym.errors import CostError, WavesymError
 from wavesym.exact.cluster import Closed
 from wavesym.exact.crossing import first_fall, positive_until, sign_after
 from wavesym.exact.joint import Enclosed
-from wavesym.exact.touching_joint import Moved
+from wavesym.exact.touching_joint import Moved, SwingError
 from wavesym.exact.touching_waves import Stage, TouchingWaves
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
@@ -36,7 +36,7 @@ _LONGER = 3
 _BITS, _SPARE = 448, 128
 _ATTEMPTS = 2
 # a series is begun anew where it would have to bear more than exp(this)
-_SWING = 24
+_SWING = fmpq(12)
 
 
 class GrazingError(WavesymError):
@@ -224,8 +224,13 @@ class _Search:
         return moved.swing * length > _SWING
 
     def _moved(self, course: _Course, start: fmpq, length: fmpq, closed: Closed) -> Moved:
+        """On a stretch, or on as much of it as a series bears."""
         joint = self._waves.joints[course.number]
-        return joint.moved(self._waves.arriving(course.number, start, length), start, length, closed)
+        try:
+            arriving = self._waves.arriving(course.number, start, length)
+            return joint.moved(arriving, start, length, closed, bear=_SWING)
+        except SwingError as error:
+            return self._moved(course, start, error.longest, closed)
 
     def _begin(self, course: _Course, start: fmpq, limit: fmpq) -> None:
         """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""

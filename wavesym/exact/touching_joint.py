@@ -80,6 +80,14 @@ class Moved:
     swing: fmpq = _NOTHING
 
 
+class SwingError(Exception):
+    """A stretch that is too long for a series."""
+
+    def __init__(self, longest: fmpq) -> None:
+        super().__init__()
+        self.longest = longest
+
+
 class TouchingJoint:
     """A joint as time goes on, at the working precision."""
 
@@ -119,8 +127,12 @@ class TouchingJoint:
         length: fmpq,
         closed: Closed,
         vague: Closed = frozenset(),
+        bear: fmpq | None = None,
     ) -> Moved:
-        """Its motion on a stretch on which just these contacts are closed, and the `vague` ones now and then."""
+        """Its motion on a stretch on which just these contacts are closed, and the `vague` ones now and then.
+
+        SwingError where a series would have to bear more than exp(`bear`).
+        """
         acting = [load.on(start) for load in self._loads]
         forces = self._forces(arriving, acting)
         result = Moved(length, closed, vague, {})
@@ -128,7 +140,7 @@ class TouchingJoint:
             if any(self.touches[n].left in cluster.points for n in vague):
                 self._drift(cluster, result, arriving, forces, acting)
             else:
-                self._move(cluster, result, forces, acting)
+                self._move(cluster, result, forces, acting, bear)
         for n, touch in self.touches.items():
             if n not in closed and n not in vague:
                 result.rates[n] = together(_rate(touch, result.velocities))
@@ -158,7 +170,14 @@ class TouchingJoint:
 
     # with contacts closed and open
 
-    def _move(self, cluster: Cluster, result: Moved, forces: Sequence[Terms], acting: Sequence[fmpq_poly]) -> None:
+    def _move(
+        self,
+        cluster: Cluster,
+        result: Moved,
+        forces: Sequence[Terms],
+        acting: Sequence[fmpq_poly],
+        bear: fmpq | None,
+    ) -> None:
         law, points = cluster.law, cluster.points
         pushed = grouped(cluster, forces)
         prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
@@ -175,6 +194,8 @@ class TouchingJoint:
                 place = places[k](result.length) if self._elastic(k) else fmpq(0)
                 result.state[k] = PointState.of(ratio * exact[group](result.length), place)
         else:
+            if bear is not None and law.fastest * result.length > bear:
+                raise SwingError(bear / law.fastest)
             motion = self._balls(cluster)
             waves = [_shortened(together(force), result.length) for force in pushed]
             terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in waves))
