@@ -170,8 +170,8 @@ class Enclosed:
     """A function on a stretch: |function - polynomial| <= error.
 
     `exact` is the function, where it is known to be a polynomial. Where `choices` are given it is, at each instant, one
-    of these. `onset` tells how it begins, where that is known. `least` and `most` are polynomials below and above it, as
-    far as such are known exactly.
+    of these. `onset` tells how it begins, where that is known. `least` and `most` are exact polynomials that it is
+    never below, or above, where such are known.
     """
 
     polynomial: arb_poly
@@ -181,6 +181,11 @@ class Enclosed:
     onset: Onset | None = None
     least: fmpq_poly | None = None
     most: fmpq_poly | None = None
+
+    @property
+    def bounded(self) -> bool:
+        """Whether such bounds are known."""
+        return self.least is not None or self.most is not None
 
     @property
     def bounds(self) -> tuple[fmpq_poly | None, fmpq_poly | None]:
@@ -337,8 +342,8 @@ class JointMotion:
             (k,) = law.heavy  # a body alone comes to rest
             held = defect[k] / arb(law.damping[k][k])
             errors[k] = errors[k].min((before + held).upper())
-            left = before * (-arb(law.damping[k][k]) * h / arb(law.mass[k])).exp() + held
-            self.unknown = (arb(law.mass[k]) * errors[k].min(left.upper()) ** 2 / 2).upper()
+            after = before * (-arb(law.damping[k][k]) * h / arb(law.mass[k])).exp() + held
+            self.unknown = (arb(law.mass[k]) * errors[k].min(after.upper()) ** 2 / 2).upper()
         right = []
         for k in law.light:
             value = defect[k] + speed * arb(law.squared[k][k]).sqrt()

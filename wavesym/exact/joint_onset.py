@@ -36,7 +36,10 @@ def onsets(
         [each.derivatives(length) for each in forces],
         {k: each.derivatives(length) for k, each in enumerate(prescribed) if law.given[k] is not None},
         sizes,
-        [abs(arb(u)) + abs(arb(ratio)) * arb(length) * sizes[a] for u, (a, ratio) in zip(displacement, law.moves, strict=True)],
+        [
+            abs(arb(u)) + abs(arb(ratio)) * arb(length) * sizes[a]
+            for u, (a, ratio) in zip(displacement, law.moves, strict=True)
+        ],
     )
     return [Onset(fmpq_poly(c[:ORDER]), (last / factorial(ORDER)).upper()) for c, last in zip(q, beyond, strict=True)]
 

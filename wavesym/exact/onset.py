@@ -1,9 +1,8 @@
 """The first powers of a function that begins at a knot, exact, though it is no polynomial.
 
-Balls cannot tell how a function leaves 0. But what is at rest, or moves as is known exactly, begins with powers that are
-rational, whatever comes later: f(w) = c_0 + c_1 w + ... + c_(n-1) w^(n-1) + r, |r| <= beyond w^n. For w that are not too
-large the first of these that is not 0 has the last word, and how large is told by coarse bounds of the derivatives of
-M q' + C q + K u = s.
+Balls cannot tell how a function leaves 0. But what is at rest, or moves as is known exactly, begins with powers that
+are rational, whatever comes later: f(w) = c_0 + c_1 w + ... + c_(n-1) w^(n-1) + r, |r| <= beyond w^n. For small w the
+first of these that is not 0 has the last word, and coarse bounds of derivatives tell how small (see `joint_onset`).
 """
 
 from __future__ import annotations

@@ -27,7 +27,9 @@ from wavesym.model.network import Network
 from wavesym.numbers.doubles import middle, nearest
 
 # stretches in all, and those whose motion is a series: half a minute
-MOST_STAGES, MOST_SERIES = 20_000, 8_000
+MOST_STAGES, MOST_SERIES = 20_000, 20_000
+# how often joints are moved, told before it begins: half a minute
+MOST_MOVES = 500_000
 # an instant is known this closely, in shortest delays
 _WIDTH = fmpq(1, 2**230)
 # how much longer each next stretch is on which it is left open what a contact does, in bits
@@ -177,6 +179,7 @@ class _Search:
         self._least = min(bar.delay for bar in network.bars) / fmpq(2) ** (ctx.prec - _SPARE)
         self._resolution = self._least / 4
         self._courses = {number: self._course(number, until, loads) for number, until in last.items()}
+        self._refuse_many_moves()
 
     def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> _Course:
         network, joint = self._network, self._network.joints[number]
@@ -191,6 +194,16 @@ class _Search:
             if load.source in sources and 0 < load.time <= last:
                 heappush(course.knots, load.time)
         return course
+
+    def _refuse_many_moves(self) -> None:
+        """No joint is moved further at once than the shortest delay beside it."""
+        moves = sum((course.last / course.shortest for course in self._courses.values()), fmpq(0))
+        if moves > MOST_MOVES:
+            least = min(course.shortest for course in self._courses.values())
+            raise CostError(
+                f"output.until: waves cross the shortest rod in {nearest(least):g}, contacts are looked for "
+                f"{nearest(moves):.1e} times, at most {MOST_MOVES:g} expected (a shorter horizon or longer rods help)"
+            )
 
     def found(self) -> Schedule:
         """All of it."""

@@ -64,8 +64,8 @@ class PointState:
 class Moved:
     """A joint on a stretch: the velocities of its points, what it sends, and its state at the end.
 
-    `bare` are the ends on which nothing acts. `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
-    choice of closed contacts.
+    `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
+    choice of closed contacts. `bare` are the ends beside contacts on which nothing acts.
     """
 
     length: fmpq
@@ -108,6 +108,8 @@ class TouchingJoint:
             (place[point], bar.ratios[end.side], rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance)
             for bar, (end, point) in zip(bars, joint.ends, strict=True)
         ]
+        touched = {k for touch in self.touches.values() for k in (touch.left, touch.right)}
+        self._bare = {n for n, (k, _, _) in enumerate(self._ends) if k in touched and self.law.mass[k] == 0}
         self._state = {k: PointState.of(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
         # sets of points that have energy: mass or springs
         self._sets = [
@@ -147,7 +149,7 @@ class TouchingJoint:
         for number, wave in enumerate(arriving):
             if number not in result.sends:
                 result.sends[number] = self._sent(number, result.velocities, wave)
-                if not _collected(self._strained(number, result.velocities, wave)):
+                if number in self._bare and not _collected(self._strained(number, result.velocities, wave)):
                     result.bare.add(number)
         return result
 
@@ -197,7 +199,7 @@ class TouchingJoint:
             if bear is not None and law.fastest * result.length > bear:
                 raise SwingError(bear / law.fastest)
             motion = self._balls(cluster)
-            waves = [_shortened(together(force), result.length) for force in pushed]
+            waves = [together(force) for force in pushed]
             terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in waves))
             moving = motion.moved(waves, prescribed, result.length, terms)
             q = [[(_ONE, each)] for each in self._begun(cluster, pushed, prescribed, moving, result.length)]
@@ -218,13 +220,19 @@ class TouchingJoint:
     def _elastic(self, k: int) -> bool:
         return any(c != 0 for c in self.law.stiffness[k])
 
+    def _known(self, cluster: Cluster) -> list[tuple[fmpq, fmpq]] | None:
+        """The state of a cluster, where it is known exactly."""
+        known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
+        return known if len(known) == len(cluster.points) else None
+
     def _exactly(
         self, cluster: Cluster, pushed: Sequence[Terms], prescribed: Sequence[fmpq_poly]
     ) -> list[fmpq_poly] | None:
         """The velocities of groups, where all is known exactly and they are polynomials."""
-        known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
+        if (known := self._known(cluster)) is None:
+            return None
         forces = [force for terms in pushed if (force := together(terms).exact) is not None]
-        if len(known) < len(cluster.points) or len(forces) < len(pushed):
+        if len(forces) < len(pushed):
             return None
         velocity = [known[leader][0] for leader in cluster.law.leaders]
         return exact_motion(cluster.law, velocity, [u for _, u in known], forces, prescribed)
@@ -238,10 +246,11 @@ class TouchingJoint:
         length: fmpq,
     ) -> Sequence[Enclosed]:
         """The velocities of groups, with how they begin, where that is known."""
-        known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
+        if (known := self._known(cluster)) is None:
+            return velocities
         forces = [begins for terms in pushed if (begins := together(terms).begins) is not None]
         given = [begins for p in prescribed if (begins := Onset.of(p)) is not None]
-        if len(known) < len(cluster.points) or len(forces) < len(pushed) or len(given) < len(prescribed):
+        if len(forces) < len(pushed) or len(given) < len(prescribed):
             return velocities
         span = arb(0).union(arb(length))
         begin = onsets(
@@ -330,9 +339,7 @@ class TouchingJoint:
         bounds = dict.fromkeys(vague, arb(0))
         for _ in range(_ROUNDS):
             motion = self._balls(cluster)
-            pushed = [
-                _shortened(together(each), result.length) for each in grouped(cluster, self._with(forces, bounds))
-            ]
+            pushed = [together(each) for each in grouped(cluster, self._with(forces, bounds))]
             terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in pushed))
             q = motion.moved(pushed, prescribed, result.length, terms)
             known = {cluster.leader(a): [(_ONE, q[a])] for a in law.heavy}
@@ -506,10 +513,11 @@ def _added(terms: Terms) -> Enclosed:
     exact = fmpq_poly()
     for factor, known in terms:
         if known.exact is None:
+            if not any(other.onset or other.bounded for _, other in terms):
+                return weighted(terms)
             begin = [(factor, begins) for factor, known in terms if (begins := known.begins) is not None]
-            least, most = _bounds(terms)
             onset = combined(begin) if len(begin) == len(terms) else None
-            return _told(weighted(terms), onset, least, most)
+            return _told(weighted(terms), onset, *_bounds(terms))
         exact += factor * known.exact
     return Enclosed.of(exact)
 
@@ -525,7 +533,7 @@ def _bounds(terms: Terms) -> tuple[fmpq_poly | None, fmpq_poly | None]:
 
 
 def _told(hull: Enclosed, onset: Onset | None, least: fmpq_poly | None, most: fmpq_poly | None) -> Enclosed:
-    if onset is least is most is None:
+    if onset is None and least is None and most is None:
         return hull
     return replace(hull, onset=onset, least=least, most=most)
 
@@ -555,23 +563,6 @@ def _either(functions: Sequence[Enclosed], span: arb) -> Enclosed:
 def _subsets(numbers: Iterable[int]) -> Iterator[Closed]:
     every = sorted(numbers)
     return map(frozenset, chain.from_iterable(combinations(every, k) for k in range(len(every) + 1)))
-
-
-def _shortened(known: Enclosed, length: fmpq) -> Enclosed:
-    """Without the powers that count for less on a stretch than the last bit of the others."""
-    powers = known.polynomial.coeffs()
-    if known.exact is not None or len(powers) < 2:
-        return known
-    h, sizes, power = arb(length), [], arb(1)
-    for c in powers:
-        sizes.append((abs(c) * power).upper())
-        power *= h
-    least = max(sizes) * arb(2) ** (-ctx.prec - 4)
-    rest = arb(0)
-    while sizes and (more := (rest + sizes[-1]).upper()) <= least:
-        rest = more
-        sizes.pop()
-    return Enclosed(arb_poly(powers[: len(sizes)]), (known.error + rest).upper())
 
 
 def _terms(swing: fmpq, least: int) -> int:
