@@ -220,7 +220,8 @@ class JointMotion:
     """A joint as time goes on: where its points are and how fast, and the energy of what is not known of that.
 
     Velocities are those of groups. `places` are the coefficients of the points' displacements on the last stretch;
-    what springs make of these is off by at most sqrt(K_kk) `strained` at point k.
+    what springs make of these is off by at most sqrt(K_kk) `strained` at point k. Where it `decays`, the error of a
+    body alone is taken to decay as the body does, which matters only where signs of what is left are asked for.
     """
 
     law: JointLaw
@@ -229,6 +230,7 @@ class JointMotion:
     unknown: arb = field(default_factory=lambda: arb(0))
     places: list[list[arb]] = field(default_factory=list)
     strained: arb = field(default_factory=lambda: arb(0))
+    decays: bool = False
 
     def moved(
         self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int
@@ -342,8 +344,10 @@ class JointMotion:
             (k,) = law.heavy  # a body alone comes to rest
             held = defect[k] / arb(law.damping[k][k])
             errors[k] = errors[k].min((before + held).upper())
-            after = before * (-arb(law.damping[k][k]) * h / arb(law.mass[k])).exp() + held
-            self.unknown = (arb(law.mass[k]) * errors[k].min(after.upper()) ** 2 / 2).upper()
+            after = errors[k]
+            if self.decays:
+                after = after.min((before * (-arb(law.damping[k][k]) * h / arb(law.mass[k])).exp() + held).upper())
+            self.unknown = (arb(law.mass[k]) * after**2 / 2).upper()
         right = []
         for k in law.light:
             value = defect[k] + speed * arb(law.squared[k][k]).sqrt()

@@ -312,6 +312,7 @@ class TouchingJoint:
             [state[leader].velocity.mid() for leader in cluster.law.leaders],
             [each.displacement.mid() for each in state],
             (root * root).upper(),
+            decays=True,
         )
 
     def _after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
