@@ -7,7 +7,7 @@ increments are carried along into it, so that a value costs the same after many 
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from flint import arb, arb_poly, ctx, fmpq
@@ -15,7 +15,7 @@ from flint import arb, arb_poly, ctx, fmpq
 from wavesym.exact.increments import Increment
 from wavesym.exact.signal import Signal
 from wavesym.numbers.balls import FIRST_BITS, precise
-from wavesym.numbers.doubles import midpoint, rational, rounded
+from wavesym.numbers.doubles import midpoint, not_below, rational, rounded
 
 # a quarter of the smallest double
 NEGLIGIBLE = arb(2) ** -1076
@@ -101,6 +101,13 @@ class Balls:
         ]
         return max((abs(value).lower() for value in points), default=arb(0))
 
+    def sizes(self, until: fmpq) -> Iterator[arb]:
+        """Upper bounds of the absolute values on all segments in which a double lies."""
+        ends = [*self._starts[1:], until]
+        for segment, end in zip(self.segments, ends, strict=True):
+            if segment.start == end or not_below(segment.start) < not_below(end):
+                yield abs(segment.at(arb(0).union(arb(end - segment.start)))).upper()
+
     def at(self, tau: fmpq) -> arb:
         """The value at tau; at a jump the one to the right of it."""
         place = bisect_right(self._starts, tau) - 1
@@ -138,12 +145,20 @@ def values(
     return precise(attempt, bits) if most is None else precise(attempt, bits, most)
 
 
-def largest(source: Source, until: float, bits: int = FIRST_BITS) -> arb:
-    """A lower bound, a ball, of an output's largest absolute value on [0, until]; 0 where it is 0 throughout."""
+def largest(
+    source: Source,
+    until: float,
+    bits: int = FIRST_BITS,
+    vanishes: Callable[[Iterable[arb]], bool] = lambda sizes: False,
+) -> arb:
+    """A lower bound, a ball, of an output's largest absolute value on [0, until].
+
+    It is 0 where the output is 0 throughout, or `vanishes` as far as its largest values on segments tell.
+    """
 
     def attempt(bits: int) -> arb | None:
         balls = Balls(source(bits))
         size = balls.largest(rational(until))
-        return size if size > 0 or balls.zero else None
+        return size if size > 0 or balls.zero or vanishes(balls.sizes(rational(until))) else None
 
     return precise(attempt, bits)

@@ -10,7 +10,7 @@ from flint import acb, arb, arb_poly, ctx, fmpq, fmpq_poly
 from wavesym.numbers.doubles import middle
 
 _COARSE = 64  # bits that do, where the interval is no shorter than this part of the whole
-_CLOSE = fmpq(1, 2**24)
+_CLOSE, _NEAR = fmpq(1, 2**24), fmpq(1, 2**6)
 _STEPS = 12  # of Newton's method: each doubles the bits
 
 
@@ -28,7 +28,7 @@ def positive_until(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: f
         if b - a > high * _CLOSE:
             with ctx.workprec(_COARSE):
                 positive, way = _told(rough, error, a + half, half)
-        else:
+        if b - a <= high * _CLOSE or (b - a <= high * _NEAR and not positive and not way):
             positive, way = _told(p, error, a + half, half)
         if positive:
             continue

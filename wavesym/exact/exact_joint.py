@@ -6,7 +6,7 @@ powers are all 0, so are all that follow, and the series is the motion itself. O
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from flint import fmpq, fmpq_poly
 
@@ -27,15 +27,29 @@ def exact_motion(
 
     None where they are no polynomials.
     """
-    size = range(len(law.mass))
     end = max([p.length() for p in (*forces, *prescribed)], default=0)
+    for n, (q, still) in zip(range(end + _MORE), powers(law, velocity, displacement, forces, prescribed), strict=False):
+        if n >= end and still:
+            return [fmpq_poly(c) for c in q]
+    return None
+
+
+def powers(
+    law: JointLaw,
+    velocity: Sequence[fmpq],
+    displacement: Sequence[fmpq],
+    forces: Sequence[fmpq_poly],
+    prescribed: Sequence[fmpq_poly],
+) -> Iterator[tuple[list[list[fmpq]], bool]]:
+    """The first n powers of the velocities, for n = 0, 1, ...; and whether the state's next powers are all 0."""
+    size = range(len(law.mass))
     inverse = law.inverse
     q: list[list[fmpq]] = [[] for _ in size]
     u = [[value] for value in displacement]
     last = {k: velocity[k] for k in law.heavy}
-    for n in range(end + _MORE):
-        if n >= end and not any(last.values()) and not (law.springs and any(places[n] for places in u)):
-            return [fmpq_poly(powers) for powers in q]
+    n = 0
+    while True:
+        yield q, not any(last.values()) and not (law.springs and any(places[n] for places in u))
         pull = [forces[k][n] for k in size]
         if law.springs:
             for k in size:
@@ -55,4 +69,4 @@ def exact_motion(
         if law.springs:
             for k, (group, ratio) in enumerate(law.moves):
                 u[k].append(ratio * q[group][n] / (n + 1))
-    return None
+        n += 1

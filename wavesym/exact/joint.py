@@ -30,6 +30,7 @@ from math import isqrt
 from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 
 from wavesym.exact.node_rules import joint_rule
+from wavesym.exact.onset import Onset
 from wavesym.model.network import Joint, Network
 
 # a series is begun anew where it would have to bear more than exp(this)
@@ -177,13 +178,32 @@ class Enclosed:
     """A function on a stretch: |function - polynomial| <= error.
 
     `exact` is the function, where it is known to be a polynomial. Where `choices` are given it is, at each instant, one
-    of these.
+    of these. `onset` tells how it begins, where that is known. `least` and `most` are exact polynomials that it is
+    never below, or above, where such are known.
     """
 
     polynomial: arb_poly
     error: arb
     exact: fmpq_poly | None = None
     choices: tuple[Enclosed, ...] = ()
+    onset: Onset | None = None
+    least: fmpq_poly | None = None
+    most: fmpq_poly | None = None
+
+    @property
+    def bounded(self) -> bool:
+        """Whether such bounds are known."""
+        return self.least is not None or self.most is not None
+
+    @property
+    def bounds(self) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+        """Exact bounds, of a polynomial too."""
+        return (self.least, self.most) if self.exact is None else (self.exact, self.exact)
+
+    @property
+    def begins(self) -> Onset | None:
+        """How it begins, of a polynomial too."""
+        return self.onset if self.exact is None else Onset.of(self.exact)
 
     @classmethod
     def of(cls, exact: fmpq_poly) -> Enclosed:
@@ -208,7 +228,8 @@ class JointMotion:
     """A joint as time goes on: where its points are and how fast, and the energy of what is not known of that.
 
     Velocities are those of groups. `places` are the coefficients of the points' displacements on the last stretch;
-    what springs make of these is off by at most sqrt(K_kk) `strained` at point k.
+    what springs make of these is off by at most sqrt(K_kk) `strained` at point k. Where it `decays`, the error of a
+    body alone is taken to decay as the body does, which matters only where signs of what is left are asked for.
     """
 
     law: JointLaw
@@ -217,6 +238,7 @@ class JointMotion:
     unknown: arb = field(default_factory=lambda: arb(0))
     places: list[list[arb]] = field(default_factory=list)
     strained: arb = field(default_factory=lambda: arb(0))
+    decays: bool = False
 
     def moved(
         self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int
@@ -328,8 +350,12 @@ class JointMotion:
         errors = {k: (speed / arb(law.mass[k]).sqrt()).upper() for k in law.heavy}
         if len(law.mass) == 1 and law.heavy and not law.springs and law.damping[0][0] != 0:
             (k,) = law.heavy  # a body alone comes to rest
-            errors[k] = errors[k].min((before + defect[k] / arb(law.damping[k][k])).upper())
-            self.unknown = (arb(law.mass[k]) * errors[k] ** 2 / 2).upper()
+            held = defect[k] / arb(law.damping[k][k])
+            errors[k] = errors[k].min((before + held).upper())
+            after = errors[k]
+            if self.decays:
+                after = after.min((before * (-arb(law.damping[k][k]) * h / arb(law.mass[k])).exp() + held).upper())
+            self.unknown = (arb(law.mass[k]) * after**2 / 2).upper()
         right = []
         for k in law.light:
             value = defect[k] + speed * arb(law.squared[k][k]).sqrt()

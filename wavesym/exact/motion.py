@@ -28,6 +28,8 @@ _COMPOSED, _EVALUATED = 2.5e-7, 6e-7
 _CROSSING = 2
 # bits for each unit that a series swings: what cancels, and what leaves 60 bits at the end of its terms
 _CANCELLED, _BORNE = 3, 16
+# of the largest wave: what is smaller may be 0, where contacts open and close
+NEGLIGIBLE_WAVE = arb(2) ** -200
 _LARGEST = 5 << 27  # bytes
 
 
@@ -80,6 +82,10 @@ class Motion:
                 ),
                 default=arb(0),
             )
+
+    def vanishes(self, sizes: Iterable[arb]) -> bool:
+        """Whether what is at most so large counts as 0, where contacts open and close: no sum is exact then."""
+        return bool(self._network.contacts) and all(size < self.size * NEGLIGIBLE_WAVE for size in sizes)
 
     def refuse_long(self, taus: int) -> None:
         """CostError where values of all outputs at so many tau would take minutes."""
@@ -162,7 +168,7 @@ def _value(waves: Waves, probe: Probe, start: fmpq) -> Enclosed:
     if probe.place in (0, 1):
         end = End(probe.rod - 1, int(probe.place))
         if probe.quantity == "strain":
-            if waves.network.is_free(end):
+            if waves.is_bare(end, start):
                 return STILL
         elif (point := waves.network.point_at(end)) in waves.velocities:  # prescribed: as exact as it is given
             known, ratio = _velocity(waves, point, start), arb(bar.ratios[end.side])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from heapq import heapify, heappop, heappush
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
@@ -16,6 +16,7 @@ from wavesym.model.network import End, Joint, Network
 
 # on a stretch that is shorter a few powers are enough
 _BRIEF = fmpq(1, 2**64)
+_COARSE = 32
 
 
 @dataclass
@@ -49,14 +50,21 @@ class Waves:
             if number not in shown or point.motion is not None
         }
 
+    def is_bare(self, end: End, tau: fmpq) -> bool:
+        """Whether nothing acts at an end of a bar from an instant on, so that it is not strained."""
+        return self.network.is_free(end)
+
     def arriving(self, number: int, start: fmpq, length: fmpq | None = None) -> list[Enclosed]:
         """What comes to the ends at a joint from an instant on, in the time since then (and for so long)."""
         waves = []
         for end, _ in self.network.joints[number].ends:
             known, offset = self.sent[self.network.beyond(end)].at(start - self.network.bars[end.bar].delay)
-            waves.append(
-                briefly(known, offset, length) if length is not None and length < _BRIEF else later(known, offset)
-            )
+            if length is None:
+                waves.append(later(known, offset))
+            elif length < _BRIEF:
+                waves.append(briefly(known, offset, length))
+            else:
+                waves.append(_shortened(later(known, offset), length))
         return waves
 
 
@@ -190,12 +198,38 @@ def weighted(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
 
 def later(known: Enclosed, by: fmpq) -> Enclosed:
     """The same function in the time since an instant that is `by` later."""
-    if by == 0 or (known.polynomial.length() <= 1 and not known.choices):
+    if by == 0 or (known.polynomial.length() <= 1 and not known.choices and not known.bounded):
         return known
     if known.exact is not None:
         return Enclosed.of(known.exact(fmpq_poly([by, 1])))
     choices = tuple(later(each, by) for each in known.choices)
-    return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices)
+    least, most = _bounds_later(known, by)
+    return Enclosed(known.polynomial(arb_poly([arb(by), 1])), known.error, None, choices, None, least, most)
+
+
+def _bounds_later(known: Enclosed, by: fmpq) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+    least, most = (None if p is None else p(fmpq_poly([by, 1])) for p in (known.least, known.most))
+    return least, most
+
+
+def _shortened(known: Enclosed, length: fmpq) -> Enclosed:
+    """Without the powers that count for less on a stretch than the last bit of the others."""
+    powers = known.polynomial.coeffs()
+    if known.exact is not None or len(powers) < 2:
+        return known
+    bits, sizes = ctx.prec, []
+    with ctx.workprec(_COARSE):
+        h, power = arb(length), arb(1)
+        for c in powers:
+            sizes.append((abs(c) * power).upper())
+            power *= h
+        least, rest = max(sizes) * arb(2) ** (-bits - 4), arb(0)
+        while sizes and (more := (rest + sizes[-1]).upper()) <= least:
+            rest = more
+            sizes.pop()
+    if len(sizes) == len(powers):
+        return known
+    return replace(known, polynomial=arb_poly(powers[: len(sizes)]), error=(known.error + rest).upper())
 
 
 def briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:
@@ -210,4 +244,5 @@ def briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:
         derivative, share = derivative.derivative(), share / n
     span = here.union(arb(by + length))
     rest = abs(derivative(span) * share) * arb(length) ** (terms - 1)
-    return Enclosed(arb_poly(powers), (known.error + rest).upper(), None, choices)
+    least, most = _bounds_later(known, by)
+    return Enclosed(arb_poly(powers), (known.error + rest).upper(), None, choices, None, least, most)

@@ -13,7 +13,7 @@ from flint import arb, fmpq
 
 from wavesym.errors import CostError, RangeError
 from wavesym.exact.ball import Balls, Source, largest, segments, values
-from wavesym.exact.motion import Motion, waves_size
+from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion, waves_size
 from wavesym.exact.signal import Signal, refuse_many, signals
 from wavesym.model.model import Model
 from wavesym.numbers.balls import FIRST_BITS
@@ -92,10 +92,16 @@ class Reference:
         size = Balls(whole(self._first_bits)).largest(rational(self.tau_max))
         if not size > 0:  # it may be 0 throughout
             size = self._motion.size
-        return values(source, taus, self._first_bits, size * arb(2) ** -200, max(self._first_bits, _MOST_KNOWN))
+        return values(source, taus, self._first_bits, size * NEGLIGIBLE_WAVE, max(self._first_bits, _MOST_KNOWN))
 
     def largest(self) -> list[arb]:
-        """A lower bound of the largest absolute value of each output; 0 where it is 0 throughout."""
+        """A lower bound of the largest absolute value of each output; 0 where it is 0 throughout.
+
+        It is 0, too, where contacts open and close and nothing is more than 2^-200 of the largest wave.
+        """
+        if self.model.network.contacts:
+            vanishes = self._motion.vanishes
+            return [largest(source, self.tau_max, self._first_bits, vanishes) for source in self._sources()]
         return [largest(source, self.tau_max, self._first_bits) for source in self._sources()]
 
     def breakpoints(self) -> list[float]:

@@ -19,15 +19,17 @@ from flint import arb, ctx, fmpq
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.cluster import Closed
 from wavesym.exact.crossing import first_fall, positive_until, sign_after
-from wavesym.exact.joint import SWING, Enclosed
-from wavesym.exact.touching_joint import Moved
+from wavesym.exact.joint import Enclosed
+from wavesym.exact.touching_joint import Moved, SwingError
 from wavesym.exact.touching_waves import Stage, TouchingWaves
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
 from wavesym.numbers.doubles import middle, nearest
 
 # stretches in all, and those whose motion is a series: half a minute
-MOST_STAGES, MOST_SERIES = 20_000, 8_000
+MOST_STAGES, MOST_SERIES = 20_000, 20_000
+# how often joints are moved, told before it begins: half a minute
+MOST_MOVES = 500_000
 # an instant is known this closely, in shortest delays
 _WIDTH = fmpq(1, 2**230)
 # how much longer each next stretch is on which it is left open what a contact does, in bits
@@ -35,6 +37,8 @@ _LONGER = 3
 # working precision at first, and how much of it is beyond the first of these stretches
 _BITS, _SPARE = 448, 128
 _ATTEMPTS = 2
+# a series is begun anew where it would have to bear more than exp(this)
+_SWING = fmpq(12)
 
 
 class GrazingError(WavesymError):
@@ -183,6 +187,7 @@ class _Search:
         springs = [joint.law.longest for joint in self._waves.joints.values() if joint.law.longest is not None]
         self._beyond = min([bar.delay for bar in network.bars] + springs)
         self._courses = {number: self._course(number, until, loads) for number, until in last.items()}
+        self._refuse_many_moves()
 
     def _course(self, number: int, last: fmpq, loads: Sequence[Applied]) -> _Course:
         network, joint = self._network, self._network.joints[number]
@@ -199,6 +204,16 @@ class _Search:
             if load.source in sources and 0 < load.time <= last:
                 heappush(course.knots, load.time)
         return course
+
+    def _refuse_many_moves(self) -> None:
+        """No joint is moved further at once than the shortest delay beside it."""
+        moves = sum((course.last / course.shortest for course in self._courses.values()), fmpq(0))
+        if moves > MOST_MOVES:
+            least = min(course.shortest for course in self._courses.values())
+            raise CostError(
+                f"output.until: waves cross the shortest rod in {nearest(least):g}, contacts are looked for "
+                f"{nearest(moves):.1e} times, at most {MOST_MOVES:g} expected (a shorter horizon or longer rods help)"
+            )
 
     def found(self) -> Schedule:
         """All of it."""
@@ -229,11 +244,16 @@ class _Search:
 
     def _swings(self, moved: Moved, length: fmpq) -> bool:
         """Whether a stretch would become too long for its series."""
-        return moved.swing * length > SWING
+        return moved.swing * length > _SWING
 
     def _moved(self, course: _Course, start: fmpq, length: fmpq, closed: Closed) -> Moved:
+        """On a stretch, or on as much of it as a series bears."""
         joint = self._waves.joints[course.number]
-        return joint.moved(self._waves.arriving(course.number, start, length), start, length, closed)
+        try:
+            arriving = self._waves.arriving(course.number, start, length)
+            return joint.moved(arriving, start, length, closed, bear=_SWING)
+        except SwingError as error:
+            return self._moved(course, start, error.longest, closed)
 
     def _begin(self, course: _Course, start: fmpq, limit: fmpq) -> None:
         """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""
@@ -321,8 +341,14 @@ class _Search:
     def _positive(self, known: Enclosed, low: fmpq, high: fmpq) -> _End | None:
         """Up to where a function that starts well is certainly not negative; None: all the way."""
         if known.exact is None:
+            if known.least is not None and first_fall(known.least, low, high) is None:
+                return None
             if known.choices and all(self._positive(each, low, high) is None for each in known.choices):
                 return None
+            if low == 0 and known.onset is not None:
+                low = known.onset.positive_until(high)
+                if low == high:
+                    return None
             end = positive_until(known.polynomial, known.error, low, high, self._resolution)
             return None if end is None else _End(end, _spread(known, end))
         fall = first_fall(known.exact, low, high)
@@ -421,16 +447,22 @@ def _most_first(numbers: Sequence[int]) -> Iterator[Closed]:
 def _starts_well(moved: Moved, n: int, gap: _Gap) -> bool:
     """Whether a contact is certainly what it is said to be, just after the start of a stretch."""
     if n in moved.closed:
+        if (least := moved.pushes[n].least) is not None and sign_after(least, fmpq(0)) >= 0:
+            return True
         return all(
-            each.at(fmpq(0)) > 0 if each.exact is None else sign_after(each.exact, fmpq(0)) >= 0
+            _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) >= 0
             for each in moved.pushes[n].choices or (moved.pushes[n],)
         )
     if gap.wide:
         return True
     return all(
-        each.at(fmpq(0)) > 0 if each.exact is None else sign_after(each.exact, fmpq(0)) > 0
+        _begins_positive(each) if each.exact is None else sign_after(each.exact, fmpq(0)) > 0
         for each in moved.rates[n].choices or (moved.rates[n],)
     )
+
+
+def _begins_positive(known: Enclosed) -> bool:
+    return known.at(fmpq(0)) > 0 or (known.onset is not None and known.onset.sign() > 0)
 
 
 def _spread(known: Enclosed, x: fmpq) -> fmpq:
@@ -448,6 +480,8 @@ def _range(known: Enclosed, length: fmpq) -> arb:
 
 def _pushes(known: Enclosed, length: fmpq) -> bool:
     """Whether a force is certainly not negative on a stretch."""
+    if known.least is not None and first_fall(known.least, fmpq(0), length) is None:
+        return True
     return all(
         _range(each, length) > 0 if each.exact is None else first_fall(each.exact, fmpq(0), length) is None
         for each in known.choices or (known,)

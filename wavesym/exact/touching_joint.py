@@ -14,7 +14,7 @@ and displacements are continuous, no force can have been the first to pass it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain, combinations, product
 from math import log2, prod
 
@@ -23,8 +23,10 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 from wavesym.exact.cluster import Closed, Cluster, Touch, parted
 from wavesym.exact.exact_joint import exact_motion
 from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
+from wavesym.exact.joint_onset import onsets
 from wavesym.exact.network_waves import Acting, weighted
 from wavesym.exact.node_rules import joint_rule
+from wavesym.exact.onset import Onset, combined
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
 
@@ -63,7 +65,7 @@ class Moved:
     """A joint on a stretch: the velocities of its points, what it sends, and its state at the end.
 
     `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
-    choice of closed contacts.
+    choice of closed contacts. `bare` are the ends beside contacts on which nothing acts.
     """
 
     length: fmpq
@@ -74,7 +76,16 @@ class Moved:
     state: dict[int, PointState] = field(default_factory=dict)
     rates: dict[int, Enclosed] = field(default_factory=dict)
     pushes: dict[int, Enclosed] = field(default_factory=dict)
+    bare: set[int] = field(default_factory=set)
     swing: fmpq = _NOTHING
+
+
+class SwingError(Exception):
+    """A stretch that is too long for a series."""
+
+    def __init__(self, longest: fmpq) -> None:
+        super().__init__()
+        self.longest = longest
 
 
 class TouchingJoint:
@@ -97,6 +108,8 @@ class TouchingJoint:
             (place[point], bar.ratios[end.side], rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance)
             for bar, (end, point) in zip(bars, joint.ends, strict=True)
         ]
+        touched = {k for touch in self.touches.values() for k in (touch.left, touch.right)}
+        self._bare = {n for n, (k, _, _) in enumerate(self._ends) if k in touched and self.law.mass[k] == 0}
         self._state = {k: PointState.of(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
         # sets of points that have energy: mass or springs
         self._sets = [
@@ -116,8 +129,12 @@ class TouchingJoint:
         length: fmpq,
         closed: Closed,
         vague: Closed = frozenset(),
+        bear: fmpq | None = None,
     ) -> Moved:
-        """Its motion on a stretch on which just these contacts are closed, and the `vague` ones now and then."""
+        """Its motion on a stretch on which just these contacts are closed, and the `vague` ones now and then.
+
+        SwingError where a series would have to bear more than exp(`bear`).
+        """
         acting = [load.on(start) for load in self._loads]
         forces = self._forces(arriving, acting)
         result = Moved(length, closed, vague, {})
@@ -125,18 +142,25 @@ class TouchingJoint:
             if any(self.touches[n].left in cluster.points for n in vague):
                 self._drift(cluster, result, arriving, forces, acting)
             else:
-                self._move(cluster, result, forces, acting)
+                self._move(cluster, result, forces, acting, bear)
         for n, touch in self.touches.items():
             if n not in closed and n not in vague:
                 result.rates[n] = together(_rate(touch, result.velocities))
         for number, wave in enumerate(arriving):
             if number not in result.sends:
                 result.sends[number] = self._sent(number, result.velocities, wave)
+                if number in self._bare and not _collected(self._strained(number, result.velocities, wave)):
+                    result.bare.add(number)
         return result
 
     def _sent(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Enclosed:
         k, ratio, _ = self._ends[number]
         return together([*scaled(velocities[k], ratio), (fmpq(-1), wave)])
+
+    def _strained(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Terms:
+        """What is sent less what arrives: up to a factor, what acts on the end."""
+        k, ratio, _ = self._ends[number]
+        return [*scaled(velocities[k], ratio), (fmpq(-2), wave)]
 
     def _parted(self, closed: Closed, vague: Closed) -> list[Cluster]:
         if (closed, vague) not in self._clusters:
@@ -148,7 +172,14 @@ class TouchingJoint:
 
     # with contacts closed and open
 
-    def _move(self, cluster: Cluster, result: Moved, forces: Sequence[Terms], acting: Sequence[fmpq_poly]) -> None:
+    def _move(
+        self,
+        cluster: Cluster,
+        result: Moved,
+        forces: Sequence[Terms],
+        acting: Sequence[fmpq_poly],
+        bear: fmpq | None,
+    ) -> None:
         law, points = cluster.law, cluster.points
         pushed = grouped(cluster, forces)
         prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
@@ -165,10 +196,13 @@ class TouchingJoint:
                 place = places[k](result.length) if self._elastic(k) else fmpq(0)
                 result.state[k] = PointState.of(ratio * exact[group](result.length), place)
         else:
+            if bear is not None and law.fastest * result.length > bear:
+                raise SwingError(bear / law.fastest)
             motion = self._balls(cluster)
-            waves = [_shortened(together(force), result.length) for force in pushed]
+            waves = [together(force) for force in pushed]
             terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in waves))
-            q = [[(_ONE, each)] for each in motion.moved(waves, prescribed, result.length, terms)]
+            moving = motion.moved(waves, prescribed, result.length, terms)
+            q = [[(_ONE, each)] for each in self._begun(cluster, pushed, prescribed, moving, result.length)]
             result.state |= self._after(cluster, motion)
             result.swing = max(result.swing, law.fastest)
         for k, (group, ratio) in zip(points, law.moves, strict=True):
@@ -186,16 +220,48 @@ class TouchingJoint:
     def _elastic(self, k: int) -> bool:
         return any(c != 0 for c in self.law.stiffness[k])
 
+    def _known(self, cluster: Cluster) -> list[tuple[fmpq, fmpq]] | None:
+        """The state of a cluster, where it is known exactly."""
+        known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
+        return known if len(known) == len(cluster.points) else None
+
     def _exactly(
         self, cluster: Cluster, pushed: Sequence[Terms], prescribed: Sequence[fmpq_poly]
     ) -> list[fmpq_poly] | None:
         """The velocities of groups, where all is known exactly and they are polynomials."""
-        known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
+        if (known := self._known(cluster)) is None:
+            return None
         forces = [force for terms in pushed if (force := together(terms).exact) is not None]
-        if len(known) < len(cluster.points) or len(forces) < len(pushed):
+        if len(forces) < len(pushed):
             return None
         velocity = [known[leader][0] for leader in cluster.law.leaders]
         return exact_motion(cluster.law, velocity, [u for _, u in known], forces, prescribed)
+
+    def _begun(
+        self,
+        cluster: Cluster,
+        pushed: Sequence[Terms],
+        prescribed: Sequence[fmpq_poly],
+        velocities: Sequence[Enclosed],
+        length: fmpq,
+    ) -> Sequence[Enclosed]:
+        """The velocities of groups, with how they begin, where that is known."""
+        if (known := self._known(cluster)) is None:
+            return velocities
+        forces = [begins for terms in pushed if (begins := together(terms).begins) is not None]
+        given = [begins for p in prescribed if (begins := Onset.of(p)) is not None]
+        if len(forces) < len(pushed) or len(given) < len(prescribed):
+            return velocities
+        span = arb(0).union(arb(length))
+        begin = onsets(
+            cluster.law,
+            ([known[leader][0] for leader in cluster.law.leaders], [u for _, u in known]),
+            forces,
+            given,
+            [abs(each.over(span)).upper() for each in velocities],
+            length,
+        )
+        return [replace(each, onset=onset) for each, onset in zip(velocities, begin, strict=True)]
 
     def _pull(
         self,
@@ -246,6 +312,7 @@ class TouchingJoint:
             [state[leader].velocity.mid() for leader in cluster.law.leaders],
             [each.displacement.mid() for each in state],
             (root * root).upper(),
+            decays=True,
         )
 
     def _after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
@@ -273,9 +340,7 @@ class TouchingJoint:
         bounds = dict.fromkeys(vague, arb(0))
         for _ in range(_ROUNDS):
             motion = self._balls(cluster)
-            pushed = [
-                _shortened(together(each), result.length) for each in grouped(cluster, self._with(forces, bounds))
-            ]
+            pushed = [together(each) for each in grouped(cluster, self._with(forces, bounds))]
             terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in pushed))
             q = motion.moved(pushed, prescribed, result.length, terms)
             known = {cluster.leader(a): [(_ONE, q[a])] for a in law.heavy}
@@ -292,10 +357,47 @@ class TouchingJoint:
             raise ArithmeticError("the force of a contact has no bound")
         result.velocities |= found.velocities
         result.sends |= found.sends
+        self._bounded(cluster, result, closed, vague, arriving, forces)
         result.rates |= found.rates
         result.pushes |= found.pushes
         if not cluster.stateless:
             result.state |= self._after(cluster, motion)
+
+    def _bounded(
+        self,
+        cluster: Cluster,
+        result: Moved,
+        closed: Closed,
+        vague: Closed,
+        arriving: Sequence[Enclosed],
+        forces: Sequence[Terms],
+    ) -> None:
+        """What is sent is on one side of what would be, were all vague contacts open: they push, and never pull."""
+        for alone in self._parted(closed, frozenset()):
+            law, points = alone.law, alone.points
+            pushed = [together(each) for each in grouped(alone, forces)] if set(points) <= set(cluster.points) else []
+            if not pushed or len(law.light) < len(pushed) or law.springs or any(each.exact is None for each in pushed):
+                continue
+            free = scattered(law, [[(_ONE, each)] for each in pushed], {})
+            moves = dict(zip(points, law.moves, strict=True))
+            gained = [self._gained(n, moves, law) for n in vague]
+            for n, (k, factor, _) in enumerate(self._ends):
+                if k in moves and result.sends[n].exact is None:
+                    group, ratio = moves[k]
+                    exact = self._sent(n, {k: scaled(free[group], ratio)}, arriving[n]).exact
+                    signs = [factor * ratio * gains[group] for gains in gained]
+                    least = exact if all(sign >= 0 for sign in signs) else None
+                    most = exact if all(sign <= 0 for sign in signs) else None
+                    result.sends[n] = _told(result.sends[n], None, least, most)
+
+    def _gained(self, n: int, moves: Mapping[int, tuple[int, fmpq]], law: JointLaw) -> list[fmpq]:
+        """The velocities that groups without mass gain where a contact pushes with 1."""
+        touch, push = self.touches[n], [fmpq(0)] * len(law.mass)
+        for place, factor in ((touch.right, _ONE), (touch.left, -touch.ratio)):
+            if place in moves:
+                group, ratio = moves[place]
+                push[group] += factor * ratio
+        return [sum((law.inverse[a, b] * x for b, x in enumerate(push)), fmpq(0)) for a in range(len(push))]
 
     def _under_every_choice(
         self,
@@ -386,12 +488,7 @@ def scaled(terms: Terms, factor: fmpq) -> Terms:
 
 def together(terms: Terms) -> Enclosed:
     """A sum with exact factors; exact where all of it is. What is in it twice is one."""
-    factors: dict[int, fmpq] = {}
-    parts: dict[int, Enclosed] = {}
-    for factor, known in terms:
-        parts[id(known)] = known
-        factors[id(known)] = factors.get(id(known), fmpq(0)) + factor
-    counted = [(factor, parts[each]) for each, factor in factors.items() if factor != 0]
+    counted = _collected(terms)
     number = prod(len(known.choices) or 1 for _, known in counted)
     if number == 1:
         return _added(counted)
@@ -399,16 +496,47 @@ def together(terms: Terms) -> Enclosed:
         return weighted(counted)
     ways = product(*(known.choices or (known,) for _, known in counted))
     factored = [factor for factor, _ in counted]
-    return _one_of(weighted(counted), [_added(list(zip(factored, way, strict=True))) for way in ways])
+    hull = _told(weighted(counted), None, *_bounds(counted))
+    return _one_of(hull, [_added(list(zip(factored, way, strict=True))) for way in ways])
+
+
+def _collected(terms: Terms) -> Terms:
+    """Each known function once, and none whose factors cancel."""
+    factors: dict[int, fmpq] = {}
+    parts: dict[int, Enclosed] = {}
+    for factor, known in terms:
+        parts[id(known)] = known
+        factors[id(known)] = factors.get(id(known), fmpq(0)) + factor
+    return [(factor, parts[each]) for each, factor in factors.items() if factor != 0]
 
 
 def _added(terms: Terms) -> Enclosed:
     exact = fmpq_poly()
     for factor, known in terms:
         if known.exact is None:
-            return weighted(terms)
+            if not any(other.onset or other.bounded for _, other in terms):
+                return weighted(terms)
+            begin = [(factor, begins) for factor, known in terms if (begins := known.begins) is not None]
+            onset = combined(begin) if len(begin) == len(terms) else None
+            return _told(weighted(terms), onset, *_bounds(terms))
         exact += factor * known.exact
     return Enclosed.of(exact)
+
+
+def _bounds(terms: Terms) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+    """What a sum is not below, and not above, as far as that is known exactly."""
+    found: list[fmpq_poly | None] = []
+    for side in (0, 1):
+        parts = [(factor, known.bounds[side if factor > 0 else 1 - side]) for factor, known in terms]
+        bounds = [factor * p for factor, p in parts if p is not None]
+        found.append(sum(bounds, fmpq_poly()) if len(bounds) == len(terms) else None)
+    return found[0], found[1]
+
+
+def _told(hull: Enclosed, onset: Onset | None, least: fmpq_poly | None, most: fmpq_poly | None) -> Enclosed:
+    if onset is None and least is None and most is None:
+        return hull
+    return replace(hull, onset=onset, least=least, most=most)
 
 
 def _one_of(hull: Enclosed, functions: Sequence[Enclosed]) -> Enclosed:
@@ -419,7 +547,7 @@ def _one_of(hull: Enclosed, functions: Sequence[Enclosed]) -> Enclosed:
             different.append(each)
     if len(different) == 1:
         return different[0]
-    return Enclosed(hull.polynomial, hull.error, None, tuple(different) if len(different) <= _CHOICES else ())
+    return replace(hull, choices=tuple(different) if len(different) <= _CHOICES else ())
 
 
 def _either(functions: Sequence[Enclosed], span: arb) -> Enclosed:
@@ -436,23 +564,6 @@ def _either(functions: Sequence[Enclosed], span: arb) -> Enclosed:
 def _subsets(numbers: Iterable[int]) -> Iterator[Closed]:
     every = sorted(numbers)
     return map(frozenset, chain.from_iterable(combinations(every, k) for k in range(len(every) + 1)))
-
-
-def _shortened(known: Enclosed, length: fmpq) -> Enclosed:
-    """Without the powers that count for less on a stretch than the last bit of the others."""
-    powers = known.polynomial.coeffs()
-    if known.exact is not None or len(powers) < 2:
-        return known
-    h, sizes, power = arb(length), [], arb(1)
-    for c in powers:
-        sizes.append((abs(c) * power).upper())
-        power *= h
-    least = max(sizes) * arb(2) ** (-ctx.prec - 4)
-    rest = arb(0)
-    while sizes and (more := (rest + sizes[-1]).upper()) <= least:
-        rest = more
-        sizes.pop()
-    return Enclosed(arb_poly(powers[: len(sizes)]), (known.error + rest).upper())
 
 
 def _terms(swing: fmpq, least: int) -> int:

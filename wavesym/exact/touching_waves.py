@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
+from operator import itemgetter
 
 from flint import fmpq, fmpq_poly
 
@@ -13,7 +15,7 @@ from wavesym.exact.joint import Enclosed
 from wavesym.exact.network_waves import SentWave, Waves
 from wavesym.exact.touching_joint import Moved, TouchingJoint, together
 from wavesym.model.loads import Applied
-from wavesym.model.network import Network
+from wavesym.model.network import End, Network
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,14 @@ class TouchingWaves(Waves):
     def __init__(self, network: Network, joints: Iterable[int], loads: Sequence[Applied]) -> None:
         super().__init__(network)
         self.joints = {number: TouchingJoint(network, number, loads) for number in joints}
+        self._bare: dict[End, list[tuple[fmpq, bool]]] = {
+            end: [] for number in self.joints for end, _ in network.joints[number].ends
+        }
+
+    def is_bare(self, end: End, tau: fmpq) -> bool:
+        """Free, or beside a contact that is open from then on."""
+        known = self._bare.get(end)
+        return known[bisect_right(known, tau, key=itemgetter(0)) - 1][1] if known else super().is_bare(end, tau)
 
     def record(self, number: int, start: fmpq, moved: Moved) -> list[bool]:
         """Keep what a joint sends from an instant on; for each end, whether another function begins there.
@@ -38,6 +48,8 @@ class TouchingWaves(Waves):
         Where one goes on that is known exactly, nothing is kept.
         """
         joint = self.network.joints[number]
+        for n, (end, _) in enumerate(joint.ends):
+            self._bare[end].append((start, n in moved.bare))
         begun = [self._kept(self.sent[end], start, moved.sends[n]) for n, (end, _) in enumerate(joint.ends)]
         for k, point in enumerate(joint.points):
             if point in self.velocities:

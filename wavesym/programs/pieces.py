@@ -25,8 +25,8 @@ from itertools import pairwise
 from flint import arb, arb_poly, fmpq
 
 from wavesym.errors import CostError
-from wavesym.exact.ball import Segment
-from wavesym.exact.motion import Motion, is_zero
+from wavesym.exact.ball import Balls, Segment
+from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion, is_zero
 from wavesym.exact.silence import silent
 from wavesym.model.model import Model
 from wavesym.numbers import chebyshev
@@ -268,6 +268,9 @@ class _Fits:
         """Bound and largest value of an output, and its powers on every piece; None where so many bits do not do."""
         if is_zero(segments):
             return _nothing(cuts)
+        if self._motion.vanishes(Balls(segments).sizes(self._motion.until)):
+            _, powers = _nothing(cuts)
+            return (bound(NEGLIGIBLE_WAVE), 0.0), powers
         if self._too_blurred(segments, cuts, bits):
             return None
         local = list(_on_pieces(segments, cuts))

@@ -17,7 +17,11 @@ from wavesym.programs.schemes import SCHEMES, Scheme
 
 @dataclass(frozen=True)
 class ProgramOutput:
-    """An output: its name, its proved largest error relative to its largest value, and a lower bound of that value."""
+    """An output: its name, its proved largest error relative to its largest value, and a lower bound of that value.
+
+    Where contacts open and close, one that is 0 as far as can be told has the largest value 0, and what it may be
+    nevertheless is the `bound`, relative to the scene's largest wave.
+    """
 
     name: str
     bound: float
