@@ -174,3 +174,22 @@ def test_what_has_no_contacts_refuses_them(
         assert re.search(r"\bcontacts?\b", err)
         assert err.count("\n") == 1
         assert [path.name for path in tmp_path.iterdir()] == ["bars.toml"]
+
+
+def test_an_event_that_may_be_at_a_double_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The two sides move alike, and what is rounded of both hides that they meet at exactly 3/2."""
+    scene = tmp_path / "meet.toml"
+    text = """
+        name = "meet"
+        system.type = "chain"
+        system.parts = [
+            {mass = 1, velocity = 2}, {rod = 1, velocity = 1}, {contact = 1.5}, {rod = 1}, {mass = 1, velocity = 1},
+        ]
+        output = {until = 4, velocity = ["1-"]}
+    """
+    scene.write_text(text, encoding="utf-8")
+    asked = (["run", str(scene), "--samples", "9"], 2), (["generate", str(scene), "-o", str(tmp_path / "made")], 1)
+    for command, status in asked:
+        assert main(command) == status
+        assert "whether the contact at 1 closes before tau = 1.5 or just there" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == [scene]

@@ -41,3 +41,15 @@ def events(model: Model, real: Real = DOUBLE) -> tuple[ContactEvent, ...]:
             for each in known.found
             if each.link in seen and each.low <= until
         )
+
+
+def what_helps(model: Model, real: Real = DOUBLE) -> str:
+    """What would help where no number of bits does: an event that may be one of the `real` numbers is named."""
+    for event in events(model, real):
+        number = real.nearest(rational(event.double))
+        if not event.tau.is_exact() and event.tau.contains(arb(number)):
+            return (
+                f"no bits tell whether the contact at {event.x} {event.kind} before tau = {number:.17g} or just there; "
+                "another gap, load or length helps"
+            )
+    return "a shorter horizon helps"

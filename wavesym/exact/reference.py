@@ -13,6 +13,7 @@ from flint import arb, fmpq
 
 from wavesym.errors import CostError, RangeError
 from wavesym.exact.ball import Balls, Source, largest, segments, values
+from wavesym.exact.events import what_helps
 from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion, waves_size
 from wavesym.exact.signal import Signal, refuse_many, signals
 from wavesym.model.model import Model
@@ -83,9 +84,8 @@ class Reference:
         except RangeError:
             raise
         except ArithmeticError as error:
-            raise CostError(
-                f"output.until: for values right to the last bit, {error} (a shorter horizon helps)"
-            ) from None
+            helps = what_helps(self.model, self.real)
+            raise CostError(f"output.until: for values right to the last bit, {error} ({helps})") from None
 
     def _as_known(self, source: Source, whole: Source, taus: Sequence[float]) -> list[float]:
         """Where contacts open and close, as far as it is known when they do: to 2^-200 of the largest value."""

@@ -26,6 +26,7 @@ from flint import arb, arb_poly, fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.ball import Balls, Segment
+from wavesym.exact.events import what_helps
 from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion, is_zero
 from wavesym.exact.silence import silent
 from wavesym.model.model import Model
@@ -217,7 +218,8 @@ class _Fits:
         except OverflowError:  # of the numbers' format, which costs have nothing to do with
             raise
         except ArithmeticError as error:
-            raise CostError(f"output.until: to fit pieces, {error} (a shorter horizon helps)") from None
+            helps = what_helps(self._model, self._real)
+            raise CostError(f"output.until: to fit pieces, {error} ({helps})") from None
 
     def differ(self, per_unit: int, other: int) -> bool:
         """Whether pieces are others; where breakpoints are close they are not."""
