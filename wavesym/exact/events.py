@@ -49,7 +49,7 @@ def what_helps(model: Model, real: Real = DOUBLE) -> str:
         number = real.nearest(rational(event.double))
         if not event.tau.is_exact() and event.tau.contains(arb(number)):
             return (
-                f"no bits tell whether the contact at {event.x} {event.kind} before tau = {number:.17g} or just there; "
-                "another gap, load or length helps"
+                f"another gap, load or length at the contact at {event.x}, which {event.kind} where no bits tell it "
+                f"from tau = {number:.17g},"
             )
-    return "a shorter horizon helps"
+    return "a shorter horizon"

@@ -85,7 +85,7 @@ class Reference:
             raise
         except ArithmeticError as error:
             helps = what_helps(self.model, self.real)
-            raise CostError(f"output.until: for values right to the last bit, {error} ({helps})") from None
+            raise CostError(f"output.until: for values right to the last bit, {error} ({helps} helps)") from None
 
     def _as_known(self, source: Source, whole: Source, taus: Sequence[float]) -> list[float]:
         """Where contacts open and close, as far as it is known when they do: to 2^-200 of the largest value."""

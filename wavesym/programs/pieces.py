@@ -219,7 +219,7 @@ class _Fits:
             raise
         except ArithmeticError as error:
             helps = what_helps(self._model, self._real)
-            raise CostError(f"output.until: to fit pieces, {error} ({helps})") from None
+            raise CostError(f"output.until: to fit pieces, {error} ({helps} helps)") from None
 
     def differ(self, per_unit: int, other: int) -> bool:
         """Whether pieces are others; where breakpoints are close they are not."""
