@@ -15,8 +15,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import chain, combinations, product
-from math import log2, prod
+from itertools import chain, combinations
+from math import log2
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
@@ -24,19 +24,16 @@ from wavesym.exact.cluster import Closed, Cluster, Touch, parted
 from wavesym.exact.exact_joint import exact_motion
 from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
 from wavesym.exact.joint_onset import onsets
-from wavesym.exact.network_waves import Acting, weighted
+from wavesym.exact.network_waves import Acting
 from wavesym.exact.node_rules import joint_rule
-from wavesym.exact.onset import Onset, combined
+from wavesym.exact.onset import Onset
+from wavesym.exact.sums import Terms, collected, one_at_each_instant, scaled, together, told
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
-
-Terms = list[tuple[fmpq, Enclosed]]
-"""A sum with exact factors."""
 
 _NOTHING, _ONE = fmpq(0), fmpq(1)
 _SLACK = fmpq(1, 2**20)
 _ROUNDS = 8  # in which a bound of the forces must hold
-_CHOICES = 8  # of functions, that are told apart
 
 
 @dataclass(frozen=True)
@@ -149,7 +146,7 @@ class TouchingJoint:
         for number, wave in enumerate(arriving):
             if number not in result.sends:
                 result.sends[number] = self._sent(number, result.velocities, wave)
-                if number in self._bare and not _collected(self._strained(number, result.velocities, wave)):
+                if number in self._bare and not collected(self._strained(number, result.velocities, wave)):
                     result.bare.add(number)
         return result
 
@@ -388,7 +385,7 @@ class TouchingJoint:
                     signs = [factor * ratio * gains[group] for gains in gained]
                     least = exact if all(sign >= 0 for sign in signs) else None
                     most = exact if all(sign <= 0 for sign in signs) else None
-                    result.sends[n] = _told(result.sends[n], None, least, most)
+                    result.sends[n] = told(result.sends[n], None, least, most)
 
     def _gained(self, n: int, moves: Mapping[int, tuple[int, fmpq]], law: JointLaw) -> list[fmpq]:
         """The velocities that groups without mass gain where a contact pushes with 1."""
@@ -429,10 +426,12 @@ class TouchingJoint:
                     pushes.setdefault(n, []).append(force)
                 elif touch.left in moving and touch.right in moving:
                     rates.setdefault(n, []).append(together(_rate(touch, moving)))
-        result = Moved(fmpq(0), closed, vague, {k: [(_ONE, _either(each, span))] for k, each in velocities.items()})
-        result.sends = {n: _either(each, span) for n, each in sends.items()}
-        result.rates = {n: _either(each, span) for n, each in rates.items()}
-        result.pushes = {n: _either(each, span) for n, each in pushes.items()}
+        result = Moved(
+            fmpq(0), closed, vague, {k: [(_ONE, one_at_each_instant(each, span))] for k, each in velocities.items()}
+        )
+        result.sends = {n: one_at_each_instant(each, span) for n, each in sends.items()}
+        result.rates = {n: one_at_each_instant(each, span) for n, each in rates.items()}
+        result.pushes = {n: one_at_each_instant(each, span) for n, each in pushes.items()}
         return result
 
     def _with(self, forces: Sequence[Terms], bounds: Mapping[int, arb]) -> list[Terms]:
@@ -479,86 +478,6 @@ def _given(law: JointLaw, prescribed: Sequence[fmpq_poly]) -> dict[int, Terms]:
 
 def _rate(touch: Touch, velocities: Mapping[int, Terms]) -> Terms:
     return [*velocities[touch.right], *scaled(velocities[touch.left], -touch.ratio)]
-
-
-def scaled(terms: Terms, factor: fmpq) -> Terms:
-    """Each times a factor."""
-    return [(factor * each, known) for each, known in terms] if factor != 0 else []
-
-
-def together(terms: Terms) -> Enclosed:
-    """A sum with exact factors; exact where all of it is. What is in it twice is one."""
-    counted = _collected(terms)
-    number = prod(len(known.choices) or 1 for _, known in counted)
-    if number == 1:
-        return _added(counted)
-    if number > _CHOICES:
-        return weighted(counted)
-    ways = product(*(known.choices or (known,) for _, known in counted))
-    factored = [factor for factor, _ in counted]
-    hull = _told(weighted(counted), None, *_bounds(counted))
-    return _one_of(hull, [_added(list(zip(factored, way, strict=True))) for way in ways])
-
-
-def _collected(terms: Terms) -> Terms:
-    """Each known function once, and none whose factors cancel."""
-    factors: dict[int, fmpq] = {}
-    parts: dict[int, Enclosed] = {}
-    for factor, known in terms:
-        parts[id(known)] = known
-        factors[id(known)] = factors.get(id(known), fmpq(0)) + factor
-    return [(factor, parts[each]) for each, factor in factors.items() if factor != 0]
-
-
-def _added(terms: Terms) -> Enclosed:
-    exact = fmpq_poly()
-    for factor, known in terms:
-        if known.exact is None:
-            if not any(other.onset or other.bounded for _, other in terms):
-                return weighted(terms)
-            begin = [(factor, begins) for factor, known in terms if (begins := known.begins) is not None]
-            onset = combined(begin) if len(begin) == len(terms) else None
-            return _told(weighted(terms), onset, *_bounds(terms))
-        exact += factor * known.exact
-    return Enclosed.of(exact)
-
-
-def _bounds(terms: Terms) -> tuple[fmpq_poly | None, fmpq_poly | None]:
-    """What a sum is not below, and not above, as far as that is known exactly."""
-    found: list[fmpq_poly | None] = []
-    for side in (0, 1):
-        parts = [(factor, known.bounds[side if factor > 0 else 1 - side]) for factor, known in terms]
-        bounds = [factor * p for factor, p in parts if p is not None]
-        found.append(sum(bounds, fmpq_poly()) if len(bounds) == len(terms) else None)
-    return found[0], found[1]
-
-
-def _told(hull: Enclosed, onset: Onset | None, least: fmpq_poly | None, most: fmpq_poly | None) -> Enclosed:
-    if onset is None and least is None and most is None:
-        return hull
-    return replace(hull, onset=onset, least=least, most=most)
-
-
-def _one_of(hull: Enclosed, functions: Sequence[Enclosed]) -> Enclosed:
-    """What is within a hull and, at each instant, one of some functions; those that are known count once."""
-    different: list[Enclosed] = []
-    for each in functions:
-        if each.exact is None or all(each.exact != other.exact for other in different):
-            different.append(each)
-    if len(different) == 1:
-        return different[0]
-    return replace(hull, choices=tuple(different) if len(different) <= _CHOICES else ())
-
-
-def _either(functions: Sequence[Enclosed], span: arb) -> Enclosed:
-    """One of these at each instant: all their values on a stretch."""
-    hull = functions[0].over(span)
-    for known in functions[1:]:
-        hull = hull.union(known.over(span))
-    return _one_of(
-        Enclosed(arb_poly([hull.mid()]), hull.rad()),
-        [each for known in functions for each in known.choices or (known,)],
-    )
 
 
 def _subsets(numbers: Iterable[int]) -> Iterator[Closed]:

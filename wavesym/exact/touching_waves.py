@@ -13,7 +13,8 @@ from flint import fmpq, fmpq_poly
 from wavesym.exact.cluster import Closed
 from wavesym.exact.joint import Enclosed
 from wavesym.exact.network_waves import SentWave, Waves
-from wavesym.exact.touching_joint import Moved, TouchingJoint, together
+from wavesym.exact.sums import together
+from wavesym.exact.touching_joint import Moved, TouchingJoint
 from wavesym.model.loads import Applied
 from wavesym.model.network import End, Network
 
