@@ -71,7 +71,9 @@ def evaluated(library: ctypes.CDLL, scene: Scene, taus: np.ndarray) -> np.ndarra
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("language", ["c99", "c++17"])
 def test_it_is_strict_c_and_cpp(language: str, precision: str, tmp_path: Path) -> None:
-    chain(precision).built((*LANGUAGES[language], *STRICT, "-O1"), tmp_path)
+    of = chain(precision)
+    library = of.built((*LANGUAGES[language], *STRICT, "-O1"), tmp_path)
+    assert hasattr(library, f"{of.scene.name}_eval")
 
 
 # what compilers make of sizes that they can tell: no state, and one
@@ -90,6 +92,7 @@ def test_few_states_are_no_warning(level: str, states: str, tmp_path: Path) -> N
     for file, text in files(make(lower(scene), Request(evaluator="march")), "c").items():
         (tmp_path / file).write_text(text)
     compiler().run([*LANGUAGES["c99"], *STRICT, level, "-c", "few.c", "-o", "few.o"], tmp_path)
+    assert (tmp_path / "few.o").stat().st_size > 0
 
 
 @pytest.mark.parametrize(
