@@ -370,7 +370,7 @@ def test_a_joint_that_does_not_split_is_named_with_its_polynomial() -> None:
     ).network
     assert refusal(network) == (
         "system: the joint at bob has the polynomial s^2 + s + 1, one with factors s + g, g rational, expected for "
-        "exact tables (pieces and `run` serve it)"
+        "exact tables"
     )
     held = replace(network, points=(replace(network.points[0], stiffness=fmpq(0)), *network.points[1:]))
     assert "the joint at x = 3-, x = 3+ has the polynomial 21 s^2 + 35 s + 15," in refusal(held)

@@ -21,6 +21,8 @@ from wavesym.model.network import End
 from wavesym.model.probe import Probe
 
 MOST_STRETCHES = 20_000
+# with those that loads begin: a quarter of a minute, and as long again for the values of a self-test
+MOST_LOADED = 150_000
 MOST_SECONDS = 60
 # measured: seconds for a segment, times its terms to the power of 3/2, and for each term of a value
 _COMPOSED, _EVALUATED = 2.5e-7, 6e-7
@@ -50,6 +52,11 @@ class Motion:
             raise CostError(
                 f"output.until: {self._knots.told} are {kept:g} stretches to keep, at most {MOST_STRETCHES} expected "
                 "(a shorter horizon helps)"
+            )
+        if (loaded := self._knots.stretches) > MOST_LOADED:
+            raise CostError(
+                f"load: {self._knots.told} are {loaded} stretches between loads, at most {MOST_LOADED} expected (fewer "
+                "load times or a shorter horizon help)"
             )
 
     @cached_property

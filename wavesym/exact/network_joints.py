@@ -51,12 +51,12 @@ class NetworkJoints:
         if (count := len(law.mass)) > MOST_POINTS:
             raise UnservedError(
                 f"system: springs and dashpots hold {count} nodes together ({self.told(number)}), "
-                f"at most {MOST_POINTS} expected for exact tables (pieces and `run` serve it)"
+                f"at most {MOST_POINTS} expected for exact tables"
             )
         if rates(law) is None:
             raise UnservedError(
                 f"system: the joint at {self.told(number)} has the polynomial {written(joint_polynomial(law))}, "
-                "one with factors s + g, g rational, expected for exact tables (pieces and `run` serve it)"
+                "one with factors s + g, g rational, expected for exact tables"
             )
         return joint_response(law)
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from graphlib import TopologicalSorter
@@ -110,12 +111,35 @@ def unit_response(rules: Rules, source: str, wanted: Mapping[Function, int]) -> 
     """
     intervals = needed(rules, wanted)
     order = _order(rules, intervals)
-    response: dict[Function, list[Increment]] = {function: [] for function in intervals}
+    first = _reached(rules, source, intervals)
+    response: dict[Function, list[Increment]] = {
+        function: [{}] * min(first.get(function, count), count) for function, count in intervals.items()
+    }
     for n in range(max(intervals.values(), default=0)):
         for function in order:
-            if n < intervals[function]:
+            if len(response[function]) == n < intervals[function]:
                 response[function].append(_increment(rules[function], source, response, n))
     return response
+
+
+def _reached(rules: Rules, source: str, functions: Iterable[Function]) -> dict[Function, int]:
+    """How many intervals pass at every function before what a source stirs can reach it; without those it never does."""
+    users: dict[Function, list[tuple[Function, int]]] = defaultdict(list)
+    coming = []
+    for function in functions:
+        rule = rules[function]
+        for term in rule.terms:
+            users[Function(term.function, term.rod)].append((function, term.back))
+        coming += [(load.back, function) for load in rule.loads if load.source == source]
+    heapify(coming)
+    first: dict[Function, int] = {}
+    while coming:  # least intervals first, so that every function is met once
+        passed, function = heappop(coming)
+        if function not in first:
+            first[function] = passed
+            for user, back in users[function]:
+                heappush(coming, (passed + back, user))
+    return first
 
 
 def _order(rules: Rules, intervals: Mapping[Function, int]) -> list[Function]:
