@@ -123,7 +123,7 @@ def unit_response(rules: Rules, source: str, wanted: Mapping[Function, int]) -> 
 
 
 def _reached(rules: Rules, source: str, functions: Iterable[Function]) -> dict[Function, int]:
-    """How many intervals pass at every function before what a source stirs can reach it; without those it never does."""
+    """How many intervals pass at every function before a source can reach it; without those that it never reaches."""
     users: dict[Function, list[tuple[Function, int]]] = defaultdict(list)
     coming = []
     for function in functions:

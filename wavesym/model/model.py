@@ -10,6 +10,7 @@ from flint import fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.model.chain import Chain
+from wavesym.model.clock import Clock
 from wavesym.model.light_cone import felt, light_cone
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
@@ -34,7 +35,8 @@ class Model:
     """A chain, the loads on it, what is watched until tau = `until`, and the error allowed.
 
     `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
-    `tolerance` is relative to an output's largest value. Loads are sorted by time.
+    `tolerance` is relative to an output's largest value. Loads are sorted by time. The `clock` is that of a physical
+    scene.
     """
 
     name: str
@@ -45,6 +47,7 @@ class Model:
     until: fmpq
     tolerance: fmpq
     labels: Labels
+    clock: Clock | None = None
 
     @property
     def named(self) -> Chain:

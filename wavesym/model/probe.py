@@ -6,13 +6,16 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
+_ONE = fmpq(1)
+
 
 @dataclass(frozen=True)
 class Probe:
     """An output: `quantity` on rod `rod`, `place` rod lengths from its left node (0 <= place <= 1).
 
     The right-going wave has come so far from that node, the left-going one 1 - place from the other.
-    A `point` that no rod shows is watched itself (`rod` is 0 then).
+    A `point` that no rod shows is watched itself (`rod` is 0 then). What users get is `factor` times the dimensionless
+    value, in `unit`.
     """
 
     name: str
@@ -20,6 +23,8 @@ class Probe:
     rod: int
     place: fmpq
     point: int | None = None
+    factor: fmpq = _ONE
+    unit: str = ""
 
     @property
     def x(self) -> fmpq:

@@ -1,0 +1,1 @@
+"""The fourth program: a chain as its own modes of vibration, each stepped exactly."""
