@@ -75,6 +75,13 @@ class SampledAcceleration(SampledLoad):
         return self.sampled("a", "b")
 
 
+def known_base(base: object) -> str:
+    """Which of the two bases. Raises the error of `table.wrong`."""
+    if base in ("force", "ground"):
+        return str(base)
+    raise wrong(f'{shown(base)} given, "force" or "ground" expected')
+
+
 class Building(Preset):
     """m storeys between the foundation at x = 0, floors, and the roof at x = m."""
 
@@ -89,9 +96,7 @@ class Building(Preset):
     @field_validator("base", mode="before")
     @classmethod
     def _known(cls, base: object) -> object:
-        if base not in ("force", "ground"):
-            raise wrong(f'{shown(base)} given, "force" or "ground" expected')
-        return base
+        return known_base(base)
 
     @property
     def system(self) -> System:
