@@ -107,7 +107,7 @@ class Collision(Preset):
         """The place of an output. MisplacedError."""
         place = super().located(position, quantity, loads)
         touching = 0 < place.x < self.m and place.x % 2 == 0
-        if self.contacts == "closed" or quantity == "strain" or not touching:
+        if self.contacts == "closed" or quantity in ("strain", "force") or not touching:
             return place
         if not position.side:
             at = position.written
