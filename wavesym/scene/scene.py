@@ -39,8 +39,8 @@ class Scene(SceneTable):
     """A chain, its loads, and what to watch of it: `Scene(name=..., system={...}, load=[...], output={...})`.
 
     The fields are those of a scene file. Everything is dimensionless: x in rod lengths, tau = c t / l. Numbers may be
-    int, Fraction, Decimal, float (the shortest decimal that reads back to it) or text such as "1/3".
-    Raises SceneError for the first thing that is wrong.
+    int, Fraction, Decimal, float (the shortest decimal that reads back to it) or text such as "1/3". The path of a
+    record counts from the current folder. Raises SceneError for the first thing that is wrong.
 
     >>> import wavesym
     >>> scene = wavesym.Scene(
