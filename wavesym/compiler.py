@@ -255,7 +255,7 @@ def run(scene: Scene, samples: int, at: Sequence[float] | None = None) -> Iterat
 
 def _columns(model: Model) -> list[str]:
     """The header of CSV, with units where there are any."""
-    names = [f"{probe.name} [{probe.unit}]" if probe.unit else probe.name for probe in model.probes]
+    names = [probe.told for probe in model.probes]
     clock = model.clock
     return ["tau" if clock is None else "time" if clock.unit == "s" else f"time [{clock.unit}]", *names]
 

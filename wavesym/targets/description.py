@@ -104,7 +104,7 @@ def describe(program: Program) -> Description:
         units=_units(model),
         tolerance=_tolerance(model),
         outputs=tuple(
-            NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)), probe.unit, told(probe))
+            NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)), probe.unit, probe.told)
             for output, constant, probe in zip(program.outputs, constants(names), model.probes, strict=True)
         ),
         output_count=str(len(names)),
