@@ -10,13 +10,16 @@ from flint import arb, ctx, fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut, cut
-from wavesym.exact.modes.shape import Mode, rigid, shape
+from wavesym.exact.modes.shape import Mode, Trial, rigid, trial, yielding
 from wavesym.exact.modes.stiffness import Law, Stiffness, Vector
 from wavesym.model.network import Network
 
-_BITS = (192, 768)
+_BITS = 192
+_BITS_A_ROW = 8  # of which determinants in balls take about 4
 _BISECTIONS = 64
-_NEWTON = 8
+_NEWTON = 6
+_OFF = arb(2) ** -44  # a frequency itself tells less of its mode than one near it
+_SHARP = arb(2) ** -60  # shapes
 
 
 class CoincidenceError(ArithmeticError):
@@ -73,13 +76,20 @@ def modes(network: Network, places: tuple[tuple[int, fmpq], ...], count: int) ->
 
 def _modes(stiffness: Stiffness, count: int) -> Iterator[Mode]:
     free = rigid(stiffness.network)
-    guesses = searched(stiffness, count)
-    for n, guess in enumerate(guesses.tolist(), 1):
+    ways: list[tuple[int, Law]] = []
+    for times in (1, 4):
+        bits = times * (_BITS + _BITS_A_ROW * len(stiffness.points))
+        with ctx.workprec(bits):
+            ways.append((bits, stiffness.law(arb)))
+    for n, guess in enumerate(searched(stiffness, count).tolist(), 1):
         if n == 1 and free:
-            with ctx.workprec(_BITS[0]):
+            with ctx.workprec(_BITS):
                 yield _still(stiffness, free)
             continue
-        yield _proved(stiffness, n, guess)
+        mode = next((made for bits, law in ways if (made := _proved(stiffness, law, n, guess, bits))), None)
+        if mode is None:
+            raise CoincidenceError(f"two frequencies meet near {guess:.6g}")
+        yield mode
 
 
 def searched(stiffness: Stiffness, count: int) -> Vector:
@@ -95,34 +105,29 @@ def searched(stiffness: Stiffness, count: int) -> Vector:
     return high
 
 
-def _proved(stiffness: Stiffness, n: int, guess: float) -> Mode:
-    """The n-th mode. CoincidenceError where it cannot be told from others."""
-    for bits in _BITS:
-        with ctx.workprec(bits):
-            law = stiffness.law(arb)
-            w = _polished(stiffness, law, arb(guess), bits)
-            if w is None or not _is(stiffness, law, n, w):
-                w = _bisected(stiffness, law, n, guess, bits)
-            if w is None:
-                continue
-            rows, _, mass = shape(stiffness, law, w)
-            made = Mode(stiffness, w, _normal(stiffness, rows, mass))
-            if all(q.rad() < arb(2) ** -70 for q in made.points):
-                return made
-    raise CoincidenceError(f"two frequencies meet near {guess:.6g}")
+def _proved(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -> Mode | None:
+    """The n-th mode; None where it cannot be told from others."""
+    with ctx.workprec(bits):
+        root = yielding(stiffness, law, arb(guess) * (1 - _OFF))
+        w = _polished(stiffness, law, n, guess, root, bits) or _bisected(stiffness, law, n, guess, bits)
+        if w is None:
+            return None
+        points = _normal(stiffness, trial(stiffness, law, w, root))
+    return Mode(stiffness, w, points) if all(q.rad() < _SHARP for q in points) else None
 
 
-def _polished(stiffness: Stiffness, law: Law, w: arb, bits: int) -> arb | None:
-    """A ball of a few units in the last digits around the frequency nearest to w, by Newton's method."""
-    small = arb(2) ** (-bits // 2 - 16)
+def _polished(stiffness: Stiffness, law: Law, n: int, guess: float, root: int, bits: int) -> arb | None:
+    """The n-th frequency by Newton's method, from one near it."""
+    near, small = arb(2) ** -48, arb(2) ** (-bits // 3)
+    w = arb(guess)
     for _ in range(_NEWTON):
-        _, left, mass = shape(stiffness, law, w)
-        better = (w * w + left / mass).sqrt().mid()
+        better = trial(stiffness, law, w, root).better(w)
         if not better.is_finite():
             return None
         moved, w = abs(better - w), better
-        if moved < small * w:
-            return arb(w, (w * small).upper())
+        ball = arb(w, (w * small).upper())
+        if moved < near * w and _is(stiffness, law, n, ball):
+            return ball
     return None
 
 
@@ -143,7 +148,7 @@ def _bisected(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -
     reach = arb(2) ** -40
     while (below := stiffness.proved(law, high)) is None or below < n:
         high, reach = (high * (1 + reach)).mid(), 4 * reach
-    while high - low > arb(2) ** (-bits // 2 - 16) * high:
+    while high - low > arb(2) ** (-bits // 3) * high:
         # a little off the middle, which may be a frequency
         middle = ((low * 515 + high * 509) / 1024).mid()
         count = stiffness.proved(law, middle)
@@ -154,12 +159,12 @@ def _bisected(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -
     return w if _is(stiffness, law, n, w) else None
 
 
-def _normal(stiffness: Stiffness, rows: list[arb], mass: arb) -> list[arb]:
+def _normal(stiffness: Stiffness, found: Trial) -> list[arb]:
     """The points of a shape, of mass 1."""
-    scale = mass.rsqrt()
+    scale = found.mass.rsqrt()
     points = [arb(0)] * len(stiffness.network.points)
     for row, point in enumerate(stiffness.points):
-        points[point] = rows[row] * scale
+        points[point] = found.rows[row] * scale
     return points
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from flint import arb, fmpq
 
@@ -55,36 +56,56 @@ def rigid(network: Network) -> tuple[fmpq, ...] | None:
     return tuple(found[number] for number in range(len(network.points)))
 
 
-def shape(stiffness: Stiffness, law: Law, w: arb) -> tuple[Sequence[arb], arb, arb]:
-    """What moves how far at a frequency w (rows of K), with the largest as 1; its K(w) there; and its mass.
+class Trial(NamedTuple):
+    """How far each row moves; all of them are in balance but row `root`, on which the `rest` acts; and the mass."""
 
-    All other rows are in balance: K(w) times the shape is 0 but in the row of the largest. Where that is 0, too, w is a
-    frequency, and else w^2 + K/mass is a better one, squared (Newton's method, as -dK/dw^2 of a shape is its mass).
+    rows: list[arb]
+    root: int
+    rest: arb
+    mass: arb
+
+    def better(self, w: arb) -> arb:
+        """A better frequency than w: Newton's method, as the w^2-derivative of -K, seen by a shape, is its mass."""
+        return (w * w + self.rest * self.rows[self.root] / self.mass).sqrt().mid()
+
+
+def yielding(stiffness: Stiffness, law: Law, w: arb) -> int:
+    """The row on which a force moves most, near a frequency one that moves much in its mode."""
+    diagonal, up = law.matrix(w, *circular(law, w))
+    pivots = stiffness.pivots(diagonal, up)
+    # what is left of a row once all others are eliminated
+    left = list(pivots)
+    for row in reversed(range(len(left))):
+        parent = stiffness.parents[row]
+        if parent is not None:
+            left[row] = pivots[row] * left[parent] / (left[parent] + up[row] * up[row] / pivots[row])
+    return min(range(len(left)), key=lambda row: abs(left[row].mid()))
+
+
+def trial(stiffness: Stiffness, law: Law, w: arb, root: int) -> Trial:
+    """How the chain moves at a frequency where only row `root` is held. Where nothing acts on it that is a mode.
+
+    Determinants of branches instead of pivots: a part of the chain may have the same frequency as the whole.
     """
     cot, csc = circular(law, w)
     diagonal, up = law.matrix(w, cot, csc)
-    d = stiffness.pivots(diagonal, up)
-    parents, count = stiffness.parents, len(d)
-    push = [up[row] * up[row] / d[row] for row in range(count)]
-    # what is left of a row once all others are eliminated; `without` is a parent's without the branch of the row
-    left, without = list(d), list(d)
-    for row in reversed(range(count)):
-        parent = parents[row]
-        if parent is not None:
-            without[row] = left[parent] + push[row]
-            left[row] = d[row] * left[parent] / without[row]
-    largest = min(range(count), key=lambda row: abs(float(left[row].mid())))
-    found: list[arb | None] = [None] * count
-    found[largest] = arb(1)
-    row, parent = largest, parents[largest]
-    while parent is not None:
-        found[parent] = -up[row] * found[row] / without[row]
-        row, parent = parent, parents[parent]
-    for row in reversed(range(count)):
-        if found[row] is None:
-            parent = parents[row]
-            found[row] = arb(0) if parent is None else -up[row] * found[parent] / d[row]
-    return found, left[largest], _mass(law, w, found, cot, csc)  # type: ignore[return-value]
+    order = stiffness.orders(root)
+    # of each branch its determinant, and that without the row it hangs by: the product of those of its branches
+    whole, inner = list(diagonal), [arb(1)] * len(diagonal)
+    for row, parent, edge in reversed(order[1:]):
+        whole[parent] = whole[parent] * whole[row] - up[edge] * up[edge] * inner[row] * inner[parent]
+        inner[parent] = inner[parent] * whole[row]
+    scale = [arb(1)] * len(diagonal)
+    hanging: dict[int, list[int]] = {}
+    for row, parent, _ in order[1:]:
+        hanging.setdefault(parent, []).append(row)
+    for row, parent, edge in order[1:]:
+        scale[row] = -up[edge] * scale[parent]
+        for other in hanging[parent]:
+            if other != row:
+                scale[row] *= whole[other]
+    rows = [a * b for a, b in zip(scale, inner, strict=True)]
+    return Trial(rows, root, whole[root], _mass(law, w, rows, cot, csc))
 
 
 def _mass(law: Law, w: arb, found: Sequence[arb], cot: Sequence[arb], csc: Sequence[arb]) -> arb:
@@ -95,10 +116,11 @@ def _mass(law: Law, w: arb, found: Sequence[arb], cot: Sequence[arb], csc: Seque
     same = [(t * s * s - c / w) / 2 for t, c, s in zip(law.delays, cot, csc, strict=True)]
     other = [(s / w - t * c * s) / 2 for t, c, s in zip(law.delays, cot, csc, strict=True)]
     for bar in law.bars:
-        if bar.left is not None:
-            total += bar.at_left * found[bar.left] ** 2 * same[bar.delay]
-        if bar.right is not None:
-            total += bar.at_right * found[bar.right] ** 2 * same[bar.delay]
-            if bar.left is not None:
-                total += 2 * bar.across * found[bar.left] * found[bar.right] * other[bar.delay]
+        left, right = (None if row is None else found[row] for row in (bar.left, bar.right))
+        if left is not None:
+            total += bar.at_left * left * left * same[bar.delay]
+        if right is not None:
+            total += bar.at_right * right * right * same[bar.delay]
+            if left is not None:
+                total += 2 * bar.across * left * right * other[bar.delay]
     return total

@@ -145,6 +145,25 @@ class Stiffness:
             [number(point.mass) for point in free], [*map(number, held)], [*map(number, over)], bars, [*map(number, delays)]
         )
 
+    def orders(self, root: int) -> list[tuple[int, int, int]]:
+        """The rows from one row outwards, each with the row that it hangs by and the row that names their coupling."""
+        return self._orders.get(root) or self._orders.setdefault(root, self._ordered(root))
+
+    @cached_property
+    def _orders(self) -> dict[int, list[tuple[int, int, int]]]:
+        return {}
+
+    def _ordered(self, root: int) -> list[tuple[int, int, int]]:
+        beside: list[list[tuple[int, int]]] = [[] for _ in self.parents]
+        for row, parent in enumerate(self.parents):
+            if parent is not None:
+                beside[row].append((parent, row))
+                beside[parent].append((row, row))
+        found = [(root, root, root)]
+        for row, before, _ in found:
+            found += [(other, row, edge) for other, edge in beside[row] if other != before]
+        return found
+
     def pivots(self, diagonal: list[Quantity], up: Sequence[Quantity]) -> list[Quantity]:
         """The pivots of K, `diagonal` eliminated in place."""
         for row, parent in enumerate(self.parents):
