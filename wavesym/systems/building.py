@@ -79,6 +79,13 @@ class RecordedAcceleration(OfBase, RecordedLoad):
     """A base acceleration that is a record."""
 
 
+def known_base(base: object) -> str:
+    """Which of the two bases. Raises the error of `table.wrong`."""
+    if base in ("force", "ground"):
+        return str(base)
+    raise wrong(f'{shown(base)} given, "force" or "ground" expected')
+
+
 class Building(Preset):
     """m storeys between the foundation at x = 0, floors, and the roof at x = m."""
 
@@ -93,9 +100,7 @@ class Building(Preset):
     @field_validator("base", mode="before")
     @classmethod
     def _known(cls, base: object) -> object:
-        if base not in ("force", "ground"):
-            raise wrong(f'{shown(base)} given, "force" or "ground" expected')
-        return base
+        return known_base(base)
 
     @property
     def system(self) -> System:
