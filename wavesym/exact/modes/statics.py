@@ -135,9 +135,7 @@ class Statics:
         network = self.stiffness.network
         total = sum((q * q * point.mass for q, point in zip(points, network.points, strict=True)), arb(0))
         for number, bar in enumerate(network.bars):
-            a, b = (
-                self.at(points, end) + (broken or {}).get(end, arb(0)) for end in (End(number, 0), End(number, 1))
-            )
+            a, b = (self.at(points, end) + (broken or {}).get(end, arb(0)) for end in (End(number, 0), End(number, 1)))
             total += arb(bar.impedance * bar.delay / 3) * (a * a + a * b + b * b)
         return total
 

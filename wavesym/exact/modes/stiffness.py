@@ -113,7 +113,9 @@ class Stiffness:
                         found[other] = point
                         coming.append(other)
                     elif found[point] != other and found[other] != point:
-                        raise UnservedError("system.parts: a ring of parts given, a chain with branches expected in modes")
+                        raise UnservedError(
+                            "system.parts: a ring of parts given, a chain with branches expected in modes"
+                        )
         return list(found.items())
 
     def law(self, number: Callable[[fmpq], Quantity]) -> Law:
@@ -142,7 +144,11 @@ class Stiffness:
             for bar in network.bars
         ]
         return Law(
-            [number(point.mass) for point in free], [*map(number, held)], [*map(number, over)], bars, [*map(number, delays)]
+            [number(point.mass) for point in free],
+            [*map(number, held)],
+            [*map(number, over)],
+            bars,
+            [*map(number, delays)],
         )
 
     def orders(self, root: int) -> list[tuple[int, int, int]]:
