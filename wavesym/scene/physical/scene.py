@@ -15,10 +15,11 @@ from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.collision import PhysicalCollision
 from wavesym.scene.physical.drive import PhysicalDrive
-from wavesym.scene.physical.loads import dimensionless, read, told
+from wavesym.scene.physical.loads import dimensionless, read
 from wavesym.scene.physical.measured import measured, placed, plain
 from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
+from wavesym.scene.physical.said import words
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
 
 _SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
@@ -40,9 +41,14 @@ class PhysicalScene:
     kappa: tuple[Fraction, ...]
 
     @property
+    def system(self) -> dict[str, str]:
+        """What it is made of, by key."""
+        return {key: words(value) for key, value in self.said["system"].items() if key != "type"}
+
+    @property
     def loads(self) -> tuple[str, ...]:
         """A line for each load."""
-        return tuple(map(told, self.said.get("load", ())))
+        return tuple(map(words, self.said.get("load", ())))
 
 
 def physical(fields: Mapping[str, Any]) -> PhysicalScene:
