@@ -33,7 +33,7 @@ from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
 from wavesym.model.symbolic import generic, symbolic
-from wavesym.numbers.doubles import fraction, nearest, rational
+from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
 from wavesym.results.response import Response
@@ -99,6 +99,7 @@ def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
 def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
     """The unit responses of all sources of the scene's system."""
     model = lower(scene)
+    model.refuse_damping()
     until = rational(model.horizon())
     if model.chain is None:
         return network_table(model.network, intervals, until)
@@ -116,6 +117,7 @@ def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tu
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """
     model = lower(scene)
+    model.refuse_damping()
     symbols = in_rates(symbolic(_named(model, "--symbolic", "tables")))
     until = rational(model.horizon())
     refuse_costly(symbols.chain, intervals, until)
@@ -145,6 +147,7 @@ def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
     if isinstance(source, str):
         return derivation(source, m, format)
     model = lower(source)
+    model.refuse_damping()
     if model.chain is None:
         return network_derivation(model, format)
     return scene_derivation(source.name, symbolic(model.chain), format)
@@ -166,6 +169,7 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
 
 def _named(model: Model, option: str, command: str) -> Chain:
     """The chain as the paper has it. UnservedError where it is written out."""
+    model.refuse_damping()
     if model.chain is None:
         raise UnservedError(
             f"system.type: chain given with {option}, collision, drive or building expected (`{command}` without "
@@ -243,13 +247,33 @@ def _written(scene: Scene, directory: str | Path | None, language: str, request:
 def run(scene: Scene, samples: int, at: Sequence[float] | None = None) -> Iterator[str]:
     """The outputs as CSV lines, as they are computed: at `at`, or at `samples` equally spaced tau of the horizon.
 
+    Of a physical scene `at` are times in the unit of results, and so is the first column.
+
     CostError where right to the last bit would cost too much, before there is a line.
     """
     model = lower(scene)
     response = Response(model)
-    taus = iter(at) if at is not None else grid(model, samples)
-    blocks = iter(partial(_rows, response, taus), [])
-    return _csv(("tau", *response.outputs), next(blocks, []), blocks)  # what goes wrong does so before the header
+    blocks = iter(partial(_rows, response, _instants(model, samples, at)), [])
+    return _csv(_columns(model), next(blocks, []), blocks)  # what goes wrong does so before the header
+
+
+def _columns(model: Model) -> list[str]:
+    """The header of CSV, with units where there are any."""
+    names = [probe.told for probe in model.probes]
+    clock = model.clock
+    return ["tau" if clock is None else "time" if clock.unit == "s" else f"time [{clock.unit}]", *names]
+
+
+def _instants(model: Model, samples: int, at: Sequence[float] | None) -> Iterator[tuple[float, float]]:
+    """What stands in the first column, and the tau that it is."""
+    clock, until = model.clock, model.until
+    if clock is None:
+        yield from ((tau, tau) for tau in (at if at is not None else grid(model, samples)))
+    elif at is not None:
+        yield from ((time, clock.tau(time, until)) for time in at)
+    else:
+        taus = (until * k / max(samples - 1, 1) for k in range(samples))
+        yield from ((clock.time(tau), not_below(tau)) for tau in taus)
 
 
 def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:
@@ -259,10 +283,10 @@ def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[s
         yield from block
 
 
-def _rows(response: Response, taus: Iterator[float]) -> list[str]:
-    """The lines of the next tau, none where there are no more."""
-    some = list(islice(taus, _AT_ONCE))
-    values = np.vstack([np.asarray(some), response(some)]).T
+def _rows(response: Response, instants: Iterator[tuple[float, float]]) -> list[str]:
+    """The lines of the next instants, none where there are no more."""
+    some = list(islice(instants, _AT_ONCE))
+    values = np.vstack([np.asarray([first for first, _ in some]), response([tau for _, tau in some])]).T
     return [",".join(map(repr, row)) + "\n" for row in values.tolist()]
 
 
@@ -274,17 +298,25 @@ def grid(model: Model, samples: int) -> Iterator[float]:
 
 def events(scene: Scene) -> list[str]:
     """A line for each time that a contact opens or closes. CostError where that would take minutes to know."""
-    return [f"contact at x = {each.x} {each.kind} at tau = {each.digits}" for each in Response(lower(scene)).events]
+    model = lower(scene)
+    return [
+        f"contact at x = {each.x} {each.kind} at tau = {each.digits}{_in_time(model, each.double)}"
+        for each in Response(model).events
+    ]
+
+
+def _in_time(model: Model, tau: float) -> str:
+    """The same instant in the unit of a physical scene, to stand behind a tau."""
+    return f", {model.clock.told(rational(tau))}" if model.clock else ""
 
 
 def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
     """What a user might not expect: no load, tau out of range, contacts that open early enough to matter."""
     model = lower(scene)
-    last = model.horizon()
-    outside = sum(not 0 <= tau <= last for tau in taus)
-    lines = [f"{outside} of {len(taus)} tau are outside 0 to {scene.output.until}, where values are nan"] * bool(
-        outside
-    )
+    last, clock = model.horizon(), model.clock
+    outside = sum(not 0 <= tau <= last for _, tau in _instants(model, 0, taus))
+    what, end = ("times", clock.told(model.until)) if clock else ("tau", str(scene.output.until))
+    lines = [f"{outside} of {len(taus)} {what} are outside 0 to {end}, where values are nan"] * bool(outside)
     return [*_no_load(model), *lines, *_contact_warnings(model)]
 
 
@@ -302,7 +334,8 @@ def _no_load(model: Model) -> list[str]:
 def _contact_warnings(model: Model) -> list[str]:
     """A line for every contact that opens early enough to matter to an output."""
     return [
-        f"contact at x = {end.x} opens at tau = {end.digits}: what that can reach is computed as if it stayed closed"
+        f"contact at x = {end.x} opens at tau = {end.digits}{_in_time(model, end.double)}: what that can reach is "
+        "computed as if it stayed closed"
         for end in contact_ends(model)
     ]
 
@@ -327,6 +360,28 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
     made = histories(lower(scene))
     save(draw(made), path)
     return notes(made)
+
+
+def record(path: Path, unit: str | None, column: str | None = None, picture: Path | None = None) -> list[str]:
+    """What a file of a record says, line by line; drawn too, where there is a path for it.
+
+    `unit` is that of the samples where the file says none, `column` that of a CSV with several. SceneError for a file
+    that is damaged or says another unit, and for a picture with another suffix.
+    """
+    from wavesym.documents.record import facts
+    from wavesym.records.read import read_record
+
+    said = read_record(path, column)
+    if unit is not None and said.unit not in ("", unit):
+        raise SceneError(f"--unit {unit} given, none expected (the file says {said.unit})", file=said.file)
+    lines = facts(said, unit or said.unit)
+    if picture is not None:
+        from wavesym.report.record import draw
+        from wavesym.report.saving import picture_format, save
+
+        picture_format(picture)
+        save(draw(said, unit or said.unit), picture)
+    return lines
 
 
 def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:

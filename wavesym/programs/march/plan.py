@@ -23,7 +23,7 @@ from wavesym.errors import CostError
 from wavesym.exact.node_rules import node_rule
 from wavesym.model.loads import Applied
 from wavesym.model.model import Model
-from wavesym.model.node import Node
+from wavesym.model.node import RAMPS, Node
 from wavesym.model.reading import Sum
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
@@ -192,6 +192,7 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
 
     CostError where load times have too many different fractional parts.
     """
+    model.refuse_damping()
     tau_max = model.horizon(real)
     columns = model.light_cone(rational(max(tau_max, float(windows))))
     nodes = [model.named.nodes[x] for x in columns]
@@ -290,7 +291,7 @@ def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:
 def _channels(nodes: Sequence[Node], loaded: Sequence[int]) -> Iterator[Channel]:
     for force, column in enumerate(loaded):
         for load in nodes[column].loads:
-            if load.kind != "b":  # a ramp of the acceleration is an acceleration
+            if load.kind not in RAMPS:  # a ramp of the acceleration is an acceleration
                 order = len(load.coefficients) - 1
                 gain = load.coefficients[order] * _share(nodes[column])
                 yield Channel(load.source, force, gain, order)
