@@ -97,6 +97,7 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     Path("mine.toml").write_text(SCENE)
+    Path("ground.csv").write_text("time [s],north [g]\n0,0\n0.01,1\n")  # which the example of `record` reads
     return tmp_path
 
 
