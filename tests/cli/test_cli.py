@@ -67,6 +67,10 @@ class Compiler(SimpleNamespace):
         self.asked.append(options)
         return [], iter(["symbols\n"])
 
+    def record(self, path: Path, *options: object) -> list[str]:
+        self.asked.append(options)
+        return [f"{path}: 2 samples"]
+
     def inspect(self, scene: object, *options: object) -> str:
         self.asked.append(options)
         return "nodes"
@@ -97,7 +101,6 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     Path("mine.toml").write_text(SCENE)
-    Path("ground.csv").write_text("time [s],north [g]\n0,0\n0.01,1\n")  # which the example of `record` reads
     return tmp_path
 
 
