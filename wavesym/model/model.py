@@ -37,8 +37,8 @@ class Model:
     """A chain, the loads on it, what is watched until tau = `until`, and the error allowed.
 
     `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
-    `tolerance` is relative to an output's largest value. Loads are sorted by time. The `clock` is that of a physical
-    scene, the `damping` that of its modes.
+    `tolerance` is relative to an output's largest value. Loads are sorted by time; where they have samples, the closest
+    are `spacing` apart. The `clock` is that of a physical scene, the `damping` that of its modes.
     """
 
     name: str
@@ -51,6 +51,7 @@ class Model:
     labels: Labels
     clock: Clock | None = None
     damping: Damping | None = None
+    spacing: fmpq | None = None
 
     @property
     def named(self) -> Chain:
