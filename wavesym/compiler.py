@@ -17,6 +17,7 @@ verification/ and papers/, what is measured by lab/. The heavy libraries load wh
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from fractions import Fraction
 from functools import partial
 from itertools import islice
 from pathlib import Path
@@ -38,10 +39,12 @@ from wavesym.model.symbolic import generic, symbolic
 from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
+from wavesym.records.load import RecordedLoad
 from wavesym.results.peaks import table_of_peaks
 from wavesym.results.response import Response
 from wavesym.results.summary import Summary, summarised
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import drifts
 from wavesym.targets import LANGUAGES
 from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
@@ -92,7 +95,7 @@ def summary(scene: Scene, *, at_samples: bool = False) -> Summary:
     ()
     """
     model = lower(scene)
-    return summarised(model, _own_samples(scene, model) if at_samples else None)
+    return summarised(model, _own_samples(scene, model) if at_samples else None, drifts(scene))
 
 
 def summary_text(scene: Scene, at_samples: bool, format: str) -> tuple[str, list[str]]:
@@ -104,11 +107,13 @@ def summary_text(scene: Scene, at_samples: bool, format: str) -> tuple[str, list
 
 def _own_samples(scene: Scene, model: Model) -> list[float]:
     """The samples of a record, or those of `run`."""
-    spacing = min((load.spacing for load in scene.load if isinstance(load, SampledLoad)), default=None)
-    if spacing is None:
+    combs = [(load.begin, load.step) for load in scene.load if isinstance(load, RecordedLoad)]
+    combs += [(Fraction(0), load.spacing) for load in scene.load if isinstance(load, SampledLoad)]
+    if not combs:
         return list(grid(model, SAMPLES))
-    count = int((model.until / rational(spacing)).floor()) + 1
-    return [nearest(k * rational(spacing)) for k in range(count)]
+    begin, step = (rational(number) for number in min(combs, key=lambda comb: comb[1]))
+    count = int(((model.until - begin) / step).floor()) + 1
+    return [nearest(begin + k * step) for k in range(-int((begin / step).floor()), count)]
 
 
 def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Any:
@@ -407,6 +412,28 @@ def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[li
         f"damping {damping:g}, values {found.step:g} tau apart; with half as many spectra change by {found.change:.1e}"
     )
     return [header, *rows], [*warnings(scene), said]
+
+
+def record(path: Path, unit: str | None, column: str | None = None, picture: Path | None = None) -> list[str]:
+    """What a file of a record says, line by line; drawn too, where there is a path for it.
+
+    `unit` is that of the samples where the file says none, `column` that of a CSV with several. SceneError for a file
+    that is damaged or says another unit, and for a picture with another suffix.
+    """
+    from wavesym.documents.record import facts
+    from wavesym.records.read import read_record
+
+    said = read_record(path, column)
+    if unit is not None and said.unit not in ("", unit):
+        raise SceneError(f"--unit {unit} given, none expected (the file says {said.unit})", file=said.file)
+    lines = facts(said, unit or said.unit)
+    if picture is not None:
+        from wavesym.report.record import draw
+        from wavesym.report.saving import picture_format, save
+
+        picture_format(picture)
+        save(draw(said, unit or said.unit), picture)
+    return lines
 
 
 def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:

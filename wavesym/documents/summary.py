@@ -47,6 +47,9 @@ def _lines(summary: Summary) -> Iterable[str]:
     yield ""
     if not all(peak.reached for peak in peaks):
         yield "-  it comes up to this value, and jumps then"
+    if (drift := summary.largest_drift) is not None:
+        peak, unit = drift.largest, f" {drift.unit}" * bool(drift.unit)
+        yield f"largest drift: {drift.name}, {_number(peak.value)}{unit} at {_number(_spoken(peak.at))}"
     yield f"{summary.how}: {summary.certain}"
 
 

@@ -263,7 +263,7 @@ def _tops(coefficients: Sequence[arb], radius: arb, low: arb, flat: arb) -> Iter
     parts = [(whole, radius, _ZERO, _ONE)]
     while parts:
         polynomial, radius, centre, half = parts.pop()
-        c = polynomial.coeffs()
+        c = polynomial.coeffs() or [arb(0)]
         rest = sum(map(abs, c[1:]), arb(0))
         if not (c[0] + rest + radius).upper() >= low:
             continue

@@ -28,7 +28,7 @@ def jumps(model: Model) -> list[float]:
     try:
         if knots.stretches > _MOST_JUMPS:
             return []
-        exact = {time for probe in model.probes for time in knots.breakpoints(probe)}
+        exact = {time for probe in model.probes for time in knots.breakpoints(model.sums[probe])}
     except CostError:
         return []
     return sorted({not_below(time) for time in exact if time > 0})
