@@ -34,13 +34,12 @@ from wavesym.numbers.doubles import middle, midpoint, nearest, not_below, ration
 
 Numbers = NDArray[np.float64]
 
-# of the largest value: what counts as equal, as constant, and how well it must be known
-_EQUAL, _FLAT, _KNOWN = arb(2) ** -60, arb(2) ** -64, arb(2) ** -70
+# of the largest value: what counts as equal, as constant, how well it must be known, and what is left out of series
+_EQUAL, _FLAT, _KNOWN, _NEGLIGIBLE = arb(2) ** -60, arb(2) ** -64, arb(2) ** -70, arb(2) ** -90
 # points of a piece in doubles: of all pieces, then of those that are left
 _POINTS = (33, 513)
 _ROUNDING = 2.0**-52
 _NEWTON = 200  # steps at most; a dozen do
-_BITS, _NEGLIGIBLE = 256, arb(2) ** -120
 _MOST_BITS = 1024
 _ZERO, _ONE = fmpq(0), fmpq(1)
 
@@ -88,8 +87,12 @@ def _range(motion: Motion, probe: Probe, vague: bool) -> Range:
         if is_zero(segments):
             return NOTHING
         ends = [*(segment.start for segment in segments[1:]), motion.until]
+        seen = (
+            abs(segment.at(u)) for segment, end in zip(segments, ends, strict=True) for u in (0, end - segment.start)
+        )
+        negligible = max(value.lower() for value in seen) * _NEGLIGIBLE
         pieces = [
-            _Piece.of(segment, end, end == motion.until)
+            _Piece.of(segment, end, end == motion.until, negligible)
             for segment, end in zip(segments, ends, strict=True)
             if not vague or segment.start == end or not_below(segment.start) < not_below(end)
         ]
@@ -119,12 +122,10 @@ class _Piece:
     last: bool
 
     @classmethod
-    def of(cls, segment: Segment, end: fmpq, last: bool) -> _Piece:
+    def of(cls, segment: Segment, end: fmpq, last: bool, negligible: arb) -> _Piece:
         (polynomial,) = segment.families.values()
-        length = end - segment.start
-        with ctx.workprec(_BITS):  # what so many bits do not hold goes into the radius
-            half = arb(length / 2)
-            middles, radius = _split(_shortened(polynomial, length)(arb_poly([half, half])))
+        half = arb((end - segment.start) / 2)
+        middles, radius = _split(_shortened(polynomial, 2 * half, negligible)(arb_poly([half, half])))
         return cls(segment.start, end, middles, radius, segment.from_zero, last)
 
     @property
@@ -142,12 +143,10 @@ class _Piece:
         )
 
 
-def _shortened(polynomial: arb_poly, length: fmpq) -> arb_poly:
+def _shortened(polynomial: arb_poly, length: arb, negligible: arb) -> arb_poly:
     """Without the highest powers, as far as they are negligible on [0, length]; they are in the ball of the first."""
-    powers = polynomial.coeffs()
-    sizes = [abs(c).upper() * arb(length) ** k for k, c in enumerate(powers)]
-    negligible, rest = max(sizes, default=arb(0)) * _NEGLIGIBLE, arb(0)
-    while powers and (more := (rest + sizes[len(powers) - 1]).upper()) <= negligible:
+    powers, rest = polynomial.coeffs(), arb(0)
+    while powers and (more := (rest + abs(powers[-1]) * length ** (len(powers) - 1)).upper()) <= negligible:
         rest = more
         powers.pop()
     return arb_poly([powers[0] + arb(0, rest), *powers[1:]]) if powers else arb_poly()
