@@ -87,13 +87,12 @@ def _range(motion: Motion, probe: Probe, vague: bool) -> Range:
         if is_zero(segments):
             return NOTHING
         ends = [*(segment.start for segment in segments[1:]), motion.until]
-        seen = (
-            abs(segment.at(u)) for segment, end in zip(segments, ends, strict=True) for u in (0, end - segment.start)
-        )
-        negligible = max(value.lower() for value in seen) * _NEGLIGIBLE
+        stretches = list(zip(segments, ends, strict=True))
+        at_ends = (abs(segment.at(u)).lower() for segment, end in stretches for u in (_ZERO, end - segment.start))
+        negligible = max(at_ends) * _NEGLIGIBLE
         pieces = [
-            _Piece.of(segment, end, end == motion.until, negligible)
-            for segment, end in zip(segments, ends, strict=True)
+            _Piece.of(segment, end, segment is segments[-1], negligible)
+            for segment, end in stretches
             if not vague or segment.start == end or not_below(segment.start) < not_below(end)
         ]
         sizes = [piece.largest for piece in pieces]
