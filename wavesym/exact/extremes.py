@@ -40,7 +40,10 @@ _EQUAL, _FLAT, _KNOWN, _NEGLIGIBLE = arb(2) ** -60, arb(2) ** -64, arb(2) ** -70
 _POINTS = (33, 513)
 _ROUNDING = 2.0**-52
 _NEWTON = 200  # steps at most; a dozen do
-_MOST_BITS = 1024
+# measured: seconds for a piece, times its terms to the power of 3/2
+_COMPOSED, _MOST_SECONDS = 4e-7, 5
+# times the bits that there are to begin with: what needs more is not told from 0
+_MORE_BITS = 8
 _ZERO, _ONE = fmpq(0), fmpq(1)
 
 
@@ -66,12 +69,13 @@ def extremes(model: Model) -> list[Range]:
     CostError where that would take minutes, or where contacts open and close and more is needed than is known of them.
     """
     motion = Motion(model, rational(model.horizon()))
-    if motion.first_bits > _MOST_BITS:
+    pieces = sum(len(motion.starts(probe)) for probe in motion.probes)
+    if (seconds := pieces * (motion.first_bits // 4) ** 1.5 * _COMPOSED) > _MOST_SECONDS:
         raise CostError(
-            f"output.until: {motion.first_bits} bits would be needed for extremes to tau = {float(motion.until):g}, at "
-            f"most {_MOST_BITS} expected (a shorter horizon, or smaller kappa, helps)"
+            f"output.until: true extremes of {len(motion.probes)} outputs, {pieces} polynomials in {motion.first_bits} "
+            f"bits, would take about {seconds:.0f} s, at most {_MOST_SECONDS} expected (a shorter horizon or fewer "
+            "outputs help)"
         )
-    motion.refuse_long(max(len(motion.starts(probe)) for probe in motion.probes))
     zero = silent(model, motion.until)
     return [
         NOTHING if nothing else _range(motion, probe, bool(model.network.contacts))
@@ -101,7 +105,7 @@ def _range(motion: Motion, probe: Probe, vague: bool) -> Range:
         return _found(pieces, max(sizes))
 
     try:
-        return precise(attempt, motion.first_bits, max(motion.first_bits, _MOST_BITS))
+        return precise(attempt, motion.first_bits, _MORE_BITS * motion.first_bits)
     except ArithmeticError as error:
         raise CostError(f"output.until: for extremes of {probe.name}, {error} (a shorter horizon helps)") from None
 
