@@ -9,8 +9,9 @@ imaginary part of y, y' = r y + a, which is stepped exactly where a is linear. S
 line between two values of a, and the top of u between two steps, through which a parabola is laid.
 
 Both ask for short steps: 1/16 of the shortest period, and no more than 1/8 of the spacing of a record or of the
-crossing of the shortest rod (a floor moves with the modes of its rods, too). Where a can jump a step ends. The same
-with every other value tells how much the step matters: the error of what is told is about a third of that change.
+crossing of the shortest rod (a floor moves with the modes of its rods, too). There are _LEAST steps at least. Where a
+can jump a step ends. The same with every other value tells how much the step matters: the error of what is told is
+about a third of that change.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ PER_DECADE = 40  # periods, at numbers that are the same in all scenes
 _SHORTEST = 2  # crossings of the shortest rod: the period of its own first mode
 _PER_PERIOD, _PER_STEP = 16, 8
 _TOLERANCE = fmpq(1, 10**6)
-_MOST = 4_000_000  # steps
+_LEAST, _MOST = 8_000, 2_000_000  # steps
 _AT_ONCE = 256
 
 
@@ -72,8 +73,9 @@ def spectra(model: Model, damping: float) -> Spectra:
     per_tau = 1.0 if model.clock is None else nearest(model.clock.per_tau)
     periods = _periods(model, per_tau)
     shortest = periods[0] / per_tau
-    step = min(shortest / _PER_PERIOD, nearest(step_of(model)) / _PER_STEP)
-    if (count := nearest(model.until) / step) > _MOST:
+    until = nearest(model.until)
+    step = min(shortest / _PER_PERIOD, nearest(step_of(model)) / _PER_STEP, until / _LEAST)
+    if (count := until / step) > _MOST:
         raise CostError(
             f"output.until: a response spectrum would take {count:.1e} steps of tau = {step:g}, at most {_MOST:.1e} "
             "expected (a shorter horizon helps)"
@@ -106,8 +108,8 @@ def _periods(model: Model, per_tau: float) -> Numbers:
     first, last = ceil(PER_DECADE * log10(shortest)), floor(PER_DECADE * log10(longest))
     if first > last:
         raise SceneError(
-            f"{nearest(model.until):g} given, at least {2 * _SHORTEST * shortest / per_tau:g} expected for a response "
-            "spectrum",
+            f"{nearest(model.until):g} given, at least {2 * 10 ** (first / PER_DECADE) / per_tau:.5g} expected for a "
+            "response spectrum (in tau)",
             "output.until",
             model.name,
         )
