@@ -15,7 +15,7 @@ from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.collision import PhysicalCollision
 from wavesym.scene.physical.drive import PhysicalDrive
-from wavesym.scene.physical.loads import dimensionless
+from wavesym.scene.physical.loads import dimensionless, read
 from wavesym.scene.physical.measured import measured, placed, plain
 from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
@@ -50,14 +50,15 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
         results = Results.of(units, found.kind)
     seconds = found.rods.seconds
     made["system"] = found.system
-    loads = fields.get("load")
-    if isinstance(loads, list | tuple):
-        made["load"] = [_load(load, k, found, seconds) for k, load in enumerate(loads)]
+    said = dict(fields)
+    if isinstance(loads := fields.get("load"), list | tuple):
+        said["load"] = [_read(load, k) for k, load in enumerate(loads)]
+        made["load"] = [_load(load, k, found, seconds) for k, load in enumerate(said["load"])]
     if isinstance(output := fields.get("output"), Mapping):
         with placed("output"):
             made["output"] = _output(output, found, seconds)
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
-    return PhysicalScene(plain(fields), made, scale, found.kappa)
+    return PhysicalScene(plain(said), made, scale, found.kappa)
 
 
 def _system(table: object, units: UnitsTable) -> Rewritten:
@@ -77,6 +78,11 @@ def _system(table: object, units: UnitsTable) -> Rewritten:
         raise wrong(f"given for a {kind}, none expected (only chains have a choice)", "units", "kind")
     with placed("system"):
         return _SYSTEMS[kind].model_validate(table).rewritten()
+
+
+def _read(load: object, k: int) -> object:
+    with placed("load", k):
+        return read(load)
 
 
 def _load(load: object, k: int, found: Rewritten, seconds: Fraction) -> object:
