@@ -23,7 +23,7 @@ import numpy as np
 from flint import arb, arb_poly, ctx, fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import CostError
+from wavesym.errors import CostError, UnservedError
 from wavesym.exact.ball import Segment
 from wavesym.exact.motion import Motion, is_zero
 from wavesym.exact.silence import silent
@@ -66,8 +66,11 @@ NOTHING: Range = (Extreme(0.0, 0.0), Extreme(0.0, 0.0))
 def extremes(model: Model) -> list[Range]:
     """The least and the greatest value of each output on the horizon of doubles.
 
-    CostError where that would take minutes, or where contacts open and close and more is needed than is known of them.
+    CostError where that would take minutes, or where contacts open and close and more is needed than is known of them;
+    UnservedError where modes are damped.
     """
+    if model.damping is not None:
+        raise UnservedError("system.damping: given, none expected (modes serve it)")
     motion = Motion(model, rational(model.horizon()))
     pieces = sum(len(motion.starts(probe)) for probe in motion.probes)
     if (seconds := pieces * (motion.first_bits // 4) ** 1.5 * _COMPOSED) > _MOST_SECONDS:

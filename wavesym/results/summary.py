@@ -11,15 +11,15 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, WavesymError
-from wavesym.exact.arrival import first_arrivals
-from wavesym.exact.extremes import Extreme, Range, extremes
+from wavesym.exact.arrival import first_arrivals, light_arrivals
+from wavesym.exact.extremes import NOTHING, Extreme, Range, extremes
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.results.response import Response
-from wavesym.results.sampled import PER_STEP, sampled_extremes
-from wavesym.results.stepping import jumps, just_before, step_of
+from wavesym.results.sampled import sampled_extremes
+from wavesym.results.stepping import sampled, spacing
 
 Numbers = NDArray[np.float64]
 
@@ -99,7 +99,7 @@ def summarised(model: Model, samples: Sequence[float] | None = None, drifts: Seq
     found = _found(model, samples)
     summary = Summary(
         model.name,
-        _outputs(model, found.ranges),
+        _outputs(model, found),
         found.bound,
         found.proved,
         found.how,
@@ -113,6 +113,7 @@ class _Found(NamedTuple):
     bound: float
     proved: bool
     how: str
+    modal: bool = False
 
 
 def _found(model: Model, samples: Sequence[float] | None) -> _Found:
@@ -124,16 +125,17 @@ def _found(model: Model, samples: Sequence[float] | None) -> _Found:
         return _searched(model)
 
 
-def _outputs(model: Model, ranges: Sequence[Range]) -> tuple[OutputSummary, ...]:
+def _outputs(model: Model, found: _Found) -> tuple[OutputSummary, ...]:
+    arrivals = light_arrivals(model) if found.modal else first_arrivals(model)
     return tuple(
         OutputSummary(
             probe.name,
             probe.unit,
             _peak(model, least),
             _peak(model, greatest),
-            None if first is None else instant(model, not_below(first), first),
+            None if first is None or (least, greatest) == NOTHING else instant(model, not_below(first), first),
         )
-        for probe, (least, greatest), first in zip(model.probes, ranges, first_arrivals(model), strict=True)
+        for probe, (least, greatest), first in zip(model.probes, found.ranges, arrivals, strict=True)
     )
 
 
@@ -150,7 +152,7 @@ def _largest(
     known = [asked[probe.rod] for probe in drifts if probe.rod in asked]
     if others.probes:
         try:
-            known += _outputs(others, _found(others, samples).ranges)
+            known += _outputs(others, _found(others, samples))
         except WavesymError:
             return None
     largest = min(known, key=lambda output: (-abs(output.largest.value), output.largest.at.tau), default=None)
@@ -169,33 +171,28 @@ def instant(model: Model, tau: float, exact: fmpq | None = None) -> Instant:
 
 
 def _at(model: Model, taus: Numbers) -> _Found:
-    """The extremes of values at these tau."""
-    try:
-        response = Response(model)
-        found = sampled_extremes(response, taus, refined=False)
-        return _Found(_ranges(*found), response.error_bound, True, f"the values at {taus.size} samples")
-    except CostError:
-        program = make(model)
-        found = sampled_extremes(program.evaluate, taus, refined=False)
-        how = f"the values of {program.evaluator} at {taus.size} samples"
-        return _Found(_ranges(*found), program.error_bound, True, how)
+    """The extremes of values at these tau, as `run` has them."""
+    response = Response(model)
+    ranges = _ranges(*sampled_extremes(taus, response(taus)))
+    made = response.program
+    how = f"the values{f' of {made.evaluator}' if made else ''} at {taus.size} samples"
+    modal = made is not None and made.kind == "modes"
+    return _Found(ranges, response.error_bound, made is None or made.proved, how, modal)
 
 
 def _searched(model: Model) -> _Found:
     """The extremes of the program that `auto` takes, looked for between many samples."""
     program = make(model)
-    step = step_of(model)
-    count = int((model.until / step).ceil()) * PER_STEP
-    if count * len(model.probes) > _MOST_SAMPLES:
+    step = spacing(model)
+    if (count := nearest(model.until) / step) * len(model.probes) > _MOST_SAMPLES:
         raise CostError(
             f"output.until: extremes of {len(model.probes)} outputs would be looked for at {count:.1e} samples each, "
             f"at most {_MOST_SAMPLES // len(model.probes):.1e} expected (a shorter horizon or fewer outputs help)"
         )
-    fronts = jumps(model)
-    taus = np.unique([*np.linspace(0.0, program.tau_max, count + 1), *fronts, *map(just_before, fronts)])
-    found = sampled_extremes(program.evaluate, taus)
-    how = f"{program.evaluator} at {taus.size} samples, {PER_STEP} in each {nearest(step):g} tau, then refined"
-    return _Found(_ranges(*found), program.error_bound, False, how)
+    taus, values = sampled(model, program, step)
+    ranges = _ranges(*sampled_extremes(taus, values, program.evaluate))
+    how = f"{program.evaluator} at {taus.size} samples, {step:g} tau apart, then refined"
+    return _Found(ranges, program.error_bound, False, how, program.kind == "modes")
 
 
 def _ranges(values: Numbers, taus: Numbers) -> list[Range]:

@@ -17,11 +17,11 @@ from wavesym.model.model import Model
 from wavesym.model.network import End, Network
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.modes.damped import Damped, damped
+from wavesym.programs.modes.damped import damped
 from wavesym.programs.modes.loads import LinearLoads, linear_loads
 from wavesym.programs.modes.modal import ModalSystem, Numbers
-from wavesym.programs.modes.rounding import rounded
 from wavesym.programs.modes.roughness import Roughness, roughness
+from wavesym.programs.modes.rounding import rounded
 from wavesym.programs.modes.tables import scheme_tables
 from wavesym.programs.modes.tail import Tail
 from wavesym.programs.modes.watched import Driven, Seen, Watched, driven, ground
