@@ -93,8 +93,8 @@ def summary(scene: Scene, *, at_samples: bool = False) -> Summary:
 
     >>> import wavesym
     >>> strain = wavesym.summary(wavesym.Scene.from_toml("drive_m1")).outputs[0]
-    >>> strain.name, strain.max.value, strain.max.at.tau, strain.arrival.tau
-    ()
+    >>> print(f"{strain.name}: {strain.max.value:.6g} at {strain.max.at.tau:.6g}, from {strain.arrival.tau} on")
+    strain@0: 1.20241 at 6.46788, from 0.0 on
     """
     model = lower(scene)
     return summarised(model, _own_samples(scene, model) if at_samples else None, drifts(scene))
@@ -127,7 +127,7 @@ def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Any:
     >>> import wavesym
     >>> table = wavesym.peaks(wavesym.Scene.from_toml(name) for name in ("drive_m1", "building_m2"))
     >>> table["max"].shape
-    ()
+    (2, 10)
     """
     several = not isinstance(scenes, Scene)
     found = [summary(scene, at_samples=at_samples) for scene in ([scenes] if isinstance(scenes, Scene) else scenes)]

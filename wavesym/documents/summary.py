@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from wavesym.results.summary import Instant, OutputSummary, Peak, Summary
+from wavesym.results.summary import When, OutputSummary, Peak, Summary
 
 FORMATS = ("text", "json")
 
@@ -33,7 +33,7 @@ def _peak(peak: Peak) -> dict[str, float | None]:
     return {"value": peak.value, "tau": peak.at.tau, "time": peak.at.time}
 
 
-def _spoken(at: Instant) -> float:
+def _spoken(at: When) -> float:
     """The time of a scene that has units, else tau."""
     return at.tau if at.time is None else at.time
 

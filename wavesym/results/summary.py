@@ -29,7 +29,7 @@ _MOST_SAMPLES = 8_000_000
 _MOST_DRIFTS = 50  # rods in which the largest is looked for, though nobody asked for them
 
 
-class Instant(NamedTuple):
+class When(NamedTuple):
     """`tau`, and the `time` in the scene's unit; None where it has none."""
 
     tau: float
@@ -44,7 +44,7 @@ class Peak:
     """
 
     value: float
-    at: Instant
+    at: When
     reached: bool = True
 
 
@@ -56,7 +56,7 @@ class OutputSummary:
     unit: str
     min: Peak
     max: Peak
-    arrival: Instant | None
+    arrival: When | None
 
     @property
     def largest(self) -> Peak:
@@ -163,11 +163,11 @@ def _peak(model: Model, found: Extreme) -> Peak:
     return Peak(found.value, instant(model, found.tau), found.reached)
 
 
-def instant(model: Model, tau: float, exact: fmpq | None = None) -> Instant:
+def instant(model: Model, tau: float, exact: fmpq | None = None) -> When:
     """A tau, and the scene's time then."""
     if model.clock is None:
-        return Instant(tau, None)
-    return Instant(tau, nearest((rational(tau) if exact is None else exact) * model.clock.per_tau))
+        return When(tau, None)
+    return When(tau, nearest((rational(tau) if exact is None else exact) * model.clock.per_tau))
 
 
 def _at(model: Model, taus: Numbers) -> _Found:
