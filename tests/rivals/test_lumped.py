@@ -1,4 +1,4 @@
-"""Masses on springs: against equations written by hand and solved by SciPy, and against waves where rods weigh little."""
+"""Masses on springs, against equations that are written by hand and solved by SciPy."""
 
 import numpy as np
 import pytest
@@ -47,7 +47,7 @@ def by_hand(weight, taus):
 
 def balance(place):
     """What a rod's mass strains it, from the accelerations of its ends: integrated, and on the average nothing."""
-    x, dx = np.linspace(0, 1, 200_001, retstep=True)
+    x, dx = np.linspace(0, 1, 20_001, retstep=True)
     pushed = np.stack([(np.cumsum(shape) - shape / 2 - shape[0] / 2) * dx for shape in (1 - x, x)])
     return np.array([np.interp(place, x, row) - np.trapezoid(row, dx=dx) for row in pushed])
 
@@ -55,6 +55,6 @@ def balance(place):
 @pytest.mark.parametrize("weight", [0.0, 1.0])
 def test_a_building_is_what_its_equations_say(weight):
     taus, values = springs(lower(GROUND), weight)
-    some = np.arange(0, len(taus), 7)
+    some = np.arange(0, len(taus), 11)
     np.testing.assert_allclose(values[:, some], by_hand(weight, taus[some]), rtol=0, atol=1e-9)
-    assert np.max(np.abs(values - by_hand(0.9 * weight + 0.1 * (not weight), taus))) > 1e-2
+    assert np.max(np.abs(values[:, some] - by_hand(abs(weight - 0.1), taus[some]))) > 1e-2

@@ -31,7 +31,7 @@ def record(samples, spacing="1.37", until=36, **output):
 def test_a_record_that_the_march_refuses_is_what_it_is(first):
     model = record([first, *SAMPLES])
     with pytest.raises(
-        CostError, match=r"at a spacing of 137/100 times have 26 different fractional parts, at most 16"
+        CostError, match=r"times at a spacing of 137/100 have 26 different fractional parts, at most 16"
     ):
         march(model)
     found = at_samples(model)

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 
 import numpy as np
 from flint import fmpq
 
-from wavesym.documents.advice import Advice, Candidate, Difference
-from wavesym.errors import UnservedError
+from wavesym.documents.advice import Advice, Candidate, Discrepancy
+from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.programs.making import make
-from wavesym.rivals.lumped import Lumped
+from wavesym.programs.program import Program
+from wavesym.programs.request import Request
+from wavesym.rivals.lumped import DiscreteModel
 from wavesym.rivals.mass import Elements
 from wavesym.rivals.network import network_problem
 from wavesym.rivals.problem import Array
@@ -40,7 +43,7 @@ def advise(model: Model, tolerance: float) -> Advice:
             refused[name] = str(error)
     if not histories:
         return Advice(model.name, tolerance, tuple(Candidate(name, refused=why) for name, why in refused.items()))
-    program = make(model.tolerating(max(model.tolerance, rational(tolerance) * _EXACT)))
+    program = _soonest(model.tolerating(max(model.tolerance, rational(tolerance) * _EXACT)))
     waves = program.evaluate(taus)
     return Advice(
         model.name,
@@ -59,6 +62,13 @@ def advise(model: Model, tolerance: float) -> Advice:
     )
 
 
+def _soonest(model: Model) -> Program:
+    """A program of the waves: not the quickest one, but the one that is made soonest."""
+    with suppress(CostError, ToleranceError):
+        return make(model, Request(evaluator="march"))
+    return make(model)
+
+
 def springs(model: Model, weight: float) -> tuple[Array, Array]:
     """Instants, and the outputs there (outputs, instants), where each rod is one spring with `weight` of its mass.
 
@@ -67,14 +77,14 @@ def springs(model: Model, weight: float) -> tuple[Array, Array]:
     problem = network_problem(model)
     one = np.ones(len(problem.ends), dtype=int)
     step = max(float(np.min(problem.delay)) / _INSTANTS, problem.until / _MOST_INSTANTS)
-    return Lumped(Elements(problem, one, weight)).history(step)
+    return DiscreteModel(Elements(problem, one, weight)).history(step)
 
 
-def _differences(ours: Array, waves: Array) -> Iterator[Difference]:
+def _differences(ours: Array, waves: Array) -> Iterator[Discrepancy]:
     for one, other in zip(ours, waves, strict=True):
         largest, size = float(np.max(np.abs(other))), float(np.max(np.abs(one)))
         scale = largest or (np.inf if size == 0 else 0.0)
         with np.errstate(divide="ignore"):
-            yield Difference(
+            yield Discrepancy(
                 *(float(np.divide(gap, scale)) for gap in (np.max(np.abs(one - other)), abs(size - largest)))
             )

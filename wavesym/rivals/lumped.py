@@ -10,14 +10,14 @@ import numpy as np
 
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import fraction
-from wavesym.rivals.mass import Elements, dense
+from wavesym.rivals.mass import Elements, Unknowns, dense
 from wavesym.rivals.oscillators import DERIVED, KEPT, Ratios, condensed
 from wavesym.rivals.problem import Array
-from wavesym.rivals.stepping import Part, stepped
+from wavesym.rivals.stepping import Batch, stepped
 
 
 @dataclass(frozen=True)
-class Lumped:
+class DiscreteModel:
     """The elements of a network; `ratios` says how its modes are damped."""
 
     elements: Elements
@@ -58,7 +58,7 @@ class Lumped:
         return gained
 
     @cached_property
-    def _parts(self) -> list[Part]:
+    def _parts(self) -> list[Batch]:
         elements, size = self.elements, self.elements.size
         mass, damping, stiffness = (dense(e, size) for e in (elements.mass, elements.damping, elements.stiffness))
         told = {node: d for d, node in enumerate(self._driven) if node in elements.problem.told}
@@ -70,7 +70,8 @@ class Lumped:
                 at_once[node, d, 0] = 1.0
             else:
                 acting[node, d, 1] = 1.0
-        left = condensed(*(matrix[np.ix_(free, free)] for matrix in (mass, damping, stiffness)), acting[free])
+        inner = np.ix_(free, free)
+        left = condensed(mass[inner], damping[inner], stiffness[inner], acting[free])
         at_once[free] = left.at_once
         # what a told velocity gains at once is a blow to what has a share in its mass
         momentum = -self._changes[:, list(told.values()), 1] @ mass[list(told)][:, free]
@@ -80,8 +81,8 @@ class Lumped:
         places[free] = np.tensordot(left.follows, own.places, 1)
         loads = np.broadcast_to(DERIVED, (len(self._driven), KEPT, KEPT))
         return [
-            Part(own.matrix, own.jumps, self._shown(own.matrix, places)),
-            Part(loads, self._changes, self._shown(loads, at_once)),
+            Batch(own.matrix, own.jumps, self._shown(own.matrix, places)),
+            Batch(loads, self._changes, self._shown(loads, at_once)),
         ]
 
     def _shown(self, matrix: Array, places: Array) -> Array:
@@ -123,7 +124,7 @@ class Lumped:
         np.add.at(weights[2], ends, self.elements.weight * factors * balance * (length / problem.speed[bar]))
         return weights
 
-    def _element(self, probe: Probe) -> tuple[Array, Array, float, float]:
+    def _element(self, probe: Probe) -> tuple[Unknowns, Array, float, float]:
         """The unknowns at the ends of an output's element, how fast these move there, the place in it, its delay."""
         bar = probe.rod - 1
         place = float(fraction(probe.place)) * self.elements.cells[bar]

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from wavesym.rivals.lumped import Lumped
+from wavesym.rivals.lumped import DiscreteModel
 from wavesym.rivals.mass import Elements
 from wavesym.rivals.network import NetworkProblem, network_problem
 from wavesym.rivals.problem import Array, Evaluate, Rival
@@ -17,10 +17,10 @@ from wavesym.rivals.problem import Array, Evaluate, Rival
 
 def _prepare(problem: NetworkProblem, resolution: float) -> Evaluate:
     cells = np.maximum(np.rint(problem.delay * resolution), 1).astype(int)
-    return partial(_read, Lumped(Elements(problem, cells)), 1 / resolution)
+    return partial(_read, DiscreteModel(Elements(problem, cells)), 1 / resolution)
 
 
-def _read(model: Lumped, step: float, taus: Array) -> Array:
+def _read(model: DiscreteModel, step: float, taus: Array) -> Array:
     instants, values = model.history(step)
     return np.array([np.interp(taus, instants, row) for row in values])
 

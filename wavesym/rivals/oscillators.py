@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.rivals.problem import Array
@@ -54,7 +55,7 @@ class Condensed:
     acting: Array
     follows: Array
     at_once: Array
-    heavy: Array
+    heavy: NDArray[np.bool_]
 
     def oscillators(self, changes: Array, momentum: Array, ratios: Ratios | None) -> Stepping:
         """Stepped mode by mode, or all in one where dashpots tie the modes.

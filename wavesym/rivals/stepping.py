@@ -21,7 +21,7 @@ _AT_ONCE = 2048  # instants
 
 
 @dataclass(frozen=True)
-class Part:
+class Batch:
     """Systems that do not feel each other, at rest before the first event: x (batch, size).
 
     `matrix` has shape (batch, size, size); at event e x gains jumps[e], of shape (events, batch, size); outputs gain
@@ -33,7 +33,7 @@ class Part:
     shown: Array
 
 
-def stepped(parts: Sequence[Part], events: Sequence[Fraction], until: float, step: float) -> tuple[Array, Array]:
+def stepped(parts: Sequence[Batch], events: Sequence[Fraction], until: float, step: float) -> tuple[Array, Array]:
     """Instants from 0 to `until`, and the outputs there, (outputs, instants); at an event they are what is after it.
 
     `events` are 0 = t_0 < t_1 < ... <= until. From one to the next instants are equally spaced, by `step` at most.
@@ -65,7 +65,7 @@ def stepped(parts: Sequence[Part], events: Sequence[Fraction], until: float, ste
     return np.concatenate([*spaced, [until]]), values
 
 
-def _at_events(part: Part, lengths: Sequence[Fraction]) -> tuple[Array, Array]:
+def _at_events(part: Batch, lengths: Sequence[Fraction]) -> tuple[Array, Array]:
     """x after each event, (events, batch, size), and at the end."""
     over = {length: exponential(part.matrix * float(length)) for length in dict.fromkeys(lengths)}
     states = np.empty_like(part.jumps)

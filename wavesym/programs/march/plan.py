@@ -203,9 +203,9 @@ def _panels(times: Sequence[fmpq]) -> tuple[MarchPanel, ...]:
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise CostError(
-            f"load: at a spacing of {spacing(times)} times have {len(cuts) - 1} different fractional parts, at most "
-            f"{MOST_PANELS} expected in a march (modes where no load jumps, a spacing of p/q with q up to "
-            f"{MOST_PANELS}, or fewer samples, helps)"
+            f"load: times at a spacing of {spacing(times)} have {len(cuts) - 1} different fractional parts, at most "
+            f"{MOST_PANELS} expected in a march (modes, a spacing of p/q with q up to {MOST_PANELS}, or "
+            "fewer samples, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 
