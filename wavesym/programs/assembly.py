@@ -18,15 +18,15 @@ from wavesym.programs.closed import ClosedForm
 from wavesym.programs.march.evaluator import MarchEvaluator
 from wavesym.programs.march.given import SMOOTH
 from wavesym.programs.march.plan import Plan, Stretch
+from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.pieces import Pieces
 from wavesym.programs.program import Driven, Program, Provenance
 from wavesym.programs.rings.evaluator import RingMarch
 
-QUANTITIES = ("strain", "velocity", "displacement")
-"""The numbers that stand for them in tables are their places; the next one is an output that is 0 throughout."""
 
-
-def assemble(evaluator: ClosedForm | Pieces | MarchEvaluator | RingMarch, provenance: Provenance) -> Program:
+def assemble(
+    evaluator: ClosedForm | Pieces | MarchEvaluator | RingMarch | ModesEvaluator, provenance: Provenance
+) -> Program:
     """The program of an evaluator, whatever its bound."""
     match evaluator:
         case ClosedForm():
@@ -37,6 +37,19 @@ def assemble(evaluator: ClosedForm | Pieces | MarchEvaluator | RingMarch, proven
             return _march(evaluator, provenance)
         case RingMarch(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
             return Program("rings", evaluator.real, tau_max, outputs, tables, constants, evaluator.bytes, provenance)
+        case ModesEvaluator(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants, sources=sources):
+            return Program(
+                "modes",
+                evaluator.real,
+                tau_max,
+                outputs,
+                tables,
+                constants,
+                evaluator.bytes,
+                provenance,
+                sources=sources,
+                proved=evaluator.proved,
+            )
 
 
 def _closed(form: ClosedForm, provenance: Provenance) -> Program:
@@ -107,7 +120,8 @@ def _march_tables(evaluator: MarchEvaluator) -> dict[str, tuple[float, ...]]:
     nodes, panels = plan.junctions, plan.panels
     rows = {step: row for row, step in enumerate(evaluator.operators)}
     operators = list(evaluator.operators.values())
-    delays = sorted({output.delay for output in plan.outputs} | {1 - output.delay for output in plan.outputs})
+    delays = sorted({each.delay for output in plan.outputs for each in output.heard})
+    heard = [output.heard if made.bound else () for output, made in zip(plan.outputs, evaluator.outputs, strict=True)]
     stretches = [plan.stretches(delay) for delay in delays]
     flat = [stretch for group in stretches for stretch in group]
     forces = {column: force for force, column in enumerate(plan.loaded)}
@@ -146,14 +160,12 @@ def _march_tables(evaluator: MarchEvaluator) -> dict[str, tuple[float, ...]]:
         "source_force": tuple(channel.force for channel in plan.channels),
         "source_gain": reals(channel.gain for channel in plan.channels),
         "source_integral": tuple(channel.order for channel in plan.channels),
-        "quantity": tuple(
-            QUANTITIES.index(output.quantity) if made.bound else len(QUANTITIES)
-            for output, made in zip(plan.outputs, evaluator.outputs, strict=True)
-        ),
-        "left_node": tuple(output.left for output in plan.outputs),
-        "right_node": tuple(output.right for output in plan.outputs),
-        "left_delay": tuple(delays.index(1 - output.delay) for output in plan.outputs),
-        "right_delay": tuple(delays.index(output.delay) for output in plan.outputs),
+        "first_heard": _firsts(map(len, heard)),
+        "way": tuple(each.way for of in heard for each in of),
+        "sender": tuple(each.column for of in heard for each in of),
+        "gain": reals(each.gain for of in heard for each in of),
+        "summed": tuple(int(each.summed) for of in heard for each in of),
+        "delay": tuple(delays.index(each.delay) for of in heard for each in of),
         "first_stretch": _firsts(map(len, stretches)),
         "from": tuple(_counts_from(stretch, real) for stretch in flat),
         "start": reals(stretch.start for stretch in flat),
@@ -173,6 +185,7 @@ def _march_constants(evaluator: MarchEvaluator) -> dict[str, float]:
         "first_node": plan.first,
         "forces": len(plan.loaded),
         "sources": len(plan.channels),
+        "ways": plan.ways,
         "points": len(plan.panels) * (degree + 1),
         "events": len(plan.events),
         "last_window": _last_window(plan, real),

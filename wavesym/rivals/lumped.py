@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from wavesym.model.probe import Probe
-from wavesym.numbers.doubles import fraction
-from wavesym.rivals.mass import Elements, Unknowns, dense
+from wavesym.model.reading import Gauge
+from wavesym.numbers.doubles import fraction, nearest
+from wavesym.rivals.mass import Elements, dense
 from wavesym.rivals.oscillators import DERIVED, KEPT, Ratios, condensed
 from wavesym.rivals.problem import Array
 from wavesym.rivals.stepping import Batch, stepped
@@ -30,7 +30,12 @@ class DiscreteModel:
         """
         problem = self.elements.problem
         taus, values = stepped(self._parts, self._events, problem.until, step)
-        strained = [problem.strain[p.rod - 1] if p.quantity == "strain" else 0.0 for p in problem.probes]
+        strained = [
+            sum(
+                nearest(weight) * problem.strain[gauge.rod - 1] for weight, gauge in terms if gauge.quantity == "strain"
+            )
+            for terms in problem.sums
+        ]
         return taus, values + np.array(strained)[:, np.newaxis]
 
     @cached_property
@@ -82,7 +87,7 @@ class DiscreteModel:
         loads = np.broadcast_to(DERIVED, (len(self._driven), KEPT, KEPT))
         return [
             Batch(own.matrix, own.jumps, self._shown(own.matrix, places)),
-            Batch(loads, self._changes, self._shown(loads, at_once)),
+            Batch(loads, self._changes, self._shown(loads, at_once) + self._felt()),
         ]
 
     def _shown(self, matrix: Array, places: Array) -> Array:
@@ -93,44 +98,43 @@ class DiscreteModel:
             places = np.einsum("ubs,bst->ubt", places, matrix)
         return total
 
+    def _felt(self) -> Array:
+        """What loads themselves count in outputs: (outputs, loads, KEPT)."""
+        counted = np.zeros((len(self.elements.problem.sums), len(self._driven), KEPT))
+        for row, terms in enumerate(self.elements.problem.sums):
+            for weight, gauge in terms:
+                if gauge.quantity == "load" and gauge.point in self._driven:
+                    counted[row, self._driven.index(gauge.point), 1] += nearest(weight)
+        return counted
+
     @cached_property
     def _weights(self) -> Array:
         """What displacements, velocities and accelerations of the unknowns count in outputs: (3, outputs, unknowns)."""
-        weights = np.zeros((3, len(self.elements.problem.probes), self.elements.size))
-        for row, probe in enumerate(self.elements.problem.probes):
-            if probe.quantity == "strain":
-                weights[:, row] = self._strain(probe)
-            else:
-                weights[_DERIVATIVE[probe.quantity], row] = self._moved(probe)
+        weights = np.zeros((3, len(self.elements.problem.sums), self.elements.size))
+        for row, terms in enumerate(self.elements.problem.sums):
+            for weight, gauge in terms:
+                if gauge.quantity != "load":
+                    weights[:, row] += nearest(weight) * self._counted(gauge)
         return weights
 
-    def _moved(self, probe: Probe) -> Array:
-        """How much the unknowns move a place: along a line from one end of its element to the other."""
-        weights = np.zeros(self.elements.size)
-        if probe.point is not None:
-            weights[probe.point] = 1.0
-            return weights
-        ends, factors, part, _ = self._element(probe)
-        np.add.at(weights, ends, factors * (1 - part, part))
-        return weights
-
-    def _strain(self, probe: Probe) -> Array:
-        """What strains a place: its element as a spring, and its mass, which moves along a line between its ends."""
+    def _counted(self, gauge: Gauge) -> Array:
+        """The same for one reading: (3, unknowns)."""
         weights = np.zeros((3, self.elements.size))
-        ends, factors, part, length = self._element(probe)
-        problem, bar = self.elements.problem, probe.rod - 1
-        np.add.at(weights[0], ends, factors * (-1, 1) / (length * problem.speed[bar]))
-        balance = np.array([part - 1 / 3 - part**2 / 2, part**2 / 2 - 1 / 6])
-        np.add.at(weights[2], ends, self.elements.weight * factors * balance * (length / problem.speed[bar]))
-        return weights
-
-    def _element(self, probe: Probe) -> tuple[Unknowns, Array, float, float]:
-        """The unknowns at the ends of an output's element, how fast these move there, the place in it, its delay."""
-        bar = probe.rod - 1
-        place = float(fraction(probe.place)) * self.elements.cells[bar]
+        derivative = 1 if gauge.quantity == "velocity" else 0
+        if gauge.point is not None:
+            weights[derivative, gauge.point] = 1.0
+            return weights
+        problem, bar = self.elements.problem, gauge.rod - 1
+        place = float(fraction(gauge.place)) * self.elements.cells[bar]
         first = min(int(place), int(self.elements.cells[bar]) - 1)
+        part, length, speed = place - first, self.elements.length(bar), float(problem.speed[bar])
         unknowns, factors = self.elements.along(bar)
-        return unknowns[first : first + 2], factors[first : first + 2], place - first, self.elements.length(bar)
-
-
-_DERIVATIVE = {"displacement": 0, "velocity": 1}
+        unknowns, factors = unknowns[first : first + 2], factors[first : first + 2]
+        if gauge.quantity == "strain":
+            # as a spring, and what balances the element's mass, whose acceleration is a line between its ends
+            balance = np.array([part - 1 / 3 - part**2 / 2, part**2 / 2 - 1 / 6])
+            np.add.at(weights[0], unknowns, factors * (-1, 1) / (length * speed))
+            np.add.at(weights[2], unknowns, self.elements.weight * factors * balance * (length / speed))
+        else:
+            np.add.at(weights[derivative], unknowns, factors * (1 - part, part))
+        return weights

@@ -13,6 +13,7 @@ from wavesym.errors import UnservedError
 from wavesym.model.model import Model
 from wavesym.model.network import Bar, Network
 from wavesym.model.probe import Probe
+from wavesym.model.reading import Sum
 from wavesym.numbers.doubles import fraction, nearest
 from wavesym.rivals.problem import Array, Event, means, terms
 
@@ -26,7 +27,8 @@ class NetworkProblem:
     At tau = 0 nothing is displaced: what a bar is strained then is counted besides. `velocity`, `mass` have shape
     (points,), `damping`, `stiffness` (points, points). The velocity of a point that is `told` its motion is its load,
     at tau = 0, too.
-    `ends` has the points of each bar's left and right end, `ratios` their ratios, both (bars, 2).
+    `ends` has the points of each bar's left and right end, `ratios` their ratios, both (bars, 2). `sums` has what each
+    output is the sum of.
     """
 
     mass: Array
@@ -43,6 +45,7 @@ class NetworkProblem:
     strain: Array
     events: tuple[Event, ...]
     probes: tuple[Probe, ...]
+    sums: tuple[Sum, ...]
     until: float
 
     @property
@@ -98,6 +101,7 @@ def network_problem(model: Model) -> NetworkProblem:
         strain=_column(bars, "strain"),
         events=events,
         probes=model.probes,
+        sums=tuple(model.sums[probe] for probe in model.probes),
         until=nearest(model.until),
     )
 

@@ -54,7 +54,8 @@ class Description:
 
     `name_size` is what the longest name of an output takes in C; `command` makes the same file again.
     `real` and `numpy_real` are the type of all values in C and in NumPy; numbers that C reads have its suffix.
-    Where contacts open and close, `events` says what they do, and `event_count` how often; else that is empty.
+    `trust` says what bounds of errors are: "proved" or "estimated". Where contacts open and close, `events` says what
+    they do, and `event_count` how often; else that is empty.
     """
 
     name: str
@@ -66,6 +67,7 @@ class Description:
     reason: str
     units: str
     tolerance: str
+    trust: str
     outputs: tuple[NamedOutput, ...]
     output_count: str
     name_size: str
@@ -95,6 +97,7 @@ def describe(program: Program) -> Description:
         reason=origin.reason,
         units="x in rod lengths, tau = c t / l" if model.chain else "places in lengths, tau in lengths at speed 1",
         tolerance=_tolerance(model),
+        trust="proved" if program.proved else "estimated",
         outputs=tuple(
             NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)))
             for output, constant in zip(program.outputs, constants(names), strict=True)
