@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
+from scipy.linalg import expm, sqrtm
 
 from wavesym.rivals.advice import springs
+from wavesym.rivals.lumped import DiscreteModel
+from wavesym.rivals.mass import Elements
+from wavesym.rivals.network import network_problem
 from wavesym.scene import Scene, lower
 
 FLOOR, ROOF = 0.3, 0.2  # kappa
@@ -17,7 +20,7 @@ GROUND = Scene(
 )
 
 
-def by_hand(weight, taus):
+def by_hand(weight, taus, ratio=0.0):
     """Two floors of mass 1/kappa on rods of mass `weight`, ground acceleration 1 + tau/2, then -2 + (tau - 7/3)/4 more.
 
     The unknowns are the floors' displacements relative to the ground, their velocities, and the ground's displacement,
@@ -29,6 +32,7 @@ def by_hand(weight, taus):
     a = np.zeros((8, 8))
     a[:2, 2:4] = np.eye(2)
     a[2:4, :2] = -np.linalg.solve(m, k)
+    a[2:4, 2:4] = -2 * ratio * sqrtm(np.linalg.solve(m, k))  # the same ratio for each mode
     a[2:4, 6] = -np.linalg.solve(m, dragged)
     a[4, 5] = a[5, 6] = a[6, 7] = 1
     start = np.zeros(8)
@@ -58,3 +62,13 @@ def test_a_building_is_what_its_equations_say(weight):
     some = np.arange(0, len(taus), 11)
     np.testing.assert_allclose(values[:, some], by_hand(weight, taus[some]), rtol=0, atol=1e-9)
     assert np.max(np.abs(values[:, some] - by_hand(abs(weight - 0.1), taus[some]))) > 1e-2
+
+
+@pytest.mark.parametrize("ratio", [0.05, 1.0, 1.5])
+def test_modes_are_damped_relative_to_the_ground(ratio):
+    problem = network_problem(lower(GROUND))
+    model = DiscreteModel(Elements(problem, np.array([1, 1])), lambda w: np.full(len(w), ratio))
+    taus, values = model.history(1 / 8)
+    some = np.arange(0, len(taus), 11)
+    np.testing.assert_allclose(values[:, some], by_hand(1.0, taus[some], ratio), rtol=0, atol=1e-9)
+    assert np.max(np.abs(values[:, some] - by_hand(1.0, taus[some], 0.9 * ratio))) > 1e-3

@@ -25,7 +25,7 @@ DERIVED = np.eye(KEPT, k=1)
 _NOTHING = 1e-12
 
 Ratios = Callable[[Array], Array]
-"""Frequencies, ascending, to the damping ratio of each."""
+"""Frequencies, ascending, to the damping ratio of each; 0 is that of a motion without strain."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,8 @@ class Condensed:
         whitened = np.linalg.solve(root, np.linalg.solve(root, self.stiffness).T)
         squares, shapes = np.linalg.eigh((whitened + whitened.T) / 2)
         shapes = np.linalg.solve(root.T, shapes)
-        frequency = np.sqrt(np.maximum(squares, 0.0))
+        strained = squares > len(squares) * np.finfo(float).eps * squares[-1:]
+        frequency = np.sqrt(np.where(strained, squares, 0.0))
         damping = 2 * frequency * ratios(frequency) if ratios else np.zeros_like(frequency)
         speed = np.maximum(frequency, 1.0)
         matrix = np.zeros((len(frequency), 2 + KEPT, 2 + KEPT))
@@ -83,6 +84,8 @@ class Condensed:
         )
         matrix[:, 2:, 2:] = DERIVED
         felt = np.einsum("qn,qdk->ndk", shapes, self.acting)
+        # what is damped is the motion beside that in which all springs follow what is told
+        felt[..., 1] += (damping / np.where(strained, squares, 1.0))[:, np.newaxis] * felt[..., 0]
         jumps = np.empty((len(changes), len(frequency), 2 + KEPT))
         jumps[..., 0], jumps[..., 1] = 0.0, momentum @ shapes / speed
         for k in range(KEPT):
