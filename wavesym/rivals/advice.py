@@ -69,15 +69,16 @@ def _soonest(model: Model) -> Program:
     return make(model)
 
 
-def springs(model: Model, weight: float) -> tuple[Array, Array]:
+def springs(model: Model, weight: float, step: float | None = None) -> tuple[Array, Array]:
     """Instants, and the outputs there (outputs, instants), where each rod is one spring with `weight` of its mass.
 
+    Instants are `step` apart at most, or as close as it takes to see a wave in the shortest rod.
     UnservedError for contacts that open and close, and where rods that weigh nothing leave something free.
     """
     problem = network_problem(model)
     one = np.ones(len(problem.ends), dtype=int)
-    step = max(float(np.min(problem.delay)) / _INSTANTS, problem.until / _MOST_INSTANTS)
-    return DiscreteModel(Elements(problem, one, weight)).history(step)
+    close = max(float(np.min(problem.delay)) / _INSTANTS, problem.until / _MOST_INSTANTS)
+    return DiscreteModel(Elements(problem, one, weight)).history(step or close)
 
 
 def _differences(ours: Array, waves: Array) -> Iterator[Discrepancy]:
