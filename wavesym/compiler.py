@@ -332,10 +332,13 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
 def advise(scene: Scene, tolerance: float = 0.01, format: str = "text") -> str:
     """Which model of a scene is enough, massless springs, consistent mass or waves, as text or json.
 
-    ToleranceError, CostError where nothing could be generated either.
+    WavesymError for a tolerance that is not between 0 and 1; ToleranceError, CostError where nothing could be generated
+    either.
     """
     from wavesym.rivals.advice import advise as advice
 
+    if not 0 < tolerance < 1:
+        raise WavesymError(f"--tolerance: {tolerance:g} given, a number between 0 and 1 expected")
     found = advice(lower(scene), tolerance)
     return found.json() if format == "json" else found.text()
 

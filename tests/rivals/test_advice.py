@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from wavesym import compiler
+from wavesym.cli import main
 from wavesym.rivals import advice, mass
 from wavesym.rivals.advice import advise
 from wavesym.scene import Scene, lower
@@ -132,3 +133,17 @@ def test_text_and_json_say_the_same():
             line = next(line for line in text.splitlines() if line.startswith(f"  {row['name']} "))
             shown = f"{row['largest']:.6g}" if name == "waves" else f"{row['history']:.1e}"
             assert shown in line
+
+
+def test_the_command(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["advise", "drive_m1", "--format", "json"]) == 0
+    assert json.loads(capsys.readouterr().out)["enough"] == "waves"
+    assert main(["advise", "drive_m1", "--tolerance", "0.6"]) == 0
+    assert "every output: massless" in capsys.readouterr().out
+    for wrong in ("0", "1", "nan", "much"):
+        assert main(["advise", "drive_m1", "--tolerance", wrong]) == 2
+        out, line = capsys.readouterr()
+        assert out == ""
+        assert line.count("\n") == 1
+    assert not list(tmp_path.iterdir())
