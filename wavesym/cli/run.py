@@ -31,7 +31,9 @@ _DECIMAL = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
 @click.option("--at", type=PATH, metavar="FILE", help="File of the tau to use instead: one decimal a line, # comments.")
 @click.option("-o", "out", type=PATH, metavar="OUT.csv", help="Where the values go.  [default: standard output]")
 def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) -> None:
-    """Print the outputs of a scene as CSV, right to the last bit.
+    """Print the outputs of a scene as CSV, right to the last bit where that takes no minutes.
+
+    Else they are those of a program, which standard error names with its bound.
 
     \b
     Example:
@@ -48,7 +50,7 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
         refuse_scene(out)
     with progress(f"run {scene.name}"):
         warnings = [*compiler.warnings(scene, taus or ()), *compiler.events(scene)]
-        lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus)
+        lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus, warnings.append)
         if out is not None:
             write_whole({out: lines})
     for warning in warnings:

@@ -31,6 +31,7 @@ def lower(scene: Scene) -> Model:
         tolerance=rational(output.tolerance),
         labels=_labels(scene),
         clock=scene.scale.clock if scene.scale else None,
+        spacing=min((rational(load.step) for load in scene.load if load.step), default=None),
     )
 
 

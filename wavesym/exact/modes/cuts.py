@@ -23,11 +23,11 @@ class Cut:
     places: tuple[tuple[fmpq, ...], ...]
     firsts: tuple[int, ...]
 
-    def end(self, bar: int, place: fmpq) -> End:
-        """The end of a piece that lies at a place of a bar: the left one of the piece on its right, but at 1."""
-        if place == 1:
-            return End(self.firsts[bar] + len(self.places[bar]), 1)
-        return End(self.firsts[bar] + (0 if place == 0 else 1 + self.places[bar].index(place)), 0)
+    def end(self, bar: int, place: fmpq, before: bool = True) -> End:
+        """The end of a piece that lies at a place of a bar: of the piece `before` it, or of that after it."""
+        if place == 0 or (place != 1 and not before):
+            return End(self.firsts[bar] + (0 if place == 0 else 1 + self.places[bar].index(place)), 0)
+        return End(self.firsts[bar] + (len(self.places[bar]) if place == 1 else self.places[bar].index(place)), 1)
 
 
 def cut(network: Network, places: Iterable[tuple[int, fmpq]], *, aside: bool = False) -> Cut:

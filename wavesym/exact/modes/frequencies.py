@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from flint import arb, ctx, fmpq
@@ -24,14 +23,6 @@ _SHARP = arb(2) ** -60  # shapes
 
 class CoincidenceError(ArithmeticError):
     """Two frequencies that no bits tell apart, or one at which all points are at rest."""
-
-
-@dataclass(frozen=True)
-class Modes:
-    """The first modes of a network that is cut where something is to be known."""
-
-    cut: Cut
-    found: tuple[Mode, ...]
 
 
 def refuse_damped(network: Network) -> None:
@@ -59,29 +50,49 @@ def frequencies(network: Network, count: int) -> tuple[arb, ...]:
     >>> [float(w) for w in frequencies(lower(Scene.from_toml("drive_m1")).network, 2)]
     [0.0, 1.5336592127]
     """
-    return tuple(mode.frequency for mode in modes(network, (), count).found)
+    return tuple(mode.frequency for mode in Spectrum(network).first(count))
 
 
-def modes(network: Network, places: tuple[tuple[int, fmpq], ...], count: int) -> Modes:
-    """The first `count` modes, of the network cut at places (bar, part of it)."""
-    refuse_damped(network)
-    for aside in (False, True):
-        whole = cut(network, places, aside=aside)
+class Spectrum:
+    """The modes of an undamped network that is cut at places (bar, part of it), as many as are asked for.
+
+    UnservedError as for `frequencies`.
+    """
+
+    def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
+        refuse_damped(network)
+        self._cuts = [cut(network, places), cut(network, places, aside=True)]
+        self._found: list[Mode] = []
+
+    @property
+    def cut(self) -> Cut:
+        """The network as it is cut."""
+        return self._cuts[0]
+
+    def first(self, count: int) -> list[Mode]:
+        """The first `count` modes, by their frequencies."""
         try:
-            return Modes(whole, tuple(_modes(Stiffness(whole.network), count)))
+            self._found += _modes(Stiffness(self.cut.network), count, len(self._found))
         except CoincidenceError as error:
-            told = str(error)
-    raise UnservedError(f"system: {told}, frequencies that differ expected in modes (pieces and march serve it)")
+            if not self._cuts[1:]:
+                raise UnservedError(
+                    f"system: {error}, frequencies that differ expected in modes (pieces and march serve it)"
+                ) from None
+            del self._cuts[0]
+            self._found = []
+            return self.first(count)
+        return self._found[:count]
 
 
-def _modes(stiffness: Stiffness, count: int) -> Iterator[Mode]:
+def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
+    """Those after the first `known` ones."""
     free = rigid(stiffness.network)
     ways: list[tuple[int, Law]] = []
     for times in (1, 4):
         bits = times * (_BITS + _BITS_A_ROW * len(stiffness.points))
         with ctx.workprec(bits):
             ways.append((bits, stiffness.law(arb)))
-    for n, guess in enumerate(searched(stiffness, count).tolist(), 1):
+    for n, guess in enumerate(searched(stiffness, count).tolist()[known:], known + 1):
         if n == 1 and free:
             with ctx.workprec(_BITS):
                 yield _still(stiffness, free)

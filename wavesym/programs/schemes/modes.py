@@ -31,6 +31,7 @@ class ModesScheme:
     CONSTANTS = ("loads",)
 
     BLOCK = 512  # panels between which states are kept
+    SLOW = 2  # up to here a power series is summed, as differences would lose digits
     _AT_ONCE = 1 << 15  # numbers of an array
 
     def __init__(
@@ -159,7 +160,7 @@ class ModesScheme:
                     (p11, p12, p22, one, two), rule(s, w[columns], decay[columns], self._damping[columns]), strict=True
                 ):
                     array[:, columns] = made
-        slow = (w + 2 * decay) * s <= 2
+        slow = (w + 2 * decay) * s <= self.SLOW
         if slow.any():
             p12[slow], p22[slow], one[slow], two[slow] = self._slow(
                 *(np.broadcast_to(each, slow.shape)[slow] for each in (s, w, decay))
