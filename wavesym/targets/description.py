@@ -66,6 +66,7 @@ class Description:
     numpy_real: str
     reason: str
     units: str
+    quantities: str
     tolerance: str
     trust: str
     outputs: tuple[NamedOutput, ...]
@@ -96,6 +97,7 @@ def describe(program: Program) -> Description:
         numpy_real=called.numpy_type,
         reason=origin.reason,
         units="x in rod lengths, tau = c t / l" if model.chain else "places in lengths, tau in lengths at speed 1",
+        quantities=_quantities(names),
         tolerance=_tolerance(model),
         trust="proved" if program.proved else "estimated",
         outputs=tuple(
@@ -112,6 +114,21 @@ def describe(program: Program) -> Description:
         events=tuple(_event(event, real) for event in origin.events or ()),
         event_count="" if origin.events is None else str(len(origin.events)),
     )
+
+
+def _quantities(names: Sequence[str]) -> str:
+    """In which order rows come: the first three always, of the others those that there are."""
+    found = [name.partition("@")[0] for name in names]
+    more = [words for quantity, words in _MORE.items() if quantity in found]
+    return ", ".join(["strains, velocities, displacements", *more])
+
+
+_MORE = {
+    "acceleration": "accelerations",
+    "force": "forces",
+    "drift": "drifts",
+    "relative": "relative displacements",
+}
 
 
 def constants(names: Sequence[str]) -> list[str]:
