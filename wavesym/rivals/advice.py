@@ -17,8 +17,9 @@ from wavesym.programs.program import Program
 from wavesym.programs.request import Request
 from wavesym.rivals.lumped import DiscreteModel
 from wavesym.rivals.mass import Elements
-from wavesym.rivals.network import network_problem
+from wavesym.rivals.modal_elements import RIVAL
 from wavesym.rivals.problem import Array
+from wavesym.rivals.sums import summing
 
 WEIGHTS: Mapping[str, float] = {"massless": 0.0, "consistent": 1.0}
 """The models in place of waves, from cheap to dear, and what of their mass the rods have."""
@@ -64,8 +65,9 @@ def advise(model: Model, tolerance: float) -> Advice:
 
 def _soonest(model: Model) -> Program:
     """A program of the waves: not the quickest one, but the one that is made soonest."""
-    with suppress(CostError, ToleranceError):
-        return make(model, Request(evaluator="march"))
+    for kind in ("modes", "march"):
+        with suppress(CostError, ToleranceError):
+            return make(model, Request(evaluator=kind))
     return make(model)
 
 
@@ -73,12 +75,15 @@ def springs(model: Model, weight: float, step: float | None = None) -> tuple[Arr
     """Instants, and the outputs there (outputs, instants), where each rod is one spring with `weight` of its mass.
 
     Instants are `step` apart at most, or as close as it takes to see a wave in the shortest rod.
-    UnservedError for contacts that open and close, and where rods that weigh nothing leave something free.
+    UnservedError for contacts that open and close, for what nothing holds where rods weigh nothing, and for damping of
+    modes that there are not.
     """
-    problem = network_problem(model)
+    stated = summing(RIVAL).states(model)
+    problem = stated.problem
     one = np.ones(len(problem.ends), dtype=int)
     close = max(float(np.min(problem.delay)) / _INSTANTS, problem.until / _MOST_INSTANTS)
-    return DiscreteModel(Elements(problem, one, weight)).history(step or close)
+    taus, values = DiscreteModel(Elements(problem, one, weight)).history(step or close)
+    return taus, stated.added(values, taus)
 
 
 def _differences(ours: Array, waves: Array) -> Iterator[Discrepancy]:

@@ -8,34 +8,30 @@ from functools import cached_property
 
 import numpy as np
 
-from wavesym.model.reading import Gauge
-from wavesym.numbers.doubles import fraction, nearest
+from wavesym.errors import UnservedError
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import fraction
+from wavesym.programs.modes.damped import damped
 from wavesym.rivals.mass import Elements, dense
-from wavesym.rivals.oscillators import DERIVED, KEPT, Ratios, condensed
+from wavesym.rivals.oscillators import DERIVED, KEPT, condensed
 from wavesym.rivals.problem import Array
 from wavesym.rivals.stepping import Batch, stepped
 
 
 @dataclass(frozen=True)
 class DiscreteModel:
-    """The elements of a network; `ratios` says how its modes are damped."""
+    """The elements of a network. Outputs are strains, velocities and displacements."""
 
     elements: Elements
-    ratios: Ratios | None = None
 
     def history(self, step: float) -> tuple[Array, Array]:
         """Instants on [0, until], at most `step` apart, and the outputs there (outputs, instants).
 
-        UnservedError where rods are springs, and something without mass is held by none.
+        UnservedError where something without mass is held by no spring, and for the damping of modes that it has not.
         """
         problem = self.elements.problem
         taus, values = stepped(self._parts, self._events, problem.until, step)
-        strained = [
-            sum(
-                nearest(weight) * problem.strain[gauge.rod - 1] for weight, gauge in terms if gauge.quantity == "strain"
-            )
-            for terms in problem.sums
-        ]
+        strained = [problem.strain[p.rod - 1] if p.quantity == "strain" else 0.0 for p in problem.probes]
         return taus, values + np.array(strained)[:, np.newaxis]
 
     @cached_property
@@ -81,13 +77,13 @@ class DiscreteModel:
         # what a told velocity gains at once is a blow to what has a share in its mass
         momentum = -self._changes[:, list(told.values()), 1] @ mass[list(told)][:, free]
         momentum[0] += elements.momentum[free]
-        own = left.oscillators(self._changes, momentum[:, left.heavy], self.ratios)
+        own = left.oscillators(self._changes, momentum[:, left.heavy], self._ratios)
         places = np.zeros((size, *own.places.shape[1:]))
         places[free] = np.tensordot(left.follows, own.places, 1)
         loads = np.broadcast_to(DERIVED, (len(self._driven), KEPT, KEPT))
         return [
             Batch(own.matrix, own.jumps, self._shown(own.matrix, places)),
-            Batch(loads, self._changes, self._shown(loads, at_once) + self._felt()),
+            Batch(loads, self._changes, self._shown(loads, at_once)),
         ]
 
     def _shown(self, matrix: Array, places: Array) -> Array:
@@ -98,39 +94,34 @@ class DiscreteModel:
             places = np.einsum("ubs,bst->ubt", places, matrix)
         return total
 
-    def _felt(self) -> Array:
-        """What loads themselves count in outputs: (outputs, loads, KEPT)."""
-        counted = np.zeros((len(self.elements.problem.sums), len(self._driven), KEPT))
-        for row, terms in enumerate(self.elements.problem.sums):
-            for weight, gauge in terms:
-                if gauge.quantity == "load" and gauge.point in self._driven:
-                    counted[row, self._driven.index(gauge.point), 1] += nearest(weight)
-        return counted
+    def _ratios(self, w: Array) -> Array:
+        """How modes of frequencies w are damped."""
+        modal, strained = self.elements.problem.modal, w[w > 0].tolist()
+        if modal and modal.modes and max(modal.modes) > len(strained):
+            raise UnservedError(
+                f"system.damping: mode {max(modal.modes)} given, at most {len(strained)} expected of so few masses"
+            )
+        return damped(modal, strained).of(w)
 
     @cached_property
     def _weights(self) -> Array:
         """What displacements, velocities and accelerations of the unknowns count in outputs: (3, outputs, unknowns)."""
-        weights = np.zeros((3, len(self.elements.problem.sums), self.elements.size))
-        for row, terms in enumerate(self.elements.problem.sums):
-            for weight, gauge in terms:
-                if gauge.quantity != "load":
-                    weights[:, row] += nearest(weight) * self._counted(gauge)
-        return weights
+        return np.stack([self._read(probe) for probe in self.elements.problem.probes], axis=1)
 
-    def _counted(self, gauge: Gauge) -> Array:
-        """The same for one reading: (3, unknowns)."""
+    def _read(self, probe: Probe) -> Array:
+        """The same for one output: (3, unknowns)."""
         weights = np.zeros((3, self.elements.size))
-        derivative = 1 if gauge.quantity == "velocity" else 0
-        if gauge.point is not None:
-            weights[derivative, gauge.point] = 1.0
+        derivative = 1 if probe.quantity == "velocity" else 0
+        if probe.point is not None:
+            weights[derivative, probe.point] = 1.0
             return weights
-        problem, bar = self.elements.problem, gauge.rod - 1
-        place = float(fraction(gauge.place)) * self.elements.cells[bar]
+        problem, bar = self.elements.problem, probe.rod - 1
+        place = float(fraction(probe.place)) * self.elements.cells[bar]
         first = min(int(place), int(self.elements.cells[bar]) - 1)
         part, length, speed = place - first, self.elements.length(bar), float(problem.speed[bar])
         unknowns, factors = self.elements.along(bar)
         unknowns, factors = unknowns[first : first + 2], factors[first : first + 2]
-        if gauge.quantity == "strain":
+        if probe.quantity == "strain":
             # as a spring, and what balances the element's mass, whose acceleration is a line between its ends
             balance = np.array([part - 1 / 3 - part**2 / 2, part**2 / 2 - 1 / 6])
             np.add.at(weights[0], unknowns, factors * (-1, 1) / (length * speed))

@@ -11,7 +11,7 @@ import numpy as np
 
 from wavesym.rivals.lumped import DiscreteModel
 from wavesym.rivals.mass import Elements
-from wavesym.rivals.network import NetworkProblem, network_problem
+from wavesym.rivals.network import NetworkProblem, damped_problem
 from wavesym.rivals.problem import Array, Evaluate, Rival
 
 
@@ -30,6 +30,6 @@ RIVAL = Rival(
     "NumPy",
     "elements in a unit of delay",
     (4, 10, 20, 50, 100),
-    network_problem,
+    damped_problem,
     _prepare,
 )

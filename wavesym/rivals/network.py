@@ -10,10 +10,10 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.errors import UnservedError
+from wavesym.model.damping import Damping
 from wavesym.model.model import Model
 from wavesym.model.network import Bar, Network
 from wavesym.model.probe import Probe
-from wavesym.model.reading import Sum
 from wavesym.numbers.doubles import fraction, nearest
 from wavesym.rivals.problem import Array, Event, means, terms
 
@@ -27,8 +27,8 @@ class NetworkProblem:
     At tau = 0 nothing is displaced: what a bar is strained then is counted besides. `velocity`, `mass` have shape
     (points,), `damping`, `stiffness` (points, points). The velocity of a point that is `told` its motion is its load,
     at tau = 0, too.
-    `ends` has the points of each bar's left and right end, `ratios` their ratios, both (bars, 2). `sums` has what each
-    output is the sum of.
+    `ends` has the points of each bar's left and right end, `ratios` their ratios, both (bars, 2). `modal` is how
+    modes are damped besides.
     """
 
     mass: Array
@@ -45,8 +45,8 @@ class NetworkProblem:
     strain: Array
     events: tuple[Event, ...]
     probes: tuple[Probe, ...]
-    sums: tuple[Sum, ...]
     until: float
+    modal: Damping | None = None
 
     @property
     def points(self) -> int:
@@ -71,7 +71,19 @@ class NetworkProblem:
 
 
 def network_problem(model: Model) -> NetworkProblem:
-    """The network of a model with its loads. UnservedError where contacts open and close."""
+    """The network of a model with its loads. UnservedError where contacts open and close, and for modal damping."""
+    refuse_damping(model)
+    return damped_problem(model)
+
+
+def refuse_damping(model: Model) -> None:
+    """UnservedError for modal damping."""
+    if model.damping is not None:
+        raise UnservedError("system.damping: given, none expected (modes serve it)")
+
+
+def damped_problem(model: Model) -> NetworkProblem:
+    """The network of a model with its loads and its modal damping. UnservedError where contacts open and close."""
     network = model.network
     if network.contacts:
         raise UnservedError("system: a contact that opens and closes given, none expected")
@@ -101,8 +113,8 @@ def network_problem(model: Model) -> NetworkProblem:
         strain=_column(bars, "strain"),
         events=events,
         probes=model.probes,
-        sums=tuple(model.sums[probe] for probe in model.probes),
         until=nearest(model.until),
+        modal=model.damping,
     )
 
 

@@ -57,7 +57,7 @@ class Condensed:
     at_once: Array
     heavy: NDArray[np.bool_]
 
-    def oscillators(self, changes: Array, momentum: Array, ratios: Ratios | None) -> Stepping:
+    def oscillators(self, changes: Array, momentum: Array, ratios: Ratios) -> Stepping:
         """Stepped mode by mode, or all in one where dashpots tie the modes.
 
         `changes` (events, loads, KEPT) is what the loads gain at events, `momentum` (events, heavy) what masses do.
@@ -65,7 +65,7 @@ class Condensed:
         tied = np.any(self.damping)
         return self._tied(changes, momentum) if tied else self._modal(changes, momentum, ratios)
 
-    def _modal(self, changes: Array, momentum: Array, ratios: Ratios | None) -> Stepping:
+    def _modal(self, changes: Array, momentum: Array, ratios: Ratios) -> Stepping:
         """x is the displacement of a mode, its velocity over `speed`, and its load and three derivatives."""
         root = np.linalg.cholesky(self.mass)
         whitened = np.linalg.solve(root, np.linalg.solve(root, self.stiffness).T)
@@ -73,7 +73,7 @@ class Condensed:
         shapes = np.linalg.solve(root.T, shapes)
         strained = squares > len(squares) * np.finfo(float).eps * squares[-1:]
         frequency = np.sqrt(np.where(strained, squares, 0.0))
-        damping = 2 * frequency * ratios(frequency) if ratios else np.zeros_like(frequency)
+        damping = 2 * frequency * ratios(frequency)
         speed = np.maximum(frequency, 1.0)
         matrix = np.zeros((len(frequency), 2 + KEPT, 2 + KEPT))
         matrix[:, 0, 1], matrix[:, 1, 0], matrix[:, 1, 1], matrix[:, 1, 2] = (
