@@ -20,7 +20,7 @@ from wavesym.rivals.stepping import Batch, stepped
 
 @dataclass(frozen=True)
 class DiscreteModel:
-    """The elements of a network. Outputs are strains, velocities and displacements."""
+    """The elements of a network. Outputs are strains, displacements, velocities and accelerations."""
 
     elements: Elements
 
@@ -111,7 +111,7 @@ class DiscreteModel:
     def _read(self, probe: Probe) -> Array:
         """The same for one output: (3, unknowns)."""
         weights = np.zeros((3, self.elements.size))
-        derivative = 1 if probe.quantity == "velocity" else 0
+        derivative = {"velocity": 1, "acceleration": 2}.get(probe.quantity, 0)
         if probe.point is not None:
             weights[derivative, probe.point] = 1.0
             return weights
