@@ -78,7 +78,7 @@ class ModesScheme:
         out = np.full((self._direct.shape[2], flat.size), np.nan, self._real)
         if inside.stop > inside.start:
             out[:, order[inside]] = self._sorted(sorted_taus[inside])
-        return out.reshape(-1, *taus.shape)
+        return out.reshape(len(out), *taus.shape)
 
     def _sorted(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
         """The outputs at sorted tau in range: (outputs, tau.size)."""
