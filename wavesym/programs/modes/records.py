@@ -43,7 +43,9 @@ class HatResponse:
         given = given.reshape(*given.shape[:2], -1)
         records, n, loads = given.shape
         if n > self.count or loads != len(self.spectra):
-            raise ValueError(f"{n} samples of {loads} loads given, at most {self.count} of {len(self.spectra)} expected")
+            raise ValueError(
+                f"{n} samples of {loads} loads given, at most {self.count} of {len(self.spectra)} expected"
+            )
         values = np.empty((records, len(self.system.direct), n))
         for value, record in zip(values, given, strict=True):
             spectrum = np.fft.rfft(record.T, self.size)
