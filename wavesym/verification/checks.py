@@ -88,8 +88,11 @@ def records(known: Known) -> list[Outcome]:
     model = known.whole
     try:
         program = make(model)
-        if program.evaluator != "modes":
-            return []
+    except WavesymError:  # said already
+        return []
+    if program.evaluator != "modes":
+        return []
+    try:
         march = at_samples(model)
     except WavesymError as refusal:
         return [Outcome("record", {"march": "refused"}, True, str(refusal))]
