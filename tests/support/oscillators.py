@@ -36,7 +36,7 @@ def exact(number: object) -> fmpq:
 
 
 def storeys(m: int, elements: int, damping: float, mass: float = 30.0) -> ModalSystem:
-    """m equal storeys on moving ground, of so many elements each: drifts, velocities and displacements of the floors."""
+    """m equal storeys on moving ground, of so many elements each: drifts, velocities and displacements of floors."""
     count = m * elements
     stiffness, masses = np.zeros((2, count + 1, count + 1))
     for e in range(count):

@@ -34,7 +34,9 @@ def written(made, folder):
 
 
 def selftest(folder, *flags):
-    compiler().run([*LANGUAGES["c99"], *STRICT, "-O2", *flags, f"{NAME}.c", f"{NAME}_selftest.c", "-o", "test", "-lm"], folder)
+    compiler().run(
+        [*LANGUAGES["c99"], *STRICT, "-O2", *flags, f"{NAME}.c", f"{NAME}_selftest.c", "-o", "test", "-lm"], folder
+    )
     return subprocess.run([folder / "test"], capture_output=True, check=False).returncode
 
 
@@ -42,7 +44,9 @@ class Stream:
     """A compiled stream: one sample of each load in, all outputs out."""
 
     def __init__(self, folder, program, *flags):
-        compiler().run([*LANGUAGES["c99"], *STRICT, "-O2", *flags, "-fPIC", "-shared", f"{NAME}.c", "-o", "made.so"], folder)
+        compiler().run(
+            [*LANGUAGES["c99"], *STRICT, "-O2", *flags, "-fPIC", "-shared", f"{NAME}.c", "-o", "made.so"], folder
+        )
         library = ctypes.CDLL(str(folder / "made.so"))
         self.dtype = np.dtype(f"f{program.real.bytes}")
         real = ctypes.c_double if program.real is DOUBLE else ctypes.c_float

@@ -85,7 +85,7 @@ class Advice:
             return
         yield f"  {WAVES:10}  {self.program}"
         yield ""
-        yield f"How far histories and their peaks are from those of waves, in parts of the largest value,"
+        yield "How far histories and their peaks are from those of waves, in parts of the largest value,"
         yield f"at {self.instants} instants:"
         yield ""
         compared = [each for each in self.candidates if not each.refused]

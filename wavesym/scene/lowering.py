@@ -41,8 +41,8 @@ def _labels(scene: Scene) -> Labels:
         said["units"] = scene.scale.canonical
     canonical = json.dumps(said, sort_keys=True, separators=(",", ":"))
     return Labels(
-        system={"type": scene.system.type, **scene.system.choices},
-        loads=tuple(load.told for load in scene.load),
+        system={"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)},
+        loads=scene.physical.loads if scene.physical else tuple(load.told for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
     )
 

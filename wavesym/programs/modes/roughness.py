@@ -41,7 +41,7 @@ class Roughness:
         first = self.steps[0]
         dense = np.zeros(self.steps[-1] - first + 1)
         dense[np.array(self.steps) - first] = self.kinks
-        return min(plain, _partial(dense) * _MORE)
+        return float(min(plain, _partial(dense) * _MORE))
 
     def fading(self, rate: float) -> float:
         """The largest sum_{k <= n} |kinks_k| exp(-rate (times_n - times_k)) for any n."""
@@ -50,7 +50,7 @@ class Roughness:
         for time, kink in zip(self.times.tolist(), np.abs(self.kinks).tolist(), strict=True):
             total = total * float(np.exp(-rate * (time - before))) + kink
             largest, before = max(largest, total), time
-        return largest * _MORE
+        return float(largest * _MORE)
 
 
 def _partial(terms: Numbers) -> float:

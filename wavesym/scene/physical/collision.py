@@ -15,7 +15,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, FailFast, Field
 
 from wavesym.fields.table import SceneTable, listed, wrong
-from wavesym.scene.physical.elastic import Elastic, Rods
+from wavesym.scene.physical.elastic import ElasticRod, Rods
 from wavesym.scene.physical.measured import Area, Density, Length, Mass, Modulus, Velocity, tidy
 from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
 from wavesym.systems.collision import Collision, known_contacts
@@ -29,9 +29,9 @@ class RodOfBody(SceneTable):
     E: Modulus = Field(description='a modulus such as "210 GPa"')
     rho: Density = Field(description='a density such as "7850 kg/m^3"')
 
-    def rod(self) -> Elastic:
+    def rod(self) -> ElasticRod:
         """As waves see it."""
-        return Elastic(self.length, self.rho * self.A * self.length, self.E * self.A / self.length)
+        return ElasticRod(self.length, self.rho * self.A * self.length, self.E * self.A / self.length, self.A)
 
 
 class Body(SceneTable):

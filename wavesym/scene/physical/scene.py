@@ -19,6 +19,7 @@ from wavesym.scene.physical.loads import dimensionless, read
 from wavesym.scene.physical.measured import measured, placed, plain
 from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
+from wavesym.scene.physical.said import words
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
 
 _SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
@@ -38,6 +39,16 @@ class PhysicalScene:
     fields: dict[str, Any]
     scale: Scale
     kappa: tuple[Fraction, ...]
+
+    @property
+    def system(self) -> dict[str, str]:
+        """What it is made of, by key."""
+        return {key: words(value) for key, value in self.said["system"].items() if key != "type"}
+
+    @property
+    def loads(self) -> tuple[str, ...]:
+        """A line for each load."""
+        return tuple(map(words, self.said.get("load", ())))
 
 
 def physical(fields: Mapping[str, Any]) -> PhysicalScene:
