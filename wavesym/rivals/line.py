@@ -9,13 +9,13 @@ import numpy as np
 from wavesym.errors import UnservedError
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest
-from wavesym.rivals.network import NetworkProblem, network_problem, refuse_damping
+from wavesym.rivals.network import NetworkProblem, network_problem
 from wavesym.rivals.problem import Array, Problem, Watch, problem
 
 
 def stated(model: Model) -> Problem:
     """The problem of a model. UnservedError where it is no line of equal rods between bodies that start as these do."""
-    refuse_damping(model)
+    model.refuse_damping()
     if model.chain and not model.network.contacts:
         return problem(model.chain, model.loads, model.probes, nearest(model.until))
     network = network_problem(model)

@@ -72,14 +72,8 @@ class NetworkProblem:
 
 def network_problem(model: Model) -> NetworkProblem:
     """The network of a model with its loads. UnservedError where contacts open and close, and for modal damping."""
-    refuse_damping(model)
+    model.refuse_damping()
     return damped_problem(model)
-
-
-def refuse_damping(model: Model) -> None:
-    """UnservedError for modal damping."""
-    if model.damping is not None:
-        raise UnservedError("system.damping: given, none expected (modes serve it)")
 
 
 def damped_problem(model: Model) -> NetworkProblem:
