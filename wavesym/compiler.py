@@ -462,6 +462,20 @@ def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[li
     return [header, *rows], [*warnings(scene), said]
 
 
+def advise(scene: Scene, tolerance: float = 0.01, format: str = "text") -> str:
+    """Which model of a scene is enough, massless springs, consistent mass or waves, as text or json.
+
+    WavesymError for a tolerance that is not between 0 and 1; ToleranceError, CostError where nothing could be generated
+    either.
+    """
+    from wavesym.rivals.advice import advise as advice
+
+    if not 0 < tolerance < 1:
+        raise WavesymError(f"--tolerance: {tolerance:g} given, a number between 0 and 1 expected")
+    found = advice(lower(scene), tolerance)
+    return found.json() if format == "json" else found.text()
+
+
 def record(path: Path, unit: str | None, column: str | None = None, picture: Path | None = None) -> list[str]:
     """What a file of a record says, line by line; drawn too, where there is a path for it.
 
