@@ -310,8 +310,9 @@ def _contact_warnings(model: Model) -> list[str]:
 def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
     """Draw a scene as .svg, .png or .pdf; what the picture leaves out, line by line.
 
-    `kind`: "history", the outputs over tau, or "xt", place x time of all rods. SceneError for another suffix, before
-    the work; ToleranceError, CostError where nothing could be generated either.
+    `kind`: "history", the outputs over time; "xt", place x time of all rods; "envelope", the least and greatest along
+    the chain; "map", place x time as colours, for long horizons. SceneError for another suffix, before the work;
+    ToleranceError, CostError where nothing could be generated either.
     """
     from wavesym.report.saving import picture_format, save
 
@@ -321,12 +322,30 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
 
         save(xt.draw(lower(scene), scene.system.lines), path)
         return []
+    if kind in ("envelope", "map"):
+        from wavesym.report import envelope, heatmap
+        from wavesym.report.along import along
+
+        drawer = envelope if kind == "envelope" else heatmap
+        save(drawer.draw(lower(scene), along(scene)), path)
+        return []
+    from wavesym.report.groups import notes
     from wavesym.report.histories import histories
-    from wavesym.report.panels import draw, notes
+    from wavesym.report.panels import draw
 
     made = histories(lower(scene))
     save(draw(made), path)
     return notes(made)
+
+
+def report(scene: Scene, path: Path, text: str) -> None:
+    """Write a scene, and what happens in it, as one page of HTML; `text` is what the scene was read from.
+
+    ToleranceError, CostError where nothing could be generated either.
+    """
+    from wavesym.report.page.document import page
+
+    write_whole({path: page(scene, text)})
 
 
 def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:

@@ -20,12 +20,14 @@ from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.programs.making import make
+from wavesym.programs.program import Program
 
 Points = NDArray[np.float64]
 
 _TOLERANCE = fmpq(1, 10**6)
 _VISIBLE = 1e-5  # smaller jumps, relative to the largest value, are no jumps
 _LEAST, _PER_UNIT, _MOST = 1200, 32, 200_000  # instants
+_VALUES = 2_000_000  # of all outputs together
 MOST_FRONTS = 50_000  # more of them lie far closer than the dots of a picture
 
 
@@ -50,6 +52,11 @@ class History:
         """All vertices, in order."""
         return np.vstack(self.stretches)
 
+    @cached_property
+    def real(self) -> Points:
+        """The vertices that are no formal continuation."""
+        return self.points[self.points[:, 0] <= self.formal]
+
     @property
     def zero(self) -> bool:
         """Whether it is 0 throughout."""
@@ -58,22 +65,26 @@ class History:
 
 @dataclass(frozen=True)
 class Histories:
-    """The outputs of a model; contacts that open; whether fronts lie too close to be told apart."""
+    """The outputs of a model; contacts that open; whether fronts lie too close to be told apart; what computed them."""
 
     model: Model
     outputs: tuple[History, ...]
     contacts: tuple[ContactEnd, ...]
     dense: bool
+    program: Program | None = None
 
 
-def histories(model: Model) -> Histories:
-    """The histories of all outputs. ToleranceError, CostError where nothing can be generated either."""
+def histories(model: Model, columns: int = 1) -> Histories:
+    """The histories of all outputs. ToleranceError, CostError where nothing can be generated either.
+
+    Their instants lie at the edges of so many `columns` of equal width, and between them.
+    """
     program = make(model.tolerating(max(model.tolerance, _TOLERANCE)))
     contacts = contact_ends(model)
     formal = [_formal(probe, contacts) for probe in model.probes]
     dense = sum(len(_parts(model, probe)) for probe in model.probes) * model.until > MOST_FRONTS
     fronts = [[] if dense else arrivals(model, probe) for probe in model.probes]
-    taus = _instants(program.tau_max, fronts, formal)
+    taus = _instants(program.tau_max, columns, fronts, formal)
     values = program.evaluate(taus)
     return Histories(
         model,
@@ -83,6 +94,7 @@ def histories(model: Model) -> Histories:
         ),
         contacts,
         dense,
+        program,
     )
 
 
@@ -106,8 +118,9 @@ def _formal(probe: Probe, contacts: tuple[ContactEnd, ...]) -> float:
     return min((end.double + abs(nearest(probe.x) - end.x) for end in contacts), default=inf)
 
 
-def _instants(until: float, fronts: list[list[float]], formal: list[float]) -> Points:
-    count = min(max(_LEAST, int(_PER_UNIT * until)), _MOST)
+def _instants(until: float, columns: int, fronts: list[list[float]], formal: list[float]) -> Points:
+    most = min(_MOST, max(_LEAST, _VALUES // len(formal)))
+    count = columns * -(-min(max(_LEAST, int(_PER_UNIT * until)), most) // columns)
     sudden = [tau for own in fronts for tau in own]
     before = [nextafter(tau, 0) for tau in sudden]
     late = [tau for tau in formal if tau < until]

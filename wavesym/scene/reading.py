@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import sys
 import tomllib
+from functools import lru_cache
 from importlib.resources import files
 from os import PathLike
-from typing import Any
+from typing import Any, BinaryIO
 
 from wavesym.errors import SceneError, did_you_mean
 from wavesym.fields.table import Written
@@ -37,15 +38,20 @@ def read_toml(source: str | PathLike[str]) -> tuple[str, dict[str, Any]]:
 
     `source` is a path, `-` for standard input, or the name of a built-in scene. Raises SceneError.
     """
+    file, text = toml_text(source)
+    return file, _parsed(file, text)
+
+
+def toml_text(source: str | PathLike[str]) -> tuple[str, str]:
+    """The name a source goes by in messages, and its text, not parsed yet. Raises SceneError."""
     path = os.fspath(source)
     if path in builtin_names():
-        return path, _parsed(path, _builtin(path).decode())
+        return path, _builtin(path).decode()
     try:
-        file, text = read_text(path, f"a TOML file, - or a built-in scene ({', '.join(builtin_names())})")
+        return read_text(path, f"a TOML file, - or a built-in scene ({', '.join(builtin_names())})")
     except SceneError as error:
         meant = did_you_mean(path, builtin_names())
         raise SceneError(f"{error.what}{meant and f'. {meant}'}", error.path, error.file) from None
-    return file, _parsed(file, text)
 
 
 def builtin_text(name: str) -> str:
@@ -89,7 +95,13 @@ def _bytes(path: str) -> bytes:
             return stream.read(LARGEST_FILE + 1)
     if sys.stdin is None:
         raise OSError(None, "No standard input")
-    return sys.stdin.buffer.read(LARGEST_FILE + 1)
+    return _once(sys.stdin.buffer)
+
+
+@lru_cache(maxsize=1)
+def _once(stream: BinaryIO) -> bytes:
+    """What a stream gives, for all who ask: it can be read only once."""
+    return stream.read(LARGEST_FILE + 1)
 
 
 def _parsed(file: str, text: str) -> dict[str, Any]:

@@ -1,0 +1,147 @@
+"""A scene as one page of HTML: all that a template needs, computed once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import groupby
+
+from wavesym import __version__
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import nearest
+from wavesym.programs.program import Program
+from wavesym.rendering import render
+from wavesym.report.along import along
+from wavesym.report.groups import PlotPanel, notes, panels
+from wavesym.report.histories import Histories, histories
+from wavesym.report.loads import load_histories
+from wavesym.report.page.crossings import crossings
+from wavesym.report.page.plots import Shown, along_pictures, maps, panel, picture
+from wavesym.report.page.structure import structure
+from wavesym.report.timescale import Timescale, timescale
+from wavesym.scene import Scene, lower
+
+_OUTPUTS = 48  # that are drawn
+_VERTICES = 50_000  # of all curves together: what keeps the page small
+_COLUMNS = (300, 1200)  # of a picture of histories, at least and at most
+_LOADS = 8
+
+
+@dataclass(frozen=True)
+class Report:
+    """What the template shows."""
+
+    name: str
+    facts: tuple[tuple[str, str], ...]
+    structure: Shown
+    histories: tuple[Shown, ...]
+    notes: tuple[str, ...]
+    until: str
+    per_tau: str
+    time: str
+    columns: int
+    maps: tuple[Shown, ...]
+    along: tuple[Shown, ...]
+    scene: str
+    command: str
+    version: str
+    sha256: str
+
+
+@dataclass(frozen=True)
+class _Context:
+    report: Report
+
+
+def page(scene: Scene, text: str) -> str:
+    """The page of a scene, with the `text` it was read from. CostError, ToleranceError as for its histories."""
+    return render("html/report.html.j2", _Context(_report(scene, text)))
+
+
+def _report(scene: Scene, text: str) -> Report:
+    model = lower(scene)
+    scale, until = timescale(model), nearest(model.until)
+    drawn = model.watching(_fair(model))
+    columns = min(max(_VERTICES // (3 * len(drawn.probes)), _COLUMNS[0]), _COLUMNS[1])
+    made = histories(drawn, columns)
+    loads = load_histories(model)[:_LOADS]
+    stack = [PlotPanel("load", loads, height=1.0)] if loads else []
+    stack += [each for each in panels(made) if each.histories]
+    lines = scene.system.lines
+    found = along(scene)
+    structured = structure(model, lines)
+    title = f"The structure of {model.name}"
+    return Report(
+        name=model.name,
+        facts=tuple(_facts(model, made, scale)),
+        structure=Shown(
+            title, picture("structure", title, structured.told, structured.height, structured.drawn, class_="plot")
+        ),
+        histories=tuple(
+            panel(f"history-{k}", each, columns, until, scale, last=k == len(stack) - 1) for k, each in enumerate(stack)
+        ),
+        notes=(*_left_out(model, drawn), *notes(made)),
+        until=repr(until * scale.per_tau),
+        per_tau=repr(scale.per_tau),
+        time=scale.unit,
+        columns=columns,
+        maps=tuple(crossings(model, lines, scale) or maps(model, found, scale)),
+        along=tuple(along_pictures(model, found, scale)),
+        scene=text,
+        command=f"wavesym report {model.name}.toml -o {model.name}.html",
+        version=__version__,
+        sha256=model.labels.sha256,
+    )
+
+
+def _fair(model: Model) -> list[Probe]:
+    """The outputs that are drawn: as many of each quantity, or all of them."""
+    groups = [list(group) for _, group in groupby(model.probes, key=lambda probe: probe.quantity)]
+    each = max(1, _OUTPUTS // len(groups))
+    return [probe for group in groups for probe in group[:each]]
+
+
+def _left_out(model: Model, drawn: Model) -> list[str]:
+    missing = len(model.probes) - len(drawn.probes)
+    return (
+        [f"{missing} of {len(model.probes)} outputs are not drawn; their extremes are in the table"] if missing else []
+    )
+
+
+def _facts(model: Model, made: Histories, scale: Timescale) -> Iterator[tuple[str, str]]:
+    """What there is to know at first sight, each under a word."""
+    network, program = model.network, made.program
+    assert program is not None  # histories have one
+    yield "System", ", ".join([model.labels.system["type"], *_chosen(model)])
+    rods, bodies = len(network.bars), len([point for point in network.points if point.mass])
+    yield "Modelled", f"{_count(rods, 'elastic rod')}, {_count(bodies, 'rigid body', 'rigid bodies')}"
+    if model.labels.loads:
+        yield "Loads", "; ".join(model.labels.loads)
+    yield "Horizon", scale.told(nearest(model.until))
+    if model.clock is not None:
+        yield "One tau", f"{nearest(model.clock.seconds):.6g} s: the time that a wave takes to cross a rod of length 1"
+    yield "Computed by", program.provenance.reason.rpartition("; ")[2]
+    yield "Bound", _bound(program)
+    for end in made.contacts:
+        yield (
+            "Contact",
+            f"that at x = {end.x} opens at {scale.told(end.double)}; what that reaches is drawn as if it stayed closed",
+        )
+    for event in program.provenance.events or ():
+        yield "Contact", f"that at x = {event.x} {event.kind} at {scale.told(event.double)}"
+
+
+def _chosen(model: Model) -> list[str]:
+    return [f"{key} = {value}" for key, value in model.labels.system.items() if key in ("base", "contacts")]
+
+
+def _count(number: int, one: str, many: str = "") -> str:
+    return f"{number} {one if number == 1 else many or one + 's'}"
+
+
+def _bound(program: Program) -> str:
+    return (
+        f"{program.error_bound:.2g}, proved: at no time is a curve of this page farther from the exact solution of "
+        "this model than this part of its own largest value. Whether the model is the structure is another question."
+    )
