@@ -348,6 +348,28 @@ def report(scene: Scene, path: Path, text: str) -> None:
     write_whole({path: page(scene, text)})
 
 
+def record(path: Path, unit: str | None, column: str | None = None, picture: Path | None = None) -> list[str]:
+    """What a file of a record says, line by line; drawn too, where there is a path for it.
+
+    `unit` is that of the samples where the file says none, `column` that of a CSV with several. SceneError for a file
+    that is damaged or says another unit, and for a picture with another suffix.
+    """
+    from wavesym.documents.record import facts
+    from wavesym.records.read import read_record
+
+    said = read_record(path, column)
+    if unit is not None and said.unit not in ("", unit):
+        raise SceneError(f"--unit {unit} given, none expected (the file says {said.unit})", file=said.file)
+    lines = facts(said, unit or said.unit)
+    if picture is not None:
+        from wavesym.report.record import draw
+        from wavesym.report.saving import picture_format, save
+
+        picture_format(picture)
+        save(draw(said, unit or said.unit), picture)
+    return lines
+
+
 def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
     """Evaluators against direct integration: a table of errors, and whether all of them are allowed."""
     from wavesym.verification.report import verify as report

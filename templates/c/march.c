@@ -44,48 +44,57 @@ static real antiderivative(const real *c, real u)
     return u * next - after;
 }
 
-/* The wave of a node where it arrives, t after the start of the window. */
-static real arrived(const march *state, int direction, int node, int delay, real t)
+/* What is heard, where it arrives, t after the start of the window. */
+static real arrived(const march *state, int heard, real t)
 {
-    int s = first_stretch[delay];
-    while (s + 1 < first_stretch[delay + 1] && t >= from[s + 1]) {
+    int s = first_stretch[delay[heard]];
+    while (s + 1 < first_stretch[delay[heard] + 1] && t >= from[s + 1]) {
         ++s;
     }
     const int half = back[s] ? !state->half : state->half;
     const real w = (t - start[s]) + excess[s];
-    return series(state->waves[half][direction][panel_of[s]][node + 1], w / half_length[panel_of[s]] - 1);
+    return series(state->waves[half][way[heard]][panel_of[s]][sender[heard] + 1], w / half_length[panel_of[s]] - 1);
 }
 
 /* Its integral from the start of the window to t after it, 0 <= t <= 1. */
-static real gathered(const march *state, int direction, int node, int delay, real t)
+static real gathered(const march *state, int heard, real t)
 {
+    const int begin = first_stretch[delay[heard]];
+    const int end = first_stretch[delay[heard] + 1];
     real sum = 0;
-    for (int s = first_stretch[delay]; s < first_stretch[delay + 1] && (s == first_stretch[delay] || t >= from[s]); ++s) {
+    for (int s = begin; s < end && (s == begin || t >= from[s]); ++s) {
         const int half = back[s] ? !state->half : state->half;
-        const real *const wave = state->waves[half][direction][panel_of[s]][node + 1];
+        const real *const wave = state->waves[half][way[heard]][panel_of[s]][sender[heard] + 1];
         const real length = half_length[panel_of[s]];
-        const int ends = s + 1 < first_stretch[delay + 1] && t >= from[s + 1];
-        const real low = s == first_stretch[delay] ? excess[s] - start[s] : (real)0;
+        const int ends = s + 1 < end && t >= from[s + 1];
+        const real low = s == begin ? excess[s] - start[s] : (real)0;
         const real high = ends ? 2 * length : (t - start[s]) + excess[s];
         sum += length * (antiderivative(wave, high / length - 1) - antiderivative(wave, low / length - 1));
     }
     return sum;
 }
 
+/* The integrals in an output. */
+static real displaced(const march *state, int output, real t)
+{
+    real sum = 0;
+    for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
+        if (summed[k]) {
+            sum += gain[k] * gathered(state, k, t);
+        }
+    }
+    return state->displacement[output] + sum;
+}
+
 static real value(const march *state, int output, real t)
 {
-    const int left = left_node[output];
-    const int right = right_node[output];
-    if (quantity[output] == DISPLACEMENT) {
-        return state->displacement[output] + (gathered(state, LEFT, left, left_delay[output], t) +
-                                              gathered(state, RIGHT, right, right_delay[output], t));
+    real sum = 0;
+    for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
+        if (!summed[k]) {
+            sum += gain[k] * arrived(state, k, t);
+        }
     }
-    if (quantity[output] == NOTHING) {
-        return 0;
-    }
-    const real leftward = arrived(state, LEFT, left, left_delay[output], t);
-    const real rightward = arrived(state, RIGHT, right, right_delay[output], t);
-    return quantity[output] == STRAIN ? leftward - rightward : leftward + rightward;
+    return displaced(state, output, t) + sum;
 }
 
 /* The scene's own loads on a panel, as series. */
@@ -217,9 +226,10 @@ void name_init(march *state)
     for (int half = 0; half < 2; ++half) {
         for (int panel = 0; panel < PANELS; ++panel) {
             for (int node = 0; node < NODES + 2; ++node) {
-                for (int k = 0; k <= DEGREE; ++k) {
-                    state->waves[half][LEFT][panel][node][k] = 0;
-                    state->waves[half][RIGHT][panel][node][k] = 0;
+                for (int to = 0; to < WAYS; ++to) {
+                    for (int k = 0; k <= DEGREE; ++k) {
+                        state->waves[half][to][panel][node][k] = 0;
+                    }
                 }
                 if (node > 0) {
                     state->waves[half][LEFT][panel][node][0] = rod[node - 1];
@@ -254,10 +264,8 @@ static int marched(march *state, const real *loads)
     int within = 1;
     if (state->window >= 0) {
         for (int output = 0; output < OUTPUTS; ++output) {
-            if (quantity[output] == DISPLACEMENT) {
-                state->displacement[output] = value(state, output, 1);
-                within &= within_reach(state->displacement[output]);
-            }
+            state->displacement[output] = displaced(state, output, 1);
+            within &= within_reach(state->displacement[output]);
         }
     }
     state->half = !before;
@@ -269,6 +277,13 @@ static int marched(march *state, const real *loads)
             given(state, panel, loads, force);
         } else {
             own(state, panel, force);
+        }
+        for (int to = LOAD; to < WAYS; ++to) {
+            for (int f = 0; f < FORCES; ++f) {
+                for (int k = 0; k <= DEGREE; ++k) {
+                    state->waves[state->half][to][panel][f + 1][k] = force[f][k];
+                }
+            }
         }
         for (int node = 0; node < NODES; ++node) {
             const real *const a = state->waves[before][RIGHT][panel][node];

@@ -11,10 +11,10 @@ typedef struct name_state {
     name_real size;        /* and the largest velocity or mean of a wave that it is small against */
     name_real rough;       /* the largest part of a load so far that its points do not resolve */
     name_real velocity[NAME_NODES]; /* of the bodies at the end of the window */
-    name_real displacement[NAME_OUTPUTS]; /* at its start */
+    name_real displacement[NAME_OUTPUTS]; /* at its start, and what else is an integral */
     name_real integral[NAME_SOURCES + 1]; /* of the loads given so far */
     name_real load[NAME_FORCES + 1][3]; /* the scene's own, in powers of the time since */
     int since[NAME_FORCES + 1][2]; /* that window and panel */
-    /* Chebyshev coefficients of the waves that each node sends to the left, [0], and to the right, [1] */
-    name_real waves[2][2][NAME_PANELS][NAME_NODES + 2][NAME_DEGREE + 1];
+    /* Chebyshev coefficients of the waves that each node sends to the left, [0], and to the right, [1]; of loads, [2] */
+    name_real waves[2][NAME_WAYS][NAME_PANELS][NAME_NODES + 2][NAME_DEGREE + 1];
 } name_state;

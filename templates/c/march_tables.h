@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-enum { NAME_DEGREE = 20, NAME_PANELS = 2, NAME_NODES = 3, NAME_FORCES = 1, NAME_SOURCES = 1, NAME_POINTS = 42 };
+enum { NAME_DEGREE = 20, NAME_PANELS = 2, NAME_NODES = 3, NAME_FORCES = 1, NAME_WAYS = 3, NAME_SOURCES = 1, NAME_POINTS = 42 };
 
 #include "march_state.h"
 
@@ -22,10 +22,8 @@ enum {
     LAST_WINDOW = 100,
     LEFT = 0,
     RIGHT = 1,
-    STRAIN = 0,
-    VELOCITY = 1,
-    DISPLACEMENT = 2,
-    NOTHING = 3
+    LOAD = 2,
+    WAYS = NAME_WAYS
 };
 
 void name_init(march *state);
@@ -59,11 +57,12 @@ extern const real event_power[];
 extern const int source_force[];
 extern const real source_gain[];
 extern const int source_integral[];
-extern const int quantity[];
-extern const int left_node[];
-extern const int right_node[];
-extern const int left_delay[];
-extern const int right_delay[];
+extern const int first_heard[];
+extern const int way[];
+extern const int sender[];
+extern const real gain[];
+extern const int summed[];
+extern const int delay[];
 extern const int first_stretch[];
 extern const real from[];
 extern const real start[];

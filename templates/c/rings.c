@@ -86,11 +86,14 @@ static real gathered(const march *state, int number, int late, real t, int whole
     return sum;
 }
 
+/* The integrals in an output. */
 static real integral(const march *state, int output, real t, int whole)
 {
     real sum = state->total[output];
-    for (int k = 2 * output; k < 2 * output + 2; ++k) {
-        sum += gain[k] * gathered(state, track[k], delay[k], t, whole);
+    for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
+        if (summed[k]) {
+            sum += gain[k] * gathered(state, track[k], delay[k], t, whole);
+        }
     }
     return sum;
 }
@@ -98,11 +101,9 @@ static real integral(const march *state, int output, real t, int whole)
 static void read_at(const march *state, real t, real out[OUTPUTS])
 {
     for (int output = 0; output < OUTPUTS; ++output) {
-        out[output] = 0;
-        if (quantity[output] == INTEGRAL) {
-            out[output] = integral(state, output, t, 0);
-        } else if (quantity[output] == VALUE) {
-            for (int k = 2 * output; k < 2 * output + 2; ++k) {
+        out[output] = integral(state, output, t, 0);
+        for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
+            if (!summed[k]) {
                 out[output] += gain[k] * heard(state, track[k], delay[k], t);
             }
         }
@@ -274,9 +275,7 @@ static void outputs_at(march *state, real tau, real out[OUTPUTS])
     }
     while (state->window < cycle * CYCLE + phase) {
         for (int output = 0; output < OUTPUTS; ++output) {
-            if (quantity[output] == INTEGRAL) {
-                state->total[output] = integral(state, output, 0, 1);
-            }
+            state->total[output] = integral(state, output, 0, 1);
         }
         state->window += 1;
         advance(state);

@@ -17,10 +17,7 @@ enum {
     TRACKS = 5,
     SLOTS = 13,
     CYCLE = 2,
-    WIDEST = 2 * SIZE + 1,
-    VALUE = 0,
-    INTEGRAL = 1,
-    NOTHING = 2
+    WIDEST = 2 * SIZE + 1
 };
 
 extern const real step, span;
@@ -46,9 +43,10 @@ extern const int event_window[];
 extern const int event_panel[];
 extern const int event_force[];
 extern const real event_power[];
-extern const int quantity[];
+extern const int first_heard[];
 extern const int track[];
 extern const real gain[];
+extern const int summed[];
 extern const int delay[];
 extern const real begin[];
 extern const int first_stretch[];

@@ -61,9 +61,9 @@ HUGE = "1" + "0" * 4000
 
 MISTAKES = [
     # unknown and missing keys
-    (DRIVE, 'name = "good"', 'name = "good"\ncolour = 1', "colour: unknown key, name, system, load or output expected"),
+    (DRIVE, 'name = "good"', 'name = "good"\ncolour = 1', "colour: unknown key, name, units, system, load or output expected"),
     (DRIVE, "kappa =", "kapa =", "system.kapa: unknown key, type, m, kappa or inertia expected"),
-    (DRIVE, "steps", '"st\\neps"', 'load[0]."st\\neps": unknown key, times, body or steps expected'),
+    (DRIVE, "steps", '"st\\neps"', 'load[0]."st\\neps": unknown key, times, body, steps or ramps expected'),
     (DRIVE, "until", "untl", "output.untl: unknown key"),
     (DRIVE, 'name = "good"', "", "name: missing"),
     (DRIVE, "kappa = [1, 1]", "", "system.kappa: missing, a list of m positive numbers expected"),
@@ -71,7 +71,11 @@ MISTAKES = [
     (DRIVE, "until = 10", "", "output.until: missing"),
     (BUILDING, 'base = "force"', "", 'system.base: missing, "force" or "ground" expected'),
     (BUILDING, 'base = "force"', 'base = "rock"', 'system.base: "rock" given, "force" or "ground" expected'),
-    (BUILDING, "a = [1, 0]", "", "load[0].a: missing"),
+    (BUILDING, "a = [1, 0]\nb = [0, 1]", "", "load[0]: no numbers given, a or b expected"),
+    (BUILDING, '"1/5"\nsamples = [0, 0.1]', '"1/5"', "load[1].samples: missing, a list of numbers expected"),
+    (BUILDING, "samples = [0, 0.1]", "record = 3", "load[1].record: 3 given, the path of a file expected"),
+    (BUILDING, "samples = [0, 0.1]", 'record = "?"', "load[1].record: "),
+    (BUILDING, "samples = [0, 0.1]", 'record = "?"\ncolum = "a"', "load[1].colum: unknown key, column, spacing,"),
     (BUILDING, 'spacing = "1/5"', "", "load[1].spacing: missing"),
     (BUILDING, 'spacing = "1/5"', "times = [0]", "load[1].times: unknown key, spacing or samples expected"),
     (BUILDING, "times = [0,", "body = 1\ntimes = [0,", "load[0].body: unknown key, times, a or b expected"),

@@ -19,6 +19,7 @@ from wavesym.errors import WavesymError, did_you_mean
 COMMANDS = (
     "scenes",
     "init",
+    "record",
     "inspect",
     "derive",
     "tables",

@@ -59,8 +59,9 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
 
 def _decimals(path: Path) -> list[float]:
     """The numbers in a file, each as a double; SceneError names the first line that holds something else."""
+    from wavesym.errors import SceneError
     from wavesym.fields.table import shown
-    from wavesym.scene import SceneError, read_text
+    from wavesym.reading import read_text
 
     file, text = read_text(path, "a file with one decimal a line")
     taus: list[float] = []

@@ -64,7 +64,7 @@ def contact_ends(model: Model, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:
     ends = []
     for x in contacts:
         # to matter, the opening must have the time to reach the nearest output
-        latest = until - min(abs(probe.x - x) for probe in model.probes)
+        latest = until - min(abs(reading.x - x) for reading in model.watched)
         place = Probe(f"strain@{x}", "strain", x, fmpq(1))
         tau, reached = arb.pos_inf(), fmpq(0)
         while not tau.is_finite() and reached < latest:

@@ -24,7 +24,7 @@ from wavesym.exact.joint import SWING, JointLaw
 from wavesym.exact.schedule import Schedule
 from wavesym.model.loads import Applied
 from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.model.reading import Gauge, Sum
 
 MOST_KNOTS = 20_000
 
@@ -103,12 +103,19 @@ class Knots:
         """The longest stretch of a joint."""
         return max((high - low for low, high in pairwise(self.joints[number])), default=fmpq(0))
 
-    def breakpoints(self, probe: Probe) -> Sequence[fmpq]:
-        """Where an output may jump or bend, and 0; in order."""
-        if probe.point is not None:
-            times = self.joints[self._network.joint_of[probe.point]]
+    def breakpoints(self, terms: Sum) -> Sequence[fmpq]:
+        """Where a sum of readings may jump or bend, and 0; in order."""
+        found = [self._read(reading) for _, reading in terms]
+        return found[0] if len(found) == 1 else sorted({fmpq(0)}.union(*found))
+
+    def _read(self, reading: Gauge) -> Sequence[fmpq]:
+        if reading.quantity == "load":
+            sources = {unit.source for unit in self._network.points[reading.point or 0].loads}
+            return sorted({fmpq(0), *(load.time for load in self._acting if load.source in sources)})
+        if reading.point is not None:
+            times = self.joints[self._network.joint_of[reading.point]]
             return sorted({fmpq(0), *(time for time in times if time <= self._until)})
-        return self._breakpoints(probe.rod - 1, probe.place)
+        return self._breakpoints(reading.rod - 1, reading.place)
 
     @cache  # noqa: B019 - as long as this object
     def _breakpoints(self, number: int, place: fmpq) -> Sequence[fmpq]:

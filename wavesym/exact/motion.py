@@ -13,12 +13,13 @@ from wavesym.errors import CostError
 from wavesym.exact.ball import Segment
 from wavesym.exact.joint import STILL, Enclosed, JointLaw
 from wavesym.exact.knots import Knots
-from wavesym.exact.network_waves import NetworkWaves, Waves, later
+from wavesym.exact.network_waves import Acting, NetworkWaves, Waves, later
 from wavesym.exact.silence import smooth_starts
 from wavesym.exact.touching_waves import replayed
 from wavesym.model.model import Model
 from wavesym.model.network import End
 from wavesym.model.probe import Probe
+from wavesym.model.reading import Weighted
 
 MOST_STRETCHES = 20_000
 # with those that loads begin: a quarter of a minute, and as long again for the values of a self-test
@@ -97,7 +98,7 @@ class Motion:
     def refuse_long(self, taus: int) -> None:
         """CostError where values of all outputs at so many tau would take minutes."""
         terms = self.first_bits // 4
-        sums = any(probe.order < 0 for probe in self.probes)
+        sums = any(map(self._integrates, self.probes))
         segments = sum(min(len(self.starts(probe)), inf if sums else taus) for probe in self.probes)
         seconds = segments * terms**1.5 * _COMPOSED + taus * len(self.probes) * terms * _EVALUATED
         if seconds > MOST_SECONDS:
@@ -108,7 +109,10 @@ class Motion:
 
     def starts(self, probe: Probe) -> Sequence[fmpq]:
         """Where its segments start: where it may jump or bend, and 0."""
-        return self._knots.breakpoints(probe)
+        return self._knots.breakpoints(self._model.sums[probe])
+
+    def _integrates(self, probe: Probe) -> bool:
+        return any(reading.order < 0 for _, reading in self._model.sums[probe])
 
     def segments(self, probe: Probe, bits: int, taus: Sequence[fmpq] | None = None) -> list[Segment]:
         """An output between its breakpoints, with so many bits, as polynomials (rate 0) in balls.
@@ -118,12 +122,12 @@ class Motion:
         starts = self.starts(probe)
         ends = [*starts[1:], self.until]
         wanted: Sequence[int] = range(len(starts))
-        if taus is not None and probe.order == 0:
+        if taus is not None and not self._integrates(probe):
             wanted = sorted({bisect_right(starts, tau) - 1 for tau in taus})
         waves = self.waves(bits)
         with ctx.workprec(bits):
             begins = self._smooth_starts[self.probes.index(probe)]
-            return list(_segments(waves, probe, [(starts[k], ends[k]) for k in wanted], begins))
+            return list(_segments(waves, self._model, probe, [(starts[k], ends[k]) for k in wanted], begins))
 
     @cached_property
     def _smooth_starts(self) -> Sequence[fmpq | None]:
@@ -149,50 +153,72 @@ class Motion:
 
 
 def _segments(
-    waves: Waves, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]], begins: fmpq | None
+    waves: Waves, model: Model, probe: Probe, stretches: Iterable[tuple[fmpq, fmpq]], begins: fmpq | None
 ) -> Iterator[Segment]:
     """An output on each of these stretches, which come in order; where it `begins` it is 0."""
+    terms = model.sums[probe]
+    plain, summed = (
+        [each for each in terms if each.reading.order == order and each.reading.quantity != "load"] for order in (0, -1)
+    )
+    loads = [
+        (weight, Acting(model.network, reading.point, model.loads))
+        for weight, reading in terms
+        if reading.quantity == "load" and reading.point is not None
+    ]
     displacement = arb(0)
     for start, end in stretches:
-        value = _value(waves, probe, start)
-        polynomial = value.polynomial
-        if value.error != 0:
-            polynomial = polynomial + arb(0, value.error)
-        if probe.order < 0:
-            polynomial = polynomial.integral() + displacement
-            displacement = polynomial(arb(end - start))
+        acts = [(weight, Enclosed.of(load.on(start))) for weight, load in loads]
+        polynomial = _within(_sum([*_values(waves, plain, start), *acts]))
+        if summed:
+            integral = _within(_sum(_values(waves, summed, start))).integral() + displacement
+            displacement = integral(arb(end - start))
+            polynomial = polynomial + integral
         if start == end:  # of what begins at the end of the horizon only the first value is seen
             polynomial = arb_poly(polynomial.coeffs()[:1])
         yield Segment(start, {fmpq(0): polynomial}, start == begins)
 
 
-def _value(waves: Waves, probe: Probe, start: fmpq) -> Enclosed:
-    """Strain, or velocity, from tau = `start` on: the left-going wave less, or plus, the right-going one."""
+def _within(known: Enclosed) -> arb_poly:
+    """Its polynomial with its error in the first coefficient."""
+    return known.polynomial + arb(0, known.error) if known.error != 0 else known.polynomial
+
+
+def _sum(parts: Iterable[tuple[fmpq, Enclosed]]) -> Enclosed:
+    """A sum with factors; of what cancels nothing is left, where all of it is known exactly."""
+    exact: fmpq_poly | None = fmpq_poly()
     polynomial, error = arb_poly(), arb(0)
-    if probe.point is not None:
-        return _velocity(waves, probe.point, start)
-    bar = waves.network.bars[probe.rod - 1]
-    if probe.place in (0, 1):
-        end = End(probe.rod - 1, int(probe.place))
-        if probe.quantity == "strain":
-            if waves.is_bare(end, start):
-                return STILL
-        elif (point := waves.network.point_at(end)) in waves.velocities:  # prescribed: as exact as it is given
-            known, ratio = _velocity(waves, point, start), arb(bar.ratios[end.side])
-            return Enclosed(ratio * known.polynomial, (abs(ratio) * known.error).upper())
-    right, left = probe.weights
-    exact: fmpq_poly | None = fmpq_poly()  # of waves that cancel nothing is left, where both are known exactly
-    for factor, side, way in ((right, 0, probe.place), (left, 1, 1 - probe.place)):
-        known, offset = waves.sent[End(probe.rod - 1, side)].at(start - way * bar.delay)
-        wave = later(known, offset)
-        exact = None if exact is None or wave.exact is None else exact + factor * wave.exact
-        polynomial += factor * wave.polynomial
-        error += wave.error
+    for factor, known in parts:
+        exact = None if exact is None or known.exact is None else exact + factor * known.exact
+        polynomial += known.polynomial if factor == 1 else arb(factor) * known.polynomial
+        error += abs(arb(factor)) * known.error
     if exact is not None and exact.length() == 0:
         return STILL
-    if probe.quantity == "strain" and bar.speed != 1:
-        polynomial, error = polynomial * arb(1 / bar.speed), (error / arb(bar.speed)).upper()
-    return Enclosed(polynomial, error)
+    return Enclosed(polynomial, error.upper())
+
+
+def _values(waves: Waves, terms: Iterable[Weighted], start: fmpq) -> Iterator[tuple[fmpq, Enclosed]]:
+    """What sums of strains and velocities are made of from tau = `start` on, with factors.
+
+    That is the left-going wave of a rod less, or plus, the right-going one.
+    """
+    for weight, reading in terms:
+        if reading.point is not None:
+            yield weight, _velocity(waves, reading.point, start)
+            continue
+        bar = waves.network.bars[reading.rod - 1]
+        if reading.place in (0, 1):
+            end = End(reading.rod - 1, int(reading.place))
+            if reading.quantity == "strain":
+                if waves.is_bare(end, start):
+                    continue
+            elif (point := waves.network.point_at(end)) in waves.velocities:  # prescribed: as exact as it is given
+                yield weight * bar.ratios[end.side], _velocity(waves, point, start)
+                continue
+        over = 1 / bar.speed if reading.quantity == "strain" else fmpq(1)
+        right, left = reading.weights
+        for factor, side, way in ((right, 0, reading.place), (left, 1, 1 - reading.place)):
+            known, offset = waves.sent[End(reading.rod - 1, side)].at(start - way * bar.delay)
+            yield weight * factor * over, later(known, offset)
 
 
 def _velocity(waves: Waves, point: int, start: fmpq) -> Enclosed:

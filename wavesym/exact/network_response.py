@@ -23,6 +23,7 @@ from wavesym.exact.table_size import refuse_size
 from wavesym.model.loads import Applied
 from wavesym.model.network import End, Network
 from wavesym.model.probe import Probe
+from wavesym.model.reading import Gauge, readings
 
 POINT = "q"
 """The letter of a point's velocity among wave functions; its number stands for that of a rod."""
@@ -44,26 +45,26 @@ class RuledNetwork:
         self.foreseen = Foreseen(self.joints)
         self._rule = joint_rule()
 
-    def parts(self, probe: Probe) -> tuple[Part, ...]:
+    def parts(self, reading: Gauge) -> tuple[Part, ...]:
         """dU/dx = (g' - f')/speed, dU/dtau = f' + g' + v, each wave as late as it comes from its end."""
-        if probe.point is not None:
-            return (Part(1, Function(POINT, probe.point), fmpq(0)),)
-        bar = self.network.bars[probe.rod - 1]
-        over = 1 / bar.speed if probe.quantity == "strain" else fmpq(1)
-        right, left = probe.weights
+        if reading.point is not None:
+            return (Part(1, Function(POINT, reading.point), fmpq(0)),)
+        bar = self.network.bars[reading.rod - 1]
+        over = 1 / bar.speed if reading.quantity == "strain" else fmpq(1)
+        right, left = reading.weights
         return (
-            Part(right * over, Function("f", probe.rod), probe.place * bar.delay),
-            Part(left * over, Function("g", probe.rod), (1 - probe.place) * bar.delay),
+            Part(right * over, Function("f", reading.rod), reading.place * bar.delay),
+            Part(left * over, Function("g", reading.rod), (1 - reading.place) * bar.delay),
         )
 
-    def motion(self, probe: Probe) -> Increment:
-        """The part of an output that is not wave: what its bar, or the point, holds at tau = 0."""
-        if probe.point is not None:
-            held = self.network.points[probe.point].velocity
+    def motion(self, reading: Gauge) -> Increment:
+        """The part of what is read that is not wave: what its bar, or the point, holds at tau = 0."""
+        if reading.point is not None:
+            held = self.network.points[reading.point].velocity
         else:
-            bar = self.network.bars[probe.rod - 1]
-            held = bar.strain if probe.quantity == "strain" else bar.velocity
-        return trimmed({fmpq(0): [held] if probe.order == 0 else [fmpq(0), held]})
+            bar = self.network.bars[reading.rod - 1]
+            held = bar.strain if reading.quantity == "strain" else bar.velocity
+        return trimmed({fmpq(0): [held] if reading.order == 0 else [fmpq(0), held]})
 
     def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
         """The loads, and the start where anything moves then."""
@@ -71,7 +72,8 @@ class RuledNetwork:
 
     def arrivals(self, probes: Sequence[Probe], loads: Sequence[Applied], until: fmpq) -> int:
         """How many increments all loads but the first of each source bring to outputs, at most."""
-        parts = [part for probe in probes for part in self.parts(probe)]
+        sums = (readings(self.network, probe) for probe in probes)
+        parts = [part for terms in sums for _, one in terms if one.quantity != "load" for part in self.parts(one)]
         first = {load.source: load.time for load in reversed(loads)}
         later = [load for load in loads if first[load.source] < load.time <= until]
         total = 0

@@ -17,13 +17,16 @@ from flint import fmpq
 from wavesym.errors import CostError
 from wavesym.exact.increments import Increment, combined, integrated
 from wavesym.exact.increments import start as start_of
+from wavesym.exact.network_joints import unit_at
 from wavesym.exact.network_response import RuledNetwork
 from wavesym.exact.table import Function, Part, Rules, unit_response
 from wavesym.exact.table_size import refuse_large
 from wavesym.model.chain import Chain
 from wavesym.model.loads import Applied
 from wavesym.model.model import Model
+from wavesym.model.network import Network, network_of
 from wavesym.model.probe import Probe
+from wavesym.model.reading import Gauge, readings
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 
@@ -47,11 +50,15 @@ class Signal:
 class Ruled(Protocol):
     """A chain with laws that run."""
 
-    def parts(self, probe: Probe) -> Sequence[Part]:
-        """The wave functions that an output is made of."""
+    @property
+    def network(self) -> Network:
+        """The chain as a network."""
 
-    def motion(self, probe: Probe) -> Increment:
-        """The part of an output that is not wave."""
+    def parts(self, reading: Gauge) -> Sequence[Part]:
+        """The wave functions that are read."""
+
+    def motion(self, reading: Gauge) -> Increment:
+        """The part of what is read that is not wave."""
 
     def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
         """All that makes waves."""
@@ -91,24 +98,25 @@ class RuledChain:
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
+        self.network = network_of(chain)
         self.rules = Rules(chain)
 
-    def parts(self, probe: Probe) -> tuple[Part, Part]:
+    def parts(self, reading: Gauge) -> tuple[Part, Part]:
         """dU/dx = g' - f', dU/dtau = f' + g' + v, U = f + g + v tau, each on the clocks of (4.2)."""
-        rod = self.chain.rod(probe.rod)
-        offset = probe.x - rod.x0
-        right, left = probe.weights
+        rod = self.chain.rod(reading.rod)
+        offset = reading.x - rod.x0
+        right, left = reading.weights
         return (
-            Part(right, Function("f", probe.rod), rod.tau0 + offset),
-            Part(left, Function("g", probe.rod), rod.tau0 - offset),
+            Part(right, Function("f", reading.rod), rod.tau0 + offset),
+            Part(left, Function("g", reading.rod), rod.tau0 - offset),
         )
 
-    def motion(self, probe: Probe) -> Increment:
-        """The part of an output that is not wave: v, or v tau."""
-        v = self.chain.rod(probe.rod).velocity * fmpq(sum(probe.weights), 2)
+    def motion(self, reading: Gauge) -> Increment:
+        """The part of what is read that is not wave: v, or v tau."""
+        v = self.chain.rod(reading.rod).velocity * fmpq(sum(reading.weights), 2)
         if v == 0:
             return {}
-        return {fmpq(0): [v] if probe.order == 0 else [fmpq(0), v]}
+        return {fmpq(0): [v] if reading.order == 0 else [fmpq(0), v]}
 
     def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
         """The loads; an impact is one of them."""
@@ -118,7 +126,8 @@ class RuledChain:
         """How many increments all loads but the first of each source bring to outputs, at most."""
         first = {load.source: load.time for load in reversed(loads)}
         later = [load.time for load in loads if first[load.source] < load.time <= until]
-        return 2 * len(probes) * sum(nearest(until - time) + 1 for time in later)
+        count = sum(len(readings(self.network, probe)) for probe in probes)
+        return 2 * count * sum(nearest(until - time) + 1 for time in later)
 
     def responses(
         self, source: str, reach: Mapping[Function, fmpq], most: float = inf
@@ -140,32 +149,48 @@ def observed(
     most: float = inf,
 ) -> tuple[Signal, ...]:
     """The signals at `probes` until tau = `until` under `loads`."""
-    parts = [ruled.parts(probe) for probe in probes]
+    read = [readings(ruled.network, probe) for probe in probes]
     loads = ruled.acting(loads)
+    parts = {
+        reading: () if reading.quantity == "load" else tuple(ruled.parts(reading))
+        for terms in read
+        for _, reading in terms
+    }
     responses = {}
     for source in dict.fromkeys(load.source for load in loads):
         start = min(load.time for load in loads if load.source == source)
         reach: dict[Function, fmpq] = {}
-        for part in (part for group in parts for part in group):
+        for part in (part for group in parts.values() for part in group):
             reach[part.function] = max(until - start - part.delay, reach.get(part.function, fmpq(-1)))
         responses[source] = ruled.responses(source, reach, most)
     signals = []
-    for probe, group in zip(probes, parts, strict=True):
-        gains: dict[fmpq, list[tuple[fmpq, Increment]]] = defaultdict(list)
-        for load in loads:
-            for part in group:
-                start = load.time + part.delay
-                for time, increment in responses[load.source].get(part.function, ()):
-                    if increment and start + time <= until:
-                        gains[start + time].append((part.factor * load.weight, increment))
-        signals.append(_signal(probe, gains, ruled.motion(probe), until))
+    for probe, terms in zip(probes, read, strict=True):
+        gains: dict[int, _Gains] = {0: defaultdict(list), -1: defaultdict(list)}
+        for weight, reading in terms:
+            here = gains[reading.order]
+            for load in loads:
+                for part in parts[reading]:
+                    start = load.time + part.delay
+                    for time, increment in responses[load.source].get(part.function, ()):
+                        if increment and start + time <= until:
+                            here[start + time].append((weight * part.factor * load.weight, increment))
+                if reading.point is not None and reading.quantity == "load" and load.time <= until:
+                    acts = unit_at(ruled.network.points[reading.point], load.source)
+                    here[load.time].append((weight * load.weight, acts))
+        moving = combined((weight, ruled.motion(reading)) for weight, reading in terms if parts[reading])
+        signals.append(_signal(probe, gains[0], gains[-1], moving, until))
     return tuple(signals)
 
 
-def _signal(probe: Probe, gains: dict[fmpq, list[tuple[fmpq, Increment]]], moving: Increment, until: fmpq) -> Signal:
+_Gains = dict[fmpq, list[tuple[fmpq, Increment]]]
+"""What is gained at each instant, with factors."""
+
+
+def _signal(probe: Probe, gains: _Gains, sums: _Gains, moving: Increment, until: fmpq) -> Signal:
+    """From what an output gains, and what that gains of which it is the integral."""
+    for time, group in sums.items():
+        gains[time].append((fmpq(1), integrated(combined(group))))
     merged = {time: combined(group) for time, group in sorted(gains.items())}
-    if probe.order < 0:
-        merged = {time: integrated(increment) for time, increment in merged.items()}
     if moving:
         merged[fmpq(0)] = combined([(fmpq(1), merged.get(fmpq(0), {})), (fmpq(1), moving)])
     if until in merged and start_of(merged[until]) == 0:

@@ -25,7 +25,7 @@ from wavesym.exact.joint import JointLaw
 from wavesym.exact.node_rules import joint_rule
 from wavesym.model.model import Model
 from wavesym.model.network import End
-from wavesym.model.probe import Probe
+from wavesym.model.reading import Gauge
 
 _PRIME = 2**127 - 1
 _FIELD = fmpz_mod_ctx(_PRIME)
@@ -38,8 +38,8 @@ def silent(model: Model, until: fmpq) -> list[bool]:
         return [False] * len(model.probes)
     arriving, jumping = _Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums()
     return [
-        not any(sums[time] for time in sums if time < until) and not (probe.order == 0 and jumps[until])
-        for probe, sums, jumps in zip(model.probes, arriving, jumping, strict=True)
+        not any(sums[time] for time in sums if time < until) and not jumps[until]
+        for sums, jumps in zip(arriving, jumping, strict=True)
     ]
 
 
@@ -52,8 +52,8 @@ def smooth_starts(model: Model, until: fmpq) -> list[fmpq | None]:
         return [None] * len(model.probes)
     arriving, jumping = _Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums()
     return [
-        first if first is not None and (probe.order < 0 or not jumps[first]) else None
-        for probe, sums, jumps in zip(model.probes, arriving, jumping, strict=True)
+        first if first is not None and not jumps[first] else None
+        for sums, jumps in zip(arriving, jumping, strict=True)
         for first in [min((time for time in sums if sums[time]), default=None)]
     ]
 
@@ -74,29 +74,46 @@ class _Fronts:
         network = self._network
         sums: list[dict[fmpq, int]] = [defaultdict(int) for _ in self._model.probes]
         ends: dict[End, list[tuple[int, fmpq, int]]] = defaultdict(list)
-        points: dict[int, list[int]] = defaultdict(list)
+        points: dict[int, list[tuple[int, int]]] = defaultdict(list)
         for k, probe in enumerate(self._model.probes):
-            if probe.point is not None:
-                points[probe.point].append(k)
-            for end, way, weight in _heard(probe):
-                bar = network.bars[end.bar]
-                ends[end].append((k, way * bar.delay, weight))
-                # what a bar holds is there until something is sent into it
-                sums[k][fmpq(0)] += weight * _modular(bar.held(end.side))
+            for weight, reading in self._model.sums[probe]:
+                if (point := reading.point) is None:
+                    for end, way, heard in self._heard(weight, reading):
+                        bar = network.bars[end.bar]
+                        ends[end].append((k, way * bar.delay, heard))
+                        # what a bar holds is there until something is sent into it
+                        sums[k][fmpq(0)] = (sums[k][fmpq(0)] + heard * _modular(bar.held(end.side))) % _PRIME
+                elif reading.quantity == "load":
+                    for time, value in self._joints[network.joint_of[point]].acts(point):
+                        if time <= self._until:
+                            sums[k][time] = (sums[k][time] + _modular(weight) * value) % _PRIME
+                else:
+                    points[point].append((k, self._counted(weight, reading)))
         self._begin()
         while self._order:
             time, number = heappop(self._order)
             sent, moved = self._joints[number].to(self._coming.pop((time, number)), time)
             for point, value in moved.items():
-                for k in points[point]:
-                    sums[k][time] = (sums[k][time] + value) % _PRIME
+                for k, counted in points[point]:
+                    sums[k][time] = (sums[k][time] + counted * value) % _PRIME
             for end, value in sent.items():
-                for k, delay, weight in ends[end]:
+                for k, delay, counted in ends[end]:
                     if time + delay <= self._until:
-                        sums[k][time + delay] = (sums[k][time + delay] + weight * value) % _PRIME
+                        sums[k][time + delay] = (sums[k][time + delay] + counted * value) % _PRIME
                 if value:
                     self._arrive(time + network.bars[end.bar].delay, network.beyond(end), value)
         return sums
+
+    def _counted(self, weight: fmpq, reading: Gauge) -> int:
+        """What a velocity counts; that of which an output is the integral is divided by s."""
+        return _modular(weight) * (self._t if reading.order < 0 else 1) % _PRIME
+
+    def _heard(self, weight: fmpq, reading: Gauge) -> Iterator[tuple[End, fmpq, int]]:
+        """From which ends of its bar it is read, how far away (a part of the bar), and what each wave counts."""
+        over = 1 / self._network.bars[reading.rod - 1].speed if reading.quantity == "strain" else fmpq(1)
+        right, left = reading.weights
+        yield End(reading.rod - 1, 0), reading.place, self._counted(weight * over * right, reading)
+        yield End(reading.rod - 1, 1), 1 - reading.place, self._counted(weight * over * left, reading)
 
     def _begin(self) -> None:
         """What is on its way before anything is sent: the state at tau = 0, and the loads."""
@@ -146,6 +163,10 @@ class _Answer:
                         value = self._transformed(unit.coefficients, network.points[point].motion == "acceleration")
                         here = self._loads[load.time]
                         here[k] = (here.get(k, 0) + _modular(load.weight) * value) % _PRIME
+
+    def acts(self, point: int) -> Iterator[tuple[fmpq, int]]:
+        """The loads on a point, each with when it begins or changes."""
+        return ((time, here.get(self._place[point], 0)) for time, here in self._loads.items())
 
     @property
     def begins(self) -> Iterator[fmpq]:
@@ -198,14 +219,6 @@ class _Answer:
             value = _modular(bar.ratios[end.side]) * q[self._place[point]] - came.get(end, 0)
             sent[end] = (value - (_modular(bar.held(end.side)) if begins else 0)) % _PRIME
         return sent, {point: q[k] for point, k in self._place.items()}
-
-
-def _heard(probe: Probe) -> Iterator[tuple[End, fmpq, int]]:
-    """From which ends of its bar an output hears, how far away (a part of the bar), and with what weight."""
-    if probe.point is None:
-        right, left = probe.weights
-        yield End(probe.rod - 1, 0), probe.place, right
-        yield End(probe.rod - 1, 1), 1 - probe.place, left
 
 
 def _modular(value: fmpq) -> int:

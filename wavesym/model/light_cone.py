@@ -9,30 +9,30 @@ from flint import fmpq
 
 from wavesym.model.chain import Chain
 from wavesym.model.node import Parameters
-from wavesym.model.probe import Probe
+from wavesym.model.reading import Gauge
 
 
-def light_cone(chain: Chain, probes: Iterable[Probe], until: fmpq) -> range:
-    """The numbers of the nodes that can influence an output by tau = `until`, and of all nodes between those.
+def light_cone(chain: Chain, watched: Iterable[Gauge], until: fmpq) -> range:
+    """The numbers of the nodes that can influence what is watched by tau = `until`, and of all nodes between those.
 
-    A wave crosses a rod in one unit of tau, so these are the nodes no more than `until` rod lengths from an output;
-    one that is just as far counts, as a jump that it sends at tau = 0 is seen at `until`. The ends of an output's rod
+    A wave crosses a rod in one unit of tau, so these are the nodes no more than `until` rod lengths from a place;
+    one that is just as far counts, as a jump that it sends at tau = 0 is seen at `until`. The ends of its rod
     are always among them. What comes into the range from outside is what its rods held at tau = 0, or comes too late.
 
     Where all is at rest before a first load, the time from that load on may stand for `until`.
     """
-    places = list(probes)
-    first = min(min(probe.rod - 1, int((probe.x - until).ceil())) for probe in places)
-    last = max(max(probe.rod, int((probe.x + until).floor())) for probe in places)
+    places = list(watched)
+    first = min(min(place.rod - 1, int((place.x - until).ceil())) for place in places)
+    last = max(max(place.rod, int((place.x + until).floor())) for place in places)
     return range(max(0, first), min(chain.m, last) + 1)
 
 
-def felt(chain: Chain, probes: Iterable[Probe], until: fmpq) -> dict[str, dict[int, fmpq]]:
-    """The parameters, by name and index, of the nodes whose law can matter to an output by tau = `until`.
+def felt(chain: Chain, watched: Iterable[Gauge], until: fmpq) -> dict[str, dict[int, fmpq]]:
+    """The parameters, by name and index, of the nodes whose law can matter to what is watched by tau = `until`.
 
     A body that is first met at `until` has not turned anything by then; a node without mass has.
     """
-    places = [probe.x for probe in probes]
+    places = [reading.x for reading in watched]
     taken: dict[str, dict[int, fmpq]] = {}
     recorded = _Recorded.parameters(chain.parameters, taken)
     for family in chain.system.families(chain.m, recorded):

@@ -15,6 +15,7 @@ from wavesym.model.light_cone import felt, light_cone
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
 from wavesym.model.probe import Probe
+from wavesym.model.reading import Gauge, Sum, readings
 from wavesym.numbers.reals import DOUBLE, Real
 
 
@@ -60,6 +61,20 @@ class Model:
             )
         return self.chain
 
+    @cached_property
+    def sums(self) -> Mapping[Probe, Sum]:
+        """What each output is the sum of."""
+        return {probe: readings(self.network, probe) for probe in self.probes}
+
+    @cached_property
+    def watched(self) -> tuple[Gauge, ...]:
+        """All that outputs are sums of, but loads; of one that is 0 whatever moves, where it would be."""
+        found = {reading: None for terms in self.sums.values() for _, reading in terms if reading.quantity != "load"}
+        for probe, terms in self.sums.items():
+            if not terms:
+                found[Gauge("velocity", probe.rod, probe.place, probe.point)] = None
+        return tuple(found)
+
     def horizon(self, real: Real = DOUBLE) -> float:
         """The last tau in `real` numbers: the smallest of them that is not below `until`."""
         return real.not_below(self.until)
@@ -70,7 +85,7 @@ class Model:
 
     def light_cone(self, until: fmpq) -> range:
         """The numbers of the nodes that can influence an output by then."""
-        return light_cone(self.named, self.probes, until)
+        return light_cone(self.named, self.watched, until)
 
     def reached(self, until: fmpq) -> dict[int, fmpq]:
         """The joints of the network that can influence an output by then, and until when each can.
@@ -88,8 +103,8 @@ class Model:
 
     def _felt_at(self, until: fmpq, more: Iterable[int] = ()) -> dict[int, fmpq]:
         network = self.network
-        places = [(probe.rod - 1, probe.place) for probe in self.probes if probe.point is None]
-        points = [probe.point for probe in self.probes if probe.point is not None] + list(more)
+        places = [(reading.rod - 1, reading.place) for reading in self.watched if reading.point is None]
+        points = [reading.point for reading in self.watched if reading.point is not None] + list(more)
         distances = network.distances(places, points)
         bars = [network.bars[bar] for bar, _ in places]
         beside = {network.joint_of[point] for bar in bars for point in (bar.left, bar.right)}
@@ -104,7 +119,7 @@ class Model:
         """The parameters that can matter to an output within the horizon, by name and index."""
         if self.chain is None:
             return {}
-        return felt(self.chain, self.probes, self.until)
+        return felt(self.chain, self.watched, self.until)
 
     def shortened(self, until: fmpq) -> Model:
         """The same with an earlier end."""

@@ -22,9 +22,6 @@ from wavesym.programs.pieces import Pieces
 from wavesym.programs.program import Driven, Program, Provenance
 from wavesym.programs.rings.evaluator import RingMarch
 
-QUANTITIES = ("strain", "velocity", "displacement")
-"""The numbers that stand for them in tables are their places; the next one is an output that is 0 throughout."""
-
 
 def assemble(evaluator: ClosedForm | Pieces | MarchEvaluator | RingMarch, provenance: Provenance) -> Program:
     """The program of an evaluator, whatever its bound."""
@@ -107,7 +104,8 @@ def _march_tables(evaluator: MarchEvaluator) -> dict[str, tuple[float, ...]]:
     nodes, panels = plan.junctions, plan.panels
     rows = {step: row for row, step in enumerate(evaluator.operators)}
     operators = list(evaluator.operators.values())
-    delays = sorted({output.delay for output in plan.outputs} | {1 - output.delay for output in plan.outputs})
+    delays = sorted({each.delay for output in plan.outputs for each in output.heard})
+    heard = [output.heard if made.bound else () for output, made in zip(plan.outputs, evaluator.outputs, strict=True)]
     stretches = [plan.stretches(delay) for delay in delays]
     flat = [stretch for group in stretches for stretch in group]
     forces = {column: force for force, column in enumerate(plan.loaded)}
@@ -146,14 +144,12 @@ def _march_tables(evaluator: MarchEvaluator) -> dict[str, tuple[float, ...]]:
         "source_force": tuple(channel.force for channel in plan.channels),
         "source_gain": reals(channel.gain for channel in plan.channels),
         "source_integral": tuple(channel.order for channel in plan.channels),
-        "quantity": tuple(
-            QUANTITIES.index(output.quantity) if made.bound else len(QUANTITIES)
-            for output, made in zip(plan.outputs, evaluator.outputs, strict=True)
-        ),
-        "left_node": tuple(output.left for output in plan.outputs),
-        "right_node": tuple(output.right for output in plan.outputs),
-        "left_delay": tuple(delays.index(1 - output.delay) for output in plan.outputs),
-        "right_delay": tuple(delays.index(output.delay) for output in plan.outputs),
+        "first_heard": _firsts(map(len, heard)),
+        "way": tuple(each.way for of in heard for each in of),
+        "sender": tuple(each.column for of in heard for each in of),
+        "gain": reals(each.gain for of in heard for each in of),
+        "summed": tuple(int(each.summed) for of in heard for each in of),
+        "delay": tuple(delays.index(each.delay) for of in heard for each in of),
         "first_stretch": _firsts(map(len, stretches)),
         "from": tuple(_counts_from(stretch, real) for stretch in flat),
         "start": reals(stretch.start for stretch in flat),
@@ -173,6 +169,7 @@ def _march_constants(evaluator: MarchEvaluator) -> dict[str, float]:
         "first_node": plan.first,
         "forces": len(plan.loaded),
         "sources": len(plan.channels),
+        "ways": plan.ways,
         "points": len(plan.panels) * (degree + 1),
         "events": len(plan.events),
         "last_window": _last_window(plan, real),

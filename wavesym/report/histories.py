@@ -81,7 +81,7 @@ def histories(model: Model, columns: int = 1) -> Histories:
     """
     program = make(model.tolerating(max(model.tolerance, _TOLERANCE)))
     contacts = contact_ends(model)
-    formal = [_formal(probe, contacts) for probe in model.probes]
+    formal = [_formal(model, probe, contacts) for probe in model.probes]
     dense = sum(len(_parts(model, probe)) for probe in model.probes) * model.until > MOST_FRONTS
     fronts = [[] if dense else arrivals(model, probe) for probe in model.probes]
     taus = _instants(program.tau_max, columns, fronts, formal)
@@ -109,13 +109,20 @@ def arrivals(model: Model, probe: Probe) -> list[float]:
 
 def _parts(model: Model, probe: Probe) -> set[fmpq]:
     """The parts of a unit of tau at which fronts can arrive."""
-    moments = (load.time + lag for load in model.loads for lag in (probe.x, -probe.x))
+    places = _places(model, probe)
+    moments = (load.time + lag for load in model.loads for x in places for lag in (x, -x))
     return {moment - moment.floor() for moment in moments}
 
 
-def _formal(probe: Probe, contacts: tuple[ContactEnd, ...]) -> float:
+def _places(model: Model, probe: Probe) -> set[fmpq]:
+    """Where an output is read."""
+    return {reading.x for _, reading in model.sums[probe] if reading.quantity != "load"}
+
+
+def _formal(model: Model, probe: Probe, contacts: tuple[ContactEnd, ...]) -> float:
     """When what an opened contact sends can first arrive at an output."""
-    return min((end.double + abs(nearest(probe.x) - end.x) for end in contacts), default=inf)
+    places = [nearest(x) for x in _places(model, probe)]
+    return min((end.double + abs(x - end.x) for end in contacts for x in places), default=inf)
 
 
 def _instants(until: float, columns: int, fronts: list[list[float]], formal: list[float]) -> Points:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import replace
 
 from flint import fmpq
 
@@ -12,6 +13,7 @@ from wavesym.model.model import Labels, Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import rational
 from wavesym.scene.outputs import Observable
+from wavesym.scene.physical.scale import Scale
 from wavesym.scene.scene import Scene
 
 
@@ -24,15 +26,19 @@ def lower(scene: Scene) -> Model:
         chain=chain,
         network=network,
         loads=_loads(scene),
-        probes=tuple(map(_probe, scene.outputs)),
+        probes=tuple(_probe(output, scene.scale) for output in scene.outputs),
         until=rational(output.until),
         tolerance=rational(output.tolerance),
         labels=_labels(scene),
+        clock=scene.scale.clock if scene.scale else None,
     )
 
 
 def _labels(scene: Scene) -> Labels:
-    canonical = json.dumps(scene.model_dump(mode="json"), sort_keys=True, separators=(",", ":"))
+    said = scene.dimensionless().model_dump(mode="json")
+    if scene.scale is not None:
+        said["units"] = scene.scale.canonical
+    canonical = json.dumps(said, sort_keys=True, separators=(",", ":"))
     return Labels(
         system={"type": scene.system.type, **scene.system.choices},
         loads=tuple(load.told for load in scene.load),
@@ -47,6 +53,10 @@ def _loads(scene: Scene) -> tuple[Applied, ...]:
     return merged(unit for load in scene.load for unit in load.units())
 
 
-def _probe(output: Observable) -> Probe:
+def _probe(output: Observable, scale: Scale | None) -> Probe:
     place = output.place
-    return Probe(output.name, output.quantity, place.rod, rational(place.part), place.point)
+    probe = Probe(output.name, output.quantity, place.rod, rational(place.part), place.point)
+    if scale is None:
+        return probe
+    factor = rational(scale.factor(output.quantity, place.rod))
+    return replace(probe, factor=factor, unit=scale.unit(output.quantity))

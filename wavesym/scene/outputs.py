@@ -5,24 +5,35 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, FailFast, Field, PlainSerializer, PlainValidator, field_validator, model_validator
+from pydantic import (
+    BeforeValidator,
+    FailFast,
+    Field,
+    PlainSerializer,
+    PlainValidator,
+    SerializerFunctionWrapHandler,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
 
 from wavesym.fields.loads import Load
 from wavesym.fields.numbers import Exact, Positive
 from wavesym.fields.table import SceneTable, Written, listed, shown, wrong
 from wavesym.systems import SystemTable
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
+from wavesym.systems.watched import Watching
 
 # Beyond it even the integer part of an argument costs a double most of its digits.
 LONGEST_HORIZON = 10**9
-QUANTITIES = ("strain", "velocity", "displacement")
+QUANTITIES = ("strain", "velocity", "displacement", "acceleration", "force", "drift", "relative")
 
 
 @dataclass(frozen=True)
 class Observable:
-    """An output: a quantity at x (in rod lengths).
+    """An output: a quantity at x (in rod lengths); of a drift x is the number of its rod.
 
     `side` is the side as it matters: -1 or +1 for the strain at a rigid body inside the chain, 0 elsewhere.
     """
@@ -46,6 +57,10 @@ class Output(SceneTable):
     strain: Positions = ()
     velocity: Positions = ()
     displacement: Positions = ()
+    acceleration: Positions = ()
+    force: Positions = ()
+    drift: Positions = ()
+    relative: Positions = ()
 
     @field_validator("until")
     @classmethod
@@ -65,21 +80,29 @@ class Output(SceneTable):
 
     @model_validator(mode="after")
     def _something(self) -> Self:
-        if not (self.strain or self.velocity or self.displacement):
-            raise wrong("no positions given, at least one of strain, velocity or displacement expected")
+        if not any(getattr(self, quantity) for quantity in QUANTITIES):
+            *others, last = QUANTITIES
+            raise wrong(f"no positions given, at least one of {', '.join(others)} or {last} expected")
         return self
+
+    @model_serializer(mode="wrap")
+    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without new quantities that are not asked for: so scenes keep the hash that they have had."""
+        said: dict[str, Any] = handler(self)
+        return {key: value for key, value in said.items() if value or key not in QUANTITIES[3:]}
 
 
 def observables(output: Output, system: SystemTable, loads: Sequence[Load]) -> Iterator[Observable]:
     """The outputs in order, checked against the chain; raises the error of `table.wrong`."""
     seen: dict[tuple[str, Place], str] = {}
+    watching = Watching(system, loads)
     for quantity in QUANTITIES:
         positions: tuple[Position, ...] = getattr(output, quantity)
         for k, position in enumerate(positions):
             at = "output", quantity, k
             text = shown(Written(position.written))
             try:
-                place = system.located(position, quantity, loads)
+                place = watching.place(position, quantity)
             except MisplacedError as error:
                 raise wrong(str(error), *at) from None
             if (quantity, place) in seen:

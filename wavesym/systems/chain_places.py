@@ -58,7 +58,7 @@ def _at_node(drawing: Drawing, point: int, side: int, quantity: str, text: str, 
     for line, stations in drawing.lines.items():
         for station in stations:
             if point in station.points:
-                if quantity == "strain":
+                if quantity in ("strain", "force"):
                     return _at_station(drawing, line, station, side, quantity, text, loaded)
                 return _moving(drawing, line, station, point)
     raise AssertionError(point)
@@ -76,7 +76,7 @@ def _at_station(
     drawing: Drawing, line: str, station: Station, side: int, quantity: str, text: str, loaded: Collection[int]
 ) -> Place:
     apart = len(station.points) > 1
-    if quantity != "strain":
+    if quantity not in ("strain", "force"):
         if apart and not side:
             raise _one_sided(text)
         if apart or line == "" or station.x != 0:
@@ -84,7 +84,7 @@ def _at_station(
     rods = [(rod, way, end) for rod, way, end in ((station.left, -1, 1), (station.right, 1, 0)) if rod is not None]
     if not rods:
         raise MisplacedError(f"{text} given, a place at a rod expected")
-    divided = len(rods) > 1 and _divided(drawing, station, loaded)
+    divided = len(rods) > 1 and (_divided if quantity == "strain" else _held)(drawing, station, loaded)
     if divided and not side:
         raise _one_sided(text)
     rod, way, end = next((each for each in rods if each[1] == side), rods[0])
@@ -102,11 +102,19 @@ def _divided(drawing: Drawing, station: Station, loaded: Collection[int]) -> boo
     left, right = drawing.bars[station.left], drawing.bars[station.right]
     links = [link for link in drawing.links if {link.left, link.right} & {*station.points}]
     return (
-        any(not _bare(drawing.points[point]) or point in loaded for point in station.points)
+        _held(drawing, station, loaded)
         or (left.impedance, left.speed) != (right.impedance, right.speed)
+        or not all(link.contact for link in links)
+    )
+
+
+def _held(drawing: Drawing, station: Station, loaded: Collection[int]) -> bool:
+    """Whether the forces on both sides of a joint may differ: a link between them passes all that it takes."""
+    links = [link for link in drawing.links if {link.left, link.right} & {*station.points}]
+    return (
+        any(not _bare(drawing.points[point]) or point in loaded for point in station.points)
         or sum(1 for point in station.points for _ in drawing.ends(point)) > 2
         or len(links) != len(station.points) - 1
-        or not all(link.contact for link in links)
     )
 
 

@@ -15,7 +15,7 @@ from wavesym.model.network import Network
 from wavesym.model.node import UnitLoad
 from wavesym.systems.chain_places import node, place
 from wavesym.systems.drawing import Drawing, drawn
-from wavesym.systems.node_loads import NodeLoad, SampledNodeLoad
+from wavesym.systems.node_loads import NODE_LOADS, OnNode
 from wavesym.systems.parts import Branch, Parts, told
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.station import Lines
@@ -24,7 +24,7 @@ from wavesym.systems.station import Lines
 class ExplicitChain(SceneTable):
     """A chain that is written out, part by part."""
 
-    load_kinds: ClassVar[LoadKinds] = (NodeLoad, SampledNodeLoad)
+    load_kinds: ClassVar[LoadKinds] = NODE_LOADS
     no_loads: ClassVar[str] = ""
 
     type: Literal["chain"] = Field(description='"chain"')
@@ -82,4 +82,4 @@ class ExplicitChain(SceneTable):
 
 
 def _at(load: Load) -> str:
-    return cast(NodeLoad | SampledNodeLoad, load).at
+    return cast(OnNode, load).at

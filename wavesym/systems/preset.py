@@ -83,7 +83,7 @@ class Preset(SceneTable):
         x, text = position.x, shown(Written(position.written))
         if x is None or not 0 <= x <= self.m:
             raise MisplacedError(f"{text} given, a position from 0 to {self.m} expected")
-        divided = quantity == "strain" and self._divided_at(x)
+        divided = quantity in ("strain", "force") and self._divided_at(x, quantity)
         if divided and not position.side:
             raise MisplacedError(f'{text} given, a side of the body there expected: "{text}-" or "{text}+"')
         side = position.side if divided else 0
@@ -92,12 +92,13 @@ class Preset(SceneTable):
         rod = min(max(1, after + 1 if side > 0 else after), self.m)
         return Place(x, side, "", rod, x - (rod - 1))
 
-    def _divided_at(self, x: Fraction) -> bool:
-        """Whether the strain has two sides at x (in rod lengths), strictly inside the chain: mostly at rigid bodies."""
+    def _divided_at(self, x: Fraction, quantity: str) -> bool:
+        """Whether strain, or force, has two sides at x (in rod lengths), inside the chain: mostly at bodies."""
         if not (0 < x < self.m and x.denominator == 1):
             return False
         node = self.chain.nodes[int(x)]
-        return bool(node.inertia or node.damping or node.loads) or node.alpha != node.beta
+        held = bool(node.inertia or node.damping or node.loads)
+        return held or (quantity == "strain" and node.alpha != node.beta)
 
     def refused(self, load: Load) -> tuple[str, str] | None:
         """What is wrong with a load, and under which key; None where nothing is."""

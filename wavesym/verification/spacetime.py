@@ -155,7 +155,7 @@ class SpaceTimeGrid:
 def grid(model: Model) -> SpaceTimeGrid:
     """The coarsest grid for a model: its loads and outputs are on it where their denominators are small."""
     common = 1
-    for place in (*(load.time for load in model.loads), *(probe.x for probe in model.probes)):
+    for place in (*(load.time for load in model.loads), *(reading.x for reading in model.watched)):
         if lcm(common, int(place.q)) <= FINEST_ALIGNED:
             common = lcm(common, int(place.q))
     fewest = max(COARSEST, int((COARSEST / min(fmpq(1), model.until)).ceil()))

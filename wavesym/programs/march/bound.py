@@ -29,6 +29,7 @@ All of it holds to first order in u, and a margin of 1 % is added for the rest.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil, inf, log2, pi, sqrt
 from typing import NamedTuple
@@ -40,8 +41,8 @@ from wavesym.exact.silence import silent
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.operator import Array, PanelOperator
-from wavesym.programs.march.plan import Plan, power_of_two
-from wavesym.programs.march.run import LEFT, RIGHT, Block, Run
+from wavesym.programs.march.plan import LEFT, LOAD, RIGHT, HeardWave, Plan, power_of_two
+from wavesym.programs.march.run import Block, Run
 from wavesym.programs.march.sampler import OutputSampler
 from wavesym.programs.march.tail import Tail, tail
 
@@ -102,10 +103,11 @@ def _judge(plan: Plan, degree: int, real: Real, scale: fmpq) -> Verdict:
     roundings = Roundings(plan, run, real, scale)
     smooth = tail(plan, degree)
     samplers = [OutputSampler(plan, output, degree) for output in plan.outputs]
-    displaced = [output.quantity == "displacement" for output in plan.outputs]
+    weights, summing = (reading_weights(degree, displaced) for displaced in (False, True))
     truncated = rounded = summed = 0.0
     alarm = Alarm(plan.trusted)
     largest, reading, sums = (np.zeros(len(samplers)) for _ in range(3))
+    loads = np.zeros(len(plan.junctions))
     for block in run.blocks():
         lost, inexact = roundings.of(block)
         truncated += float(np.sum(lost))
@@ -114,22 +116,24 @@ def _judge(plan: Plan, degree: int, real: Real, scale: fmpq) -> Verdict:
         alarm.watch(block, roundings.leak)
         for o, sampler in enumerate(samplers):
             largest[o] = max(largest[o], float(np.max(np.abs(sampler.values(block)))))
-            weighted = sampler.size(block, reading_weights(degree, displaced[o]))
-            reading[o] = max(reading[o], float(np.max(weighted)))
-            sums[o] += float(np.sum(weighted))
+            reading[o] = max(reading[o], float(np.max(sampler.size(block, weights, summed=False))))
+            sums[o] += float(np.sum(sampler.size(block, summing, summed=True)))
+        loads = np.maximum(loads, np.max(block.forces, axis=(0, 1)))
         if not np.max(np.abs(block.after)) < reach:
             raise OverflowError(f"waves beyond {nearest(real.reach):.1g}")
     errors = []
     lost_reading = 4.0 * (degree + 3) ** 2 * smallest
+    stretches = 2.0 * len(plan.panels) + 2
     for o, output in enumerate(plan.outputs):
-        impedance = impedance_at(plan, output.right)
-        if displaced[o]:
-            stretches = 2.0 * len(plan.panels) + 2
-            error = 2 * summed / sqrt(impedance) + unit * (24 * stretches * sums[o] + 2 * plan.windows * largest[o])
-            error += plan.windows * stretches * lost_reading
-        else:
-            error = 2 * largest_wave(smooth, plan, (truncated + rounded) / sqrt(impedance)) + 12 * unit * reading[o]
-            error += lost_reading
+        error = 0.0
+        if of := output.part(summed=True):
+            held = largest[o] + reading[o]
+            error += felt(plan, of) * summed + unit * (24 * stretches * sums[o] + len(of) * plan.windows * held)
+            error += plan.windows * stretches * lost_reading * max(1, len(of) / 2)
+        if of := output.part(summed=False):
+            error += wave_error(smooth, plan, of, truncated + rounded) + (10 + max(2, len(of))) * unit * reading[o]
+            error += sum(load_error(plan, each, loads, unit, smallest) for each in of if each.way == LOAD)
+            error += lost_reading * max(1, len(of) / 2)
         errors.append(MARGIN * float(error))
     # what rounding could have made may be nothing at all: programs then return exactly 0
     if any(size <= error for size, error in zip(largest, errors, strict=True)):
@@ -152,9 +156,30 @@ def largest_wave(smooth: Tail, plan: Plan, energy: float) -> float:
     return factor * (sqrt(2 / shortest) * energy + sqrt(2) * smooth.size) + smooth.size
 
 
-def impedance_at(plan: Plan, column: int) -> float:
-    """That of the rod on the right of a column."""
-    return nearest(plan.junctions[column].right)
+def felt(plan: Plan, heard: Sequence[HeardWave]) -> float:
+    """How large what is heard can be, in L2 over a window, where the norm of energy is 1."""
+    return sum(abs(nearest(each.gain)) / sqrt(_impedance(plan, each)) for each in heard if each.way != LOAD)
+
+
+def wave_error(smooth: Tail, plan: Plan, heard: Sequence[HeardWave], energy: float) -> float:
+    """The largest error of what is heard where that of all waves is in the norm of energy."""
+    return sum(
+        abs(nearest(each.gain)) * largest_wave(smooth, plan, energy / sqrt(_impedance(plan, each)))
+        for each in heard
+        if each.way != LOAD
+    )
+
+
+def load_error(plan: Plan, heard: HeardWave, loads: Array, unit: float, smallest: float) -> float:
+    """How wrong the series of a load is that is heard, where loads on columns are at most so large."""
+    size = float(loads[plan.loaded[heard.column]])
+    return abs(nearest(heard.gain)) * (8 * unit * size + _SPARE * smallest)
+
+
+def _impedance(plan: Plan, heard: HeardWave) -> float:
+    """That of the rod that a wave is sent into."""
+    node = plan.junctions[heard.column]
+    return nearest(node.right if heard.way == RIGHT else node.left)
 
 
 class Alarm:
@@ -170,7 +195,7 @@ class Alarm:
     def watch(self, block: Block, leak: Array) -> None:
         """The windows of a block, with the leak per unit of `excess` of each panel and column."""
         leaks = self._leak + np.cumsum(np.sum(leak * np.abs(block.excess), axis=(1, 2)))
-        means = np.max(np.abs(block.after[..., 0]), axis=(1, 2, 3))
+        means = np.max(np.abs(block.after[:, :LOAD, ..., 0]), axis=(1, 2, 3))
         sizes = np.maximum.accumulate(np.maximum(means, np.max(np.abs(block.ends), axis=(1, 2))))
         sizes = np.maximum(sizes, self._size)
         self.rung |= bool(np.any(leaks > self._trusted * sizes))

@@ -189,6 +189,7 @@ def _refuse_extreme(prepared: Plan, real: Real) -> None:
     numbers += [step / (8 * _HIGHEST_DEGREE) for step in steps(prepared)]
     numbers += [power for event in prepared.events for power in event.powers]
     numbers += [channel.gain for channel in prepared.channels]
+    numbers += [heard.gain for output in prepared.outputs for heard in output.heard]
     if any(0 < abs(value) < real.least for value in (*numbers, *prepared.rods)):
         raise OverflowError(f"a number of the tables is too small for {real.name} precision")
 

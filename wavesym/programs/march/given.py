@@ -19,10 +19,10 @@ from flint import arb, fmpq
 
 from wavesym.numbers.doubles import bound, nearest, not_below
 from wavesym.numbers.reals import Real
-from wavesym.programs.march.bound import MARGIN, Roundings, impedance_at, largest_wave, reading_weights
+from wavesym.programs.march.bound import MARGIN, Roundings, felt, load_error, reading_weights, wave_error
 from wavesym.programs.march.operator import Array
-from wavesym.programs.march.plan import Plan, power_of_two
-from wavesym.programs.march.run import LEFT, RIGHT, Block, Run
+from wavesym.programs.march.plan import LEFT, LOAD, RIGHT, Plan, power_of_two
+from wavesym.programs.march.run import Block, Run
 from wavesym.programs.march.sampler import OutputSampler
 from wavesym.programs.march.tail import tail_after
 
@@ -59,30 +59,36 @@ def _given(plan: Plan, degree: int, real: Real, windows: int, scale: fmpq) -> Gi
     unit = nearest(real.roundoff)
     roundings = Roundings(plan, run, real, scale)
     samplers = [OutputSampler(plan, output, degree) for output in plan.outputs]
-    displaced = [output.quantity == "displacement" for output in plan.outputs]
+    hearing, summing = (reading_weights(degree, displaced) for displaced in (False, True))
     # by windows: in energy, and what reading the outputs costs
     lost, inexact = np.zeros(windows), np.zeros(windows)
-    read = np.zeros((len(samplers), windows))
+    read, sums = np.zeros((len(samplers), windows)), np.zeros((len(samplers), windows))
+    loads = np.zeros(len(plan.junctions))
     weights = np.tile(np.where(np.arange(SMOOTH + 1) > 0, 4 / pi, 1.0), len(plan.channels) * len(plan.panels))
     for n, block in enumerate(_windows(plan, run, windows)):
         lost[n], inexact[n] = (float(weights @ part) for part in roundings.of(block))
         for o, sampler in enumerate(samplers):
-            read[o, n] = weights @ sampler.size(block, reading_weights(degree, displaced[o]))
+            read[o, n] = weights @ sampler.size(block, hearing, summed=False)
+            sums[o, n] = weights @ sampler.size(block, summing, summed=True)
+        loads += weights @ np.max(block.forces, axis=1)
     smooth = tail_after(plan, degree, windows, [windows * jump for jump in _jumps(plan)])
     # loads of all windows: what each has cost so far, added up
     costs = np.cumsum(np.cumsum(lost + inexact))
-    lost_reading = 4.0 * (degree + 3) ** 2 * not_below(real.smallest / scale)
+    spare = not_below(real.smallest / scale)
+    lost_reading = 4.0 * (degree + 3) ** 2 * spare
     stretches = 2.0 * len(plan.panels) + 2
     errors = []
     for o, output in enumerate(plan.outputs):
-        root = sqrt(impedance_at(plan, output.right))
-        if displaced[o]:
-            sums = np.cumsum(read[o])
-            rounded = 24 * stretches * np.sum(sums) + 2 * np.sum(np.arange(1, windows + 1) * sums)
-            error = 2 * float(np.sum(costs)) / root + unit * float(rounded) + windows * stretches * lost_reading
-        else:
-            error = 2 * largest_wave(smooth, plan, float(costs[-1]) / root) + 12 * unit * float(np.sum(read[o]))
-            error += lost_reading
+        error = 0.0
+        if of := output.part(summed=True):
+            summed = np.cumsum(sums[o])
+            rounded = 24 * stretches * np.sum(summed) + len(of) * np.sum(np.arange(1, windows + 1) * summed)
+            error += felt(plan, of) * float(np.sum(costs)) + unit * float(rounded)
+            error += windows * stretches * lost_reading * max(1, len(of) / 2)
+        if of := output.part(summed=False):
+            error += wave_error(smooth, plan, of, float(costs[-1]))
+            error += (10 + max(2, len(of))) * unit * float(np.sum(read[o])) + lost_reading * max(1, len(of) / 2)
+            error += sum(load_error(plan, each, loads, unit, spare) for each in of if each.way == LOAD)
         errors.append(MARGIN * error)
     settled = float(np.sum(np.cumsum(lost))) <= float(np.sum(np.cumsum(inexact)))
     return Given(windows, tuple(errors), settled)
@@ -92,7 +98,8 @@ def _windows(plan: Plan, run: Run, windows: int) -> Iterator[Block]:
     """A march for each load, panel and Chebyshev polynomial that acts there on the first window; one Block a window."""
     columns, size, count = len(plan.junctions), run.degree + 1, batch_size(plan)
     series, rest = _loads(plan, size)
-    before = np.zeros((count, 2, len(plan.panels), columns + 2, size))
+    before = np.zeros((count, plan.ways, len(plan.panels), columns + 2, size))
+    forces_on = list(plan.loaded)
     q = np.zeros((count, columns))
     shape = count, len(plan.panels), columns
     for n in range(windows):
@@ -106,8 +113,10 @@ def _windows(plan: Plan, run: Run, windows: int) -> Iterator[Block]:
                 sums = np.sum(np.abs(series[:, p]), axis=-1)
                 # made from values at the points, with a sum of as many terms
                 forces[:, p] = sums * (run.degree + 8) * sqrt(run.degree + 2)
+                after[:, LOAD:, p, 1 : len(forces_on) + 1] = series[:, None, p, forces_on]
             else:
                 balance[..., 0] += rest
+                after[:, LOAD:, p, 1 : len(forces_on) + 1, 0] = rest[:, None, forces_on]
                 # an integral is added to on every panel
                 forces[:, p] = np.abs(rest) * (n + 1) * (len(plan.panels) + 1)
             starts[:, p] = q

@@ -23,10 +23,13 @@ from wavesym.errors import CostError
 from wavesym.exact.node_rules import node_rule
 from wavesym.model.loads import Applied
 from wavesym.model.model import Model
-from wavesym.model.node import Node
-from wavesym.model.probe import Probe
+from wavesym.model.node import RAMPS, Node
+from wavesym.model.reading import Sum
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
+
+LEFT, RIGHT, LOAD = 0, 1, 2
+"""What is heard: waves that nodes send, or loads."""
 
 MOST_PANELS = 16
 # of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
@@ -94,17 +97,28 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class Watched:
-    """An output: the right-going wave of the node at column `right` and the left-going wave of that at `left`.
-
-    The right-going one was sent `delay` earlier, the other 1 - delay.
+class HeardWave:
+    """`gain` times the wave that the node at `column` sends to the LEFT or RIGHT, `delay` after it was sent; or the
+    LOAD with the number `column`. Where it is `summed`, the integral of that.
     """
 
-    name: str
-    quantity: str
-    right: int
-    left: int
+    way: int
+    column: int
     delay: fmpq
+    gain: fmpq
+    summed: bool
+
+
+@dataclass(frozen=True)
+class Watched:
+    """An output: a sum of waves and of integrals of waves."""
+
+    name: str
+    heard: tuple[HeardWave, ...]
+
+    def part(self, *, summed: bool) -> tuple[HeardWave, ...]:
+        """The waves, or those of whose integrals it is the sum."""
+        return tuple(heard for heard in self.heard if heard.summed == summed)
 
 
 @dataclass(frozen=True)
@@ -124,6 +138,11 @@ class Plan:
     valid: float  # until when no node outside of the light cone can be felt
     tolerance: float  # of the scene, but no less than what rounding makes of loads that are given
     trusted: float  # what polynomials may miss in all, of the largest wave, before the programs say so
+
+    @property
+    def ways(self) -> int:
+        """How many arrays of series there are: loads are one, where they are heard."""
+        return LOAD + any(heard.way == LOAD for output in self.outputs for heard in output.heard)
 
     @property
     def windows(self) -> int:
@@ -188,7 +207,10 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
         loaded,
         tuple(_events(nodes, loaded, loads, panels)),
         tuple(_channels(nodes, loaded)),
-        tuple(_watched(probe, columns.start) for probe in model.probes),
+        tuple(
+            Watched(probe.name, tuple(_heard(model, terms, columns.start, loaded)))
+            for probe, terms in model.sums.items()
+        ),
         tau_max,
         columns.start,
         inf if len(columns) == model.named.m + 1 else max(tau_max, float(windows)),
@@ -268,11 +290,19 @@ def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:
 def _channels(nodes: Sequence[Node], loaded: Sequence[int]) -> Iterator[Channel]:
     for force, column in enumerate(loaded):
         for load in nodes[column].loads:
-            if load.kind != "b":  # a ramp of the acceleration is an acceleration
+            if load.kind not in RAMPS:  # a ramp of the acceleration is an acceleration
                 order = len(load.coefficients) - 1
                 gain = load.coefficients[order] * _share(nodes[column])
                 yield Channel(load.source, force, gain, order)
 
 
-def _watched(probe: Probe, first: int) -> Watched:
-    return Watched(probe.name, probe.quantity, probe.rod - 1 - first, probe.rod - first, probe.place)
+def _heard(model: Model, terms: Sum, first: int, loaded: Sequence[int]) -> Iterator[HeardWave]:
+    for weight, reading in terms:
+        if reading.point is None:
+            right, left = (weight * sign for sign in reading.weights)
+            yield HeardWave(RIGHT, reading.rod - 1 - first, reading.place, right, reading.order < 0)
+            yield HeardWave(LEFT, reading.rod - first, 1 - reading.place, left, reading.order < 0)
+        elif (column := reading.point - first) in loaded:
+            node = model.named.nodes[reading.point]
+            scale = model.network.points[reading.point].mass / node.inertia / _share(node)
+            yield HeardWave(LOAD, loaded.index(column), fmpq(0), weight * scale, False)

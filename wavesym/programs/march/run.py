@@ -2,6 +2,7 @@
 
 A window's waves are an array (direction, panel, column + 1, coefficient): direction LEFT or RIGHT of the wave that a
 column sends, with one more column at either end for what arrives from outside the light cone, which never changes.
+Where loads are heard, they are one more direction, by number + 1.
 """
 
 from __future__ import annotations
@@ -14,9 +15,7 @@ from flint import fmpq
 
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.march.operator import Array, PanelOperator, Sweeps, operator
-from wavesym.programs.march.plan import Plan
-
-LEFT, RIGHT = 0, 1
+from wavesym.programs.march.plan import LEFT, LOAD, RIGHT, Plan
 
 _BLOCK = 64
 
@@ -55,7 +54,7 @@ class Run:
     def blocks(self) -> Iterator[Block]:
         """The whole horizon, in order; a run can be taken once."""
         plan, size = self.plan, self.degree + 1
-        last = np.zeros((2, len(plan.panels), len(plan.junctions) + 2, size))
+        last = np.zeros((plan.ways, len(plan.panels), len(plan.junctions) + 2, size))
         rods = np.array([nearest(v) for v in plan.rods])
         # a node sends what its rod holds: its left rod to the left; what comes in at the ends is sent by no node
         last[LEFT, :, 1:, 0] = rods
@@ -71,7 +70,7 @@ class Run:
                 for p in range(len(plan.panels)):
                     a, b = waves[n, RIGHT, p, :-2], waves[n, LEFT, p, 2:]
                     balance = self.alpha * a + self.beta * b
-                    forces[n, p] = self._loads.add(balance, first + n, p)
+                    forces[n, p] = self._loads.add(balance, waves[n + 1, LOAD:, p], first + n, p)
                     starts[n, p] = q
                     moved = balance.copy()
                     moved[self.massive], q[self.massive] = self.steps[p].moved(balance[self.massive], q[self.massive])
@@ -138,8 +137,8 @@ class _Loads:
         self._start = [[nearest(p.start - q.start) for q in plan.panels] for p in plan.panels]
         self._half = [nearest(panel.length / 2) for panel in plan.panels]
 
-    def add(self, balance: Array, window: int, panel: int) -> Array:
-        """Add the loads of a panel to p; how large they are, by column."""
+    def add(self, balance: Array, heard: Array, window: int, panel: int) -> Array:
+        """Add the loads of a panel to p, and set what is `heard` of them; how large they are, by column."""
         while self._coming and (self._coming[-1].window, self._coming[-1].panel) == (window, panel):
             event = self._coming.pop()
             self._now[event.force] = window, panel, [nearest(c) for c in event.powers]
@@ -148,9 +147,10 @@ class _Loads:
         for force, (since, place, (c0, c1, c2)) in self._now.items():
             middle = (window - since) + self._start[panel][place] + half
             column = self._plan.loaded[force]
-            balance[column, 0] += c0 + middle * c1 + (middle * middle + 0.5 * half * half) * c2
-            balance[column, 1] += half * (c1 + 2.0 * middle * c2)
-            balance[column, 2] += 0.5 * half * half * c2
+            mean = c0 + middle * c1 + (middle * middle + 0.5 * half * half) * c2
+            series = mean, half * (c1 + 2.0 * middle * c2), 0.5 * half * half * c2
+            balance[column, :3] += series
+            heard[:, force + 1, :3] = series
             reach = middle + half
             sizes[column] = 2 * (abs(c0) + reach * abs(c1) + 2 * reach * reach * abs(c2))
         return sizes

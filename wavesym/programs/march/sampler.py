@@ -10,7 +10,7 @@ from flint import fmpq
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.programs.march.operator import Array
 from wavesym.programs.march.plan import Plan, Watched
-from wavesym.programs.march.run import LEFT, RIGHT, Block
+from wavesym.programs.march.run import Block
 
 SAMPLES = 17
 """Points per window, both ends among them, at which the generator looks for an output's largest value."""
@@ -21,42 +21,40 @@ class OutputSampler:
 
     def __init__(self, plan: Plan, output: Watched, degree: int) -> None:
         self._output = output
-        self._sign = -1.0 if output.quantity == "strain" else 1.0
-        self._sums = output.quantity == "displacement"
-        self._whole, self._last = (self._functionals(plan, degree, end) for end in (1.0, plan.tau_max % 1.0))
+        ends = np.linspace(0.0, 1.0, SAMPLES), np.linspace(0.0, plan.tau_max % 1.0, SAMPLES)
+        self._functionals = [
+            [
+                nearest(each.gain) * _functional(plan, each.delay, degree, points, integral=each.summed)
+                for points in ends
+            ]
+            for each in output.heard
+        ]
         self._coming = plan.windows
         self._total = 0.0
 
-    def _functionals(self, plan: Plan, degree: int, end: float) -> tuple[Array, Array]:
-        """For the wave to the left and the one to the right, up to `end` after the start of a window."""
-        left, right = (
-            _functional(plan, delay, degree, np.linspace(0.0, end, SAMPLES), integral=self._sums)
-            for delay in (1 - self._output.delay, self._output.delay)
-        )
-        return left, self._sign * right
-
     def values(self, block: Block) -> Array:
-        """Shape (windows, SAMPLES); blocks come in order, as a displacement is summed up."""
-        left = _pairs(block, LEFT, self._output.left)
-        right = _pairs(block, RIGHT, self._output.right)
-        values = left @ self._whole[0] + right @ self._whole[1]
-        self._coming -= len(values)
-        if self._coming == 0:
-            values[-1] = left[-1] @ self._last[0] + right[-1] @ self._last[1]
-        if self._sums:
-            before = self._total + np.concatenate([[0.0], np.cumsum(values[:, -1])])
-            self._total = float(before[-1])
-            values = values + before[:-1, np.newaxis]
-        return np.asarray(values)
+        """Shape (windows, SAMPLES); blocks come in order, as integrals are summed up."""
+        windows = len(block.after)
+        self._coming -= windows
+        values, sums = np.zeros((windows, SAMPLES)), np.zeros((windows, SAMPLES))
+        for heard, (whole, last) in zip(self._output.heard, self._functionals, strict=True):
+            series = _pairs(block, heard.way, heard.column)
+            total = sums if heard.summed else values
+            total += series @ whole
+            if self._coming == 0:
+                total[-1] += series[-1] @ (last - whole)
+        before = self._total + np.concatenate([[0.0], np.cumsum(sums[:, -1])])
+        self._total = float(before[-1])
+        return np.asarray(values + sums + before[:-1, np.newaxis])
 
-    def size(self, block: Block, weights: Array) -> Array:
-        """The weighted absolute coefficients of its two waves on each window, the larger panel; shape (windows,)."""
-        totals = []
-        for waves in (block.before, block.after):
-            right = np.abs(waves[:, RIGHT, :, self._output.right + 1]) @ weights
-            left = np.abs(waves[:, LEFT, :, self._output.left + 1]) @ weights
-            totals.append(np.max(right + left, axis=-1))
-        return np.asarray(np.maximum(*totals))
+    def size(self, block: Block, weights: Array, *, summed: bool) -> Array:
+        """The weighted absolute coefficients of what it hears, or of what it sums up, the larger panel; (windows,)."""
+        heard = self._output.part(summed=summed)
+        totals = [np.zeros((len(block.after), block.after.shape[2])) for _ in range(2)]
+        for total, waves in zip(totals, (block.before, block.after), strict=True):
+            for each in heard:
+                total += abs(nearest(each.gain)) * (np.abs(waves[:, each.way, :, each.column + 1]) @ weights)
+        return np.asarray(np.max(np.maximum(*totals), axis=-1))
 
 
 def _pairs(block: Block, direction: int, column: int) -> Array:

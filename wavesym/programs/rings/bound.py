@@ -17,7 +17,7 @@ All of it holds to first order in u, and a margin of 1 % is added for the rest.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from math import pi, sqrt
 
@@ -33,7 +33,7 @@ from wavesym.programs.march.bound import MARGIN, Verdict, reading_weights
 from wavesym.programs.march.plan import power_of_two
 from wavesym.programs.march.tail import Tail, tail_of
 from wavesym.programs.rings.answer import NEGLIGIBLE
-from wavesym.programs.rings.plan import MarchedJoint, RingPlan, largest_number
+from wavesym.programs.rings.plan import Heard, MarchedJoint, RingPlan, largest_number
 from wavesym.programs.rings.tables import RingTables
 from wavesym.programs.schemes.rings import JointGroup, MarchingRings, RingScheme, RunningLoads, WindowBlock
 
@@ -68,7 +68,7 @@ def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
     losses = Losses(plan, made, scheme, unit, smallest)
     outputs, step = len(plan.outputs), nearest(plan.step)
     truncated, rounded, summed = 0.0, losses.begun, 0.0
-    largest, reading, sums = np.zeros(outputs), np.zeros(outputs), np.zeros(outputs)
+    largest, reading, sums, held = (np.zeros(outputs) for _ in range(4))
     for block in _blocks(scheme, plan.windows):
         lost, inexact = losses.of(block)
         truncated += lost
@@ -78,32 +78,29 @@ def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
         taus = np.unique(np.minimum((window + np.linspace(0, 1, SAMPLES, endpoint=False)) * step, plan.tau_max))
         inside = np.isin(scheme.places(taus)[0], window)
         largest = np.maximum(largest, np.max(np.abs(block.read(taus[inside])), axis=1, initial=0.0))
+        held = np.maximum(held, np.max(np.abs(block.totals), axis=1))
         for o, output in enumerate(plan.outputs):
-            weights = reading_weights(degree, output.integral)
-            size = sum(
-                abs(nearest(heard.gain)) * np.max(np.abs(block.waves[:, heard.track]) @ weights)
-                for heard in output.heard
-            )
-            reading[o] = max(reading[o], size)
-            sums[o] += block.count * size
+            reading[o] = max(reading[o], _size(block, output.part(summed=False), reading_weights(degree, False)))
+            sums[o] += block.count * _size(block, output.part(summed=True), reading_weights(degree, True))
         if not np.max(np.abs(block.waves)) < reach:
             raise OverflowError(f"waves beyond {nearest(real.reach):.1g}")
     smooth = smoothness(plan, degree)
-    felt = [
-        sum(abs(nearest(heard.gain)) * size_of(plan, heard.track) for heard in output.heard) for output in plan.outputs
-    ]
     lost_reading = 8.0 * (degree + 3) ** 2 * smallest
+    stretches = 2.0 * len(plan.panels) + 2
     errors = []
     for o, output in enumerate(plan.outputs):
-        if output.integral:
-            stretches = 2.0 * len(plan.panels) + 2
-            error = felt[o] * sqrt(step) * summed
-            error += unit * (24 * stretches * step * sums[o] + 2 * plan.windows * largest[o])
-            error += plan.windows * stretches * lost_reading * (1 + step)
-        else:
-            error = felt[o] * largest_wave(smooth, plan, truncated + rounded) + 14 * unit * reading[o] + lost_reading
-        direct = sum(abs(nearest(heard.gain)) * losses.direct[heard.track] for heard in output.heard)
-        error += direct * (step * plan.windows if output.integral else 1)
+        error = 0.0
+        if of := output.part(summed=True):
+            error += _felt(plan, of) * sqrt(step) * summed
+            error += unit * (24 * stretches * step * sums[o] + len(of) * plan.windows * held[o])
+            error += plan.windows * stretches * lost_reading * (1 + step) * max(1, len(of) / 2)
+            error += _direct(losses, of) * step * plan.windows
+        if of := output.part(summed=False):
+            error += _felt(plan, of) * largest_wave(smooth, plan, truncated + rounded)
+            error += (12 + max(2, len(output.heard))) * unit * reading[o] + lost_reading * max(1, len(of) / 2)
+            error += _direct(losses, of)
+        if 0 < len(output.part(summed=True)) < len(output.heard):
+            error += len(output.heard) * unit * held[o]  # one is added to the other
         errors.append(MARGIN * float(error))
     # what rounding could have made may be nothing at all: programs then return exactly 0
     if any(size <= error for size, error in zip(largest, errors, strict=True)):
@@ -111,6 +108,21 @@ def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
             if nothing:
                 errors[o] = largest[o] = 0.0
     return Verdict(degree, tuple(errors), tuple(map(float, largest)), truncated, rounded, True)
+
+
+def _size(block: WindowBlock, heard: Iterable[Heard], weights: Array) -> float:
+    """The weighted absolute coefficients of what is heard, at most."""
+    return sum(abs(nearest(each.gain)) * float(np.max(np.abs(block.waves[:, each.track]) @ weights)) for each in heard)
+
+
+def _felt(plan: RingPlan, heard: Iterable[Heard]) -> float:
+    """How large what is heard can be, in L2 over a window, where the norm of energy is 1."""
+    return sum(abs(nearest(each.gain)) * size_of(plan, each.track) for each in heard)
+
+
+def _direct(losses: Losses, heard: Iterable[Heard]) -> float:
+    """How wrong what is heard may be by itself."""
+    return sum(abs(nearest(each.gain)) * float(losses.direct[each.track]) for each in heard)
 
 
 def _blocks(scheme: RingScheme, windows: int) -> Iterator[WindowBlock]:
@@ -129,6 +141,8 @@ def size_of(plan: RingPlan, track: int) -> float:
     """How large what is on a track can be, in L2 over a window, where the norm of energy is 1."""
     if impedance := plan.tracks[track].impedance:
         return 1 / sqrt(nearest(impedance))
+    if plan.tracks[track].told:
+        return 0.0
     number, point = next(
         (number, port.point)
         for number, joint in enumerate(plan.joints)
@@ -138,8 +152,6 @@ def size_of(plan: RingPlan, track: int) -> float:
     network = plan.model.network
     reached = list(plan.model.reached(rational(plan.tau_max)))
     law = JointLaw.of(network, network.joints[reached[number]])
-    if law.given[point] is not None:
-        return 0.0
     free = [k for k, given in enumerate(law.given) if given is None]
     held = [law.damping[a][b] + (law.mass[a] if a == b else 0) for a in free for b in free]
     at = free.index(point)
@@ -161,7 +173,9 @@ def _jumps(plan: RingPlan, rate: float) -> Iterator[float]:
     strengths: dict[int, float] = {}
     begin = 0.0
     for joint in plan.joints:
-        strengths |= {force: strength(joint, point, rate) for point, force in enumerate(joint.forces) if force >= 0}
+        for point, force in enumerate(joint.forces):
+            if force >= 0:  # where a load is read only it moves nothing
+                strengths[force] = max(strength(joint, point, rate), strengths.get(force, 0.0))
         begin += started(plan, joint, rate)
     loads = [0.0] * 3
     for force, powers in plan.changes():

@@ -18,12 +18,12 @@ from flint import fmpq, fmpq_poly
 from wavesym.errors import CostError
 from wavesym.exact.node_rules import joint_rule
 from wavesym.model.model import Model
-from wavesym.model.network import End
-from wavesym.model.probe import Probe
+from wavesym.model.network import End, Network
+from wavesym.model.reading import Sum
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch
-from wavesym.programs.rings.space import JointSpace, Port, joint_space
+from wavesym.programs.rings.space import SHOWN, JointSpace, Port, joint_space
 
 FINEST = 64
 """The shortest delay is no more steps than that."""
@@ -33,14 +33,16 @@ _ZERO, _ONE = fmpq(0), fmpq(1)
 
 @dataclass(frozen=True)
 class Track:
-    """What is sent into one end of a bar (or a velocity that is watched): it arrives `steps` windows later.
+    """What is sent into one end of a bar (or a velocity or load that is watched): it arrives `steps` windows later.
 
-    `held` is what is on its way at tau = 0. `impedance` is 0 where no bar carries it.
+    `held` is what is on its way at tau = 0. `impedance` is 0 where no bar carries it. What is `told` is a load, or a
+    velocity that loads prescribe.
     """
 
     steps: int
     held: fmpq
     impedance: fmpq
+    told: bool = False
 
 
 @dataclass(frozen=True)
@@ -58,20 +60,24 @@ class MarchedJoint:
 
 @dataclass(frozen=True)
 class Heard:
-    """One of the waves of an output: `gain` times a track, `delay` after it was sent."""
+    """One of the waves of an output: `gain` times a track, or times its integral, `delay` after it was sent."""
 
     track: int
     gain: fmpq
     delay: fmpq
+    summed: bool
 
 
 @dataclass(frozen=True)
 class WatchedPlace:
-    """An output: a sum of waves, or its integral over time."""
+    """An output: a sum of waves and of integrals of waves over time."""
 
     name: str
-    integral: bool
-    heard: tuple[Heard, Heard]
+    heard: tuple[Heard, ...]
+
+    def part(self, *, summed: bool) -> tuple[Heard, ...]:
+        """The waves, or those of whose integrals it is the sum."""
+        return tuple(heard for heard in self.heard if heard.summed == summed)
 
 
 @dataclass(frozen=True)
@@ -153,7 +159,7 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
     until = rational(tau_max)
     reached = model.reached(until)
     modelled = {end for number in reached for end, _ in network.joints[number].ends}
-    bars = sorted({end.bar for end in modelled} | {probe.rod - 1 for probe in model.probes if probe.point is None})
+    bars = sorted({end.bar for end in modelled} | {read.rod - 1 for read in model.watched if read.point is None})
     step = _step([network.bars[bar].delay for bar in bars])
     track_of = {End(bar, side): 2 * k + side for k, bar in enumerate(bars) for side in (0, 1)}
     tracks = [
@@ -161,11 +167,14 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
         for bar in (network.bars[number] for number in bars)
         for side in (0, 1)
     ]
-    shown = sorted({probe.point for probe in model.probes if probe.point is not None})
-    point_of = {point: len(tracks) + k for k, point in enumerate(shown)}
-    silent = len(tracks) + len(shown)  # a track on which nothing is ever sent
-    tracks += [Track(0, _ZERO, _ZERO)] * (len(shown) + 1)
     loads = _Loads(model, until, reached)
+    shown = sorted({read.point for read in model.watched if read.point is not None})
+    point_of = {point: len(tracks) + k for k, point in enumerate(shown)}
+    tracks += [Track(0, _ZERO, _ZERO, network.points[point].motion is not None) for point in shown]
+    pushed = {read.point for terms in model.sums.values() for _, read in terms if read.quantity == "load"}
+    load_of = {point: len(tracks) + k for k, point in enumerate(p for p in sorted(loads.numbers) if p in pushed)}
+    silent = len(tracks) + len(load_of)  # a track on which nothing is ever sent
+    tracks += [Track(0, _ZERO, _ZERO, True)] * (len(load_of) + 1)
     panels = _panels([time for time, _, _ in loads.changes], step)
     marched = []
     for number in reached:
@@ -177,6 +186,7 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
         arrive = (*(track_of[network.beyond(end)] for end, _ in joint.ends), *(silent for _ in watched))
         forces = tuple(loads.numbers.get(point, -1) for point in joint.points)
         marched.append(MarchedJoint(replace(space, ports=ports), arrive, sends, forces))
+    marched += [MarchedJoint(SHOWN, (silent,), (track,), (loads.numbers[point],)) for point, track in load_of.items()]
     return RingPlan(
         model,
         step,
@@ -185,7 +195,10 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
         tuple(marched),
         len(loads.numbers),
         tuple(loads.events(panels, step)),
-        tuple(_watched(model, probe, track_of, point_of) for probe in model.probes),
+        tuple(
+            WatchedPlace(probe.name, tuple(_heard(model.network, terms, track_of, point_of, load_of)))
+            for probe, terms in model.sums.items()
+        ),
         tau_max,
     )
 
@@ -255,21 +268,20 @@ def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:
     return load[0], load[1], load[2]
 
 
-def _watched(model: Model, probe: Probe, track_of: dict[End, int], point_of: dict[int, int]) -> WatchedPlace:
-    integral = probe.quantity == "displacement"
-    if probe.point is not None:
-        here = Heard(point_of[probe.point], _ONE, _ZERO)
-        return WatchedPlace(probe.name, integral, (here, replace(here, gain=_ZERO)))
-    bar = model.network.bars[probe.rod - 1]
-    right, left = (fmpq(weight) / (bar.speed if probe.quantity == "strain" else 1) for weight in probe.weights)
-    return WatchedPlace(
-        probe.name,
-        integral,
-        (
-            Heard(track_of[End(probe.rod - 1, 0)], right, probe.place * bar.delay),
-            Heard(track_of[End(probe.rod - 1, 1)], left, (1 - probe.place) * bar.delay),
-        ),
-    )
+def _heard(
+    network: Network, terms: Sum, track_of: dict[End, int], point_of: dict[int, int], load_of: dict[int, int]
+) -> Iterator[Heard]:
+    for weight, reading in terms:
+        summed = reading.order < 0
+        if reading.point is not None:
+            tracks = load_of if reading.quantity == "load" else point_of
+            if reading.point in tracks:
+                yield Heard(tracks[reading.point], weight, _ZERO, summed)
+            continue
+        bar = network.bars[reading.rod - 1]
+        right, left = (weight * sign / (bar.speed if reading.quantity == "strain" else 1) for sign in reading.weights)
+        yield Heard(track_of[End(reading.rod - 1, 0)], right, reading.place * bar.delay, summed)
+        yield Heard(track_of[End(reading.rod - 1, 1)], left, (1 - reading.place) * bar.delay, summed)
 
 
 def largest_number(plan: RingPlan) -> fmpq:

@@ -99,6 +99,12 @@ class JointSpace:
         return tuple(tuple(map(str, each.entries())) for each in matrices)
 
 
+SHOWN = JointSpace(
+    fmpq_mat(0, 0), fmpq_mat(0, 1), fmpq_mat(1, 0), fmpq_mat(1, 1, [1]), (), (), (Port(0, _ZERO, fmpq(1), _ZERO),)
+)
+"""A point that moves as a load says, and does nothing: where that load is read."""
+
+
 def joint_space(network: Network, joint: Joint) -> JointSpace:
     """The laws of one joint of a network."""
     law = JointLaw.of(network, joint)

@@ -15,8 +15,6 @@ from wavesym.numbers.reals import Real
 from wavesym.programs.rings.answer import Answer, answer
 from wavesym.programs.rings.plan import MarchedJoint, RingPlan
 
-VALUE, INTEGRAL, NOTHING = 0, 1, 2
-
 
 class RingTables:
     """The numbers of a march at some degree in `real` numbers."""
@@ -48,7 +46,8 @@ class RingTables:
         spaces = [joint.space for joint in plan.joints]
         ports = [port for space in spaces for port in space.ports]
         matrix, where = self._matrices()
-        delays = sorted({heard.delay for output in plan.outputs for heard in output.heard})
+        heard = [() if none else output.heard for output, none in zip(plan.outputs, nothing, strict=True)]
+        delays = sorted({one.delay for output in plan.outputs for one in output.heard})
         stretches = [plan.stretches(delay) for delay in delays]
         flat = [stretch for group in stretches for stretch in group]
         begins = [n * plan.step for n in range(plan.cycle[0])]
@@ -76,13 +75,11 @@ class RingTables:
             "event_panel": tuple(event.panel for event in plan.events),
             "event_force": tuple(event.force for event in plan.events),
             "event_power": reals(power for event in plan.events for power in event.powers),
-            "quantity": tuple(
-                NOTHING if none else INTEGRAL if output.integral else VALUE
-                for output, none in zip(plan.outputs, nothing, strict=True)
-            ),
-            "track": tuple(heard.track for output in plan.outputs for heard in output.heard),
-            "gain": reals(heard.gain for output in plan.outputs for heard in output.heard),
-            "delay": tuple(delays.index(heard.delay) for output in plan.outputs for heard in output.heard),
+            "first_heard": _firsts(map(len, heard)),
+            "track": tuple(one.track for of in heard for one in of),
+            "gain": reals(one.gain for of in heard for one in of),
+            "summed": tuple(int(one.summed) for of in heard for one in of),
+            "delay": tuple(delays.index(one.delay) for of in heard for one in of),
             "begin": tuple(map(real.not_below, begins)),
             "first_stretch": _firsts(map(len, stretches)),
             "from": tuple(real.not_below(max(start, fmpq(0))) for start in starts),

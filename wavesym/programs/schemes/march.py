@@ -39,12 +39,14 @@ class MarchScheme:
         "event_panel",
         "event_force",
         "event_power",
-        # outputs: what, the nodes that send their waves, and how late these arrive
-        "quantity",
-        "left_node",
-        "right_node",
-        "left_delay",
-        "right_delay",
+        # outputs: where what they hear starts in the next tables; which way it is sent and by which node (or which load
+        # it is), factors, whether the integral counts, and how late it arrives
+        "first_heard",
+        "way",
+        "sender",
+        "gain",
+        "summed",
+        "delay",
         # delays: in a window, t after its start, a wave is that of `panel_of`, `back` windows ago, from t >= `from` on,
         # with u = (t - start + excess) / half - 1
         "first_stretch",
@@ -56,8 +58,7 @@ class MarchScheme:
     )
     # of the largest velocity or mean of a wave, polynomials may miss `trusted`
     CONSTANTS = ("degree", "trusted")
-    LEFT, RIGHT = 0, 1
-    STRAIN, VELOCITY, DISPLACEMENT, NOTHING = 0, 1, 2, 3
+    LEFT, RIGHT, LOAD = 0, 1, 2
     SAMPLES = 4096
     """So many samples at once."""
 
@@ -89,9 +90,11 @@ class MarchScheme:
         self.slack, self.loss, self.leak = reals("slack"), reals("loss"), reals("leak")
         self.event_window, self.event_panel = indices("event_window"), indices("event_panel")
         self.event_force, self.event_power = indices("event_force"), reals("event_power")
-        self.quantity = indices("quantity")
-        self.node = indices("left_node"), indices("right_node")
-        self.delay = indices("left_delay"), indices("right_delay")
+        self.first_heard = indices("first_heard")
+        self.outputs = len(self.first_heard) - 1
+        self.way, self.sender, self.delay = indices("way"), indices("sender"), indices("delay")
+        self.gain, self.summed = reals("gain"), indices("summed") > 0
+        self.ways = max(self.LOAD, int(np.max(self.way, initial=0)) + 1)
         self.first_stretch = indices("first_stretch")
         self.counts_from, self.start, self.excess = reals("from"), reals("start"), reals("excess")
         self.back, self.panel_of = indices("back"), indices("panel_of")
@@ -103,14 +106,14 @@ class MarchScheme:
         """
         taus = np.asarray(tau, dtype=self.real)
         flat = taus.ravel()
-        out = np.full((len(self.quantity), flat.size), np.nan, self.real)
+        out = np.full((self.outputs, flat.size), np.nan, self.real)
         inside = np.flatnonzero((flat >= 0) & (flat <= self.tau_max))
         if inside.size:
             order = inside[np.argsort(flat[inside], kind="stable")]
-            values = np.empty((len(self.quantity), order.size), self.real)
+            values = np.empty((self.outputs, order.size), self.real)
             self._sample(values, flat[order])
             out[:, order] = values
-        return out.reshape(len(self.quantity), *taus.shape)
+        return out.reshape(self.outputs, *taus.shape)
 
     def _sample(self, out: NDArray[np.float64], tau: NDArray[np.float64]) -> None:
         """Fill out (outputs, samples) for sorted tau within range."""
@@ -122,64 +125,67 @@ class MarchScheme:
             count = min(marching.most, windows - first)
             waves = marching.block(first, count)
             begin, end = (int(place) for place in np.searchsorted(places, [first, first + count]))
-            for output, quantity in enumerate(self.quantity):
-                if quantity == self.DISPLACEMENT:
-                    gains = np.add(*self._gathered(waves, output, np.arange(count), np.ones(count, self.real)))
+            for output in range(self.outputs):
+                sums = self._heard(output, summed=True)
+                if sums.size:
+                    gains = self._gathered(waves, sums, np.arange(count), np.ones(count, self.real))
                     starts = np.cumsum(np.concatenate([totals[output : output + 1], gains]), dtype=self.real)
                     totals[output] = starts[-1]
                 for low in range(begin, end, self.SAMPLES):
                     part = slice(low, min(low + self.SAMPLES, end))
                     n = places[part].astype(int) - first
                     t = tau[part] - places[part]
-                    if quantity == self.NOTHING:
-                        out[output, part] = 0
-                    elif quantity == self.DISPLACEMENT:
-                        out[output, part] = starts[n] + np.add(*self._gathered(waves, output, n, t))
-                    else:
-                        left, right = self._arrived(waves, output, n, t)
-                        out[output, part] = left - right if quantity == self.STRAIN else left + right
+                    value = self._arrived(waves, self._heard(output, summed=False), n, t)
+                    if sums.size:
+                        value += starts[n] + self._gathered(waves, sums, n, t)
+                    out[output, part] = value
+
+    def _heard(self, output: int, *, summed: bool) -> NDArray[np.int_]:
+        """What an output hears, or hears the integrals of, in the tables of that."""
+        here = np.arange(self.first_heard[output], self.first_heard[output + 1])
+        return np.asarray(here[self.summed[here] == summed])
 
     def _arrived(
-        self, waves: NDArray[np.float64], output: int, n: NDArray[np.int_], t: NDArray[np.float64]
-    ) -> list[NDArray[np.float64]]:
-        """The waves to the left and to the right where they are read, t after the start of windows n of a block."""
-        arrived = []
-        for direction in (self.LEFT, self.RIGHT):
-            node, delay = self.node[direction][output], self.delay[direction][output]
+        self, waves: NDArray[np.float64], heard: NDArray[np.int_], n: NDArray[np.int_], t: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """The sum of what is heard, t after the start of windows n of a block."""
+        total = np.zeros(t.shape, self.real)
+        for k in heard:
+            delay = self.delay[k]
             stretches = slice(self.first_stretch[delay], self.first_stretch[delay + 1])
             s = stretches.start + np.searchsorted(self.counts_from[stretches], t, side="right") - 1
             u = ((t - self.start[s]) + self.excess[s]) / self.half_length[self.panel_of[s]] - 1
-            c = waves[n + 1 - self.back[s], direction, self.panel_of[s], node + 1].T
-            arrived.append(_series(np.ascontiguousarray(c), u))
-        return arrived
+            c = waves[n + 1 - self.back[s], self.way[k], self.panel_of[s], self.sender[k] + 1].T
+            total += self.gain[k] * _series(np.ascontiguousarray(c), u)
+        return total
 
     def _gathered(
-        self, waves: NDArray[np.float64], output: int, n: NDArray[np.int_], t: NDArray[np.float64]
-    ) -> list[NDArray[np.float64]]:
-        """Their integrals from the start of the windows to t after it."""
-        gathered = []
-        for direction in (self.LEFT, self.RIGHT):
-            node, delay = self.node[direction][output], self.delay[direction][output]
+        self, waves: NDArray[np.float64], heard: NDArray[np.int_], n: NDArray[np.int_], t: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """The same of integrals from the start of the windows to t after it."""
+        sums = np.zeros(t.shape, self.real)
+        for k in heard:
             total = np.zeros(t.shape, self.real)
-            first, end = self.first_stretch[delay], self.first_stretch[delay + 1]
+            first, end = self.first_stretch[self.delay[k]], self.first_stretch[self.delay[k] + 1]
             for s in range(first, end):
                 here = np.flatnonzero(t >= self.counts_from[s]) if s > first else np.arange(t.size)
                 half = self.half_length[self.panel_of[s]]
-                c = _antiderivative(waves[n[here] + 1 - self.back[s], direction, self.panel_of[s], node + 1].T)
+                wave = waves[n[here] + 1 - self.back[s], self.way[k], self.panel_of[s], self.sender[k] + 1]
+                c = _antiderivative(wave.T)
                 low = np.full(here.shape, self.excess[s] - self.start[s] if s == first else 0, self.real)
                 high = (t[here] - self.start[s]) + self.excess[s]
                 if s + 1 < end:
                     high = np.where(t[here] >= self.counts_from[s + 1], 2 * half, high)
                 total[here] += half * (_series(c, high / half - 1) - _series(c, low / half - 1))
-            gathered.append(total)
-        return gathered
+            sums += self.gain[k] * total
+        return sums
 
 
 class Marching:
     """A march on its way."""
 
     def __init__(self, scheme: MarchScheme) -> None:
-        shape = 2, scheme.panels, scheme.nodes + 2, scheme.degree + 1
+        shape = scheme.ways, scheme.panels, scheme.nodes + 2, scheme.degree + 1
         self.most = max(1, min(256, 2_000_000 // (shape[0] * shape[1] * shape[2] * shape[3])))
         """So many windows at once."""
         self._scheme = scheme
@@ -194,7 +200,10 @@ class Marching:
         self._size: float = 0.0
 
     def block(self, first: int, count: int) -> NDArray[np.float64]:
-        """Waves (1 + windows, direction, panel, 1 + node, k) of the next windows, the one before them first."""
+        """Waves (1 + windows, way, panel, 1 + node, k) of the next windows, the one before them first.
+
+        Where loads are heard they are a way of their own, by number in the place of the node.
+        """
         scheme = self._scheme
         left, right = scheme.LEFT, scheme.RIGHT
         waves = np.repeat(self._last[None], 1 + count, axis=0)
@@ -203,7 +212,7 @@ class Marching:
                 self._change(first + n, panel)
                 a, b = waves[n, right, panel, :-2], waves[n, left, panel, 2:]
                 p = scheme.alpha * a + scheme.beta * b
-                self._load(p, first + n, panel)
+                self._load(p, waves[n + 1, scheme.LOAD :, panel], first + n, panel)
                 bodies = self._bodies[panel]
                 nodes = bodies.nodes
                 if nodes.size:
@@ -213,7 +222,7 @@ class Marching:
                 waves[n + 1, left, panel, 1:-1] = p - a
                 waves[n + 1, right, panel, 1:-1] = p - b
         self._last = waves[-1]
-        self._size = max(self._size, np.max(np.abs(waves[..., 0])))
+        self._size = max(self._size, np.max(np.abs(waves[:, : scheme.LOAD, ..., 0])))
         if self._leak > scheme.trusted * self._size:
             end = first + count
             raise ArithmeticError(f"degree {scheme.degree} is too low: polynomials lost {self._leak} by tau = {end}")
@@ -229,16 +238,17 @@ class Marching:
             self._loads[int(scheme.event_force[self._event])] = window, panel, powers
             self._event += 1
 
-    def _load(self, p: NDArray[np.float64], window: int, panel: int) -> None:
-        """Add the loads on a panel to p, as series."""
+    def _load(self, p: NDArray[np.float64], heard: NDArray[np.float64], window: int, panel: int) -> None:
+        """Add the loads on a panel to p, as series, and set what is heard of them."""
         scheme = self._scheme
         half = scheme.half_length[panel]
         for force, (since, place, c) in self._loads.items():
             middle = (window - since) + scheme.since[panel, place] + half
             node = np.flatnonzero(scheme.force_on == force)
-            p[node, 0] += c[0] + middle * c[1] + (middle * middle + half * half / 2) * c[2]
-            p[node, 1] += half * (c[1] + 2 * middle * c[2])
-            p[node, 2] += half * half / 2 * c[2]
+            mean = c[0] + middle * c[1] + (middle * middle + half * half / 2) * c[2]
+            series = np.array([mean, half * (c[1] + 2 * middle * c[2]), half * half / 2 * c[2]])
+            p[node, :3] += series
+            heard[:, force + 1, :3] = series
 
 
 class PanelBodies:

@@ -40,10 +40,11 @@ class RingScheme:
         "event_panel",
         "event_force",
         "event_power",
-        # outputs: what, and two tracks with factors and delays
-        "quantity",
+        # outputs: where their tracks start in the next tables; factors, whether the integral counts, and delays
+        "first_heard",
         "track",
         "gain",
+        "summed",
         "delay",
         # after a cycle of windows tau is a whole number again; where they begin in it
         "begin",
@@ -59,7 +60,6 @@ class RingScheme:
         "panel_of",
     )
     CONSTANTS = ("degree", "step", "span", "forces")
-    VALUE, INTEGRAL, NOTHING = 0, 1, 2
     SAMPLES = 4096
     """So many samples at once."""
 
@@ -86,9 +86,10 @@ class RingScheme:
         self.begun, self.force_on = reals("begun"), indices("force_on")
         self.event_window, self.event_panel = indices("event_window"), indices("event_panel")
         self.event_force, self.event_power = indices("event_force"), reals("event_power", -1, 3)
-        self.quantity = indices("quantity")
-        self.track, self.delay = indices("track", -1, 2), indices("delay", -1, 2)
-        self.gain = reals("gain", -1, 2)
+        self.first_heard = indices("first_heard")
+        self.outputs = len(self.first_heard) - 1
+        self.track, self.delay = indices("track"), indices("delay")
+        self.gain, self.summed = reals("gain"), indices("summed") > 0
         self.begin = reals("begin")
         self.first_stretch = indices("first_stretch")
         self.counts_from, self.start, self.excess = (
@@ -96,7 +97,7 @@ class RingScheme:
         )
         self.low, self.high = reals("low"), reals("high")
         self.back, self.panel_of = indices("back"), indices("panel_of")
-        self.deepest = max(1, int(np.max(self.back)), int(np.max(self.steps)))
+        self.deepest = max(1, int(np.max(self.back, initial=0)), int(np.max(self.steps)))
         """How many windows back anything is asked for."""
         shapes = [np.diff(tables[f"first_{name}"]) for name in ("point", "state", "port")]
         answers, matrix = indices("answer", self.panels, -1), reals("matrix")
@@ -113,7 +114,7 @@ class RingScheme:
         """
         taus = np.asarray(tau, dtype=self.real)
         flat = taus.ravel()
-        out = np.full((len(self.quantity), flat.size), np.nan, self.real)
+        out = np.full((self.outputs, flat.size), np.nan, self.real)
         inside = np.flatnonzero((flat >= 0) & (flat <= self.tau_max))
         if inside.size:
             order = inside[np.argsort(flat[inside], kind="stable")]
@@ -126,7 +127,7 @@ class RingScheme:
                 for low in range(begin, end, self.SAMPLES):
                     part = order[low : min(low + self.SAMPLES, end)]
                     out[:, part] = block.read(flat[part])
-        return out.reshape(len(self.quantity), *taus.shape)
+        return out.reshape(self.outputs, *taus.shape)
 
     def places(self, tau: NDArray[np.float64]) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]:
         """Of each tau its window, the place of that in a cycle, and the time since the cycle began."""
@@ -157,21 +158,32 @@ class WindowBlock:
         self.starts, self.acting = starts, acting
         self.totals = np.repeat(totals[:, None], self.count + 1, axis=1)
         n = np.arange(self.count)
-        for output in np.flatnonzero(scheme.quantity == scheme.INTEGRAL).tolist():
-            self.totals[output, 1:] += np.cumsum(self._gathered(output, n, n, None), dtype=scheme.real)
+        for output in range(scheme.outputs):
+            if np.any(scheme.summed[self._heard(output)]):
+                self.totals[output, 1:] += np.cumsum(self._gathered(output, n, n, None), dtype=scheme.real)
 
     def read(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
         """All outputs at some tau in these windows."""
         scheme = self._scheme
         window, phase, t = scheme.places(tau)
         n = window - self.first
-        out = np.zeros((len(scheme.quantity), len(tau)), scheme.real)
-        for output, quantity in enumerate(scheme.quantity):
-            if quantity == scheme.VALUE:
-                out[output] = self._arrived(output, n, phase, t)
-            elif quantity == scheme.INTEGRAL:
+        out = np.zeros((scheme.outputs, len(tau)), scheme.real)
+        for output in range(scheme.outputs):
+            summed = scheme.summed[self._heard(output)]
+            if np.any(summed):
                 out[output] = self.totals[output, n] + self._gathered(output, n, phase, t)
+            if not np.all(summed):
+                out[output] += self._arrived(output, n, phase, t)
         return out
+
+    def _heard(self, output: int) -> slice:
+        return slice(self._scheme.first_heard[output], self._scheme.first_heard[output + 1])
+
+    def _tracks(self, output: int, *, summed: bool) -> list[tuple[int, float, int]]:
+        """Tracks with gains and delays that an output hears, or whose integrals it hears."""
+        scheme, here = self._scheme, self._heard(output)
+        heard = zip(scheme.track[here], scheme.gain[here], scheme.delay[here], scheme.summed[here], strict=True)
+        return [(track, gain, delay) for track, gain, delay, integral in heard if integral == summed]
 
     def _arrived(
         self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64]
@@ -179,7 +191,7 @@ class WindowBlock:
         """What an output hears at t, on windows n, which are at `phase` in their cycle."""
         scheme = self._scheme
         total = np.zeros(t.shape, scheme.real)
-        for track, gain, delay in zip(scheme.track[output], scheme.gain[output], scheme.delay[output], strict=True):
+        for track, gain, delay in self._tracks(output, summed=False):
             s = np.full(t.shape, scheme.first_stretch[delay])
             for later in range(scheme.first_stretch[delay] + 1, scheme.first_stretch[delay + 1]):
                 s[t >= scheme.counts_from[later, phase]] = later
@@ -195,7 +207,7 @@ class WindowBlock:
         """The integral from the start of windows n to t; without t over all of them."""
         scheme = self._scheme
         total = np.zeros(n.shape, scheme.real)
-        for track, gain, delay in zip(scheme.track[output], scheme.gain[output], scheme.delay[output], strict=True):
+        for track, gain, delay in self._tracks(output, summed=True):
             first, end = scheme.first_stretch[delay], scheme.first_stretch[delay + 1]
             for s in range(first, end):
                 here, panel = np.arange(n.size), scheme.panel_of[s]
@@ -225,7 +237,7 @@ class MarchingRings:
         self._waves[..., 0] = scheme.held[:, None]
         self._x = scheme.begun.copy()
         self._loads = RunningLoads(scheme, scheme.event_power, scheme.since)
-        self._totals = np.zeros(len(scheme.quantity), scheme.real)
+        self._totals = np.zeros(scheme.outputs, scheme.real)
 
     def block(self, first: int, count: int) -> WindowBlock:
         """The next windows; what the block holds is overwritten by the one after it."""

@@ -1,0 +1,136 @@
+"""What outputs are sums of: strains, velocities and displacements at places, and the loads on points.
+
+    force                 impedance * speed * strain
+    drift of a rod        displacement of its far end less that of its near one
+    relative              displacement less that of the foundation, or of the end that moves as it is told
+    acceleration          all that acts on a mass, over the mass: rods, spring and dashpot to the ground, links, loads
+
+What touches a mass pushes it with all that acts on what touches, as that has no mass; where it is open that is nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from flint import fmpq
+
+from wavesym.model.network import End, Network
+from wavesym.model.probe import Probe
+
+_ZERO, _ONE = fmpq(0), fmpq(1)
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """`quantity` (strain, velocity or displacement) `place` rod lengths from the left end of a rod, or of a `point`.
+
+    The right-going wave has come so far from that end, the left-going one 1 - place from the other. A "load" is what
+    acts on a point. `rod` is 0 where a point is read.
+    """
+
+    quantity: str
+    rod: int
+    place: fmpq
+    point: int | None = None
+
+    @property
+    def x(self) -> fmpq:
+        """How far it is from the left end of the chain, in rod lengths, where the rods follow one another."""
+        return self.rod - 1 + self.place
+
+    @property
+    def weights(self) -> tuple[int, int]:
+        """What the right-going and the left-going wave, each as a velocity, count in dU/dx or dU/dtau."""
+        return (-1, 1) if self.quantity == "strain" else (1, 1)
+
+    @property
+    def order(self) -> int:
+        """0 for what is read as it is, -1 for the integral of a velocity: a displacement."""
+        return -1 if self.quantity == "displacement" else 0
+
+
+class Weighted(NamedTuple):
+    """So many times a reading."""
+
+    weight: fmpq
+    reading: Gauge
+
+
+Sum = tuple[Weighted, ...]
+"""A sum of readings, none of them twice or with weight 0; empty for what is 0 whatever moves."""
+
+
+def readings(network: Network, probe: Probe) -> Sum:
+    """What an output is the sum of, its factor included."""
+    weights: dict[Gauge, fmpq] = {}
+    for weight, reading in _parts(network, probe):
+        weights[reading] = weights.get(reading, _ZERO) + probe.factor * weight
+    return tuple(Weighted(weight, reading) for reading, weight in weights.items() if weight != 0)
+
+
+def _parts(network: Network, probe: Probe) -> Iterator[Weighted]:
+    here = Gauge(probe.quantity, probe.rod, probe.place, probe.point)
+    match probe.quantity:
+        case "acceleration":
+            point, ratio = probe.point, _ONE
+            if point is None:
+                end = End(probe.rod - 1, int(probe.place))
+                point, ratio = network.point_at(end), network.bars[end.bar].ratios[end.side]
+            yield from _times(ratio / network.points[point].mass, _acting(network, point))
+        case "force":
+            bar = network.bars[probe.rod - 1]
+            yield Weighted(bar.impedance * bar.speed, Gauge("strain", probe.rod, probe.place))
+        case "drift":
+            yield Weighted(_ONE, Gauge("displacement", probe.rod, _ONE))
+            yield Weighted(-_ONE, Gauge("displacement", probe.rod, _ZERO))
+        case "relative":
+            yield Weighted(_ONE, Gauge("displacement", probe.rod, probe.place, probe.point))
+            yield Weighted(-_ONE, _at_point("displacement", network, ground(network)))
+        case _:
+            yield Weighted(_ONE, here)
+
+
+def ground(network: Network) -> int:
+    """The point that relative displacements count from: the only one that moves as it is told, or the first one."""
+    told = [number for number, point in enumerate(network.points) if point.motion in ("velocity", "acceleration")]
+    return told[0] if len(told) == 1 else 0
+
+
+def _acting(network: Network, point: int, before: int | None = None) -> Iterator[Weighted]:
+    """All that acts on a point, and on what touches it; contacts `before` are followed already."""
+    for number, bar in enumerate(network.bars):
+        for side, sign in ((0, 1), (1, -1)):
+            if network.point_at(End(number, side)) == point:
+                pull = sign * bar.ratios[side] * bar.impedance * bar.speed
+                yield Weighted(pull, Gauge("strain", number + 1, fmpq(side)))
+    body = network.points[point]
+    yield Weighted(-body.damping, _at_point("velocity", network, point))
+    yield Weighted(-body.stiffness, _at_point("displacement", network, point))
+    for number, link in enumerate(network.links):
+        if point not in (link.left, link.right) or number == before:
+            continue
+        if link.contact:
+            other, share = (link.right, link.ratio) if point == link.left else (link.left, 1 / link.ratio)
+            yield from _times(share, _acting(network, other, number))
+            continue
+        pull = link.ratio if point == link.left else -_ONE
+        for factor, quantity in ((link.damping, "velocity"), (link.stiffness, "displacement")):
+            yield Weighted(pull * factor, _at_point(quantity, network, link.right))
+            yield Weighted(-pull * factor * link.ratio, _at_point(quantity, network, link.left))
+    if body.loads:
+        yield Weighted(_ONE, Gauge("load", 0, _ZERO, point))
+
+
+def _at_point(quantity: str, network: Network, point: int) -> Gauge:
+    """Of a point, at the end of a rod that moves as it does where there is one."""
+    for number, bar in enumerate(network.bars):
+        for side in (0, 1):
+            if network.point_at(End(number, side)) == point and bar.ratios[side] == 1:
+                return Gauge(quantity, number + 1, fmpq(side))
+    return Gauge(quantity, 0, _ZERO, point)
+
+
+def _times(factor: fmpq, parts: Iterable[Weighted]) -> Iterator[Weighted]:
+    return (Weighted(factor * weight, reading) for weight, reading in parts)

@@ -1,0 +1,94 @@
+"""Where outputs are that more than one place has a part in: the masses, rods and foundations that they are of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Protocol
+
+from wavesym.fields.loads import Load
+from wavesym.fields.table import Written, shown
+from wavesym.model.chain import Chain
+from wavesym.model.network import End, Network
+from wavesym.systems.place import MisplacedError, Place, Position
+from wavesym.systems.station import Lines
+
+_LIKE = {"acceleration": "velocity", "relative": "displacement"}
+"""Quantities that are at the places of others."""
+
+
+class Located(Protocol):
+    """A system that knows its places."""
+
+    @property
+    def type(self) -> str: ...
+
+    @property
+    def lines(self) -> Lines: ...
+
+    def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place: ...
+
+    def made(self, loads: Sequence[Load]) -> tuple[Chain | None, Network]: ...
+
+
+@dataclass(frozen=True)
+class Watching:
+    """The places of a system's outputs, under its loads."""
+
+    system: Located
+    loads: Sequence[Load]
+
+    def place(self, position: Position, quantity: str) -> Place:
+        """Where an output is. MisplacedError."""
+        text = shown(Written(position.written))
+        if quantity == "drift":
+            return self._rod(position, text)
+        place = self.system.located(position, _LIKE.get(quantity, quantity), self.loads)
+        if quantity == "acceleration" and not self._heavy(place):
+            raise MisplacedError(
+                f"{text} given, a rigid mass expected (where nothing has mass a front that passes is an impulse)"
+            )
+        if quantity == "relative":
+            self._refuse_groundless(text)
+        return place
+
+    @cached_property
+    def _network(self) -> Network:
+        return self.system.made(self.loads)[1]
+
+    @cached_property
+    def _rods(self) -> dict[str, list[int]]:
+        return {
+            name: [station.right for station in stations if station.right is not None]
+            for name, stations in self.system.lines.items()
+        }
+
+    def _rod(self, position: Position, text: str) -> Place:
+        """The k-th rod of a line."""
+        rods, k = self._rods.get(position.name), position.x
+        if rods is None or k is None:
+            raise MisplacedError(f"{text} given, the number of a rod expected, on a branch after its name and a colon")
+        if position.side or k.denominator != 1 or not 1 <= k <= len(rods):
+            raise MisplacedError(f"{text} given, the number of a rod from 1 to {len(rods)} expected")
+        return Place(k, 0, position.name, rods[int(k) - 1] + 1, Fraction(1))
+
+    def _heavy(self, place: Place) -> bool:
+        """Whether a place is at a rigid mass."""
+        if place.point is not None:
+            return self._network.points[place.point].mass != 0
+        if place.part not in (0, 1):
+            return False
+        return self._network.points[self._network.point_at(End(place.rod - 1, int(place.part)))].mass != 0
+
+    def _refuse_groundless(self, text: str) -> None:
+        if self.system.type == "building":
+            return
+        if self.system.type != "chain":
+            raise MisplacedError(f"{text} given, a building or a chain expected (no other system has a foundation)")
+        told = sum(point.motion in ("velocity", "acceleration") for point in self._network.points)
+        if told != 1:
+            raise MisplacedError(
+                f"{text} given, a chain with 1 motion end expected, which it is relative to ({told} there)"
+            )
