@@ -20,11 +20,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from wavesym.difference import Difference
+from wavesym.documents.summary import summary_text as told
 from wavesym.documents.tables import symbolic_lines, table_lines
 from wavesym.errors import SceneError, UnservedError, WavesymError
 from wavesym.exact.contact import contact_ends
@@ -32,11 +33,14 @@ from wavesym.exact.network_table import NetworkTable, network_table
 from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
+from wavesym.fields.loads import SampledLoad
 from wavesym.model.symbolic import generic, symbolic
 from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
+from wavesym.results.peaks import table_of_peaks
 from wavesym.results.response import Response
+from wavesym.results.summary import Summary, summarised
 from wavesym.scene import Scene, lower
 from wavesym.targets import LANGUAGES
 from wavesym.targets.files import files, is_ours, tested
@@ -50,6 +54,7 @@ if TYPE_CHECKING:
 
 
 _AT_ONCE = 5000  # tau of `run`
+SAMPLES = 1001  # of `run`, where it is not told how many
 MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
 
 
@@ -71,6 +76,55 @@ def evaluator(scene: Scene) -> Response:
     if not isinstance(scene, Scene):
         raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
     return Response(lower(scene))
+
+
+def summary(scene: Scene, *, at_samples: bool = False) -> Summary:
+    """Of each output the least and the greatest value, when, and when it first differs from 0.
+
+    They are true extremes, also between samples, and proved where `run` is right to the last bit (`proved`, `how`,
+    `bound`); or, `at_samples`, those of the values at the samples of a record, else at 1001 equally spaced tau.
+    `outputs` have `name`, `unit`, `min`, `max` and `arrival`; a `min` has `value`, `at` (`tau` and `time`), `reached`.
+    ToleranceError, CostError where nothing could be generated either.
+
+    >>> import wavesym
+    >>> strain = wavesym.summary(wavesym.Scene.from_toml("drive_m1")).outputs[0]
+    >>> strain.name, strain.max.value, strain.max.at.tau, strain.arrival.tau
+    ()
+    """
+    model = lower(scene)
+    return summarised(model, _own_samples(scene, model) if at_samples else None)
+
+
+def summary_text(scene: Scene, at_samples: bool, format: str) -> tuple[str, list[str]]:
+    """A summary as text or json, and what a user might not expect of it."""
+    found = summary(scene, at_samples=at_samples)
+    unproved = [] if found.proved or format == "text" else [f"{found.how}: {found.certain}"]
+    return told(found, format), [*warnings(scene), *unproved]
+
+
+def _own_samples(scene: Scene, model: Model) -> list[float]:
+    """The samples of a record, or those of `run`."""
+    spacing = min((load.spacing for load in scene.load if isinstance(load, SampledLoad)), default=None)
+    if spacing is None:
+        return list(grid(model, SAMPLES))
+    count = int((model.until / rational(spacing)).floor()) + 1
+    return [nearest(k * rational(spacing)) for k in range(count)]
+
+
+def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Any:
+    """Extremes of one scene, or of several, as arrays: `min`, `max`, `tau_min`, `tau_max`, `arrival` (a tau).
+
+    An xarray.Dataset with the dimensions `case` (of several scenes) and `output`, or, where xarray is not installed, a
+    dict of NumPy arrays with these shapes, and `case` and `output`, the names. What a scene does not have is NaN.
+
+    >>> import wavesym
+    >>> table = wavesym.peaks(wavesym.Scene.from_toml(name) for name in ("drive_m1", "building_m2"))
+    >>> table["max"].shape
+    ()
+    """
+    several = not isinstance(scenes, Scene)
+    found = [summary(scene, at_samples=at_samples) for scene in ([scenes] if isinstance(scenes, Scene) else scenes)]
+    return table_of_peaks(found, several)
 
 
 def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
@@ -368,6 +422,32 @@ def record(path: Path, unit: str | None, column: str | None = None, picture: Pat
         picture_format(picture)
         save(draw(said, unit or said.unit), picture)
     return lines
+
+
+def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[list[str], list[str]]:
+    """Response spectra as CSV lines, and what to say of them; drawn at `path`, too, where there is one.
+
+    SceneError for a scene without outputs of quantity acceleration; ToleranceError, CostError as in `spectra`.
+    """
+    from wavesym.results.spectrum import spectra
+
+    if path is not None:
+        from wavesym.report.saving import picture_format
+
+        picture_format(path)
+    found = spectra(lower(scene), damping)
+    if path is not None:
+        from wavesym.report.saving import save
+        from wavesym.report.spectra import draw
+
+        save(draw(found), path)
+    names = [f"{name} [{unit}]" if unit else name for name, unit in zip(found.names, found.units, strict=True)]
+    header = ",".join(["period" if found.time_unit is None else f"period [{found.time_unit}]", *names]) + "\n"
+    rows = (",".join(map(repr, row)) + "\n" for row in np.vstack([found.periods, found.values]).T.tolist())
+    said = (
+        f"damping {damping:g}, values {found.step:g} tau apart; with half as many spectra change by {found.change:.1e}"
+    )
+    return [header, *rows], [*warnings(scene), said]
 
 
 def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:

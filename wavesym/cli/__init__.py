@@ -25,6 +25,8 @@ COMMANDS = (
     "tables",
     "generate",
     "run",
+    "summary",
+    "spectrum",
     "verify",
     "plot",
     "report",
