@@ -450,6 +450,17 @@ def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[li
     return [header, *rows], [*warnings(scene), said]
 
 
+def advise(scene: Scene, tolerance: float = 0.01, format: str = "text") -> str:
+    """Which model of a scene is enough, massless springs, consistent mass or waves, as text or json.
+
+    ToleranceError, CostError where nothing could be generated either.
+    """
+    from wavesym.rivals.advice import advise as advice
+
+    found = advice(lower(scene), tolerance)
+    return found.json() if format == "json" else found.text()
+
+
 def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
     """Evaluators against direct integration: a table of errors, and whether all of them are allowed."""
     from wavesym.verification.report import verify as report

@@ -21,6 +21,7 @@ COMMANDS = (
     "init",
     "record",
     "inspect",
+    "advise",
     "derive",
     "tables",
     "generate",
