@@ -380,15 +380,23 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
         from wavesym.report import envelope, heatmap
         from wavesym.report.along import along
 
-        drawer = envelope if kind == "envelope" else heatmap
-        save(drawer.draw(lower(scene), along(scene)), path)
+        found = along(scene)
+        if kind == "envelope":
+            save(envelope.draw(lower(scene), found), path)
+        else:
+            from wavesym.report.loads import load_histories
+
+            model = lower(scene)
+            save(heatmap.draw(model, found, load_histories(model, scene.scale)), path)
         return []
     from wavesym.report.groups import notes
     from wavesym.report.histories import histories
+    from wavesym.report.loads import load_histories
     from wavesym.report.panels import draw
 
-    made = histories(lower(scene))
-    save(draw(made), path)
+    model = lower(scene)
+    made = histories(model)
+    save(draw(made, load_histories(model, scene.scale)), path)
     return notes(made)
 
 

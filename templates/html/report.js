@@ -54,7 +54,7 @@
 
   const curves = plots.map((plot) => {
     const low = Number(plot.dataset.low), high = Number(plot.dataset.high), steps = 1000;
-    const digits = Math.max(0, Math.min(12, Math.ceil(-Math.log10((high - low) / steps))));
+    const digits = Math.max(0, Math.min(12, Math.floor(-Math.log10((high - low) / steps))));
     const small = high - low < 1e-4 || Math.max(Math.abs(low), Math.abs(high)) >= 1e6;
     const value = (step) => high - step / steps * (high - low);
     const zero = Math.round(high / (high - low) * steps);

@@ -5,13 +5,15 @@ The scene is asked for other outputs than its own, so that places, units and pro
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
 
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import rational
 from wavesym.report.histories import Histories, Points, histories
 from wavesym.report.reduction import columns_of, extremes_between
 from wavesym.scene import Scene, lower
@@ -65,15 +67,26 @@ def along(scene: Scene) -> tuple[Along, ...]:
     """Motion, then strain or drift, of all of a scene's chain. CostError, ToleranceError as for such outputs."""
     asked = {quantity: _asked(scene, quantity) for quantity in _quantities(scene)}
     written = {quantity: [spot.written for _, spots in lines for spot in spots] for quantity, lines in asked.items()}
-    model = lower(scene.with_({f"output.{quantity}": written.get(quantity, []) for quantity in QUANTITIES}))
-    made = histories(model)
+    made = histories(_watching(scene, {quantity: written.get(quantity, []) for quantity in QUANTITIES}))
     return tuple(_of(made, quantity, lines) for quantity, lines in asked.items())
+
+
+def _watching(scene: Scene, places: Mapping[str, Sequence[str]]) -> Model:
+    """The scene with other outputs, whose places are those of its chain without units."""
+    model = lower(scene.dimensionless().with_({f"output.{quantity}": each for quantity, each in places.items()}))
+    scale = scene.scale
+    if scale is None:
+        return model
+    probes = (
+        replace(p, factor=rational(scale.factor(p.quantity, p.rod)), unit=scale.unit(p.quantity)) for p in model.probes
+    )
+    return replace(model.watching(probes), clock=scale.clock)
 
 
 def _quantities(scene: Scene) -> tuple[str, str]:
     """What tells most of a system: of a building floors and storeys, of what its own start moves velocities."""
     system = scene.system
-    if system.type == "building" and "drift" in QUANTITIES:
+    if system.type == "building":
         return "relative" if system.choices["base"] == "ground" else "displacement", "drift"
     return "displacement" if scene.load else "velocity", "strain"
 

@@ -68,6 +68,7 @@ def _over_height(axes: Axes, quantity: Along, band: Band) -> None:
     axes.set_ylabel("storey" if quantity.storeys else "floor")
     axes.set_yticks(*zip(*band.numbered(_TICKS, first=1 if quantity.storeys else 0), strict=True))
     axes.set_ylim(band.spots[0].low - _ROOM, band.spots[-1].high + _ROOM)
+    axes.use_sticky_edges = False
     axes.margins(x=0.25)
     axes.ticklabel_format(axis="x", scilimits=(-3, 5))
 

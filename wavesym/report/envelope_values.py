@@ -14,16 +14,18 @@ from wavesym.report.timescale import Timescale
 
 @dataclass(frozen=True)
 class Extreme:
-    """The least or greatest value of a band: where and when."""
+    """The least or greatest value of a band: where and when; `place` is how one says it."""
 
     place: str
+    unit: str
     x: float
     tau: float
     value: float
 
     def told(self, scale: Timescale) -> str:
         """In a line."""
-        return f"{self.value:.4g} at {self.place}, {scale.told(self.tau)}"
+        value = f"{self.value:.4g} {self.unit}".rstrip()
+        return f"{value} {self.place}, {scale.told(self.tau)}"
 
 
 def extremes(found: Along, band: Band) -> Iterator[Extreme]:
@@ -32,7 +34,9 @@ def extremes(found: Along, band: Band) -> Iterator[Extreme]:
         np.unravel_index(find(band.values), band.values.shape) for find in (np.nanargmax, np.nanargmin)
     ):
         spot = band.spots[place]
-        yield Extreme(spot.written, spot.x, float(found.taus[instant]), float(band.values[place, instant]))
+        where = f"in storey {place + 1}" if found.storeys else f"at x = {spot.written}"
+        tau, value = float(found.taus[instant]), float(band.values[place, instant])
+        yield Extreme(where, found.unit, spot.x, tau, value)
 
 
 def envelope(band: Band) -> tuple[Points, Points]:

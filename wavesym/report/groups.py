@@ -20,6 +20,10 @@ _DEFINITION = {
     "strain": "(l / {0}\u2080) \u2202{0}/\u2202x",
     "velocity": "(l / (c {0}\u2080)) \u2202{0}/\u2202t",
     "displacement": "{0} / {0}\u2080",
+    "acceleration": "(l\u00b2 / (c\u00b2 {0}\u2080)) \u2202\u00b2{0}/\u2202t\u00b2",
+    "force": "impedance \u00d7 strain",
+    "drift": "\u0394{0} / {0}\u2080",
+    "relative": "({0} \u2212 ground) / {0}\u2080",
 }
 
 
@@ -70,10 +74,17 @@ def notes(histories: Histories, most: int = MOST_PANELS) -> list[str]:
     return lines
 
 
+def load_panel(loads: Sequence[History], height: float) -> PlotPanel:
+    """Loads over time; in their unit, where all have the same."""
+    units = {load.output.unit for load in loads}
+    unit = units.pop() if len(units) == 1 else ""
+    return PlotPanel(f"load\nin {unit}" if unit else "load", tuple(loads), height=height)
+
+
 def axis_title(model: Model, quantity: str, unit: str = "") -> str:
     """A quantity in its unit, or as section 4 of the paper makes it dimensionless."""
-    if unit:
-        return f"{quantity}\nin {unit}"
+    if unit or model.clock is not None:
+        return f"{quantity}\nin {unit}" if unit else quantity
     letter = _SYMBOL.get(model.labels.system["type"], "u")
     return f"{quantity}\n{_DEFINITION[quantity].format(letter)} (dimensionless)"
 
@@ -100,4 +111,5 @@ def _extremes(shown: Sequence[History], scale: Timescale) -> Iterator[Mark]:
         for k in sorted({int(np.argmax(points[:, 1])), int(np.argmin(points[:, 1]))}):
             tau, value = points[k]
             if value:
-                yield Mark(f"{value:.4g} at {scale.of(tau)}", points[k : k + 1], "normal")
+                told = f"{value:.4g} {shown[0].output.unit}".rstrip()
+                yield Mark(f"{told} at {scale.of(tau)}", points[k : k + 1], "normal")

@@ -18,8 +18,8 @@ from matplotlib.figure import Figure
 
 from wavesym.model.model import Model
 from wavesym.report.along import Along, Band, cells, limit
-from wavesym.report.groups import axis_title
-from wavesym.report.loads import load_histories
+from wavesym.report.groups import axis_title, load_panel
+from wavesym.report.histories import History
 from wavesym.report.timescale import timescale
 
 _FONT = 9  # points
@@ -30,9 +30,9 @@ _NAMED = 12  # storeys with a number
 _BEYOND = "0.75"  # what is formal
 
 
-def draw(model: Model, found: Sequence[Along]) -> Figure:
+def draw(model: Model, found: Sequence[Along], loads: Sequence[History]) -> Figure:
     """A picture for each quantity and line, under the loads; colours end where all but the largest few cells do."""
-    scale, loads = timescale(model), load_histories(model)
+    scale = timescale(model)
     until = float(found[0].taus[-1]) * scale.per_tau
     heights = [_LOAD] * bool(loads) + [_PANEL] * sum(len(quantity.bands) for quantity in found)
     with mpl.rc_context({"font.size": _FONT, "font.family": "DejaVu Sans"}):
@@ -43,9 +43,8 @@ def draw(model: Model, found: Sequence[Along]) -> Figure:
         if loads:
             axes = next(panels)
             for load in loads:
-                for stretch in load.stretches:
-                    axes.plot(stretch[:, 0] * scale.per_tau, stretch[:, 1], color="black", linewidth=0.8)
-            axes.set_ylabel("load")
+                axes.plot(load.points[:, 0] * scale.per_tau, load.points[:, 1], color="black", linewidth=0.8)
+            axes.set_ylabel(load_panel(loads, _LOAD).title)
             axes.axhline(0, color="0.6", linewidth=0.6)
         for quantity in found:
             shown = [(band, cells(quantity, band, _COLUMNS)) for band in quantity.bands]

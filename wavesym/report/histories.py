@@ -1,12 +1,13 @@
 """Outputs over time, ready to be drawn: as right as a picture can show, and broken where they jump.
 
-Values are those of the program that `generate` would write, with a tolerance that no eye can tell from a smaller one:
-so there is a picture of every scene that can be generated. When fronts can arrive is known from the loads and the
+Values are those of a program that `generate` can write, with a tolerance that no eye can tell from a smaller one: so
+there is a picture of every scene that can be generated. When fronts can arrive is known from the loads and the
 places alone; there an output is asked for its value and for the one just before.
 """
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, nextafter
@@ -15,12 +16,14 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
+from wavesym.errors import WavesymError
 from wavesym.exact.contact import ContactEnd, contact_ends
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
+from wavesym.programs.request import KINDS, Request
 
 Points = NDArray[np.float64]
 
@@ -28,6 +31,7 @@ _TOLERANCE = fmpq(1, 10**6)
 _VISIBLE = 1e-5  # smaller jumps, relative to the largest value, are no jumps
 _LEAST, _PER_UNIT, _MOST = 1200, 32, 200_000  # instants
 _VALUES = 2_000_000  # of all outputs together
+_QUICK = tuple(kind for kind in ("march", "modes") if kind in KINDS)
 MOST_FRONTS = 50_000  # more of them lie far closer than the dots of a picture
 
 
@@ -79,7 +83,7 @@ def histories(model: Model, columns: int = 1) -> Histories:
 
     Their instants lie at the edges of so many `columns` of equal width, and between them.
     """
-    program = make(model.tolerating(max(model.tolerance, _TOLERANCE)))
+    program = drawable(model)
     contacts = contact_ends(model)
     formal = [_formal(model, probe, contacts) for probe in model.probes]
     dense = sum(len(_parts(model, probe)) for probe in model.probes) * model.until > MOST_FRONTS
@@ -96,6 +100,15 @@ def histories(model: Model, columns: int = 1) -> Histories:
         dense,
         program,
     )
+
+
+def drawable(model: Model) -> Program:
+    """A program of a model for pictures: of those that will do that which is made most quickly."""
+    loose = model.tolerating(max(model.tolerance, _TOLERANCE))
+    for kind in _QUICK:
+        with suppress(WavesymError):
+            return make(loose, Request(kind))
+    return make(loose)
 
 
 def arrivals(model: Model, probe: Probe) -> list[float]:

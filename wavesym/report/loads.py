@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from flint import fmpq
@@ -12,21 +13,28 @@ from wavesym.model.model import Model
 from wavesym.model.network import Point
 from wavesym.model.node import UnitLoad
 from wavesym.model.probe import Probe
-from wavesym.numbers.doubles import nearest
+from wavesym.numbers.doubles import nearest, rational
 from wavesym.report.histories import History, Points
+from wavesym.scene.physical.scale import Scale
 
 Acting = Sequence[tuple[Applied, int]]
 """Loads on one node, each with the power of tau that it grows with: 0 for a step, 1 for a ramp."""
 
 
-def load_histories(model: Model) -> tuple[History, ...]:
-    """The loads of a model, one for each node that is loaded; none for a chain that its own start moves."""
+def load_histories(model: Model, scale: Scale | None = None) -> tuple[History, ...]:
+    """The loads of a model, one for each node that is loaded; none for a chain that its own start moves.
+
+    Of a physical scene in the units of its `scale`.
+    """
     found = []
     for point in model.network.points:
         powers = {unit.source: _power(unit, point) for unit in point.loads}
         if acting := [(load, powers[load.source]) for load in model.loads if load.source in powers]:
-            name = _name(model, point)
-            found.append(History(Probe(name, "load", 1, fmpq(0)), tuple(stretches(acting, model.until))))
+            kind, name = _named(model, point)
+            factor = fmpq(1) if scale is None else rational(scale.factor(kind, 1))
+            probe = Probe(name, "load", 1, fmpq(0), factor=factor, unit=scale.unit(kind) if scale else "")
+            told = [(replace(load, weight=factor * load.weight), power) for load, power in acting]
+            found.append(History(probe, tuple(stretches(told, model.until))))
     return tuple(found)
 
 
@@ -56,11 +64,11 @@ def _power(unit: UnitLoad, point: Point) -> int:
     return len(unit.coefficients) - min(len(other.coefficients) for other in point.loads)
 
 
-def _name(model: Model, point: Point) -> str:
-    """What acts on a point, as its scene calls it."""
+def _named(model: Model, point: Point) -> tuple[str, str]:
+    """What kind of quantity acts on a point, and what its scene calls that."""
     if model.labels.system["type"] == "building":
-        return "acceleration of the base"
+        return "acceleration", "acceleration of the base"
     if model.chain is not None:
-        return " + ".join(sorted({unit.source for unit in point.loads}))
-    kind = f"{point.motion} of" if point.motion else "force at"
-    return f"{kind} {point.name or f'x = {point.place}'}"
+        return "force", " + ".join(sorted({unit.source.partition(":")[0] for unit in point.loads}))
+    kind = point.motion or "force"
+    return kind, f"{kind} {'of' if point.motion else 'at'} {point.name or f'x = {point.place}'}"

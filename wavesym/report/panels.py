@@ -18,10 +18,9 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from wavesym.numbers.doubles import nearest
-from wavesym.report.groups import PlotPanel, notes, panels
+from wavesym.report.groups import PlotPanel, load_panel, notes, panels
 from wavesym.report.histories import Histories, History, Points
 from wavesym.report.labels import Curve, label
-from wavesym.report.loads import load_histories
 from wavesym.report.reduction import reduced
 from wavesym.report.timescale import Timescale, timescale
 
@@ -60,7 +59,7 @@ class Instant:
     dashes: str = ":"
 
 
-def draw(histories: Histories) -> Figure:
+def draw(histories: Histories, loads: Sequence[History] = ()) -> Figure:
     """The outputs of a scene under its loads; the same bytes from the same scene where `saving.save` writes it."""
     model = histories.model
     until, scale = nearest(model.until), timescale(model)
@@ -72,13 +71,8 @@ def draw(histories: Histories) -> Figure:
     ]
     if opened:
         title.append("thin and light: the formal continuation, as if the opened contact stayed closed")
-    return stacked([*_acting(histories), *panels(histories)], until, title, instants=opened, scale=scale)
-
-
-def _acting(histories: Histories) -> list[PlotPanel]:
-    """A panel with the loads, where there are any and not too many."""
-    loads = load_histories(histories.model)[: len(_STYLES)]
-    return [PlotPanel("load", loads, height=_LOAD)] if loads else []
+    acting = [load_panel(loads[: len(_STYLES)], _LOAD)] if loads else []
+    return stacked([*acting, *panels(histories)], until, title, instants=opened, scale=scale)
 
 
 def stacked(

@@ -13,7 +13,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.report.along import along
-from wavesym.report.groups import PlotPanel, notes, panels
+from wavesym.report.groups import load_panel, notes, panels
 from wavesym.report.histories import Histories, histories
 from wavesym.report.loads import load_histories
 from wavesym.report.page.crossings import crossings
@@ -65,8 +65,8 @@ def _report(scene: Scene, text: str) -> Report:
     drawn = model.watching(_fair(model))
     columns = min(max(_VERTICES // (3 * len(drawn.probes)), _COLUMNS[0]), _COLUMNS[1])
     made = histories(drawn, columns)
-    loads = load_histories(model)[:_LOADS]
-    stack = [PlotPanel("load", loads, height=1.0)] if loads else []
+    loads = load_histories(model, scene.scale)[:_LOADS]
+    stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
     lines = scene.system.lines
     found = along(scene)
@@ -128,8 +128,8 @@ def _facts(model: Model, made: Histories, scale: Timescale) -> Iterator[tuple[st
             "Contact",
             f"that at x = {end.x} opens at {scale.told(end.double)}; what that reaches is drawn as if it stayed closed",
         )
-    for event in program.provenance.events or ():
-        yield "Contact", f"that at x = {event.x} {event.kind} at {scale.told(event.double)}"
+    for place, own in groupby(sorted(program.provenance.events or (), key=lambda e: e.x), key=lambda e: e.x):
+        yield "Contact", f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.told(each.double)}" for each in own)
 
 
 def _chosen(model: Model) -> list[str]:

@@ -52,6 +52,8 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
     """The curves of a panel over time."""
     height = _LOAD if given.height < 2 else _PANEL
     values = np.concatenate([history.points[:, 1] for history in given.histories])
+    if not given.marks:  # a load
+        values = np.append(values, 0.0)
     low, high = spread(float(np.min(values)), float(np.max(values)), 0.14 if given.marks else 0.08)
     grid = Grid.of(columns, until, low, high)
     x = PlotAxis(0.0, until * scale.per_tau, LEFT, WIDTH - RIGHT)

@@ -137,15 +137,17 @@ class _Pen:
             self.parts.append(text(8, y + 4, name, "start", class_="name"))
         for station, following in zip(stations, [*stations[1:], None], strict=True):
             begun = x
+            new = [point for point in station.points if point not in self.at]
             for what, width in self._widths(station):
                 self._sign(what, x, y, width * shrink)
+                for point in new:
+                    if what is self.network.points[point]:
+                        self.at[point] = x + width * shrink / 2, y
+                        self._over(x + width * shrink / 2, y - 36, what.name, names)
                 x += width * shrink
-            middle = (begun + x) / 2
-            new = [point for point in station.points if point not in self.at]
-            self.at.update(dict.fromkeys(new, (middle, y)))
-            self._under(middle, y + 52, str(station.x), numbers)
-            words = ", ".join(filter(None, (self.network.points[point].name for point in new)))
-            self._over(middle, y - 34, words, names)
+            self.at.update({point: ((begun + x) / 2, y) for point in new if point not in self.at})
+            held = any(self.network.points[point].damping or self.network.points[point].stiffness for point in new)
+            self._under((begun + x) / 2, y + 52, str(station.x), numbers, beside=held)
             if following is not None and station.right is not None:
                 length = unit * float(following.x - station.x)
                 self._rod(station.right, x, length, y)
@@ -157,7 +159,9 @@ class _Pen:
         signs = sum(width for station in stations for _, width in self._widths(station)) * shrink
         above, high = self.at[stations[0].points[0]]
         x = max(_LEFT, min(above, WIDTH - _RIGHT - signs - unit * float(stations[-1].x)))
-        self.parts.append(polyline([(above, high + symbols.HALF), (above, y - 40), (x, y - 40), (x, y)], "hang"))
+        x += 12 * (x == above)  # beside what may lead to the ground there
+        over = high + symbols.HALF, y - 52
+        self.parts.append(polyline([(above + 7, over[0]), (above + 7, over[1]), (x, over[1]), (x, y)], "hang"))
         return x
 
     def _rod(self, number: int, x: float, length: float, y: float) -> None:
@@ -230,9 +234,10 @@ class _Pen:
                 spots.add((low + nearest(probe.place) * (high - low), y))
         self.parts += [polyline([(x - 4, y + 38), (x, y + 30), (x + 4, y + 38)], "place") for x, y in sorted(spots)]
 
-    def _under(self, x: float, y: float, words: str, taken: list[float]) -> None:
-        """A number, unless it would lie over the one before."""
+    def _under(self, x: float, y: float, words: str, taken: list[float], *, beside: bool) -> None:
+        """A number, beside what leads to the ground, unless it would lie over the one before."""
         half = _LETTER * len(words) / 2
+        x -= (half + 6) * beside
         if not taken or taken[-1] + 6 < x - half:
             taken.append(x + half)
             self.parts.append(text(x, y, words))
