@@ -297,13 +297,33 @@ def _written(scene: Scene, directory: str | Path | None, language: str, request:
 def run(scene: Scene, samples: int, at: Sequence[float] | None = None) -> Iterator[str]:
     """The outputs as CSV lines, as they are computed: at `at`, or at `samples` equally spaced tau of the horizon.
 
+    Of a physical scene `at` are times in the unit of results, and so is the first column.
+
     CostError where right to the last bit would cost too much, before there is a line.
     """
     model = lower(scene)
     response = Response(model)
-    taus = iter(at) if at is not None else grid(model, samples)
-    blocks = iter(partial(_rows, response, taus), [])
-    return _csv(("tau", *response.outputs), next(blocks, []), blocks)  # what goes wrong does so before the header
+    blocks = iter(partial(_rows, response, _instants(model, samples, at)), [])
+    return _csv(_columns(model), next(blocks, []), blocks)  # what goes wrong does so before the header
+
+
+def _columns(model: Model) -> list[str]:
+    """The header of CSV, with units where there are any."""
+    names = [probe.told for probe in model.probes]
+    clock = model.clock
+    return ["tau" if clock is None else "time" if clock.unit == "s" else f"time [{clock.unit}]", *names]
+
+
+def _instants(model: Model, samples: int, at: Sequence[float] | None) -> Iterator[tuple[float, float]]:
+    """What stands in the first column, and the tau that it is."""
+    clock, until = model.clock, model.until
+    if clock is None:
+        yield from ((tau, tau) for tau in (at if at is not None else grid(model, samples)))
+    elif at is not None:
+        yield from ((time, clock.tau(time, until)) for time in at)
+    else:
+        times = (clock.time(until * k / max(samples - 1, 1)) for k in range(samples))
+        yield from zip(times, grid(model, samples), strict=True)
 
 
 def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:
@@ -313,10 +333,10 @@ def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[s
         yield from block
 
 
-def _rows(response: Response, taus: Iterator[float]) -> list[str]:
-    """The lines of the next tau, none where there are no more."""
-    some = list(islice(taus, _AT_ONCE))
-    values = np.vstack([np.asarray(some), response(some)]).T
+def _rows(response: Response, instants: Iterator[tuple[float, float]]) -> list[str]:
+    """The lines of the next instants, none where there are no more."""
+    some = list(islice(instants, _AT_ONCE))
+    values = np.vstack([np.asarray([first for first, _ in some]), response([tau for _, tau in some])]).T
     return [",".join(map(repr, row)) + "\n" for row in values.tolist()]
 
 
@@ -328,17 +348,25 @@ def grid(model: Model, samples: int) -> Iterator[float]:
 
 def events(scene: Scene) -> list[str]:
     """A line for each time that a contact opens or closes. CostError where that would take minutes to know."""
-    return [f"contact at x = {each.x} {each.kind} at tau = {each.digits}" for each in Response(lower(scene)).events]
+    model = lower(scene)
+    return [
+        f"contact at x = {each.x} {each.kind} at tau = {each.digits}{_in_time(model, each.double)}"
+        for each in Response(model).events
+    ]
+
+
+def _in_time(model: Model, tau: float) -> str:
+    """The same instant in the unit of a physical scene, to stand behind a tau."""
+    return f", {model.clock.told(rational(tau))}" if model.clock else ""
 
 
 def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
     """What a user might not expect: no load, tau out of range, contacts that open early enough to matter."""
     model = lower(scene)
-    last = model.horizon()
-    outside = sum(not 0 <= tau <= last for tau in taus)
-    lines = [f"{outside} of {len(taus)} tau are outside 0 to {scene.output.until}, where values are nan"] * bool(
-        outside
-    )
+    last, clock = model.horizon(), model.clock
+    outside = sum(not 0 <= tau <= last for _, tau in _instants(model, 0, taus))
+    what, end = ("times", clock.told(model.until)) if clock else ("tau", str(scene.output.until))
+    lines = [f"{outside} of {len(taus)} {what} are outside 0 to {end}, where values are nan"] * bool(outside)
     return [*_no_load(model), *lines, *_contact_warnings(model)]
 
 
@@ -356,7 +384,8 @@ def _no_load(model: Model) -> list[str]:
 def _contact_warnings(model: Model) -> list[str]:
     """A line for every contact that opens early enough to matter to an output."""
     return [
-        f"contact at x = {end.x} opens at tau = {end.digits}: what that can reach is computed as if it stayed closed"
+        f"contact at x = {end.x} opens at tau = {end.digits}{_in_time(model, end.double)}: what that can reach is "
+        "computed as if it stayed closed"
         for end in contact_ends(model)
     ]
 

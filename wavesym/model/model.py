@@ -11,6 +11,7 @@ from flint import fmpq
 from wavesym.errors import UnservedError
 from wavesym.model.chain import Chain
 from wavesym.model.clock import Clock
+from wavesym.model.damping import Damping
 from wavesym.model.light_cone import felt, light_cone
 from wavesym.model.loads import Applied
 from wavesym.model.network import Network
@@ -37,7 +38,7 @@ class Model:
 
     `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
     `tolerance` is relative to an output's largest value. Loads are sorted by time. The `clock` is that of a physical
-    scene.
+    scene, the `damping` that of its modes.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Model:
     tolerance: fmpq
     labels: Labels
     clock: Clock | None = None
+    damping: Damping | None = None
 
     @property
     def named(self) -> Chain:

@@ -41,7 +41,7 @@ def _labels(scene: Scene) -> Labels:
     canonical = json.dumps(said, sort_keys=True, separators=(",", ":"))
     return Labels(
         system={"type": scene.system.type, **scene.system.choices},
-        loads=tuple(load.told for load in scene.load),
+        loads=scene.physical.loads if scene.physical else tuple(load.told for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
     )
 

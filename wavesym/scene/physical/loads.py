@@ -18,6 +18,7 @@ from wavesym.scene.physical.measured import measured, placed, tidy
 from wavesym.scene.physical.rewritten import LoadUnit
 
 _VALUES, _SLOPES = ("a", "steps"), ("b", "ramps")
+_MOST_TOLD = 8
 
 
 def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
@@ -124,3 +125,16 @@ def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> d
         with placed("start"):
             table["start"] = measured(load["start"], "time") / seconds
     return table
+
+
+def told(load: Mapping[str, Any]) -> str:
+    """A load as it was said, in a line; of a long list how long it is."""
+    words = []
+    for key, value in load.items():
+        if key == "record":
+            words.append(f"record of {len(value['samples'])} samples")
+        elif isinstance(value, list):
+            words.append(f"{key} {', '.join(map(str, value))}" if len(value) <= _MOST_TOLD else f"{len(value)} {key}")
+        else:
+            words.append(f"{key} {value}")
+    return ", ".join(words)

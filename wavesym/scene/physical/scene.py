@@ -15,7 +15,7 @@ from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.collision import PhysicalCollision
 from wavesym.scene.physical.drive import PhysicalDrive
-from wavesym.scene.physical.loads import dimensionless, read
+from wavesym.scene.physical.loads import dimensionless, read, told
 from wavesym.scene.physical.measured import measured, placed, plain
 from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
@@ -38,6 +38,11 @@ class PhysicalScene:
     fields: dict[str, Any]
     scale: Scale
     kappa: tuple[Fraction, ...]
+
+    @property
+    def loads(self) -> tuple[str, ...]:
+        """A line for each load."""
+        return tuple(map(told, self.said.get("load", ())))
 
 
 def physical(fields: Mapping[str, Any]) -> PhysicalScene:
