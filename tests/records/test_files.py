@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 import wavesym
 from wavesym.errors import SceneError
 from wavesym.records.read import read_record
-from wavesym.records.record_file import decimal, tidy
+from wavesym.records.record_file import as_decimal, decimal
 
 ROOT = Path(wavesym.__file__).parents[1]
 EL_CENTRO = ROOT / "examples" / "records" / "elcentro_1940_ns_peknold"
@@ -295,6 +295,6 @@ def test_no_text_does_more_than_be_refused(place, text):
 
 @given(st.fractions(max_denominator=10**6))
 def test_a_decimal_reads_back(number):
-    text = tidy(number)
+    text = as_decimal(number)
     assert Fraction(text) == number
     assert "/" in text or decimal(text) == number

@@ -48,19 +48,19 @@ class RecordFile:
         step = times[1] - times[0] if told is None else told
         for k, (before, time) in enumerate(pairwise(times), 1):
             if time <= before:
-                what = f"the time {tidy(time)} given, more than the {tidy(before)} before it expected"
+                what = f"the time {as_decimal(time)} given, more than the {as_decimal(before)} before it expected"
                 raise damaged(self.file, self.lines[k], what)
             expected = times[0] + k * step
             if abs(time - expected) > (0 if told is None else _NEAR * step):
-                what = f"the time {tidy(time)} given, {tidy(expected)} expected ({_even(step, told)})"
+                what = f"the time {as_decimal(time)} given, {as_decimal(expected)} expected ({_even(step, told)})"
                 raise damaged(self.file, self.lines[k], what)
         return step
 
 
 def _even(step: Fraction, told: Fraction | None) -> str:
     if told is not None:
-        return f"samples {tidy(step)} apart, as `spacing` says"
-    return f"samples {tidy(step)} apart, as the first two; where times are rounded, `spacing` in the scene says it"
+        return f"samples {as_decimal(step)} apart, as `spacing` says"
+    return f"samples {as_decimal(step)} apart, as the first two; of rounded times `spacing` in the scene says it"
 
 
 def damaged(file: str, line: int, what: str) -> SceneError:
@@ -82,7 +82,7 @@ def decimal(text: str) -> Fraction | None:
     return value if not number or 1 / _LARGEST <= abs(value) <= _LARGEST else None
 
 
-def tidy(value: Fraction) -> str:
+def as_decimal(value: Fraction) -> str:
     """A number as a decimal where it ends as one, else as a fraction."""
     places = next((k for k in range(LONGEST) if 10**k % value.denominator == 0), None)
     if places is None:
