@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -14,10 +14,11 @@ from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.report.along import along
 from wavesym.report.groups import load_panel, notes, panels
-from wavesym.report.histories import Histories, histories
+from wavesym.report.histories import Histories, History, histories
 from wavesym.report.loads import load_histories
 from wavesym.report.page.crossings import crossings
 from wavesym.report.page.plots import Shown, along_pictures, maps, panel, picture
+from wavesym.report.page.said import Told, advice_told, extremes_told
 from wavesym.report.page.structure import structure
 from wavesym.report.timescale import Timescale, timescale
 from wavesym.scene import Scene, lower
@@ -41,6 +42,8 @@ class Report:
     per_tau: str
     time: str
     columns: int
+    extremes: Told
+    advice: Told
     maps: tuple[Shown, ...]
     along: tuple[Shown, ...]
     scene: str
@@ -74,7 +77,7 @@ def _report(scene: Scene, text: str) -> Report:
     title = f"The structure of {model.name}"
     return Report(
         name=model.name,
-        facts=tuple(_facts(model, made, scale)),
+        facts=tuple(_facts(model, made, loads, scale)),
         structure=Shown(
             title, picture("structure", title, structured.told, structured.height, structured.drawn, class_="plot")
         ),
@@ -86,6 +89,8 @@ def _report(scene: Scene, text: str) -> Report:
         per_tau=repr(scale.per_tau),
         time=scale.unit,
         columns=columns,
+        extremes=extremes_told(model, scale),
+        advice=advice_told(model),
         maps=tuple(crossings(model, lines, scale) or maps(model, found, scale)),
         along=tuple(along_pictures(model, found, scale)),
         scene=text,
@@ -109,15 +114,15 @@ def _left_out(model: Model, drawn: Model) -> list[str]:
     )
 
 
-def _facts(model: Model, made: Histories, scale: Timescale) -> Iterator[tuple[str, str]]:
+def _facts(model: Model, made: Histories, loads: Sequence[History], scale: Timescale) -> Iterator[tuple[str, str]]:
     """What there is to know at first sight, each under a word."""
     network, program = model.network, made.program
     assert program is not None  # histories have one
     yield "System", ", ".join([model.labels.system["type"], *_chosen(model)])
     rods, bodies = len(network.bars), len([point for point in network.points if point.mass])
     yield "Modelled", f"{_count(rods, 'elastic rod')}, {_count(bodies, 'rigid body', 'rigid bodies')}"
-    if model.labels.loads:
-        yield "Loads", "; ".join(model.labels.loads)
+    if told := _loads(model, loads):
+        yield "Loads", told
     yield "Horizon", scale.told(nearest(model.until))
     if model.clock is not None:
         yield "One tau", f"{nearest(model.clock.seconds):.6g} s: the time that a wave takes to cross a rod of length 1"
@@ -130,6 +135,14 @@ def _facts(model: Model, made: Histories, scale: Timescale) -> Iterator[tuple[st
         )
     for place, own in groupby(sorted(program.provenance.events or (), key=lambda e: e.x), key=lambda e: e.x):
         yield "Contact", f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.told(each.double)}" for each in own)
+
+
+def _loads(model: Model, loads: Sequence[History]) -> str:
+    """As the scene says them; with units, whose exact numbers nobody can read, by their sizes."""
+    if model.clock is None:
+        return "; ".join(model.labels.loads)
+    values = ((load, load.points[:, 1]) for load in loads)
+    return "; ".join(f"{load.name}, from {min(v):.4g} to {max(v):.4g} {load.output.unit}" for load, v in values)
 
 
 def _chosen(model: Model) -> list[str]:

@@ -8,6 +8,7 @@ from math import ceil, floor, log10
 
 from wavesym.report.page.svg import Svg, line, text, together
 
+_RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
 _NICE = (1, 2, 2.5, 5, 10)
 _LETTER = 6.5  # of the numbers, wide
 
@@ -25,13 +26,20 @@ class PlotAxis:
         """The pixel of a value."""
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
-    def ticks(self, most: int) -> list[tuple[float, str]]:
-        """At most so many round numbers on the axis, as they are written."""
+    @property
+    def power(self) -> int:
+        """That of ten which is left out of long numbers, 0 for short ones."""
+        largest = max(abs(self.low), abs(self.high))
+        power = 3 * floor(log10(largest) / 3)
+        return power if not 1e-3 <= largest < 1e4 else 0
+
+    def ticks(self, most: int, power: int = 0) -> list[tuple[float, str]]:
+        """At most so many round numbers on the axis, as they are written without 10**power."""
         size = self.high - self.low
-        power = 10.0 ** floor(log10(size / most))
-        step = next(nice * power for nice in _NICE if size / (nice * power) <= most)
+        coarse = 10.0 ** floor(log10(size / most))
+        step = next(nice * coarse for nice in _NICE if size / (nice * coarse) <= most)
         first, last = ceil(self.low / step - 1e-9), floor(self.high / step + 1e-9)
-        return [(k * step, written(k * step, step)) for k in range(first, last + 1)]
+        return [(k * step, written(k * step / 10.0**power, step / 10.0**power)) for k in range(first, last + 1)]
 
 
 def written(value: float, step: float) -> str:
@@ -68,7 +76,12 @@ class Frame:
             parts.append(line(at, top, at, bottom, "grid"))
             if numbers:
                 parts.append(text(at, bottom + 16, number))
-        upward = self.y.ticks(max(2, int((bottom - top) / 32))) if self.places is None else self.places
+        upward: Sequence[tuple[float, str]] = self.places or []
+        if self.places is None:
+            power = self.y.power
+            upward = [(at, number) for at, number in self.y.ticks(max(2, int((bottom - top) / 32)), power)]
+            if power:
+                parts.append(text(left - 6, top - 1, f"\u00d710{str(power).translate(_RAISED)}", "end"))
         for value, number in upward:
             at = self.y.at(value)
             parts.append(line(left, at, right, at, "grid"))

@@ -27,11 +27,11 @@ _NUMBERED = 12  # storeys with a number
 
 @dataclass(frozen=True)
 class Shown:
-    """A picture: what it is called, its markup, and the outputs that it has curves of (their look, name and unit)."""
+    """A picture: what it is called, its markup, and the outputs that it has curves of (their look and name)."""
 
     title: str
     drawn: Svg
-    curves: tuple[tuple[int, str, str], ...] = ()
+    curves: tuple[tuple[int, str], ...] = ()
 
 
 def picture(number: str, title: str, told: str, height: float, *content: Svg, **attributes: str | float) -> Svg:
@@ -87,8 +87,7 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
         data_low=repr(grid.low),
         data_high=repr(grid.high),
     )
-    names = tuple((look, history.name, history.output.unit) for look, history in enumerate(given.histories))
-    return Shown(title, svg, names)
+    return Shown(title, svg, tuple((look, history.name) for look, history in enumerate(given.histories)))
 
 
 def _told(history: History, scale: Timescale) -> str:

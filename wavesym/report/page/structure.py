@@ -21,6 +21,7 @@ _LEFT, _RIGHT, _ROW = 60.0, 60.0, 150.0
 _MASS, _LINK, _CONTACT, _END, _BARE = 18.0, 44.0, 10.0, 6.0, 2.0
 _LEAST = 14.0  # of a rod, long
 _THICK, _THIN = 24.0, 6.0  # of a rod
+_ASIDE = 30.0  # from its node a branch hangs
 _LETTER = 6.6  # of a name, wide
 _STOREY, _TALLEST, _FLOOR = 46.0, 520.0, 190.0
 
@@ -159,9 +160,9 @@ class _Pen:
         signs = sum(width for station in stations for _, width in self._widths(station)) * shrink
         above, high = self.at[stations[0].points[0]]
         x = max(_LEFT, min(above, WIDTH - _RIGHT - signs - unit * float(stations[-1].x)))
-        x += 12 * (x == above)  # beside what may lead to the ground there
-        over = high + symbols.HALF, y - 52
-        self.parts.append(polyline([(above + 7, over[0]), (above + 7, over[1]), (x, over[1]), (x, y)], "hang"))
+        x = max(x, above + _ASIDE) if x == above else x  # beside what may lead to the ground there
+        turns = [(above + 5, high + 16), (above + 5, high + 24), (above + _ASIDE, high + 24), (above + _ASIDE, y - 46)]
+        self.parts.append(polyline([*turns, (x, y - 46), (x, y)], "hang"))
         return x
 
     def _rod(self, number: int, x: float, length: float, y: float) -> None:
