@@ -14,6 +14,9 @@ from wavesym.report.timescale import Timescale, timescale
 
 CURVES = 8  # that an eye can tell apart in a panel
 MOST_PANELS = 6  # of a quantity
+STRIPS = 4  # that take the room of a panel
+_STRIP = 0.8  # inches
+_TURNS, _LEVELS = 40, 20
 _MARKED = 3  # curves of a panel whose extremes are all marked; of more only the panel's own
 _SYMBOL = {"collision": "u", "drive": "\u03b8", "building": "y"}
 _DEFINITION = {
@@ -38,22 +41,36 @@ class Mark:
 
 @dataclass(frozen=True)
 class PlotPanel:
-    """Curves that share an axis: what is drawn upwards, how high the panel is (inches), what is marked."""
+    """Curves that share an axis: what is drawn upwards, how high the panel is (inches), what is marked.
+
+    A strip is for one curve, on an axis with the `limits` of its like, and says all that there is to say above it.
+    """
 
     title: str
     histories: tuple[History, ...]
     marks: tuple[Mark, ...] = ()
     height: float = 2.7
+    limits: tuple[float, float] | None = None
+
+    @property
+    def told(self) -> str:
+        """Of a strip: the curve's name and unit, and its extremes."""
+        (history,) = self.histories
+        name = f"{history.name}, {history.output.unit}" if history.output.unit else history.name
+        return "   ".join([name, *(mark.text for mark in self.marks)])
 
 
 def panels(histories: Histories, most: int = MOST_PANELS) -> list[PlotPanel]:
     """A panel for each quantity that moves, or several where one would be crowded; an empty one if nothing moves.
 
-    At `most` so many of a quantity.
+    At `most` so many of a quantity. Of curves that turn too often to be told apart, each has a strip of its own.
     """
-    result = []
+    result: list[PlotPanel] = []
     scale = timescale(histories.model)
     for quantity, shown in quantities(histories).items():
+        if stripped(shown):
+            result += _strips(shown[: most * STRIPS], scale)
+            continue
         count = min(-(-len(shown) // CURVES), most)
         title = axis_title(histories.model, quantity, shown[0].output.unit)
         parts = _even(shown[: count * CURVES], count)
@@ -65,8 +82,9 @@ def notes(histories: Histories, most: int = MOST_PANELS) -> list[str]:
     """What is not drawn, a line each."""
     lines = []
     for quantity, shown in quantities(histories).items():
-        if len(shown) > most * CURVES:
-            lines.append(f"{quantity}: the first {most * CURVES} of {len(shown)} outputs that move are drawn")
+        drawn = most * (STRIPS if stripped(shown) else CURVES)
+        if len(shown) > drawn:
+            lines.append(f"{quantity}: the first {drawn} of {len(shown)} outputs that move are drawn")
     if still := [history.name for history in histories.outputs if history.zero]:
         lines.append(f"0 throughout: {', '.join(still)}")
     if histories.dense:
@@ -96,6 +114,26 @@ def quantities(histories: Histories) -> dict[str, list[History]]:
         if not history.zero:
             found.setdefault(history.output.quantity, []).append(history)
     return found
+
+
+def restless(history: History) -> bool:
+    """Whether a curve turns too often to bear its name; what it does within a part of its height is no turn."""
+    values = history.points[:, 1]
+    levels = np.rint(values / (np.ptp(values) or 1.0) * _LEVELS)
+    steps = np.diff(levels)
+    return int(np.count_nonzero(np.diff(np.sign(steps[steps != 0])))) > _TURNS
+
+
+def stripped(shown: Sequence[History]) -> bool:
+    """Whether curves of a quantity are drawn one under the other."""
+    return len(shown) > 1 and any(restless(history) for history in shown)
+
+
+def _strips(shown: Sequence[History], scale: Timescale) -> Iterator[PlotPanel]:
+    values = np.concatenate([history.points[:, 1] for history in shown])
+    limits = float(np.min(values)), float(np.max(values))
+    for history in shown:
+        yield PlotPanel("", (history,), tuple(_extremes([history], scale)), _STRIP, limits)
 
 
 def _even(shown: Sequence[History], count: int) -> list[Sequence[History]]:

@@ -30,8 +30,9 @@ Points = NDArray[np.float64]
 _TOLERANCE = fmpq(1, 10**6)
 _VISIBLE = 1e-5  # smaller jumps, relative to the largest value, are no jumps
 _LEAST, _PER_UNIT, _MOST = 1200, 32, 200_000  # instants
-_VALUES = 2_000_000  # of all outputs together
-_QUICK = tuple(kind for kind in ("march", "modes") if kind in KINDS)
+_VALUES = 400_000  # of all outputs together
+# what a picture can show, of an output's largest value: modes take the more of them the less that is
+_QUICK = {kind: least for kind, least in (("march", _TOLERANCE), ("modes", fmpq(1, 10**4))) if kind in KINDS}
 MOST_FRONTS = 50_000  # more of them lie far closer than the dots of a picture
 
 
@@ -86,7 +87,7 @@ def histories(model: Model, columns: int = 1) -> Histories:
     program = drawable(model)
     contacts = contact_ends(model)
     formal = [_formal(model, probe, contacts) for probe in model.probes]
-    dense = sum(len(_parts(model, probe)) for probe in model.probes) * model.until > MOST_FRONTS
+    dense = _dense(model)
     fronts = [[] if dense else arrivals(model, probe) for probe in model.probes]
     taus = _instants(program.tau_max, columns, fronts, formal)
     values = program.evaluate(taus)
@@ -104,11 +105,10 @@ def histories(model: Model, columns: int = 1) -> Histories:
 
 def drawable(model: Model) -> Program:
     """A program of a model for pictures: of those that will do that which is made most quickly."""
-    loose = model.tolerating(max(model.tolerance, _TOLERANCE))
-    for kind in _QUICK:
+    for kind, least in _QUICK.items():
         with suppress(WavesymError):
-            return make(loose, Request(kind))
-    return make(loose)
+            return make(model.tolerating(max(model.tolerance, least)), Request(kind))
+    return make(model.tolerating(max(model.tolerance, _TOLERANCE)))
 
 
 def arrivals(model: Model, probe: Probe) -> list[float]:
@@ -118,6 +118,14 @@ def arrivals(model: Model, probe: Probe) -> list[float]:
     """
     times = {part + n for part in _parts(model, probe) for n in range(int((model.until - part).floor()) + 1)}
     return sorted(not_below(time) for time in times if 0 < time <= model.until)
+
+
+def _dense(model: Model) -> bool:
+    """Whether there are more fronts than can be seen."""
+    loads = {load.time - load.time.floor() for load in model.loads}
+    if len(loads) * len(model.probes) * model.until > MOST_FRONTS:  # each output has as many at least
+        return True
+    return sum(len(_parts(model, probe)) for probe in model.probes) * model.until > MOST_FRONTS
 
 
 def _parts(model: Model, probe: Probe) -> set[fmpq]:

@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
 
 from wavesym.numbers.doubles import nearest
 from wavesym.report.groups import PlotPanel, load_panel, notes, panels
@@ -46,7 +47,7 @@ _ALPHA = {False: 1.0, True: 0.55}  # of what is formal
 _VERTICES, _ANCHORS = 18, 8  # of a curve, as labels see it; of those, places where its name may hang
 _NEAR = 0.03  # curves this near to each other, in heights of a panel, are not told apart by a label
 _COLUMNS = 2000  # of a panel
-_TURNS = 60  # a curve that turns more often leaves no room for its name
+_HALO = [withStroke(linewidth=2, foreground="white")]
 _LOAD = 1.2  # inches
 
 
@@ -86,7 +87,8 @@ def stacked(
     """Panels one under the other, lines of text above and below them; all in tau, drawn in the time of `scale`."""
     panels, until = [_clocked(panel, scale) for panel in panels], until * scale.per_tau
     instants = [replace(instant, tau=instant.tau * scale.per_tau) for instant in instants]
-    gaps = [_GAP + _LINE * restless(panel) for panel in panels]
+    gaps = [0.0 if panel.limits and before.limits else _GAP for before, panel in pairwise(panels)]
+    gaps = [_GAP, *gaps]
     above, under = (len(title) + 0.9) * _LINE - _GAP, _AXIS + (len(below) + 0.6) * _LINE * bool(below)
     height = above + sum(gaps) + sum(panel.height for panel in panels) + under
     with mpl.rc_context({"font.size": FONT, "font.family": "DejaVu Sans"}):
@@ -125,13 +127,6 @@ def _clocked(panel: PlotPanel, scale: Timescale) -> PlotPanel:
     )
 
 
-def restless(panel: PlotPanel) -> bool:
-    """Whether its curves turn too often to bear their names, which stand above the panel then."""
-    return any(
-        np.count_nonzero(np.diff(np.sign(np.diff(history.points[:, 1])))) > _TURNS for history in panel.histories
-    )
-
-
 def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
     axes.set_ylabel(panel.title)
     axes.set_axisbelow(True)
@@ -147,31 +142,24 @@ def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
     for mark in panel.marks:
         upright = mark.points[0, 0] == mark.points[-1, 0]
         axes.plot(*mark.points.T, "-o" if upright else ":o", color="black", markersize=3, linewidth=0.9, zorder=4)
-    if restless(panel):
-        _legend(axes, panel)
+    if panel.limits:
+        _strip(axes, panel)
+        return
     names = _named(axes, panel, instants)
     if names:
         label(axes, names, FONT)
     for text in axes.texts:  # legible even where curves leave no room
-        text.set(zorder=5, path_effects=[withStroke(linewidth=2, foreground="white")])
+        text.set(zorder=5, path_effects=_HALO)
 
 
-def _legend(axes: Axes, panel: PlotPanel) -> None:
-    """The names of the curves, above them."""
-    axes.legend(
-        handles=[
-            axes.plot([], [], linestyle=dashes, color=color, linewidth=1.4, label=history.name)[0]
-            for history, (dashes, color) in zip(panel.histories, _STYLES, strict=False)
-        ],
-        loc="lower right",
-        bbox_to_anchor=(1.0, 1.0),
-        ncols=len(_STYLES),
-        frameon=False,
-        borderpad=0.1,
-        borderaxespad=0.2,
-        columnspacing=1.2,
-        handlelength=2.6,
-    )
+def _strip(axes: Axes, panel: PlotPanel) -> None:
+    """A strip with the axis of its like, and what there is to say of it in the room above its curve."""
+    assert panel.limits is not None  # of a strip
+    low, high = panel.limits
+    size = high - low
+    axes.set_ylim(low - 0.1 * size, high + 0.5 * size)
+    axes.yaxis.set_major_locator(MaxNLocator(3))
+    axes.text(0.004, 0.95, panel.told, transform=axes.transAxes, va="top", path_effects=_HALO)
 
 
 def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Curve]:
@@ -179,9 +167,6 @@ def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Cu
     low, high = axes.get_ylim()
     curves = []
     for history, (_, color) in zip(panel.histories, _STYLES, strict=False):
-        if restless(panel):
-            curves.append(Curve("", thinned(history.points, _VERTICES), "none", "normal"))
-            continue
         others = [other.points for other in panel.histories if other is not history]
         shape = thinned(history.points, _VERTICES)
         places = apart(shape, others, _NEAR * (high - low))

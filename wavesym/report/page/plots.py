@@ -19,7 +19,7 @@ from wavesym.report.page.svg import Svg, box, element, line, polyline, text, tog
 from wavesym.report.timescale import Timescale
 
 WIDTH, LEFT, RIGHT, TOP, BELOW = 900.0, 84.0, 12.0, 10.0, 44.0
-_LOAD, _PANEL, _ALONG = 90.0, 190.0, 230.0  # pixels high
+_LOAD, _STRIP, _PANEL, _ALONG = 90.0, 66.0, 190.0, 230.0  # pixels high
 LETTER = 6.6  # wide
 _COLUMNS = 600  # of a map
 _NUMBERED = 12  # storeys with a number
@@ -32,6 +32,7 @@ class Shown:
     title: str
     drawn: Svg
     curves: tuple[tuple[int, str], ...] = ()
+    strip: bool = False
 
 
 def picture(number: str, title: str, told: str, height: float, *content: Svg, **attributes: str | float) -> Svg:
@@ -50,11 +51,7 @@ def picture(number: str, title: str, told: str, height: float, *content: Svg, **
 
 def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Timescale, *, last: bool) -> Shown:
     """The curves of a panel over time."""
-    height = _LOAD if given.height < 2 else _PANEL
-    values = np.concatenate([history.points[:, 1] for history in given.histories])
-    if not given.marks:  # a load
-        values = np.append(values, 0.0)
-    low, high = spread(float(np.min(values)), float(np.max(values)), 0.14 if given.marks else 0.08)
+    height, (low, high) = _size(given)
     grid = Grid.of(columns, until, low, high)
     x = PlotAxis(0.0, until * scale.per_tau, LEFT, WIDTH - RIGHT)
     y = PlotAxis(grid.low, grid.high, TOP + height, TOP)
@@ -67,9 +64,12 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
     )
     spots = sorted((value, x.at(tau * scale.per_tau), mark.text) for mark in given.marks for tau, value in mark.points)
     marks = [_spot(at, y.at(value)) for value, at, _ in spots]
-    marks += [_beside(at, y.at(value), words, above) for (value, at, words), above in _ends(spots)]
+    if given.limits:
+        marks.append(text(LEFT + 4, TOP + 11, given.told, "start", class_="halo"))
+    else:
+        marks += [_beside(at, y.at(value), words, above) for (value, at, words), above in _ends(spots)]
     told = " ".join(_told(history, scale) for history in given.histories)
-    quantity = given.title.split("\n")[0]
+    quantity = given.histories[0].name if given.limits else given.title.split("\n")[0]
     title = f"{quantity} over time".capitalize()
     svg = picture(
         number,
@@ -87,7 +87,23 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
         data_low=repr(grid.low),
         data_high=repr(grid.high),
     )
-    return Shown(title, svg, tuple((look, history.name) for look, history in enumerate(given.histories)))
+    return Shown(
+        title,
+        svg,
+        strip=given.limits is not None,
+        curves=tuple((look, history.name) for look, history in enumerate(given.histories)),
+    )
+
+
+def _size(given: PlotPanel) -> tuple[float, tuple[float, float]]:
+    """How high a panel is, in pixels, and its values from bottom to top."""
+    if given.limits:  # a strip, with room for a line above its curve
+        low, high = spread(*given.limits, 0.06)
+        return _STRIP, (low, high + 0.4 * (high - low))
+    values = np.concatenate([history.points[:, 1] for history in given.histories])
+    if given.marks:
+        return _PANEL, spread(float(np.min(values)), float(np.max(values)), 0.14)
+    return _LOAD, spread(min(0.0, float(np.min(values))), max(0.0, float(np.max(values))), 0.08)
 
 
 def _told(history: History, scale: Timescale) -> str:
