@@ -54,10 +54,12 @@ class PlotPanel:
 
     @property
     def told(self) -> str:
-        """Of a strip: the curve's name and unit, and its extremes."""
-        (history,) = self.histories
-        name = f"{history.name}, {history.output.unit}" if history.output.unit else history.name
-        return "   ".join([name, *(mark.text for mark in self.marks)])
+        """Of a strip: the curve's name, and its extremes."""
+        return "   ".join([self.histories[0].name, *(mark.text for mark in self.marks)])
+
+    def goes_on(self, before: PlotPanel) -> bool:
+        """Whether it and the one before are strips of the same quantity."""
+        return None is not self.limits == before.limits
 
 
 def panels(histories: Histories, most: int = MOST_PANELS) -> list[PlotPanel]:

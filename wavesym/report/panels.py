@@ -19,7 +19,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from wavesym.numbers.doubles import nearest
-from wavesym.report.groups import PlotPanel, load_panel, notes, panels
+from wavesym.report.groups import PlotPanel, load_panel, notes, panels, restless
 from wavesym.report.histories import Histories, History, Points
 from wavesym.report.labels import Curve, label
 from wavesym.report.reduction import reduced
@@ -87,7 +87,7 @@ def stacked(
     """Panels one under the other, lines of text above and below them; all in tau, drawn in the time of `scale`."""
     panels, until = [_clocked(panel, scale) for panel in panels], until * scale.per_tau
     instants = [replace(instant, tau=instant.tau * scale.per_tau) for instant in instants]
-    gaps = [0.0 if panel.limits and before.limits else _GAP for before, panel in pairwise(panels)]
+    gaps = [0.0 if panel.goes_on(before) else _GAP for before, panel in pairwise(panels)]
     gaps = [_GAP, *gaps]
     above, under = (len(title) + 0.9) * _LINE - _GAP, _AXIS + (len(below) + 0.6) * _LINE * bool(below)
     height = above + sum(gaps) + sum(panel.height for panel in panels) + under
@@ -184,10 +184,10 @@ def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Cu
 
 def _curve(axes: Axes, history: History, dashes: _Dashes, color: str) -> None:
     """A curve between its fronts, thin upright lines where it jumps; thin and light where it is formal."""
-    until = float(history.points[-1, 0])
+    until, thick = float(history.points[-1, 0]), 0.9 if restless(history) else 1.4
     for stretch in (reduced(each, until, _COLUMNS) for each in history.stretches):
         tau = stretch[:, 0]
-        for formal, width in ((False, 1.4), (True, 0.7)):
+        for formal, width in ((False, thick), (True, 0.7)):
             part = stretch[tau >= history.formal if formal else tau <= history.formal]
             if len(part):
                 axes.plot(*part.T, color=color, linestyle=dashes, linewidth=width, alpha=_ALPHA[formal])
