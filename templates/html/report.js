@@ -58,7 +58,7 @@
     const small = high - low < 1e-4 || Math.max(Math.abs(low), Math.abs(high)) >= 1e6;
     const value = (step) => high - step / steps * (high - low);
     const zero = Math.round(high / (high - low) * steps);
-    const number = (step) => step === zero ? "0" : small ? value(step).toExponential(3) : value(step).toFixed(digits);
+    const number = (step) => Math.abs(step - zero) < 0.6 ? "0" : small ? value(step).toExponential(3) : value(step).toFixed(digits);
     const places = plot.closest("figure").querySelectorAll(".value");
     return Array.from(plot.querySelectorAll(".curve"), (curve, k) => {
       const parts = Array.from(curve.querySelectorAll(".real, .formal")).flatMap((path) => lines(path.getAttribute("d")));

@@ -55,7 +55,7 @@ class PlotPanel:
     @property
     def told(self) -> str:
         """Of a strip: the curve's name, and its extremes."""
-        return "   ".join([self.histories[0].name, *(mark.text for mark in self.marks)])
+        return f"{self.histories[0].name}: {', '.join(mark.text for mark in self.marks)}"
 
     def goes_on(self, before: PlotPanel) -> bool:
         """Whether it and the one before are strips of the same quantity."""

@@ -24,7 +24,7 @@ from wavesym.report.timescale import Timescale, timescale
 from wavesym.scene import Scene, lower
 
 _OUTPUTS = 48  # that are drawn
-_VERTICES = 50_000  # of all curves together: what keeps the page small
+_VERTICES = 80_000  # of all curves together: what keeps the page small
 _COLUMNS = (300, 1200)  # of a picture of histories, at least and at most
 _LOADS = 8
 
@@ -154,6 +154,11 @@ def _count(number: int, one: str, many: str = "") -> str:
 
 
 def _bound(program: Program) -> str:
+    if not program.proved:
+        return (
+            f"{program.error_bound:.2g}, an estimate that is not proved: so far from the exact solution of this model, in "
+            "parts of its own largest value, a curve of this page may be."
+        )
     return (
         f"{program.error_bound:.2g}, proved: at no time is a curve of this page farther from the exact solution of "
         "this model than this part of its own largest value. Whether the model is the structure is another question."

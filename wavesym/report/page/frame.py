@@ -79,7 +79,7 @@ class Frame:
         upward: Sequence[tuple[float, str]] = self.places or []
         if self.places is None:
             power = self.y.power
-            upward = [(at, number) for at, number in self.y.ticks(max(2, int((bottom - top) / 32)), power)]
+            upward = [(at, number) for at, number in self.y.ticks(max(3, int((bottom - top) / 32)), power)]
             if power:
                 parts.append(text(left - 6, top - 1, f"\u00d710{str(power).translate(_RAISED)}", "end"))
         for value, number in upward:

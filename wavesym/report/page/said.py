@@ -34,8 +34,8 @@ def extremes_told(model: Model, scale: Timescale) -> Told:
         found = summarised(model)
     except WavesymError as error:
         return Told((), (), (f"Not found: {error}",))
-    when = f"{scale.symbol}, {scale.unit}" if scale.unit else scale.symbol
-    head = ("Output", "Least", when, "Greatest", when, "First moves")
+    when = f"{scale.symbol} in {scale.unit}" if scale.unit else scale.symbol
+    head = ("Output", "Least", f"at {when}", "Greatest", f"at {when}", f"First moves at {when}")
     rows = (
         (
             f"{each.name}, {each.unit}" if each.unit else each.name,
