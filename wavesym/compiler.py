@@ -417,8 +417,9 @@ def _contact_warnings(model: Model) -> list[str]:
 def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
     """Draw a scene as .svg, .png or .pdf; what the picture leaves out, line by line.
 
-    `kind`: "history", the outputs over tau, or "xt", place x time of all rods. SceneError for another suffix, before
-    the work; ToleranceError, CostError where nothing could be generated either.
+    `kind`: "history", the outputs over time; "xt", place x time of all rods; "envelope", the least and greatest along
+    the chain; "map", place x time as colours, for long horizons. SceneError for another suffix, before the work;
+    ToleranceError, CostError where nothing could be generated either.
     """
     from wavesym.report.saving import picture_format, save
 
@@ -428,12 +429,38 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
 
         save(xt.draw(lower(scene), scene.system.lines), path)
         return []
-    from wavesym.report.histories import histories
-    from wavesym.report.panels import draw, notes
+    if kind in ("envelope", "map"):
+        from wavesym.report import envelope, heatmap
+        from wavesym.report.along import along
 
-    made = histories(lower(scene))
-    save(draw(made), path)
+        found = along(scene)
+        if kind == "envelope":
+            save(envelope.draw(lower(scene), found), path)
+        else:
+            from wavesym.report.loads import load_histories
+
+            model = lower(scene)
+            save(heatmap.draw(model, found, load_histories(model, scene.scale)), path)
+        return []
+    from wavesym.report.groups import notes
+    from wavesym.report.histories import histories
+    from wavesym.report.loads import load_histories
+    from wavesym.report.panels import draw
+
+    model = lower(scene)
+    made = histories(model)
+    save(draw(made, load_histories(model, scene.scale)), path)
     return notes(made)
+
+
+def report(scene: Scene, path: Path, text: str) -> None:
+    """Write a scene, and what happens in it, as one page of HTML; `text` is what the scene was read from.
+
+    ToleranceError, CostError where nothing could be generated either.
+    """
+    from wavesym.report.page.document import page
+
+    write_whole({path: page(scene, text)})
 
 
 def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[list[str], list[str]]:

@@ -30,6 +30,7 @@ COMMANDS = (
     "spectrum",
     "verify",
     "plot",
+    "report",
     "chart",
     "stability",
 )
