@@ -35,7 +35,7 @@ from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
 from wavesym.fields.table import shown
 from wavesym.model.symbolic import generic, symbolic
-from wavesym.numbers.doubles import fraction, nearest, rational
+from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
 from wavesym.results.response import Response
@@ -102,6 +102,7 @@ def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
 def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
     """The unit responses of all sources of the scene's system."""
     model = lower(scene)
+    model.refuse_damping()
     until = rational(model.horizon())
     if model.chain is None:
         return network_table(model.network, intervals, until)
@@ -119,6 +120,7 @@ def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tu
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """
     model = lower(scene)
+    model.refuse_damping()
     symbols = in_rates(symbolic(_named(model, "--symbolic", "tables")))
     until = rational(model.horizon())
     refuse_costly(symbols.chain, intervals, until)
@@ -148,6 +150,7 @@ def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
     if isinstance(source, str):
         return derivation(source, m, format)
     model = lower(source)
+    model.refuse_damping()
     if model.chain is None:
         return network_derivation(model, format)
     return scene_derivation(source.name, symbolic(model.chain), format)
@@ -169,6 +172,7 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
 
 def _named(model: Model, option: str, command: str) -> Chain:
     """The chain as the paper has it. UnservedError where it is written out."""
+    model.refuse_damping()
     if model.chain is None:
         raise UnservedError(
             f"system.type: chain given with {option}, collision, drive or building expected (`{command}` without "
@@ -271,8 +275,8 @@ def _instants(model: Model, samples: int, at: Sequence[float] | None) -> Iterato
     elif at is not None:
         yield from ((time, clock.tau(time, until)) for time in at)
     else:
-        times = (clock.time(until * k / max(samples - 1, 1)) for k in range(samples))
-        yield from zip(times, grid(model, samples), strict=True)
+        taus = (until * k / max(samples - 1, 1) for k in range(samples))
+        yield from ((clock.time(tau), not_below(tau)) for tau in taus)
 
 
 def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from flint import fmpq
 
+from wavesym.model.damping import Damping
 from wavesym.model.loads import Applied, merged
 from wavesym.model.model import Labels, Model
 from wavesym.model.probe import Probe
@@ -31,7 +32,14 @@ def lower(scene: Scene) -> Model:
         tolerance=rational(output.tolerance),
         labels=_labels(scene),
         clock=scene.scale.clock if scene.scale else None,
+        damping=_damping(scene),
     )
+
+
+def _damping(scene: Scene) -> Damping | None:
+    """That of the modes, where it is any."""
+    damping: Damping | None = getattr(scene.system, "damping", None)  # a collision has none
+    return damping if damping and any(damping.ratios) else None
 
 
 def _labels(scene: Scene) -> Labels:
@@ -40,7 +48,7 @@ def _labels(scene: Scene) -> Labels:
         said["units"] = scene.scale.canonical
     canonical = json.dumps(said, sort_keys=True, separators=(",", ":"))
     return Labels(
-        system={"type": scene.system.type, **scene.system.choices},
+        system={"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)},
         loads=scene.physical.loads if scene.physical else tuple(load.told for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
     )

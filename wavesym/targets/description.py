@@ -60,7 +60,8 @@ class Description:
     `name_size` is what the longest name of an output takes in C; `command` makes the same file again.
     `real` and `numpy_real` are the type of all values in C and in NumPy; numbers that C reads have its suffix.
     Of a scene with units `seconds` is what one tau is, in Python, and `c_seconds` in C; else these are empty.
-    Where contacts open and close, `events` says what they do, and `event_count` how often; else that is empty.
+    `trust` says what bounds of errors are: "proved" or "estimated". Where contacts open and close, `events` says what
+    they do, and `event_count` how often; else that is empty.
     """
 
     name: str
@@ -72,6 +73,7 @@ class Description:
     reason: str
     units: str
     tolerance: str
+    trust: str
     outputs: tuple[NamedOutput, ...]
     output_count: str
     name_size: str
@@ -103,6 +105,7 @@ def describe(program: Program) -> Description:
         reason=origin.reason,
         units=_units(model),
         tolerance=_tolerance(model),
+        trust="proved" if program.proved else "estimated",
         outputs=tuple(
             NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)), probe.unit, probe.told)
             for output, constant, probe in zip(program.outputs, constants(names), model.probes, strict=True)

@@ -15,11 +15,13 @@ from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.collision import PhysicalCollision
 from wavesym.scene.physical.drive import PhysicalDrive
-from wavesym.scene.physical.loads import dimensionless, read, told
+from wavesym.scene.physical.loads import dimensionless, read
 from wavesym.scene.physical.measured import measured, placed, plain
 from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
+from wavesym.scene.physical.said import words
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
+from wavesym.systems import SYSTEMS
 
 _SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
     "collision": PhysicalCollision,
@@ -40,9 +42,14 @@ class PhysicalScene:
     kappa: tuple[Fraction, ...]
 
     @property
+    def system(self) -> dict[str, str]:
+        """What it is made of, by key."""
+        return {key: words(value) for key, value in self.said["system"].items() if key != "type"}
+
+    @property
     def loads(self) -> tuple[str, ...]:
         """A line for each load."""
-        return tuple(map(told, self.said.get("load", ())))
+        return tuple(map(words, self.said.get("load", ())))
 
 
 def physical(fields: Mapping[str, Any]) -> PhysicalScene:
@@ -53,8 +60,9 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     found = _system(fields.get("system"), units)
     with placed("units"):
         results = Results.of(units, found.kind)
+    with placed("system"):  # before loads and places on it
+        made["system"] = SYSTEMS[str(found.system["type"])].model_validate(found.system)
     seconds = found.rods.seconds
-    made["system"] = found.system
     said = dict(fields)
     if isinstance(loads := fields.get("load"), list | tuple):
         said["load"] = [_read(load, k) for k, load in enumerate(loads)]
