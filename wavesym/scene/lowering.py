@@ -31,6 +31,7 @@ def lower(scene: Scene) -> Model:
         tolerance=rational(output.tolerance),
         labels=_labels(scene),
         clock=scene.scale.clock if scene.scale else None,
+        inputs=_inputs(scene),
         spacing=min((rational(load.step) for load in scene.load if load.step), default=None),
     )
 
@@ -52,6 +53,15 @@ def _loads(scene: Scene) -> tuple[Applied, ...]:
     if not scene.system.load_kinds:
         return (Applied("impact", fmpq(0), fmpq(1)),)
     return merged(unit for load in scene.load for unit in load.units())
+
+
+def _inputs(scene: Scene) -> dict[str, tuple[fmpq, str]]:
+    given = scene.physical.inputs if scene.physical else ()
+    return {
+        source: (rational(factor), unit)
+        for load, (factor, unit) in zip(scene.load, given, strict=False)
+        for source in load.sources
+    }
 
 
 def _probe(output: Observable, scale: Scale | None) -> Probe:
