@@ -24,9 +24,9 @@ _DEFINITION = {
     "velocity": "(l / (c {0}\u2080)) \u2202{0}/\u2202t",
     "displacement": "{0} / {0}\u2080",
     "acceleration": "(l\u00b2 / (c\u00b2 {0}\u2080)) \u2202\u00b2{0}/\u2202t\u00b2",
-    "force": "(l / (E A {0}\u2080)) force",
+    "force": "impedance \u00d7 strain",
     "drift": "\u0394{0} / {0}\u2080",
-    "relative": "({0} \u2212 {0} of the ground) / {0}\u2080",
+    "relative": "({0} \u2212 ground) / {0}\u2080",
 }
 
 
