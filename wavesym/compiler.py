@@ -35,8 +35,8 @@ from wavesym.exact.network_table import NetworkTable, network_table
 from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
-from wavesym.fields.table import shown
 from wavesym.fields.loads import SampledLoad
+from wavesym.fields.table import shown
 from wavesym.model.symbolic import generic, symbolic
 from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 from wavesym.programs.making import make

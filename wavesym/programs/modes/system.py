@@ -13,7 +13,7 @@ from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.modes.damped import damped
+from wavesym.programs.modes.damped import Damped, damped
 from wavesym.programs.modes.loads import LinearLoads, linear_loads
 from wavesym.programs.modes.modal import ModalSystem, Numbers
 from wavesym.programs.modes.roughness import Roughness, roughness
