@@ -8,7 +8,7 @@ from wavesym.documents.advice import WAVES, Advice, Candidate
 from wavesym.errors import WavesymError
 from wavesym.model.model import Model
 from wavesym.report.timescale import Timescale
-from wavesym.results.summary import When, Peak, summarised
+from wavesym.results.summary import Peak, When, summarised
 from wavesym.rivals.advice import advise
 
 _TOLERANCE = 0.01  # of the largest value: what an engineer would not see
