@@ -101,6 +101,7 @@ def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
 def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
     """The unit responses of all sources of the scene's system."""
     model = lower(scene)
+    model.refuse_damping()
     until = rational(model.horizon())
     if model.chain is None:
         return network_table(model.network, intervals, until)
@@ -118,6 +119,7 @@ def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tu
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """
     model = lower(scene)
+    model.refuse_damping()
     symbols = in_rates(symbolic(_named(model, "--symbolic", "tables")))
     until = rational(model.horizon())
     refuse_costly(symbols.chain, intervals, until)
@@ -147,6 +149,7 @@ def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
     if isinstance(source, str):
         return derivation(source, m, format)
     model = lower(source)
+    model.refuse_damping()
     if model.chain is None:
         return network_derivation(model, format)
     return scene_derivation(source.name, symbolic(model.chain), format)
@@ -168,6 +171,7 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
 
 def _named(model: Model, option: str, command: str) -> Chain:
     """The chain as the paper has it. UnservedError where it is written out."""
+    model.refuse_damping()
     if model.chain is None:
         raise UnservedError(
             f"system.type: chain given with {option}, collision, drive or building expected (`{command}` without "

@@ -80,6 +80,11 @@ class Model:
                 found[Gauge("velocity", probe.rod, probe.place, probe.point)] = None
         return tuple(found)
 
+    def refuse_damping(self) -> None:
+        """UnservedError where modes are damped: for what knows nothing but waves."""
+        if self.damping is not None:
+            raise UnservedError("system.damping: given, none expected (only modes serve it)")
+
     def horizon(self, real: Real = DOUBLE) -> float:
         """The last tau in `real` numbers: the smallest of them that is not below `until`."""
         return real.not_below(self.until)

@@ -69,6 +69,7 @@ class NetworkProblem:
 
 def network_problem(model: Model) -> NetworkProblem:
     """The network of a model with its loads. UnservedError where contacts open and close."""
+    model.refuse_damping()
     network = model.network
     if network.contacts:
         raise UnservedError("system: a contact that opens and closes given, none expected")

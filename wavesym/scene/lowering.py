@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from flint import fmpq
 
+from wavesym.model.damping import Damping
 from wavesym.model.loads import Applied, merged
 from wavesym.model.model import Labels, Model
 from wavesym.model.probe import Probe
@@ -31,9 +32,16 @@ def lower(scene: Scene) -> Model:
         tolerance=rational(output.tolerance),
         labels=_labels(scene),
         clock=scene.scale.clock if scene.scale else None,
+        damping=_damping(scene),
         inputs=_inputs(scene),
         spacing=min((rational(load.step) for load in scene.load if load.step), default=None),
     )
+
+
+def _damping(scene: Scene) -> Damping | None:
+    """That of the modes, where it is any."""
+    damping: Damping | None = getattr(scene.system, "damping", None)  # a collision has none
+    return damping if damping and any(damping.ratios) else None
 
 
 def _labels(scene: Scene) -> Labels:

@@ -192,6 +192,7 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
 
     CostError where load times have too many different fractional parts.
     """
+    model.refuse_damping()
     tau_max = model.horizon(real)
     columns = model.light_cone(rational(max(tau_max, float(windows))))
     nodes = [model.named.nodes[x] for x in columns]

@@ -64,14 +64,14 @@ def _partial(terms: Numbers) -> float:
     if count <= 32:
         points = _FINE * count
         turns = np.exp(-2j * np.pi / points * np.outer(np.arange(points), np.arange(count)))
-        return float(np.abs(np.cumsum(turns * terms, axis=1)).max()) / np.cos(np.pi / (2 * _FINE))
+        return float(np.abs(np.cumsum(turns * terms, axis=1)).max() / np.cos(np.pi / (2 * _FINE)))
     length = int(np.sqrt(count)) if count <= 4096 else count // 64
     points = 1 << int(np.ceil(np.log2(_FINE * count)))
     largest, sum_before = 0.0, np.zeros(points, complex)
     at = np.arange(points)
     for start in range(0, count, length):
         block = terms[start : start + length]
-        before = float(np.abs(sum_before).max()) / np.cos(np.pi * count / (2 * points))
+        before = float(np.abs(sum_before).max() / np.cos(np.pi * count / (2 * points)))
         largest = max(largest, before + _partial(block))
         sum_before += np.fft.fft(block, points) * np.exp(-2j * np.pi / points * ((at * start) % points))
     return largest

@@ -155,6 +155,7 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
     """
     network = model.network
     network.refuse_contacts()
+    model.refuse_damping()
     tau_max = model.horizon(real)
     until = rational(tau_max)
     reached = model.reached(until)
