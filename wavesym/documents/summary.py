@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from wavesym.results.summary import When, OutputSummary, Peak, Summary
+from wavesym.results.summary import OutputSummary, Peak, Summary, When
 
 FORMATS = ("text", "json")
 

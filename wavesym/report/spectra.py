@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from wavesym.results.spectrum import Spectra
 
 
-def _plain(period: float, _: int) -> str:
+def _plain(period: float, _: float) -> str:
     """A number of ticks as people write it; 7 and 9 of a decade stand too close."""
     return f"{period:g}" if f"{period:e}"[0] in "123468" else ""
 
