@@ -4,11 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from flint import fmpq
 from scipy.linalg import expm, sqrtm
 
 from wavesym.model.damping import Damping
 from wavesym.numbers.doubles import rational
+from wavesym.programs.making import make
+from wavesym.programs.request import Request
+from wavesym.rivals import modal_elements
 from wavesym.rivals.advice import springs
+from wavesym.rivals.lumped import DiscreteModel
+from wavesym.rivals.mass import Elements
+from wavesym.rivals.sums import summing
 from wavesym.scene import Scene, lower
 
 FLOOR, ROOF = 0.3, 0.2  # kappa
@@ -71,3 +78,29 @@ def test_modes_are_damped_relative_to_the_ground(ratio):
     some = np.arange(0, len(taus), 11)
     np.testing.assert_allclose(values[:, some], by_hand(1.0, taus[some], ratio), rtol=0, atol=1e-9)
     assert np.max(np.abs(values[:, some] - by_hand(1.0, taus[some], 0.9 * ratio))) > 1e-3
+
+
+def test_elements_come_to_what_damped_modes_are():
+    """Errors fall with the square of the elements' length; where that is taken off, little is left."""
+    scene = Scene(
+        name="frame",
+        system={"type": "building", "m": 4, "kappa": ["1/20"] * 5, "base": "ground", "damping": ["1/20", "1/50"]},
+        load=[{"spacing": "5.1", "samples": [f"{k * np.sin(k / 3) * np.exp(-k / 20):.6f}" for k in range(80)]}],
+        output={"until": 400, "acceleration": [1, 4], "force": [0], "drift": [2], "relative": [4]},
+    )
+    model = lower(scene).tolerating(fmpq(1, 10**7))
+    read = summing(modal_elements.RIVAL).states(model)
+
+    def elements(count):
+        taus, values = DiscreteModel(Elements(read.problem, np.full(4, count))).history(5.1)
+        return taus, read.added(values, taus)
+
+    (taus, coarse), (_, fine), (_, finer) = (elements(count) for count in (4, 8, 16))
+    right = make(model, Request(evaluator="modes")).evaluate(taus)
+    sizes = np.max(np.abs(right), axis=1, keepdims=True)
+    first, second = (np.max(np.abs(values - right) / sizes) for values in (coarse, fine))
+    assert 3.5 < first / second < 4.5
+    assert np.max(np.abs((4 * finer - fine) / 3 - right) / sizes) < 1e-6
+    light = replace(model, damping=Damping((fmpq(1, 21),)))
+    wrong = make(light, Request(evaluator="modes")).evaluate(taus)
+    assert np.max(np.abs(wrong - right) / sizes) > 1e-3
