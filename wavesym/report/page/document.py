@@ -156,8 +156,8 @@ def _count(number: int, one: str, many: str = "") -> str:
 def _bound(program: Program) -> str:
     if not program.proved:
         return (
-            f"{program.error_bound:.2g}, an estimate, not proved: so far from the exact solution of this model, in "
-            "parts of its own largest value, a curve of this page may be."
+            f"{program.error_bound:.2g}, an estimate that is not proved: so far from the exact solution of this model, "
+            "in parts of its own largest value, a curve of this page may be."
         )
     return (
         f"{program.error_bound:.2g}, proved: at no time is a curve of this page farther from the exact solution of "
