@@ -21,7 +21,7 @@ import wavesym
 ROOT = Path(wavesym.__file__).parents[1]
 SCENES = ("building_half_roof", "building_m2", "collision_m4", "drive_equal", "drive_m1")
 CHAINS = ("damped_building", "geared_drive", "stepped_shaft")
-HEAVY = {"sympy", "numpy", "scipy", "flint", "pydantic", "jinja2"}
+HEAVY = {"sympy", "numpy", "scipy", "flint", "pydantic", "jinja2", "pint"}
 
 
 def run_python(code: str) -> str:

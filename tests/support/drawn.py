@@ -50,7 +50,8 @@ def loads(draw, system):
         return draw(st.lists(values, min_size=len(times), max_size=len(times)))
 
     if system["type"] == "drive":
-        return [{"body": draw(st.integers(1, system["m"] + 1)), "times": times, "steps": numbers(_weights)}]
+        moment = {"body": draw(st.integers(1, system["m"] + 1)), "times": times, "steps": numbers(_weights)}
+        return [moment | draw(st.sampled_from([{}, {"ramps": numbers(_weights)}]))]
     return [{"times": times, "a": numbers(_weights), "b": numbers(st.one_of(st.just(Fraction(0)), _weights))}]
 
 

@@ -80,9 +80,9 @@ def _load(system: Collision | Drive | Building, source: str) -> dict[int, Decays
     if isinstance(system, Collision):
         return {}
     if isinstance(system, Drive):
-        body = int(source.removeprefix("M"))
+        power, body = "MR".index(source[0]), int(source[1:])
         size = system.kappa[0] * system.inertia[0] / system.inertia[body - 1]
-        return {body - 1: Decays.power(0, _q(-size if body == system.m + 1 else size))}
+        return {body - 1: Decays.power(power, _q(-size if body == system.m + 1 else size))}
     power = "ab".index(source)
     if system.base == "force":
         # the end's strain, 2 b - q, is the acceleration over kappa_0

@@ -58,7 +58,7 @@ def assert_same(found, *parts):
 
 def weighed(load, factor):
     def times_factor(key, numbers):
-        return [factor * each for each in numbers] if key in ("a", "b", "steps") else numbers
+        return [factor * each for each in numbers] if key in ("a", "b", "steps", "ramps") else numbers
 
     return [{key: times_factor(key, numbers) for key, numbers in table.items()} for table in load]
 
@@ -131,12 +131,15 @@ def test_later_loads_do_the_same_later(drawn, shift):
 
 
 @settings(max_examples=10)
-@given(systems(kinds=("building",), largest=3))
+@given(systems(kinds=("building", "drive"), largest=3))
 def test_a_ramp_does_what_a_step_has_done(system):
-    """b tau is the integral of a: velocities under the one are displacements under the other."""
-    step = made(system, [{"times": [0], "a": [1], "b": [0]}], quantities=("displacement",))
-    ramp = made(system, [{"times": [0], "a": [0], "b": [1]}], quantities=("velocity",))
-    np.testing.assert_array_equal(tables(ramp), windows(step))
+    """A ramp is the integral of a step: velocities under the one are displacements under the other."""
+    of = {"body": 1} if system["type"] == "drive" else {}
+    names = ("steps", "ramps") if of else ("a", "b")
+    step, ramp = ({**of, "times": [0], name: [1]} for name in names)
+    displacement = made(system, [step], quantities=("displacement",))
+    velocity = made(system, [ramp], quantities=("velocity",))
+    np.testing.assert_array_equal(tables(velocity), windows(displacement))
 
 
 @settings(max_examples=5)

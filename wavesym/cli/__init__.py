@@ -16,7 +16,24 @@ import click
 from wavesym import __version__
 from wavesym.errors import WavesymError, did_you_mean
 
-COMMANDS = ("scenes", "init", "inspect", "derive", "tables", "generate", "run", "verify", "plot", "chart", "stability")
+COMMANDS = (
+    "scenes",
+    "init",
+    "record",
+    "inspect",
+    "advise",
+    "derive",
+    "tables",
+    "generate",
+    "run",
+    "summary",
+    "spectrum",
+    "verify",
+    "plot",
+    "report",
+    "chart",
+    "stability",
+)
 
 DONE, FAILED, WRONG_REQUEST, INTERRUPTED = 0, 1, 2, 130
 

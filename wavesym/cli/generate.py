@@ -15,7 +15,7 @@ from wavesym.targets import LANGUAGES
 if TYPE_CHECKING:
     from wavesym.scene import Scene
 
-EVALUATORS = ["auto", "closed", "pieces", "march"]
+EVALUATORS = ["auto", "closed", "pieces", "march", "modes"]
 PRECISIONS = ["double", "single"]
 AIMS = ["speed", "size"]
 MOST_WINDOWS = 2**31 - 2

@@ -28,10 +28,18 @@ _DECIMAL = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
     type=click.IntRange(1, MOST_SAMPLES),
     help=f"How many equally spaced tau on [0, until].  [default: {DEFAULT_SAMPLES}]",
 )
-@click.option("--at", type=PATH, metavar="FILE", help="File of the tau to use instead: one decimal a line, # comments.")
+@click.option(
+    "--at",
+    type=PATH,
+    metavar="FILE",
+    help="File of the tau (with [units]: times) to use instead: one decimal a line, # comments.",
+)
 @click.option("-o", "out", type=PATH, metavar="OUT.csv", help="Where the values go.  [default: standard output]")
 def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) -> None:
-    """Print the outputs of a scene as CSV, right to the last bit.
+    """Print the outputs of a scene as CSV, right to the last bit where that takes no minutes.
+
+    Else they are those of a program, which standard error names with its bound. With [units] in the scene it speaks
+    seconds.
 
     \b
     Example:
@@ -48,7 +56,7 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
         refuse_scene(out)
     with progress(f"run {scene.name}"):
         warnings = [*compiler.warnings(scene, taus or ()), *compiler.events(scene)]
-        lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus)
+        lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus, warnings.append)
         if out is not None:
             write_whole({out: lines})
     for warning in warnings:
@@ -59,8 +67,9 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
 
 def _decimals(path: Path) -> list[float]:
     """The numbers in a file, each as a double; SceneError names the first line that holds something else."""
+    from wavesym.errors import SceneError
     from wavesym.fields.table import shown
-    from wavesym.scene import SceneError, read_text
+    from wavesym.reading import read_text
 
     file, text = read_text(path, "a file with one decimal a line")
     taus: list[float] = []

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
+from typing import ClassVar, Self
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import Field, field_validator, model_validator
 
 from wavesym.fields.numbers import Numbers, Positive
 from wavesym.fields.table import SceneTable, shown, wrong
@@ -19,6 +20,16 @@ _LONG = 440  # characters of a load that is written out
 
 class Load(SceneTable):
     """A load of a scene."""
+
+    @property
+    @abstractmethod
+    def sources(self) -> tuple[str, str]:
+        """The unit loads that it is made of: a step, and a ramp."""
+
+    @property
+    def step(self) -> Fraction | None:
+        """The time between its samples, where it has any."""
+        return None
 
     def refused(self, m: int) -> tuple[str, str] | None:
         """What is wrong with it on a system of m elements, and under which key; None where nothing is."""
@@ -38,7 +49,12 @@ LoadKinds = tuple[type[Load], ...]
 
 
 class TimedLoad(Load):
-    """A load that changes at given times, with a number in each other list for each of them."""
+    """A load that changes at given times, with a number in each other list for each of them.
+
+    `lists` are the names of these lists: of the steps, and of the ramps.
+    """
+
+    lists: ClassVar[tuple[str, str]] = ("steps", "ramps")
 
     times: Numbers = Field(description="a list of times")
 
@@ -52,13 +68,26 @@ class TimedLoad(Load):
                 raise wrong(f"{shown(time)} given, more than the {shown(before)} before it expected", k)
         return times
 
-    @field_validator("steps", "a", "b", check_fields=False)
-    @classmethod
-    def _one_a_time(cls, numbers: tuple[Fraction, ...], info: ValidationInfo) -> tuple[Fraction, ...]:
-        times = info.data.get("times")
-        if times is not None and len(numbers) != len(times):
-            raise wrong(f"{len(numbers)} numbers given, {len(times)} expected (as many as times)")
-        return numbers
+    @model_validator(mode="after")
+    def _one_a_time(self) -> Self:
+        for name, numbers in zip(self.lists, self._numbers, strict=True):
+            if numbers and len(numbers) != len(self.times):
+                raise wrong(f"{len(numbers)} numbers given, {len(self.times)} expected (as many as times)", name)
+        if self.times and not any(self._numbers):
+            raise wrong(f"no numbers given, {' or '.join(self.lists)} expected")
+        return self
+
+    @property
+    def _numbers(self) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]]:
+        steps, ramps = self.lists
+        return getattr(self, steps), getattr(self, ramps)
+
+    def units(self) -> Iterator[Applied]:
+        """The load as unit responses."""
+        given = [(source, numbers) for source, numbers in zip(self.sources, self._numbers, strict=True) if numbers]
+        for k, time in enumerate(self.times):
+            for source, numbers in given:
+                yield Applied(source, rational(time), rational(numbers[k]))
 
     @property
     def told(self) -> str:
@@ -82,16 +111,29 @@ class SampledLoad(Load):
             raise wrong("no numbers given, at least 1 expected")
         return samples
 
-    def sampled(self, step: str, ramp: str) -> Iterator[Applied]:
-        """The load as unit responses: the first sample, and the changes of slope."""
-        yield Applied(step, rational(Fraction(0)), rational(self.samples[0]))
-        slope = Fraction(0)
-        for k, (left, right) in enumerate(pairwise((*self.samples, self.samples[-1]))):
-            before, slope = slope, (right - left) / self.spacing
-            yield Applied(ramp, rational(k * self.spacing), rational(slope - before))
+    @property
+    def step(self) -> Fraction:
+        """The time between samples."""
+        return self.spacing
+
+    def units(self) -> Iterator[Applied]:
+        """The load as unit responses."""
+        return linear(Fraction(0), self.spacing, self.samples, self.sources)
 
     @property
     def told(self) -> str:
         """In a line."""
         last = (len(self.samples) - 1) * self.spacing
         return f"{len(self.samples)} samples at {self.spacing}, to tau = {last}"
+
+
+def linear(
+    start: Fraction, spacing: Fraction, samples: Sequence[Fraction], sources: tuple[str, str]
+) -> Iterator[Applied]:
+    """Straight lines through samples, constant after the last: a step to the first, then the changes of slope."""
+    step, ramp = sources
+    yield Applied(step, rational(start), rational(samples[0]))
+    slope = Fraction(0)
+    for k, (left, right) in enumerate(pairwise((*samples, samples[-1]))):
+        before, slope = slope, (right - left) / spacing
+        yield Applied(ramp, rational(start + k * spacing), rational(slope - before))

@@ -26,11 +26,15 @@ class Rod:
     velocity: Quantity = 0
 
 
+RAMPS = frozenset("bR")
+"""The kinds of unit loads that are ramps of others."""
+
+
 @dataclass(frozen=True)
 class UnitLoad:
     """A unit load at a node: `coefficients[k]` multiplies tau**k from tau = 0 on.
 
-    `kind` is "M" (a step of moment `number`), "a" or "b" (a unit step or ramp of the base acceleration).
+    `kind` is "M" or "R" (a unit step or ramp of moment `number`), "a" or "b" (of the base acceleration).
     """
 
     kind: str
@@ -39,7 +43,7 @@ class UnitLoad:
 
     @property
     def source(self) -> str:
-        """Its name in tables and loads: M1, M2, ... a, b."""
+        """Its name in tables and loads: M1, M2, ... R1, R2, ... a, b."""
         return self.kind if self.number is None else f"{self.kind}{self.number}"
 
 

@@ -18,12 +18,15 @@ from wavesym.programs.closed import ClosedForm
 from wavesym.programs.march.evaluator import MarchEvaluator
 from wavesym.programs.march.given import SMOOTH
 from wavesym.programs.march.plan import Plan, Stretch
+from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.pieces import Pieces
 from wavesym.programs.program import Driven, Program, Provenance
 from wavesym.programs.rings.evaluator import RingMarch
 
 
-def assemble(evaluator: ClosedForm | Pieces | MarchEvaluator | RingMarch, provenance: Provenance) -> Program:
+def assemble(
+    evaluator: ClosedForm | Pieces | MarchEvaluator | RingMarch | ModesEvaluator, provenance: Provenance
+) -> Program:
     """The program of an evaluator, whatever its bound."""
     match evaluator:
         case ClosedForm():
@@ -34,6 +37,19 @@ def assemble(evaluator: ClosedForm | Pieces | MarchEvaluator | RingMarch, proven
             return _march(evaluator, provenance)
         case RingMarch(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
             return Program("rings", evaluator.real, tau_max, outputs, tables, constants, evaluator.bytes, provenance)
+        case ModesEvaluator(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
+            return Program(
+                "modes",
+                evaluator.real,
+                tau_max,
+                outputs,
+                tables,
+                constants,
+                evaluator.bytes,
+                provenance,
+                sources=evaluator.told_sources,
+                proved=evaluator.proved,
+            )
 
 
 def _closed(form: ClosedForm, provenance: Provenance) -> Program:

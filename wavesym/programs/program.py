@@ -52,6 +52,15 @@ class ReferenceValues:
 
 
 @dataclass(frozen=True)
+class StreamedValues:
+    """What a stream gives from rest: values[output][k] after loads[k], each wrong by at most errors[output]."""
+
+    loads: tuple[tuple[float, ...], ...]
+    values: tuple[tuple[float, ...], ...]
+    errors: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Driven:
     """What holds of a march that is driven by hand for `windows`: each output's error per unit of a load."""
 
@@ -63,11 +72,13 @@ class Driven:
 class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
-    `kind` names its scheme: "closed", "pieces", "march", or "rings", the march of a chain that is written out. `tables`
+    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, or "modes".
+    `tables`
     are flat, by name, each number as it is written: indices are ints, all else floats of the format; which there are,
-    assembly.py says, and of rings rings/tables.py. `constants` are single numbers.
-    `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march, `sources` are the names of loads
-    that it can be given, and it is `whole` where no node was left out.
+    assembly.py says, of rings rings/tables.py, of modes modes/tables.py. `constants` are single numbers.
+    `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march and of modes, `sources` are the
+    names of loads that it can be given; a march is `whole` where no node was left out. Its error is `proved`, or an
+    estimate.
     """
 
     kind: str
@@ -78,10 +89,11 @@ class Program:
     constants: dict[str, float]
     bytes: int
     provenance: Provenance
-    reference: ReferenceValues | None = None
+    reference: ReferenceValues | StreamedValues | None = None
     sources: tuple[str, ...] = ()
     whole: bool = True
     driven: Driven | None = None
+    proved: bool = True
 
     @property
     def evaluator(self) -> str:

@@ -7,14 +7,17 @@ from collections.abc import Sequence
 from wavesym.exact.reference import Reference, beginning
 from wavesym.model.model import Model
 from wavesym.programs.choice import Evaluator
-from wavesym.programs.program import ReferenceValues
+from wavesym.programs.modes.evaluator import ModesEvaluator
+from wavesym.programs.program import ReferenceValues, StreamedValues
 
 _MOST_POINTS = 2000
 _MOST_VALUES = 40_000
 
 
-def reference_values(model: Model, evaluator: Evaluator) -> ReferenceValues:
+def reference_values(model: Model, evaluator: Evaluator) -> ReferenceValues | StreamedValues:
     """At the points that an evaluator wants checked. On very long horizons they cover only the beginning."""
+    if isinstance(evaluator, ModesEvaluator):
+        return evaluator.streamed()
     reference = Reference(beginning(model), evaluator.real)
     most = max(10, min(_MOST_POINTS, _MOST_VALUES // len(evaluator.outputs)))
     taus = _thinned([tau for tau in evaluator.check_points if tau <= reference.tau_max], most)

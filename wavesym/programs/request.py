@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from wavesym.errors import WavesymError
 from wavesym.numbers.reals import REALS
 
-KINDS = ("closed", "pieces", "march")
+KINDS = ("closed", "pieces", "march", "modes")
 AIMS = ("speed", "size")
 
 

@@ -31,7 +31,6 @@ def _load(table: object, k: int, system: SystemTable) -> Load:
 
 
 def _kind(table: object, kinds: Sequence[type[Load]]) -> type[Load]:
-    """The first kind, but for a table with a key that only another kind has."""
-    usual, *others = kinds
-    keys = table.keys() - usual.model_fields.keys() if isinstance(table, Mapping) else set()
-    return next((kind for kind in others if keys & kind.model_fields.keys()), usual)
+    """The kind that has most of the keys that the first, usual one does not have; that one where there are none."""
+    keys = table.keys() - kinds[0].model_fields.keys() if isinstance(table, Mapping) else set()
+    return max(kinds, key=lambda kind: len(keys & kind.model_fields.keys()))

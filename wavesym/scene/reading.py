@@ -11,8 +11,7 @@ from typing import Any
 
 from wavesym.errors import SceneError, did_you_mean
 from wavesym.fields.table import Written
-
-LARGEST_FILE = 16 * 2**20  # bytes
+from wavesym.reading import read_text
 
 _BUILTIN, _FIRST = (files("wavesym.scene") / folder for folder in ("builtin", "first"))
 
@@ -37,15 +36,34 @@ def read_toml(source: str | PathLike[str]) -> tuple[str, dict[str, Any]]:
 
     `source` is a path, `-` for standard input, or the name of a built-in scene. Raises SceneError.
     """
+    file, text = toml_text(source)
+    return file, _beside(os.path.dirname(os.fspath(source)), _parsed(file, text))
+
+
+def toml_text(source: str | PathLike[str]) -> tuple[str, str]:
+    """The name a source goes by in messages, and its text, not parsed yet. Raises SceneError."""
     path = os.fspath(source)
     if path in builtin_names():
-        return path, _parsed(path, _builtin(path).decode())
+        return path, _builtin(path).decode()
     try:
-        file, text = read_text(path, f"a TOML file, - or a built-in scene ({', '.join(builtin_names())})")
+        return read_text(path, f"a TOML file, - or a built-in scene ({', '.join(builtin_names())})")
     except SceneError as error:
         meant = did_you_mean(path, builtin_names())
         raise SceneError(f"{error.what}{meant and f'. {meant}'}", error.path, error.file) from None
-    return file, _parsed(file, text)
+
+
+def _beside(folder: str, fields: dict[str, Any]) -> dict[str, Any]:
+    """A scene's table with paths of records that count from the scene's folder."""
+    loads = fields.get("load")
+    if not isinstance(loads, list):
+        return fields
+    return {**fields, "load": [_record_beside(folder, load) for load in loads]}
+
+
+def _record_beside(folder: str, load: object) -> object:
+    if not isinstance(load, dict) or not isinstance(record := load.get("record"), str):
+        return load
+    return {**load, "record": os.path.join(folder, record)}
 
 
 def builtin_text(name: str) -> str:
@@ -55,41 +73,6 @@ def builtin_text(name: str) -> str:
         expected = f"a built-in scene expected ({', '.join(builtin_names())})"
         raise SceneError(f"unknown, {expected}{meant and f'. {meant}'}", file=name)
     return _builtin(name).decode()
-
-
-def read_text(path: str | PathLike[str], expected: str) -> tuple[str, str]:
-    """The name a path (or `-`, standard input) goes by in messages, and the text there.
-
-    Raises SceneError where it cannot be read, is empty, is no UTF-8 or larger than LARGEST_FILE; `expected` says what
-    it should be.
-    """
-    path = os.fspath(path)
-    file = "<stdin>" if path == "-" else path
-    try:
-        content = _bytes(path)
-    except OSError as error:
-        raise SceneError(f"{error.strerror}, {expected} expected", file=file) from None
-    except ValueError:  # a 0 byte in the path
-        raise SceneError(f"no path, {expected} expected", file=file) from None
-    if len(content) > LARGEST_FILE:
-        raise SceneError(f"larger than {LARGEST_FILE >> 20} MB, {expected} of at most that expected", file=file)
-    try:
-        text = content.decode("utf-8-sig")  # with the mark that some editors put first
-    except UnicodeDecodeError as error:
-        raise SceneError(f"byte {error.start} is not UTF-8, {expected} expected", file=file) from None
-    if not text.strip():
-        raise SceneError(f"empty, {expected} expected", file=file)
-    return file, text
-
-
-def _bytes(path: str) -> bytes:
-    """The file's bytes, or one more than the limit: a device or a pipe need not end."""
-    if path != "-":
-        with open(path, "rb") as stream:
-            return stream.read(LARGEST_FILE + 1)
-    if sys.stdin is None:
-        raise OSError(None, "No standard input")
-    return sys.stdin.buffer.read(LARGEST_FILE + 1)
 
 
 def _parsed(file: str, text: str) -> dict[str, Any]:

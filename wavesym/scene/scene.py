@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import deepcopy
 from functools import cached_property
 from os import PathLike
 from typing import Any, Self
 
-from pydantic import Field, SerializeAsAny, ValidationError, ValidationInfo, field_validator, model_validator
+from pydantic import (
+    Field,
+    PrivateAttr,
+    SerializeAsAny,
+    SerializerFunctionWrapHandler,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.loads import Load
@@ -16,6 +28,9 @@ from wavesym.scene.loads import loads
 from wavesym.scene.names import Name
 from wavesym.scene.outputs import Observable, Output, observables
 from wavesym.scene.paths import changed
+from wavesym.scene.physical.measured import placed
+from wavesym.scene.physical.scale import Scale, UnitsTable
+from wavesym.scene.physical.scene import PhysicalScene, physical
 from wavesym.scene.reading import read_toml
 from wavesym.systems import SYSTEMS, ExplicitChain, Preset, SystemTable
 
@@ -24,8 +39,8 @@ class Scene(SceneTable):
     """A chain, its loads, and what to watch of it: `Scene(name=..., system={...}, load=[...], output={...})`.
 
     The fields are those of a scene file. Everything is dimensionless: x in rod lengths, tau = c t / l. Numbers may be
-    int, Fraction, Decimal, float (the shortest decimal that reads back to it) or text such as "1/3".
-    Raises SceneError for the first thing that is wrong.
+    int, Fraction, Decimal, float (the shortest decimal that reads back to it) or text such as "1/3". The path of a
+    record counts from the current folder. Raises SceneError for the first thing that is wrong.
 
     >>> import wavesym
     >>> scene = wavesym.Scene(
@@ -39,16 +54,22 @@ class Scene(SceneTable):
     """
 
     name: Name = Field(description="an identifier of C")
+    units: UnitsTable | None = None
     system: SerializeAsAny[Preset | ExplicitChain] = Field(description="a table")
     load: tuple[SerializeAsAny[Load], ...] = ()
     output: Output = Field(description="a table")
 
+    _physical: PhysicalScene | None = PrivateAttr(default=None)
+
     def __init__(self, /, **fields: Any) -> None:
         try:
-            super().__init__(**fields)
-        except ValidationError as error:
-            what, keys = first_error(error)
-            raise SceneError(what, key_path(keys)) from None
+            with placed():
+                found = physical(fields) if "units" in fields else None
+                super().__init__(**(fields if found is None else found.fields))
+        except PydanticCustomError as error:
+            context = error.context or {}
+            raise SceneError(context["what"], key_path(context["at"])) from None
+        self._physical = found
 
     @classmethod
     def from_toml(cls, source: str | PathLike[str]) -> Self:
@@ -80,6 +101,27 @@ class Scene(SceneTable):
         for path, value in changes.items():
             fields = changed(fields, path, value)
         return type(self)(**fields)
+
+    @model_serializer(mode="wrap")
+    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """What was said. Without units there are none to tell of: so scenes keep the hash that they have had."""
+        if self._physical is not None:
+            return deepcopy(self._physical.said)
+        return {key: value for key, value in handler(self).items() if key != "units"}
+
+    @property
+    def scale(self) -> Scale | None:
+        """What its numbers are in units, where it has any."""
+        return self._physical.scale if self._physical else None
+
+    @property
+    def physical(self) -> PhysicalScene | None:
+        """What it said in units, where it has any."""
+        return self._physical
+
+    def dimensionless(self) -> Scene:
+        """The same scene without units, as all that is computed takes it."""
+        return Scene.model_construct(name=self.name, system=self.system, load=self.load, output=self.output)
 
     @field_validator("system", mode="wrap")
     @classmethod

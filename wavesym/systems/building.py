@@ -6,19 +6,19 @@ moves with the ground ("ground"), whose velocity is the integral of the accelera
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import partial
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field, SerializerFunctionWrapHandler, field_validator, model_serializer
 
-from wavesym.fields.loads import LoadKinds, SampledLoad, TimedLoad
+from wavesym.fields.damping import ModalDamping, without_damping
+from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import Numbers, Positives
 from wavesym.fields.table import shown, wrong
-from wavesym.model.loads import Applied
 from wavesym.model.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
-from wavesym.numbers.doubles import rational
+from wavesym.records.load import RecordedLoad
 from wavesym.systems.preset import Preset
 
 
@@ -54,25 +54,37 @@ BUILDING_FORCE = System("building-force", partial(_families, _force), _indices, 
 BUILDING_GROUND = System("building-ground", partial(_families, _ground), _indices, smallest=2)
 
 
-class Acceleration(TimedLoad):
-    """(3.2): the base acceleration of a building, sum_k (a_k + b_k (tau - times_k)) H(tau - times_k)."""
+class OfBase(Load):
+    """The base acceleration of a building."""
 
-    a: Numbers = Field(description="a list with a number for each time")
-    b: Numbers = Field(description="a list with a number for each time")
-
-    def units(self) -> Iterator[Applied]:
-        """The load as unit responses."""
-        for time, a, b in zip(self.times, self.a, self.b, strict=True):
-            yield Applied("a", rational(time), rational(a))
-            yield Applied("b", rational(time), rational(b))
+    @property
+    def sources(self) -> tuple[str, str]:
+        """A step and a ramp of it."""
+        return "a", "b"
 
 
-class SampledAcceleration(SampledLoad):
+class Acceleration(OfBase, TimedLoad):
+    """(3.2): sum_k (a_k + b_k (tau - times_k)) H(tau - times_k)."""
+
+    lists: ClassVar[tuple[str, str]] = ("a", "b")
+
+    a: Numbers = ()
+    b: Numbers = ()
+
+
+class SampledAcceleration(OfBase, SampledLoad):
     """A base acceleration that is linear between its samples."""
 
-    def units(self) -> Iterator[Applied]:
-        """The load as unit responses."""
-        return self.sampled("a", "b")
+
+class RecordedAcceleration(OfBase, RecordedLoad):
+    """A base acceleration that is a record."""
+
+
+def known_base(base: object) -> str:
+    """Which of the two bases. Raises the error of `table.wrong`."""
+    if base in ("force", "ground"):
+        return str(base)
+    raise wrong(f'{shown(base)} given, "force" or "ground" expected')
 
 
 class Building(Preset):
@@ -80,18 +92,22 @@ class Building(Preset):
 
     variants: ClassVar[tuple[System, ...]] = (BUILDING_FORCE, BUILDING_GROUND)
     counts: ClassVar[Mapping[str, str]] = {"kappa": "m + 1"}
-    load_kinds: ClassVar[LoadKinds] = (Acceleration, SampledAcceleration)
+    fewest: ClassVar[int | None] = 1  # no floor, but a roof
+    load_kinds: ClassVar[LoadKinds] = (Acceleration, SampledAcceleration, RecordedAcceleration)
 
     type: Literal["building"] = Field(description='"building"')
     kappa: Positives = Field(description="a list of m + 1 positive numbers")
     base: Literal["force", "ground"] = Field(description='"force" or "ground"')
+    damping: ModalDamping = None
+
+    @model_serializer(mode="wrap")
+    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return without_damping(handler(self))
 
     @field_validator("base", mode="before")
     @classmethod
     def _known(cls, base: object) -> object:
-        if base not in ("force", "ground"):
-            raise wrong(f'{shown(base)} given, "force" or "ground" expected')
-        return base
+        return known_base(base)
 
     @property
     def system(self) -> System:
@@ -100,5 +116,5 @@ class Building(Preset):
 
     @property
     def choices(self) -> Mapping[str, str]:
-        """Which base."""
-        return {"base": self.base}
+        """Which base, and how its modes are damped."""
+        return {"base": self.base, **({"damping": self.damping.told} if self.damping else {})}

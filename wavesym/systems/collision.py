@@ -57,6 +57,13 @@ def _indices(m: int) -> Mapping[str, range]:
 COLLISION = System("collision", _families, _indices, smallest=4, step=2)
 
 
+def known_contacts(contacts: object) -> str:
+    """Whether contacts open. Raises the error of `table.wrong`."""
+    if contacts in ("closed", "open"):
+        return str(contacts)
+    raise wrong(f'{shown(contacts)} given, "closed" or "open" expected')
+
+
 class Collision(Preset):
     """m rods with m/2 rigid bodies at x = 1, 3, ... m - 1 that collide at tau = 0."""
 
@@ -72,9 +79,7 @@ class Collision(Preset):
     @field_validator("contacts", mode="before")
     @classmethod
     def _known(cls, contacts: object) -> object:
-        if contacts not in ("closed", "open"):
-            raise wrong(f'{shown(contacts)} given, "closed" or "open" expected')
-        return contacts
+        return known_contacts(contacts)
 
     @model_serializer(mode="wrap")
     def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:

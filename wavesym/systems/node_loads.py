@@ -1,17 +1,15 @@
-"""Loads on the nodes of an explicit chain: steps and ramps at given times, or samples."""
+"""Loads on the nodes of an explicit chain: steps and ramps at given times, samples, or a record."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Annotated
 
-from pydantic import Field, PlainValidator, model_validator
+from pydantic import Field, PlainValidator
 
-from wavesym.fields.loads import SampledLoad, TimedLoad
+from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import LONGEST, Numbers, exact, written
 from wavesym.fields.table import shown, wrong
-from wavesym.model.loads import Applied
-from wavesym.numbers.doubles import rational
+from wavesym.records.load import RecordedLoad
 from wavesym.systems.place import position_of
 
 
@@ -28,35 +26,30 @@ def _at(value: object) -> str:
 At = Annotated[str, PlainValidator(_at)]
 
 
-class NodeLoad(TimedLoad):
-    """sum_k (steps_k + ramps_k (tau - times_k)) H(tau - times_k), on a node."""
+class OnNode(Load):
+    """A load on a node, or the motion of an end."""
 
     at: At = Field(description="the name or place of a node")
+
+    @property
+    def sources(self) -> tuple[str, str]:
+        """A step and a ramp there."""
+        return f"{self.at}:step", f"{self.at}:ramp"
+
+
+class NodeLoad(OnNode, TimedLoad):
+    """sum_k (steps_k + ramps_k (tau - times_k)) H(tau - times_k)."""
+
     steps: Numbers = ()
     ramps: Numbers = ()
 
-    @model_validator(mode="after")
-    def _something(self) -> NodeLoad:
-        for name in ("steps", "ramps"):
-            numbers = getattr(self, name)
-            if numbers and len(numbers) != len(self.times):
-                raise wrong(f"{len(numbers)} numbers given, {len(self.times)} expected (as many as times)", name)
-        if not (self.steps or self.ramps):
-            raise wrong("no numbers given, steps or ramps expected")
-        return self
 
-    def units(self) -> Iterator[Applied]:
-        """The load as unit responses."""
-        for name, numbers in (("step", self.steps), ("ramp", self.ramps)):
-            for time, number in zip(self.times, numbers, strict=False):
-                yield Applied(f"{self.at}:{name}", rational(time), rational(number))
+class SampledNodeLoad(OnNode, SampledLoad):
+    """A load that is linear between its samples."""
 
 
-class SampledNodeLoad(SampledLoad):
-    """A load that is linear between its samples, on a node."""
+class RecordedNodeLoad(OnNode, RecordedLoad):
+    """A load that is a record."""
 
-    at: At = Field(description="the name or place of a node")
 
-    def units(self) -> Iterator[Applied]:
-        """The load as unit responses."""
-        return self.sampled(f"{self.at}:step", f"{self.at}:ramp")
+NODE_LOADS: LoadKinds = (NodeLoad, SampledNodeLoad, RecordedNodeLoad)

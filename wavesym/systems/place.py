@@ -27,6 +27,8 @@ _NAMED = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?::(.*))?")
 
 def position_of(value: object) -> Position:
     """A position as TOML or Python has it: a number, or text such as "1/2+", "hammer" or "branch:1-"."""
+    if isinstance(value, Position):
+        return value
     text = written(value)
     if text is None:
         return Position(str(exact(value)), exact(value), 0)

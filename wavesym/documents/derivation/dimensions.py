@@ -14,7 +14,7 @@ from wavesym.derivation.delay import INDEX, SYMBOLS
 from wavesym.model.node import System
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
-from wavesym.systems.drive import DRIVE
+from wavesym.systems.drive import DRIVE, DRIVE_RAMPS
 
 LENGTH, SPEED, UNIT = Symbol("l"), Symbol("c_f"), Symbol("U_0")
 _DENSITY, _SHEAR, _YOUNG = Symbol("rho"), Symbol("G"), Symbol("E")
@@ -64,6 +64,24 @@ def _storeys(note: str) -> Dimensions:
     )
 
 
+def _shafts(note: str) -> Dimensions:
+    return Dimensions(
+        displacement="theta",
+        speed_squared=_SHEAR / _DENSITY,
+        stiffness=_SHEAR * _POLAR[INDEX],
+        inertia=SYMBOLS.inertia[INDEX],
+        legend=(
+            (_SHEAR, "shear modulus"),
+            (_DENSITY, "density"),
+            (_POLAR[INDEX], "polar moment of the section of shaft $i$"),
+            (SYMBOLS.inertia[INDEX], "inertia of disc $i$, at $x = i - 1$"),
+            (Symbol("S_0"), "unit of the moments"),
+        ),
+        note=f"{note} the last one counts against positive rotation.",
+        load=(Symbol("S_0"), _SHEAR * _POLAR[1] * UNIT / LENGTH),
+    )
+
+
 _DIMENSIONS = {
     COLLISION: Dimensions(
         displacement="u",
@@ -79,21 +97,8 @@ _DIMENSIONS = {
         ),
         note="Rods touch at even $x$. There is no load.",
     ),
-    DRIVE: Dimensions(
-        displacement="theta",
-        speed_squared=_SHEAR / _DENSITY,
-        stiffness=_SHEAR * _POLAR[INDEX],
-        inertia=SYMBOLS.inertia[INDEX],
-        legend=(
-            (_SHEAR, "shear modulus"),
-            (_DENSITY, "density"),
-            (_POLAR[INDEX], "polar moment of the section of shaft $i$"),
-            (SYMBOLS.inertia[INDEX], "inertia of disc $i$, at $x = i - 1$"),
-            (Symbol("S_0"), "unit of the moments"),
-        ),
-        note="Moments are steps from the start on; the last one counts against positive rotation.",
-        load=(Symbol("S_0"), _SHEAR * _POLAR[1] * UNIT / LENGTH),
-    ),
+    DRIVE: _shafts("Moments are steps from the start on;"),
+    DRIVE_RAMPS: _shafts("Moments are steps $M$ and ramps $R$ from the start on;"),
     BUILDING_FORCE: _storeys("At the base it loads the columns with the inertia of the foundation, as in (4.5)."),
     BUILDING_GROUND: _storeys("At the base the columns have the velocity of the ground, in place of (2.4)."),
 }

@@ -14,7 +14,7 @@ from wavesym.documents.derivation.families import own_rate
 from wavesym.model.node import Parameters, System
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
-from wavesym.systems.drive import DRIVE
+from wavesym.systems.drive import DRIVE, DRIVE_RAMPS
 
 K, J = SYMBOLS.kappa, SYMBOLS.inertia
 
@@ -82,10 +82,18 @@ _COLLISION = (
 )
 
 
+_KNOWN = {
+    COLLISION: _COLLISION,
+    DRIVE: _DRIVE,
+    DRIVE_RAMPS: _DRIVE,
+    BUILDING_FORCE: _BUILDING,
+    BUILDING_GROUND: _BUILDING,
+}
+
+
 def patterns(system: System) -> tuple[Pattern, ...]:
     """The patterns of a system; the last one is the general case."""
-    known = {COLLISION: _COLLISION, DRIVE: _DRIVE, BUILDING_FORCE: _BUILDING, BUILDING_GROUND: _BUILDING}
-    return known.get(system, (GENERIC,))
+    return _KNOWN.get(system, (GENERIC,))
 
 
 def pattern_laws(system: System, pattern: Pattern) -> tuple[CoefficientLaw, ...]:

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from wavesym.programs.program import Program
-from wavesym.targets.c import closed, march, pieces, rings
+from wavesym.programs.program import Program, ReferenceValues, StreamedValues
+from wavesym.targets.c import closed, march, modes, pieces, rings
 from wavesym.targets.c.header import header
 from wavesym.targets.c.selftest import selftest
 from wavesym.targets.description import Description
 from wavesym.targets.target import Target
 
-_SOURCES = {"closed": closed.source, "pieces": pieces.source, "march": march.source, "rings": rings.source}
+_SOURCES = {
+    "closed": closed.source,
+    "pieces": pieces.source,
+    "march": march.source,
+    "rings": rings.source,
+    "modes": modes.source,
+}
+_MORE = {"march": march.streaming, "modes": modes.streaming}
 
 
 class CTarget:
@@ -19,13 +26,16 @@ class CTarget:
 
     def files(self, description: Description, program: Program) -> dict[str, str]:
         name = description.name
-        streaming = march.streaming(description, program) if program.kind == "march" else ""
+        more = _MORE[program.kind](description, program) if program.kind in _MORE else ""
         made = {
-            f"{name}.h": header(description, streaming),
+            f"{name}.h": header(description, more, stream=program.kind == "modes"),
             f"{name}.c": _SOURCES[program.kind](description, program),
         }
-        if program.reference:
-            made[f"{name}_selftest.c"] = selftest(description, program, program.reference)
+        match program.reference:
+            case ReferenceValues():
+                made[f"{name}_selftest.c"] = selftest(description, program, program.reference)
+            case StreamedValues():
+                made[f"{name}_selftest.c"] = modes.selftest(description, program, program.reference)
         return made
 
 

@@ -10,12 +10,16 @@ from wavesym.targets.description import Description
 
 @dataclass(frozen=True)
 class CHeader:
-    """templates/c/header.h.j2; `more` is what a kind of program declares besides."""
+    """templates/c/header.h.j2; `more` is what a kind of program declares besides.
+
+    A `stream` has no functions of tau.
+    """
 
     scene: Description
     more: str
+    stream: bool
 
 
-def header(scene: Description, more: str = "") -> str:
+def header(scene: Description, more: str = "", *, stream: bool = False) -> str:
     """The interface that all programs share, and more."""
-    return render("c/header.h.j2", CHeader(scene, more))
+    return render("c/header.h.j2", CHeader(scene, more, stream))

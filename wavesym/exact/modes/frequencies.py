@@ -1,0 +1,188 @@
+"""The first frequencies of a chain: found in doubles, each proved to be the n-th in balls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from wavesym.errors import UnservedError
+from wavesym.exact.modes.cuts import Cut, cut
+from wavesym.exact.modes.shape import Mode, Trial, rigid, trial, yielding
+from wavesym.exact.modes.stiffness import Law, Stiffness, Vector
+from wavesym.model.network import Network
+
+_BITS = 192
+_BITS_A_ROW = 8  # of which determinants in balls take about 4
+_BISECTIONS = 64
+_NEWTON = 6
+_OFF = arb(2) ** -44  # a frequency itself tells less of its mode than one near it
+_SHARP = arb(2) ** -60  # shapes
+
+
+class CoincidenceError(ArithmeticError):
+    """Two frequencies that no bits tell apart, or one at which all points are at rest."""
+
+
+def refuse_damped(network: Network) -> None:
+    """UnservedError for what has no real modes, or is no one chain: dashpots, absorbing ends, contacts."""
+    for point in network.points:
+        if point.damping != 0:
+            raise UnservedError(
+                f"system: a dashpot or an absorbing end at {point.name or point.place} given, none expected in modes "
+                "(pieces and march serve it)"
+            )
+    for link in network.links:
+        if link.contact or link.damping != 0:
+            what = "contact" if link.contact else "dashpot"
+            raise UnservedError(f"system: a {what} at {link.place} given, none expected in modes (pieces serve it)")
+
+
+def frequencies(network: Network, count: int) -> tuple[arb, ...]:
+    """The first `count` angular frequencies of an undamped network in balls, ascending; none is missed.
+
+    Per unit of its time. Ends that move as they are told are at rest. A chain that nothing holds begins with 0.
+    UnservedError where it is damped, has contacts, or frequencies that coincide.
+
+    >>> from wavesym import Scene
+    >>> from wavesym.scene import lower
+    >>> [float(w) for w in frequencies(lower(Scene.from_toml("drive_m1")).network, 2)]
+    [0.0, 1.5336592127]
+    """
+    return tuple(mode.frequency for mode in Spectrum(network).first(count))
+
+
+class Spectrum:
+    """The modes of an undamped network that is cut at places (bar, part of it), as many as are asked for.
+
+    UnservedError as for `frequencies`.
+    """
+
+    def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
+        refuse_damped(network)
+        self._cuts = [cut(network, places), cut(network, places, aside=True)]
+        self._found: list[Mode] = []
+
+    @property
+    def cut(self) -> Cut:
+        """The network as it is cut."""
+        return self._cuts[0]
+
+    def first(self, count: int) -> list[Mode]:
+        """The first `count` modes, by their frequencies."""
+        try:
+            self._found += _modes(Stiffness(self.cut.network), count, len(self._found))
+        except CoincidenceError as error:
+            if not self._cuts[1:]:
+                raise UnservedError(
+                    f"system: {error}, frequencies that differ expected in modes (pieces and march serve it)"
+                ) from None
+            del self._cuts[0]
+            self._found = []
+            return self.first(count)
+        return self._found[:count]
+
+
+def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
+    """Those after the first `known` ones."""
+    free = rigid(stiffness.network)
+    ways: list[tuple[int, Law]] = []
+    for times in (1, 4):
+        bits = times * (_BITS + _BITS_A_ROW * len(stiffness.points))
+        with ctx.workprec(bits):
+            ways.append((bits, stiffness.law(arb)))
+    for n, guess in enumerate(searched(stiffness, count).tolist()[known:], known + 1):
+        if n == 1 and free:
+            with ctx.workprec(_BITS):
+                yield _still(stiffness, free)
+            continue
+        mode = next((made for bits, law in ways if (made := _proved(stiffness, law, n, guess, bits))), None)
+        if mode is None:
+            raise CoincidenceError(f"two frequencies meet near {guess:.6g}")
+        yield mode
+
+
+def searched(stiffness: Stiffness, count: int) -> Vector:
+    """The first frequencies in doubles, by bisection of all at once."""
+    n = np.arange(1, count + 1)
+    delay = float(stiffness.delay)
+    high = (n + len(stiffness.network.bars)) * np.pi / delay
+    low = np.zeros(count)
+    for _ in range(_BISECTIONS):
+        middle = (low + high) / 2
+        below = stiffness.counted(middle) < n
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.asarray(high, np.float64)
+
+
+def _proved(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -> Mode | None:
+    """The n-th mode; None where it cannot be told from others."""
+    with ctx.workprec(bits):
+        root = yielding(stiffness, law, arb(guess) * (1 - _OFF))
+        w = _polished(stiffness, law, n, guess, root, bits) or _bisected(stiffness, law, n, guess, bits)
+        if w is None:
+            return None
+        points = _normal(stiffness, trial(stiffness, law, w, root))
+    return Mode(stiffness, w, points) if all(q.rad() < _SHARP for q in points) else None
+
+
+def _polished(stiffness: Stiffness, law: Law, n: int, guess: float, root: int, bits: int) -> arb | None:
+    """The n-th frequency by Newton's method, from one near it."""
+    near, small = arb(2) ** -42, arb(2) ** (-bits // 3)
+    w = arb(guess)
+    for _ in range(_NEWTON):
+        better = trial(stiffness, law, w, root).better(w)
+        if not better.is_finite():
+            return None
+        moved, w = abs(better - w), better
+        ball = arb(w, (w * small).upper())
+        if moved < near * w and _is(stiffness, law, n, ball):
+            return ball
+    return None
+
+
+def _is(stiffness: Stiffness, law: Law, n: int, w: arb) -> bool:
+    """Whether the n-th frequency, and no other, is in a ball."""
+    return stiffness.proved(law, w.lower()) == n - 1 and stiffness.proved(law, w.upper()) == n
+
+
+def _bisected(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -> arb | None:
+    """The same by counting alone, where another frequency is too near for Newton's method."""
+    low, high = arb(guess), arb(guess)
+    reach = arb(2) ** -40
+    while (below := stiffness.proved(law, low)) is None or below >= n:
+        low, reach = (low * (1 - reach)).mid(), 4 * reach
+        if reach > 1:
+            low = arb(0)
+            break
+    reach = arb(2) ** -40
+    while (below := stiffness.proved(law, high)) is None or below < n:
+        high, reach = (high * (1 + reach)).mid(), 4 * reach
+    while high - low > arb(2) ** (-bits // 3) * high:
+        # a little off the middle, which may be a frequency
+        middle = ((low * 515 + high * 509) / 1024).mid()
+        count = stiffness.proved(law, middle)
+        if count is None:
+            return None
+        low, high = (middle, high) if count < n else (low, middle)
+    w = low.union(high)
+    return w if _is(stiffness, law, n, w) else None
+
+
+def _normal(stiffness: Stiffness, found: Trial) -> list[arb]:
+    """The points of a shape, of mass 1."""
+    scale = found.mass.rsqrt()
+    points = [arb(0)] * len(stiffness.network.points)
+    for row, point in enumerate(stiffness.points):
+        points[point] = found.rows[row] * scale
+    return points
+
+
+def _still(stiffness: Stiffness, free: tuple[fmpq, ...]) -> Mode:
+    """The motion without strain."""
+    network = stiffness.network
+    mass = sum((point.mass * q * q for point, q in zip(network.points, free, strict=True)), fmpq(0))
+    mass += sum((bar.impedance * bar.delay * (bar.ratios[0] * free[bar.left]) ** 2 for bar in network.bars), fmpq(0))
+    scale = arb(mass).rsqrt()
+    return Mode(stiffness, arb(0), [scale * q for q in free])

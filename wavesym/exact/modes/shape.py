@@ -1,0 +1,137 @@
+"""The shape that a chain has when it vibrates with one of its frequencies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from flint import arb, fmpq
+
+from wavesym.exact.modes.stiffness import Law, Stiffness, circular
+from wavesym.model.network import End, Network
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A frequency, and how far each point moves in the shape whose kinetic energy at velocity 1 is 1/2: balls.
+
+    `points` are by their numbers in the network, and 0 where one does not move. Energies count those of the bars, too.
+    """
+
+    stiffness: Stiffness
+    frequency: arb
+    points: Sequence[arb]
+
+    def at(self, end: End) -> arb:
+        """How far the end of a bar moves."""
+        bar = self.stiffness.network.bars[end.bar]
+        return self.points[bar.right if end.side else bar.left] * bar.ratios[end.side]
+
+    def slope(self, end: End) -> arb:
+        """The strain there times the bar's speed."""
+        if self.frequency == 0:
+            return arb(0)
+        here, there = self.at(end), self.at(End(end.bar, 1 - end.side))
+        sine, cosine = self.turned(self.stiffness.network.bars[end.bar].delay)
+        slope = self.frequency * (there - here * cosine) / sine
+        return -slope if end.side else slope
+
+    def turned(self, delay: fmpq) -> tuple[arb, arb]:
+        """sin and cos of the frequency times a delay."""
+        if delay not in self._turned:
+            self._turned[delay] = (self.frequency * delay).sin_cos()
+        return self._turned[delay]
+
+    @cached_property
+    def _turned(self) -> dict[fmpq, tuple[arb, arb]]:
+        return {}
+
+
+def rigid(network: Network) -> tuple[fmpq, ...] | None:
+    """How far each point moves when all does without strain, exact; None where something holds the chain."""
+    if any(point.motion or point.stiffness != 0 for point in network.points):
+        return None
+    pairs = [(bar.left, bar.right, bar.ratios[0], bar.ratios[1]) for bar in network.bars]
+    pairs += [(link.left, link.right, link.ratio, fmpq(1)) for link in network.links if link.stiffness != 0]
+    found: dict[int, fmpq] = {0: fmpq(1)}
+    for _ in network.points:
+        for left, right, there, here in pairs:
+            if left in found:
+                found.setdefault(right, found[left] * there / here)
+            elif right in found:
+                found[left] = found[right] * here / there
+    if any(found[left] * there != found[right] * here for left, right, there, here in pairs):
+        return None
+    return tuple(found[number] for number in range(len(network.points)))
+
+
+class Trial(NamedTuple):
+    """How far each row moves; all of them are in balance but row `root`, on which the `rest` acts; and the mass."""
+
+    rows: list[arb]
+    root: int
+    rest: arb
+    mass: arb
+
+    def better(self, w: arb) -> arb:
+        """A better frequency than w: Newton's method, as the w^2-derivative of -K, seen by a shape, is its mass."""
+        return (w * w + self.rest * self.rows[self.root] / self.mass).sqrt().mid()
+
+
+def yielding(stiffness: Stiffness, law: Law, w: arb) -> int:
+    """The row on which a force moves most, near a frequency one that moves much in its mode."""
+    diagonal, up = law.matrix(w, *circular(law, w))
+    pivots = stiffness.pivots(diagonal, up)
+    # what is left of a row once all others are eliminated
+    left = list(pivots)
+    for row in reversed(range(len(left))):
+        parent = stiffness.parents[row]
+        if parent is not None:
+            left[row] = pivots[row] * left[parent] / (left[parent] + up[row] * up[row] / pivots[row])
+    return min(range(len(left)), key=lambda row: abs(left[row].mid()))
+
+
+def trial(stiffness: Stiffness, law: Law, w: arb, root: int) -> Trial:
+    """How the chain moves at a frequency where only row `root` is held. Where nothing acts on it that is a mode.
+
+    Determinants of branches instead of pivots: a part of the chain may have the same frequency as the whole.
+    """
+    cot, csc = circular(law, w)
+    diagonal, up = law.matrix(w, cot, csc)
+    order = stiffness.orders(root)
+    # of each branch its determinant, and that without the row it hangs by: the product of those of its branches
+    whole, inner = list(diagonal), [arb(1)] * len(diagonal)
+    for row, parent, edge in reversed(order[1:]):
+        whole[parent] = whole[parent] * whole[row] - up[edge] * up[edge] * inner[row] * inner[parent]
+        inner[parent] = inner[parent] * whole[row]
+    scale = [arb(1)] * len(diagonal)
+    hanging: dict[int, list[int]] = {}
+    for row, parent, _ in order[1:]:
+        hanging.setdefault(parent, []).append(row)
+    for row, parent, edge in order[1:]:
+        scale[row] = -up[edge] * scale[parent]
+        for other in hanging[parent]:
+            if other != row:
+                scale[row] *= whole[other]
+    rows = [a * b for a, b in zip(scale, inner, strict=True)]
+    return Trial(rows, root, whole[root], _mass(law, w, rows, cot, csc))
+
+
+def _mass(law: Law, w: arb, found: Sequence[arb], cot: Sequence[arb], csc: Sequence[arb]) -> arb:
+    """The sum of M q^2, and of the integrals of Z u^2 over the delays of the bars."""
+    total = sum((mass * q * q for mass, q in zip(law.mass, found, strict=True) if mass != 0), arb(0))
+    # u = (left sin w(T - s) + right sin w s)/sin w T, so that its square has the integral
+    # (left^2 + right^2) same + 2 left right other
+    same = [(t * s * s - c / w) / 2 for t, c, s in zip(law.delays, cot, csc, strict=True)]
+    other = [(s / w - t * c * s) / 2 for t, c, s in zip(law.delays, cot, csc, strict=True)]
+    for bar in law.bars:
+        left, right = (None if row is None else found[row] for row in (bar.left, bar.right))
+        if left is not None:
+            total += bar.at_left * left * left * same[bar.delay]
+        if right is not None:
+            total += bar.at_right * right * right * same[bar.delay]
+            if left is not None:
+                total += 2 * bar.across * left * right * other[bar.delay]
+    return total

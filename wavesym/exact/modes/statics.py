@@ -1,0 +1,196 @@
+"""What loads that do not change do to a chain: the sums over all of its modes, in closed form.
+
+A shape here is how far points move; along a bar it is linear, but where the bar itself is accelerated (`bent`), which
+bends it so that u'' is the acceleration (along the bar counted in delay). With modes of mass 1, f_n a load's share in
+mode n and l_n what an output is of it, sums over all modes n with strain:
+
+    under a load                     sum_n f_n l_n / w_n^2 = l of the shape
+    force and motions of points      sum_n l_n^2 / w_n^2   = l of the shape under the forces that l is
+    motion of an end with unit       sum_n f_n^2           = mass of the shape that the end imposes
+      acceleration
+    strain at the end of a bar       sum_n l_n^2 / w_n^4   = mass of the shape with a unit break there
+
+Of a chain that nothing holds, shapes have no part in the motion without strain, and loads what is in balance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from flint import arb, fmpq
+
+from wavesym.exact.modes.shape import rigid
+from wavesym.exact.modes.stiffness import Stiffness
+from wavesym.model.network import End
+
+Forces = Mapping[int, arb | fmpq]
+"""What acts on points."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """How far points move, and their accelerations where bars are bent by them."""
+
+    statics: Statics
+    points: Sequence[arb]
+    bent: Sequence[arb] | None = None
+
+    def at(self, end: End) -> arb:
+        """How far the end of a bar moves."""
+        return self.statics.at(self.points, end)
+
+    def slope(self, end: End) -> arb:
+        """The strain there times the bar's speed."""
+        delay = self.statics.stiffness.network.bars[end.bar].delay
+        ends = End(end.bar, 0), End(end.bar, 1)
+        slope = (self.at(ends[1]) - self.at(ends[0])) / delay
+        if self.bent is not None:
+            here, there = (self.statics.at(self.bent, End(end.bar, side)) for side in (end.side, 1 - end.side))
+            pull = delay * (2 * here + there) / 6
+            slope += pull if end.side else -pull
+        return slope
+
+
+@dataclass(frozen=True)
+class Statics:
+    """The statics of a network whose points are those of a tree, in balls of the precision that is set."""
+
+    stiffness: Stiffness
+
+    def at(self, points: Sequence[arb], end: End) -> arb:
+        """How far the end of a bar moves where points move so far."""
+        bar = self.stiffness.network.bars[end.bar]
+        return points[bar.right if end.side else bar.left] * bar.ratios[end.side]
+
+    @cached_property
+    def free(self) -> list[arb] | None:
+        """The motion without strain, of mass 1; None where something holds the chain."""
+        found = rigid(self.stiffness.network)
+        if found is None:
+            return None
+        points = [arb(q) for q in found]
+        scale = self.mass(points).rsqrt()
+        return [scale * q for q in points]
+
+    @cached_property
+    def _springs(self) -> tuple[list[list[tuple[int, int, arb]]], list[arb], list[arb]]:
+        """Of each point what pulls it, (point, other point, stiffness) counted with ratios; pivots and couplings."""
+        network, rows = self.stiffness.network, self.stiffness.rows
+        springs = [
+            (bar.left, bar.right, bar.ratios[0], bar.ratios[1], bar.impedance / bar.delay) for bar in network.bars
+        ]
+        springs += [(link.left, link.right, link.ratio, fmpq(1), link.stiffness) for link in network.links]
+        diagonal = [arb(network.points[point].stiffness) for point in self.stiffness.points]
+        up = [arb(0)] * len(diagonal)
+        pulls: list[list[tuple[int, int, arb]]] = [[] for _ in network.points]
+        for left, right, there, here, stiffness in springs:
+            across = arb(there * here * stiffness)
+            pulls[left].append((left, right, across))
+            pulls[right].append((right, left, across))
+            if left in rows:
+                diagonal[rows[left]] += arb(there * there * stiffness)
+            if right in rows:
+                diagonal[rows[right]] += arb(here * here * stiffness)
+                if left in rows:
+                    up[min(rows[left], rows[right])] -= across
+        return pulls, self.stiffness.pivots(diagonal, up), up
+
+    def solved(self, forces: Sequence[arb]) -> list[arb]:
+        """How far the points move under forces on them, those that are not free by nothing.
+
+        Where nothing holds the chain the forces are in balance, and its root does not move.
+        """
+        _, pivots, up = self._springs
+        points, parents = self.stiffness.points, self.stiffness.parents
+        carried = [forces[point] for point in points]
+        for row, parent in enumerate(parents):
+            if parent is not None:
+                carried[parent] = carried[parent] - up[row] * carried[row] / pivots[row]
+        found = [arb(0)] * len(points)
+        moved = [arb(0)] * len(self.stiffness.network.points)
+        for row in reversed(range(len(points))):
+            parent = parents[row]
+            if parent is None:
+                found[row] = arb(0) if self.free is not None else carried[row] / pivots[row]
+            else:
+                found[row] = (carried[row] - up[row] * found[parent]) / pivots[row]
+            moved[points[row]] = found[row]
+        return moved
+
+    def inertia(self, points: Sequence[arb]) -> list[arb]:
+        """The forces on points that accelerate everything as points move, and what is between them linearly."""
+        network = self.stiffness.network
+        forces = [q * point.mass for q, point in zip(points, network.points, strict=True)]
+        for number, bar in enumerate(network.bars):
+            share = arb(bar.impedance * bar.delay / 6)
+            ends = self.at(points, End(number, 0)), self.at(points, End(number, 1))
+            forces[bar.left] += share * bar.ratios[0] * (2 * ends[0] + ends[1])
+            forces[bar.right] += share * bar.ratios[1] * (ends[0] + 2 * ends[1])
+        return forces
+
+    def mass(self, points: Sequence[arb], broken: Mapping[End, arb] | None = None) -> arb:
+        """The sum of M q^2, and of the integrals of Z u^2; ends that are `broken` move so much further than points."""
+        network = self.stiffness.network
+        total = sum((q * q * point.mass for q, point in zip(points, network.points, strict=True)), arb(0))
+        for number, bar in enumerate(network.bars):
+            a, b = (self.at(points, end) + (broken or {}).get(end, arb(0)) for end in (End(number, 0), End(number, 1)))
+            total += arb(bar.impedance * bar.delay / 3) * (a * a + a * b + b * b)
+        return total
+
+    def imposed(self, point: int) -> Shape:
+        """The shape that the unit motion of a point imposes that moves as it is told."""
+        pulls, _, _ = self._springs
+        forces = [arb(0)] * len(self.stiffness.network.points)
+        for _, other, across in pulls[point]:
+            forces[other] += across
+        moved = self.solved(forces)
+        moved[point] = arb(1)
+        return Shape(self, moved)
+
+    def under(self, forces: Forces) -> Shape:
+        """The shape under forces on points."""
+        acting = [arb(0)] * len(self.stiffness.network.points)
+        for point, force in forces.items():
+            acting[point] += arb(force)
+        if self.free is None:
+            return Shape(self, self.solved(acting))
+        along = self._along(acting)
+        bent = [along * q for q in self.free]
+        pull = self.inertia(bent)
+        moved = self.solved([force - inertia for force, inertia in zip(acting, pull, strict=True)])
+        return Shape(self, self._without(moved, bent), bent)
+
+    def accelerated(self, imposed: Shape) -> Shape:
+        """The shape that lags behind an imposed one when that has the acceleration 1."""
+        return Shape(self, self.solved([-force for force in self.inertia(imposed.points)]), imposed.points)
+
+    def broken(self, end: End) -> arb:
+        """The mass of the shape with a unit break at the end of a bar: the sum of (slope there)^2 / w^4."""
+        bar = self.stiffness.network.bars[end.bar]
+        acting = [arb(0)] * len(self.stiffness.network.points)
+        acting[bar.left] -= arb(bar.ratios[0] / bar.delay)
+        acting[bar.right] += arb(bar.ratios[1] / bar.delay)
+        moved = self.solved(acting)
+        gap = {end: 1 / arb(bar.impedance) * (-1 if end.side else 1)}
+        mass = self.mass(moved, gap)
+        if self.free is None:
+            return mass
+        here = self.at(self.free, end)  # the same all along the bar
+        part = self._along(self.inertia(moved)) + here * gap[end] * arb(bar.impedance * bar.delay / 2)
+        return mass - part * part
+
+    def _along(self, forces: Sequence[arb]) -> arb:
+        """What forces do to the motion without strain."""
+        assert self.free is not None
+        return sum((force * q for force, q in zip(forces, self.free, strict=True)), arb(0))
+
+    def _without(self, moved: Sequence[arb], bent: Sequence[arb]) -> list[arb]:
+        """A shape without its part in the motion without strain."""
+        assert self.free is not None
+        part = self._along(self.inertia(moved))
+        for number, bar in enumerate(self.stiffness.network.bars):
+            end = End(number, 0)  # a bar that is bent by a constant a is a T^2 (x^2 - x)/2 off the line
+            part -= self.at(self.free, end) * self.at(bent, end) * arb(bar.impedance * bar.delay**3 / 12)
+        return [q - part * r for q, r in zip(moved, self.free, strict=True)]

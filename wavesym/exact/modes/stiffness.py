@@ -1,0 +1,224 @@
+"""How a chain resists a harmonic motion: its dynamic stiffness, and how many frequencies lie below one.
+
+What moves harmonically with frequency w is held, seen from the points, by a symmetric matrix K(w). A bar of impedance Z
+and delay T adds w Z cot(w T) at both its ends and -w Z/sin(w T) across, a mass M adds -w^2 M, a spring its stiffness.
+A chain with branches is a tree of points: eliminated from the tips to the root, K has one pivot for each point.
+
+Wittrick and Williams (1971): the frequencies below w are as many as the bars would have there if their ends were at
+rest, floor(w T/pi) each, and the negative pivots. None can be missed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from flint import arb, fmpq
+from numpy.typing import NDArray
+
+from wavesym.errors import UnservedError
+from wavesym.model.network import Network
+from wavesym.numbers.doubles import nearest
+
+# doubles (arrays of them), or balls
+Quantity = Any
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """A bar between rows of K (None for an end that does not move): which of the delays it has, and its weights."""
+
+    delay: int
+    left: int | None
+    right: int | None
+    at_left: Quantity
+    at_right: Quantity
+    across: Quantity
+
+
+@dataclass(frozen=True)
+class Law:
+    """The numbers of K in one arithmetic; rows run from the tips to the root. `over` is what springs add to `up`."""
+
+    mass: list[Quantity]
+    held: list[Quantity]
+    over: list[Quantity]
+    bars: list[Elastic]
+    delays: list[Quantity]
+
+    def matrix(self, w: Quantity, cot: Sequence[Quantity], csc: Sequence[Quantity]) -> tuple[list[Any], list[Any]]:
+        """The diagonal of K, and what couples each row to its parent, from cot and 1/sin of w times each delay."""
+        square = w * w
+        diagonal = [k - square * mass for k, mass in zip(self.held, self.mass, strict=True)]
+        up = list(self.over)
+        at = [w * value for value in cot]
+        across = [w * value for value in csc]
+        for bar in self.bars:
+            if bar.left is not None:
+                diagonal[bar.left] = diagonal[bar.left] + bar.at_left * at[bar.delay]
+            if bar.right is not None:
+                diagonal[bar.right] = diagonal[bar.right] + bar.at_right * at[bar.delay]
+                if bar.left is not None:
+                    child = min(bar.left, bar.right)
+                    up[child] = up[child] - bar.across * across[bar.delay]
+        return diagonal, up
+
+
+@dataclass(frozen=True)
+class Stiffness:
+    """K(w) of a network whose points are those of a tree."""
+
+    network: Network
+
+    @cached_property
+    def points(self) -> tuple[int, ...]:
+        """The point of each row: those that are free to move, tips first, each before its parent."""
+        return tuple(point for point, _ in reversed(self._found))
+
+    @cached_property
+    def rows(self) -> dict[int, int]:
+        """The row of each of these points."""
+        return {point: row for row, point in enumerate(self.points)}
+
+    @cached_property
+    def parents(self) -> tuple[int | None, ...]:
+        """The row that each row hangs on."""
+        return tuple(None if parent is None else self.rows[parent] for _, parent in reversed(self._found))
+
+    @cached_property
+    def _found(self) -> list[tuple[int, int | None]]:
+        """Free points, each with the one that it was reached from."""
+        network = self.network
+        beside: dict[int, list[int]] = {n: [] for n, point in enumerate(network.points) if point.motion is None}
+        pairs = [(bar.left, bar.right) for bar in network.bars]
+        pairs += [(link.left, link.right) for link in network.links if link.stiffness != 0]
+        for one, other in pairs:
+            if one in beside and other in beside:
+                beside[one].append(other)
+                beside[other].append(one)
+        found: dict[int, int | None] = {}
+        for root in beside:
+            if root in found:
+                continue
+            found[root] = None
+            coming = [root]
+            while coming:
+                point = coming.pop()
+                for other in beside[point]:
+                    if other not in found:
+                        found[other] = point
+                        coming.append(other)
+                    elif found[point] != other and found[other] != point:
+                        raise UnservedError(
+                            "system.parts: a ring of parts given, a chain with branches expected in modes"
+                        )
+        return list(found.items())
+
+    def law(self, number: Callable[[fmpq], Quantity]) -> Law:
+        """Its numbers in one arithmetic."""
+        network, rows = self.network, self.rows
+        free = [network.points[point] for point in self.points]
+        held, over = [point.stiffness for point in free], [fmpq(0)] * len(free)
+        for link in network.links:
+            left, right = rows.get(link.left), rows.get(link.right)
+            if left is not None:
+                held[left] += link.ratio**2 * link.stiffness
+            if right is not None:
+                held[right] += link.stiffness
+                if left is not None:
+                    over[min(left, right)] -= link.ratio * link.stiffness
+        delays = sorted({bar.delay for bar in network.bars})
+        bars = [
+            Elastic(
+                delays.index(bar.delay),
+                rows.get(bar.left),
+                rows.get(bar.right),
+                number(bar.impedance * bar.ratios[0] ** 2),
+                number(bar.impedance * bar.ratios[1] ** 2),
+                number(bar.impedance * bar.ratios[0] * bar.ratios[1]),
+            )
+            for bar in network.bars
+        ]
+        return Law(
+            [number(point.mass) for point in free],
+            [*map(number, held)],
+            [*map(number, over)],
+            bars,
+            [*map(number, delays)],
+        )
+
+    def orders(self, root: int) -> list[tuple[int, int, int]]:
+        """The rows from one row outwards, each with the row that it hangs by and the row that names their coupling."""
+        return self._orders.get(root) or self._orders.setdefault(root, self._ordered(root))
+
+    @cached_property
+    def _orders(self) -> dict[int, list[tuple[int, int, int]]]:
+        return {}
+
+    def _ordered(self, root: int) -> list[tuple[int, int, int]]:
+        beside: list[list[tuple[int, int]]] = [[] for _ in self.parents]
+        for row, parent in enumerate(self.parents):
+            if parent is not None:
+                beside[row].append((parent, row))
+                beside[parent].append((row, row))
+        found = [(root, root, root)]
+        for row, before, _ in found:
+            found += [(other, row, edge) for other, edge in beside[row] if other != before]
+        return found
+
+    def pivots(self, diagonal: list[Quantity], up: Sequence[Quantity]) -> list[Quantity]:
+        """The pivots of K, `diagonal` eliminated in place."""
+        for row, parent in enumerate(self.parents):
+            if parent is not None:
+                diagonal[parent] = diagonal[parent] - up[row] * up[row] / diagonal[row]
+        return diagonal
+
+    @cached_property
+    def _doubles(self) -> Law:
+        return self.law(nearest)
+
+    @cached_property
+    def delay(self) -> fmpq:
+        """That of all bars together: there are delay/pi frequencies to a unit of frequency."""
+        return sum((bar.delay for bar in self.network.bars), fmpq(0))
+
+    def counted(self, w: Vector) -> NDArray[np.int64]:
+        """How many frequencies lie below each w > 0, in doubles: right but for rounding."""
+        law = self._doubles
+        angles = [w * delay for delay in law.delays]
+        sines = [np.sin(angle) for angle in angles]
+        turns = [_turns(angle, sine) for angle, sine in zip(angles, sines, strict=True)]
+        with np.errstate(all="ignore"):
+            csc = [1 / sine for sine in sines]
+            cot = [np.cos(angle) / sine for angle, sine in zip(angles, sines, strict=True)]
+            diagonal, up = law.matrix(w, cot, csc)
+            negative = [pivot < 0 for pivot in self.pivots(diagonal, up)]
+        return np.asarray(sum(turns[bar.delay] for bar in law.bars) + sum(negative, np.zeros(w.shape, np.int64)))
+
+    def proved(self, law: Law, w: arb) -> int | None:
+        """How many frequencies lie below w, proved; None where so many bits do not tell. `law` is in balls."""
+        turns = [(w * delay / arb.pi()).floor().unique_fmpz() for delay in law.delays]
+        if any(turn is None for turn in turns):
+            return None
+        count = sum(int(turns[bar.delay]) for bar in law.bars)
+        for pivot in self.pivots(*law.matrix(w, *circular(law, w))):
+            if not (pivot > 0 or pivot < 0):
+                return None
+            count += bool(pivot < 0)
+        return count
+
+
+def _turns(angle: Vector, sine: Vector) -> NDArray[np.int64]:
+    """floor(angle/pi), such that the sine has the sign that goes with it: a jump of both is at one double."""
+    nearest_turn = np.rint(angle / np.pi).astype(np.int64)
+    return nearest_turn - (np.where(nearest_turn % 2, -sine, sine) < 0)
+
+
+def circular(law: Law, w: arb) -> tuple[list[arb], list[arb]]:
+    """cot and 1/sin of w times each delay."""
+    pairs = [(w * delay).sin_cos() for delay in law.delays]
+    return [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs]

@@ -1,0 +1,132 @@
+"""Quantities: what a user may write for a number with a unit, and what it is as a fraction, in SI base units.
+
+The grammar is our own, so that no text can make it slow: a number, then names with small powers, multiplied or
+divided. pint knows what the names mean, one by one; it is imported when the first of them is asked for.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from wavesym.errors import did_you_mean
+from wavesym.fields.dimensions import DIMENSIONS, called, fits, with_article
+from wavesym.fields.numbers import LARGEST_EXPONENT, LONGEST, exact
+from wavesym.fields.table import Written, shown, wrong
+
+if TYPE_CHECKING:
+    from pint import UnitRegistry
+
+_QUANTITY = re.compile(r"([+-]?[0-9]+(?:/[0-9]+|(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)) ?(?![eE][+-]?[0-9])([^\s0-9.+-].*)")
+_NAME = r"[A-Za-z\u00b5\u03bc%][A-Za-z_0-9]*"  # with either mu, for micro
+_UNIT = re.compile(rf"{_NAME}(?:\^-?[1-9])?(?:[*/]{_NAME}(?:\^-?[1-9])?)*")
+_FACTOR = re.compile(rf"([*/]?)({_NAME})(?:\^(-?[1-9]))?")
+_MOST_FACTORS = 12
+_LARGEST = Fraction(10) ** LARGEST_EXPONENT
+
+
+class _Meaning(NamedTuple):
+    """How much of the SI base units a unit is, and the power of each of them."""
+
+    factor: Fraction
+    powers: Mapping[str, int]
+
+
+def quantity(value: object, dimension: str) -> Fraction:
+    """A number with a unit, such as "3.5 m" or "0.3 g", as so many SI base units; exact but for units with pi in them.
+
+    `dimension` is a name in `DIMENSIONS`. "g" is the acceleration of gravity where an acceleration (or its rate) is
+    expected, else the gram. Raises (as does every validator here) the error of `table.wrong`.
+    """
+    expected = f'{with_article(dimension)} such as "{DIMENSIONS[dimension].example}" expected'
+    if not isinstance(value, str) or isinstance(value, Written):
+        raise wrong(f"{shown(value)} given, {expected}")
+    if len(value) > LONGEST:  # before anything is done with it
+        raise wrong(f"{shown(value)} given, at most {LONGEST} characters expected")
+    if not (found := _QUANTITY.fullmatch(value)):
+        raise wrong(f"{shown(value)} given, {expected}")
+    meaning = _fitting(found[2], dimension, value)
+    number = exact(found[1]) * meaning.factor
+    if number and not 1 / _LARGEST <= abs(number) <= _LARGEST:
+        size = f"0 or a size from 1e-{LARGEST_EXPONENT} to 1e{LARGEST_EXPONENT} in SI base units expected"
+        raise wrong(f"{shown(value)} given, {size}")
+    return number
+
+
+def unit(value: object, dimension: str) -> Fraction:
+    """A unit without a number, such as "mm" or "kN*m": how many SI base units it is. Raises that of `table.wrong`."""
+    example = DIMENSIONS[dimension].example.partition(" ")[2]
+    if not isinstance(value, str) or isinstance(value, Written):
+        raise wrong(f'{shown(value)} given, a unit such as "{example}" expected')
+    if len(value) > LONGEST:
+        raise wrong(f"{shown(value)} given, at most {LONGEST} characters expected")
+    return _fitting(value, dimension, value).factor
+
+
+def _fitting(text: str, dimension: str, value: str) -> _Meaning:
+    """What a unit means, which is one of a dimension; `value` is what the message shows where it is none."""
+    meaning = _meaning(text, value, gravity=dimension in ("acceleration", "jerk"))
+    if not fits(meaning.powers, DIMENSIONS[dimension]):
+        expected = f'{with_article(dimension)} such as "{DIMENSIONS[dimension].example}" expected'
+        raise wrong(f"{shown(value)} given ({called(meaning.powers)}), {expected}")
+    return meaning
+
+
+def _meaning(text: str, value: str, *, gravity: bool) -> _Meaning:
+    if not _UNIT.fullmatch(text):
+        grammar = 'a number and units joined by * and /, with powers up to ^9, expected, such as "3 kN*s/m^2"'
+        raise wrong(f"{shown(value)} given, {grammar}")
+    factors = _FACTOR.findall(text)
+    if len(factors) > _MOST_FACTORS:
+        raise wrong(f"{shown(value)} given, at most {_MOST_FACTORS} names of units expected")
+    factor, powers = Fraction(1), dict[str, int]()
+    for sign, name, written in factors:
+        power = int(written or 1) * (-1 if sign == "/" else 1)
+        one = _named("standard_gravity" if gravity and name == "g" else name)
+        if one is None:
+            meant = did_you_mean(name, _names())
+            expected = "a known unit of length, mass, time or angle, or one made of these, expected"
+            raise wrong(f"{shown(value)} given, {shown(name)} in it; {expected}{meant and f'. {meant}'}")
+        factor *= one.factor**power
+        for base, exponent in one.powers.items():
+            powers[base] = powers.get(base, 0) + exponent * power
+    return _Meaning(factor, powers)
+
+
+@cache
+def _registry() -> UnitRegistry[Any]:
+    from pint import UnitRegistry  # half a second, for those who have units
+
+    return UnitRegistry(non_int_type=Fraction)
+
+
+_BASES = {"meter": "m", "gram": "kg", "second": "s", "radian": "rad"}
+
+
+@cache
+def _named(name: str) -> _Meaning | None:
+    """What a name means; None of what is no unit of length, mass, time or angle, or made of these."""
+    from pint.errors import PintError
+
+    registry = _registry()
+    try:
+        one = registry.Quantity(Fraction(1), registry.UnitsContainer({name: 1})).to_root_units()
+    except (PintError, TypeError):  # of logarithmic units too
+        return None
+    powers = {base: Fraction(str(power)) for base, power in one.unit_items()}
+    factor = one.magnitude
+    if not powers or not powers.keys() <= _BASES.keys() or not isinstance(factor, int | Fraction):
+        return None
+    if any(power.denominator != 1 for power in powers.values()):
+        return None
+    grams = powers.get("gram", Fraction(0)).numerator
+    return _Meaning(factor / Fraction(1000) ** grams, {_BASES[base]: power.numerator for base, power in powers.items()})
+
+
+def _names() -> list[str]:
+    """The units that are usual enough to be meant."""
+    prefixes = ("", "k", "M", "G", "m", "c")
+    return [*(p + u for p in prefixes for u in ("m", "N", "Pa", "g", "s")), "kip", "ft", "lbf", "psi", "ksi", "rad"]

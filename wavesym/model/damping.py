@@ -1,0 +1,24 @@
+"""Damping of the modes of a chain, as ratios to critical damping."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flint import fmpq
+
+
+@dataclass(frozen=True)
+class Damping:
+    """Of mode n = 1, 2, ... with strain `ratios[n - 1]`, the last one for all higher modes.
+
+    Or, with `modes` = (i, j), that of Rayleigh: (a/w + b w)/2 at frequency w, such that modes i and j have `ratios[0]`.
+    """
+
+    ratios: tuple[fmpq, ...]
+    modes: tuple[int, int] | None = None
+
+    @property
+    def told(self) -> str:
+        """In a line."""
+        ratios = ", ".join(map(str, self.ratios))
+        return f"{ratios} in modes {self.modes[0]} and {self.modes[1]}, Rayleigh" if self.modes else ratios

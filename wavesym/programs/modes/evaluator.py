@@ -1,0 +1,143 @@
+"""Modes as an evaluator: any spacing and horizon of loads that do not jump, with damping or without."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from flint import fmpq
+
+from wavesym.numbers.doubles import midpoint, nearest, rational
+from wavesym.numbers.reals import Real
+from wavesym.programs.modes.loads import LinearLoads
+from wavesym.programs.modes.modal import ModalSystem
+from wavesym.programs.modes.rounding import Rounded, rounded
+from wavesym.programs.modes.step import Stepper
+from wavesym.programs.modes.tables import padded, scheme_tables, stream_tables
+from wavesym.programs.program import ProgramOutput, StreamedValues
+from wavesym.programs.schemes.modes import ModesScheme
+
+_CHECKED = 40  # samples of a self-test
+_ULPS = 8  # by which a step may differ from the spacing
+
+
+@dataclass(frozen=True)
+class ModesEvaluator:
+    """A modal system under loads, stepped exactly in `real` numbers; a stream takes steps of `spacing`.
+
+    `sources` are the names of the loads; a stream takes them in units of their own, one of which is `inputs` and its
+    name. What is said of an error is `proved`, or an estimate.
+    """
+
+    system: ModalSystem
+    loads: LinearLoads
+    sources: tuple[str, ...]
+    spacing: fmpq
+    real: Real
+    tau_max: float
+    inputs: tuple[tuple[fmpq, str], ...]
+    outputs: tuple[ProgramOutput, ...] = ()
+    proved: bool = True
+
+    @cached_property
+    def error_bound(self) -> float:
+        """The largest error of any output relative to its largest value."""
+        return max(output.bound for output in self.outputs)
+
+    @cached_property
+    def scheme(self) -> ModesScheme:
+        """Its values in NumPy."""
+        tables = scheme_tables(self.system, self.loads, self.real)
+        return ModesScheme(tables, self.constants, self.tau_max, np.dtype(f"f{self.real.bytes}").type)
+
+    @cached_property
+    def rounding(self) -> Rounded:
+        """What rounding does to the values, and how large they are."""
+        return rounded(self.system, self.loads, self.scheme, self.tau_max, self.real)
+
+    @cached_property
+    def _stepper(self) -> Stepper:
+        """The system under loads in units of their own."""
+        sizes = np.array([nearest(size) for size, _ in self.inputs])
+        system = replace(self.system, pushes=self.system.pushes / sizes, direct=self.system.direct / sizes[:, None])
+        return Stepper(system, self.spacing)
+
+    @cached_property
+    def tables(self) -> dict[str, tuple[float, ...]]:
+        """The numbers of its program, in NumPy and as a stream."""
+        stream = stream_tables(self._stepper, self.real)
+        return scheme_tables(self.system, self.loads, self.real) | stream
+
+    @property
+    def told_sources(self) -> tuple[str, ...]:
+        """The names of the loads, with the units that a stream takes."""
+        pairs = zip(self.sources, self.inputs, strict=True)
+        return tuple(f"{source} [{unit}]" if unit else source for source, (_, unit) in pairs)
+
+    @property
+    def constants(self) -> dict[str, float]:
+        """Its single numbers. A step that is not between the shortest and the longest is refused."""
+        spacing = nearest(self.spacing)
+        off = _ULPS * 2 * nearest(self.real.roundoff)
+        return {
+            "loads": len(self.sources),
+            "modes": padded(len(self.system.frequency)),
+            "spacing": self.real.nearest(self.spacing),
+            "shortest": self.real.nearest(rational(spacing * (1 - off))),
+            "longest": self.real.nearest(rational(spacing * (1 + off))),
+        }
+
+    @property
+    def bytes(self) -> int:
+        """The size of the tables of a stream."""
+        rows = sum(padded(int(np.count_nonzero(w.any(axis=1)))) for w in (self.system.moved, self.system.moving))
+        numbers = padded(len(self.system.frequency)) * (4 + 4 * len(self.sources) + rows) + self.system.direct.size
+        return self.real.bytes * numbers
+
+    @property
+    def work(self) -> float:
+        """About how many operations a step takes."""
+        return 2.0 * self.bytes / self.real.bytes
+
+    @property
+    def summary(self) -> str:
+        """What it is, in a few words."""
+        said = "bound" if self.proved else "estimated error"
+        return f"modes, {len(self.system.frequency)} of them, {said} {self.error_bound:g}"
+
+    def shortfall(self, tolerance: fmpq) -> str:
+        """Why it does not meet a tolerance."""
+        worst = max(self.outputs, key=lambda output: output.bound)
+        said = "a bound" if self.proved else "an estimated error"
+        return f"modes: {len(self.system.frequency)} modes leave {said} of {worst.bound:g} for {worst.name}"
+
+    @property
+    def check_points(self) -> list[float]:
+        """A stream is not asked at any tau: what its self-test compares is `streamed`."""
+        return []
+
+    def streamed(self) -> StreamedValues:
+        """For the self-test: loads up to the largest of the scene's that leap, and what comes of them."""
+        largest = self.loads.largest or fmpq(1)
+        given = [
+            tuple(self.real.nearest(size * largest * _leap(k, j)) for j, (size, _) in enumerate(self.inputs))
+            for k in range(1, _CHECKED + 1)
+        ]
+        exact = [tuple(map(rational, row)) for row in given]
+        plain = [tuple(value / size for value, (size, _) in zip(row, self.inputs, strict=True)) for row in exact]
+        rest = (fmpq(0),) * len(self.inputs)
+        times = tuple(self.spacing * k for k in range(_CHECKED + 1))
+        loads = LinearLoads(times, (rest, *plain), rest)
+        same = replace(self, loads=loads, tau_max=self.real.not_below(times[-1]))
+        values = self._stepper.outputs(exact)
+        return StreamedValues(
+            tuple(given),
+            tuple(tuple(map(midpoint, row)) for row in values),
+            tuple(same.rounding.errors.tolist()),
+        )
+
+
+def _leap(k: int, j: int) -> fmpq:
+    """Numbers from -1 to 1 that differ much from one sample to the next, and from load to load."""
+    return fmpq((7 * k * k + 3 * k + 5 * j) % 17 - 8, 8)

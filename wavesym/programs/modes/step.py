@@ -1,0 +1,112 @@
+"""One step of modes in balls: what a stream's tables hold, and what its self-test compares with."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from flint import arb, arb_mat, ctx, fmpq
+
+from wavesym.numbers.doubles import middle, rational
+from wavesym.programs.modes.modal import ModalSystem, Numbers
+
+_BITS = 400  # of which cancellation takes at most 3 times those of frequency * spacing
+
+
+@dataclass(frozen=True)
+class ModeStep:
+    """A mode after a step: (p11 y + p12 v + force0 one0 + force1 one1, p21 y + p22 v + force0 speed0 + force1 speed1).
+
+    force0 and force1 are what acts at the start and at the end of the step; in between it is linear.
+    """
+
+    p11: arb
+    p12: arb
+    p21: arb
+    p22: arb
+    one0: arb
+    one1: arb
+    speed0: arb
+    speed1: arb
+
+
+def mode_step(frequency: float, damping: float, spacing: fmpq) -> ModeStep:
+    """The step of one mode, exact but for some hundred bits."""
+    w, zeta, h = (arb(rational(value)) for value in (frequency, damping, spacing))
+    decay, turning = zeta * w, w * w * (1 - zeta * zeta)
+    if turning > 0:
+        cosine, sine = (turning.sqrt() * h).cos(), (turning.sqrt() * h).sin() / turning.sqrt()
+    elif turning < 0:
+        cosine, sine = ((-turning).sqrt() * h).cosh(), ((-turning).sqrt() * h).sinh() / (-turning).sqrt()
+    else:
+        cosine, sine = arb(1), h
+    shrunk = (-decay * h).exp()
+    p11, p12, p22 = shrunk * (cosine + decay * sine), shrunk * sine, shrunk * (cosine - decay * sine)
+    square = w * w
+    constant = (1 - p11) / square if frequency else h * h / 2
+    ramp = (h - 2 * decay * constant - p12) / square if frequency else h**3 / 6
+    return ModeStep(p11, p12, -square * p12, p22, constant - ramp / h, ramp / h, p12 - constant / h, constant / h)
+
+
+@dataclass(frozen=True)
+class Stepper:
+    """A system that is stepped by `spacing`, its loads given at the ends of steps."""
+
+    system: ModalSystem
+    spacing: fmpq
+
+    @cached_property
+    def steps(self) -> list[ModeStep]:
+        """Those of the modes."""
+        with ctx.workprec(_BITS):
+            pairs = zip(self.system.frequency.tolist(), self.system.damping.tolist(), strict=True)
+            return [mode_step(frequency, damping, self.spacing) for frequency, damping in pairs]
+
+    def tables(self) -> dict[str, list[fmpq]]:
+        """The numbers of all modes by name; those of loads are load by load."""
+        pushes = self.system.pushes.T.tolist()
+        with ctx.workprec(_BITS):
+            turns = {name: [middle(getattr(s, name)) for s in self.steps] for name in ("p11", "p12", "p21", "p22")}
+            forced = {
+                name: [middle(getattr(s, name) * p) for row in pushes for s, p in zip(self.steps, row, strict=True)]
+                for name in ("one0", "one1", "speed0", "speed1")
+            }
+        return turns | forced
+
+    def outputs(self, loads: Sequence[Sequence[fmpq]]) -> list[list[arb]]:
+        """Each output after each step from rest, loads[k][j] being load j at the end of step k (0 before the first)."""
+        with ctx.workprec(_BITS):
+            h, system = arb(self.spacing), self.system
+            count = len(system.pushes.T)
+            y = v = [arb(0)] * len(self.steps)
+            pushes = [[arb(p) for p in row] for row in system.pushes.tolist()]
+            before, once, twice = ([arb(0)] * count for _ in range(3))
+            columns: list[list[arb]] = []
+            for row in loads:
+                now = [arb(value) for value in row]
+                force0, force1 = (
+                    [sum((p * a for p, a in zip(push, acting, strict=True)), arb(0)) for push in pushes]
+                    for acting in (before, now)
+                )
+                modes = list(zip(self.steps, y, v, force0, force1, strict=True))
+                y = [s.p11 * a + s.p12 * b + s.one0 * f + s.one1 * g for s, a, b, f, g in modes]
+                v = [s.p21 * a + s.p22 * b + s.speed0 * f + s.speed1 * g for s, a, b, f, g in modes]
+                ends = list(zip(before, now, once, twice, strict=True))
+                twice = [t + h * o + h * h * (2 * a + b) / 6 for a, b, o, t in ends]
+                once = [o + h * (a + b) / 2 for a, b, o, _ in ends]
+                columns.append([*y, *v, *(part for load in zip(now, once, twice, strict=True) for part in load)])
+                before = now
+            weights = [
+                [*moved, *moving, *(part for load in direct for part in load)]
+                for moved, moving, direct in zip(
+                    *(_rows(each) for each in (system.moved, system.moving, system.direct)), strict=True
+                )
+            ]
+            made = arb_mat(weights) * arb_mat(columns).transpose()
+            return [[made[o, k] for k in range(len(loads))] for o in range(len(weights))]
+
+
+def _rows(values: Numbers) -> list[list[object]]:
+    rows: list[list[object]] = values.tolist()
+    return rows

@@ -1,0 +1,59 @@
+"""Files read: whole, and of limited size."""
+
+from __future__ import annotations
+
+import os
+import sys
+from functools import lru_cache
+from os import PathLike
+from typing import BinaryIO
+
+from wavesym.errors import SceneError
+
+LARGEST_FILE = 16 * 2**20  # bytes
+
+
+def read_bytes(path: str | PathLike[str], expected: str) -> tuple[str, bytes]:
+    """The name a path (or `-`, standard input) goes by in messages, and the bytes there.
+
+    Raises SceneError where it cannot be read or is larger than LARGEST_FILE; `expected` says what it should be.
+    """
+    path = os.fspath(path)
+    file = "<stdin>" if path == "-" else path
+    try:
+        content = _limited(path)
+    except OSError as error:
+        raise SceneError(f"{error.strerror}, {expected} expected", file=file) from None
+    except ValueError:  # a 0 byte in the path
+        raise SceneError(f"no path, {expected} expected", file=file) from None
+    if len(content) > LARGEST_FILE:
+        raise SceneError(f"larger than {LARGEST_FILE >> 20} MB, {expected} of at most that expected", file=file)
+    return file, content
+
+
+def read_text(path: str | PathLike[str], expected: str) -> tuple[str, str]:
+    """The same with the text there. Raises SceneError where that is empty or no UTF-8, too."""
+    file, content = read_bytes(path, expected)
+    try:
+        text = content.decode("utf-8-sig")  # with the mark that some editors put first
+    except UnicodeDecodeError as error:
+        raise SceneError(f"byte {error.start} is not UTF-8, {expected} expected", file=file) from None
+    if not text.strip():
+        raise SceneError(f"empty, {expected} expected", file=file)
+    return file, text
+
+
+def _limited(path: str) -> bytes:
+    """The file's bytes, or one more than the limit: a device or a pipe need not end."""
+    if path != "-":
+        with open(path, "rb") as stream:
+            return stream.read(LARGEST_FILE + 1)
+    if sys.stdin is None:
+        raise OSError(None, "No standard input")
+    return _once(sys.stdin.buffer)
+
+
+@lru_cache(maxsize=1)
+def _once(stream: BinaryIO) -> bytes:
+    """What a stream gives, for all who ask: it can be read only once."""
+    return stream.read(LARGEST_FILE + 1)

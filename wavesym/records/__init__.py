@@ -1,0 +1,1 @@
+"""Records: what was measured, at even times, from the files that people have, every number as it is written."""

@@ -1,0 +1,66 @@
+"""AT2, the format of the PEER ground motion database: three lines of text, one that counts, then the samples.
+
+The fourth line is `NPTS=  1559, DT=   .0200 SEC`, or bare numbers, `1559   .0200   NPTS, DT`. Times are in seconds.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from fractions import Fraction
+
+from wavesym.records.record_file import RecordFile, bare, damaged, decimal
+
+_HEADER = 4
+_NAMED = re.compile(r"NPTS *= *([0-9]+)[ ,]+DT *= *([0-9.eEdD+-]+).*", re.IGNORECASE)
+_BARE = re.compile(r"([0-9]+)[ ,]+([0-9.eEdD+-]+)( .*)?")
+_UNITS = re.compile(r"UNITS? +OF +([A-Z/^*0-9]+)", re.IGNORECASE)
+_KNOWN = {"G": "g", "CM/S": "cm/s", "CM": "cm", "CM/S/S": "cm/s^2", "CM/S2": "cm/s^2", "CM/S^2": "cm/s^2"}
+
+
+def is_at2(lines: Sequence[str]) -> bool:
+    """Whether the fourth line says so."""
+    return len(lines) >= _HEADER and "NPTS" in lines[_HEADER - 1].upper()
+
+
+def at2(file: str, lines: Sequence[str]) -> RecordFile:
+    """The samples of an AT2 file. SceneError, which names the line."""
+    count, step = _counted(file, lines)
+    written: list[str] = []
+    samples: list[Fraction] = []
+    places: list[int] = []
+    for number, line in enumerate(lines[_HEADER:], _HEADER + 1):
+        for word in line.split():
+            value = decimal(word)
+            if value is None:
+                raise damaged(file, number, f"{bare(word)} given, a decimal expected")
+            if len(samples) == count:
+                raise damaged(file, number, f"more numbers than the {count} of NPTS on line {_HEADER} given")
+            samples.append(value)
+            written.append(word)
+            places.append(number)
+    if len(samples) < count:
+        what = f"the file ends after {len(samples)} numbers, the {count} of NPTS on line {_HEADER} expected"
+        raise damaged(file, places[-1] if places else _HEADER, what)
+    units = (_KNOWN.get(word.upper()) for word in _UNITS.findall(" ".join(lines[: _HEADER - 1])))
+    unit = next(filter(None, units), "")
+    return RecordFile(file, "AT2", tuple(samples), tuple(written), tuple(places), unit, "s", step)
+
+
+def _counted(file: str, lines: Sequence[str]) -> tuple[int, Fraction]:
+    """How many samples, and how far apart."""
+    expected = "NPTS and DT expected, such as NPTS=  1559, DT=   .0200 SEC"
+    if len(lines) < _HEADER:
+        raise damaged(file, len(lines), f"the file ends, three lines of text and one with {expected}")
+    line = lines[_HEADER - 1].strip()
+    found = _NAMED.fullmatch(line) or _BARE.fullmatch(line)
+    step = decimal(found[2]) if found else None
+    if found is None or step is None:
+        raise damaged(file, _HEADER, f"{bare(line)} given, {expected}")
+    if step <= 0:
+        raise damaged(file, _HEADER, f"DT = {bare(found[2])} given, more than 0 expected")
+    if not found[1].strip("0"):
+        raise damaged(file, _HEADER, "NPTS = 0 given, at least 1 expected")
+    if len(found[1]) > 9:
+        raise damaged(file, _HEADER, f"NPTS = {bare(found[1])} given, at most {10**9} expected")
+    return int(found[1]), step

@@ -1,0 +1,84 @@
+"""A load that is a record: 0, then straight lines through its samples, then 0 again.
+
+From the last sample it goes to 0 in a straight line within one step; to the first one it comes from 0 in the same way,
+where that is not at the very start. So a record has no jump but one at tau = 0, and no drift of its own after it ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Annotated, Self
+
+from pydantic import Field, PlainValidator, model_validator
+
+from wavesym.fields.loads import Load, linear
+from wavesym.fields.numbers import Exact, Positive
+from wavesym.fields.table import shown, wrong
+from wavesym.model.loads import Applied
+from wavesym.records.record_file import as_decimal
+from wavesym.records.recording import Recorded
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise wrong(f"{shown(value)} given, the name of a column expected")
+    return value
+
+
+class RecordedLoad(Load):
+    """A load whose samples are in a file; what else it needs to know of them is said once, by the file or beside it."""
+
+    column: Annotated[str, PlainValidator(_text)] | None = None
+    spacing: Positive | None = None
+    start: Exact | None = None
+    scale: Exact = Fraction(1)
+    record: Recorded = Field(description="the path of a file")
+
+    @model_validator(mode="after")
+    def _said_once(self) -> Self:
+        if self.record.unit or self.record.clock:
+            has = " and ".join(filter(None, (self.record.clock, self.record.unit)))
+            raise wrong(
+                f"a file that says {has} given, numbers without units expected (a scene with [units] takes them)",
+                "record",
+            )
+        self._once("spacing", self.spacing, self.record.spacing)
+        self._once("start", self.start, self.record.start)
+        if self.spacing is None and self.record.spacing is None:
+            raise wrong("missing, the time between samples expected (the file does not say it)", "spacing")
+        if self.begin != 0 and self.begin < self.step:
+            steps = f"{as_decimal(self.begin / self.step)} steps"
+            key = "record" if self.start is None else "start"
+            raise wrong(f"a first sample after {steps} given, at 0 or after at least 1 expected (it comes from 0)", key)
+        return self
+
+    def _once(self, key: str, here: Fraction | None, there: Fraction | None) -> None:
+        if here is not None and there is not None and here != there:
+            raise wrong(f"{as_decimal(here)} given, {as_decimal(there)} expected, as in the file, or none", key)
+
+    @property
+    def step(self) -> Fraction:
+        """The time between samples."""
+        step = self.record.spacing if self.spacing is None else self.spacing
+        assert step is not None  # or the load was refused
+        return step
+
+    @property
+    def begin(self) -> Fraction:
+        """The time of the first sample."""
+        return next((start for start in (self.start, self.record.start) if start is not None), Fraction(0))
+
+    def units(self) -> Iterator[Applied]:
+        """The load as unit responses: steps and ramps."""
+        samples = [self.scale * sample for sample in self.record.samples]
+        if self.begin == 0:
+            return linear(Fraction(0), self.step, [*samples, Fraction(0)], self.sources)
+        return linear(self.begin - self.step, self.step, [Fraction(0), *samples, Fraction(0)], self.sources)
+
+    @property
+    def told(self) -> str:
+        """In a line."""
+        samples, begin = self.record.samples, self.begin
+        last = begin + (len(samples) - 1) * self.step
+        return f"{len(samples)} samples at {self.step}, from tau = {begin} to {last}; 0 one step later"

@@ -1,0 +1,100 @@
+"""What a file of a record says, and the decimals in it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+
+from wavesym.errors import SceneError
+from wavesym.fields.numbers import LARGEST_EXPONENT, LONGEST
+from wavesym.fields.table import Written, shown
+
+# as Fortran writes them, too: .0200, 5., -.1234E-02, 1.5D+00
+_DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eEdD]([+-]?[0-9]{1,4}))?")
+_LARGEST = Fraction(10) ** LARGEST_EXPONENT
+_SMALLEST = 1 / _LARGEST
+_NEAR = Fraction(1, 10)  # of a step: times that are written with few digits
+
+
+@dataclass(frozen=True)
+class RecordFile:
+    """The samples of a file, exact, and as they are `written` there; `lines` says on which line each of them is.
+
+    What the file does not say is None, or empty: `unit` is that of the samples, `clock` that of times. `times` are
+    those of a time column, one for each sample; `spacing` is what a file without one says in its header.
+    """
+
+    file: str
+    kind: str
+    samples: tuple[Fraction, ...]
+    written: tuple[str, ...]
+    lines: tuple[int, ...]
+    unit: str = ""
+    clock: str = ""
+    spacing: Fraction | None = None
+    times: tuple[Fraction, ...] | None = None
+
+    def even(self, told: Fraction | None = None) -> Fraction | None:
+        """The time between two samples, in the file's unit; None where neither the file nor `told` says it.
+
+        Times must be even to the last digit, or where `told` says it, as digits allow. SceneError where they are not.
+        """
+        times = self.times
+        if times is None:
+            return told if self.spacing is None else self.spacing
+        if told is None and len(times) < 2:
+            return None
+        step = times[1] - times[0] if told is None else told
+        for k, (before, time) in enumerate(pairwise(times), 1):
+            if (since := time - before) <= 0:
+                what = f"the time {as_decimal(time)} given, more than the {as_decimal(before)} before it expected"
+                raise damaged(self.file, self.lines[k], what)
+            if since == step and told is None:  # as up to here
+                continue
+            expected = times[0] + k * step
+            if told is None or abs(time - expected) > _NEAR * step:
+                what = f"the time {as_decimal(time)} given, {as_decimal(expected)} expected ({_even(step, told)})"
+                raise damaged(self.file, self.lines[k], what)
+        return step
+
+
+def _even(step: Fraction, told: Fraction | None) -> str:
+    if told is not None:
+        return f"samples {as_decimal(step)} apart, as `spacing` says"
+    return f"samples {as_decimal(step)} apart, as the first two; of rounded times `spacing` in the scene says it"
+
+
+def damaged(file: str, line: int, what: str) -> SceneError:
+    """The error for what is wrong on a line of a file."""
+    return SceneError(what, f"line {line}", file)
+
+
+def decimal(text: str) -> Fraction | None:
+    """The number that a file writes; None where it is none, or none of a moderate size."""
+    found = _DECIMAL.fullmatch(text) if len(text) <= LONGEST else None
+    if not found or not (found[2] or found[3]):
+        return None
+    whole, part, power = found[2], found[3] or "", int(found[4] or 0)
+    if abs(power) > LARGEST_EXPONENT:
+        return None
+    below = len(part) - power
+    number = int(f"{found[1]}{whole}{part}")
+    value = Fraction(number, 10**below) if below > 0 else Fraction(number * 10**-below)
+    return value if not (number and power) or _SMALLEST <= abs(value) <= _LARGEST else None
+
+
+def as_decimal(value: Fraction) -> str:
+    """A number as a decimal where it ends as one, else as a fraction."""
+    places = next((k for k in range(LONGEST) if 10**k % value.denominator == 0), None)
+    if places is None:
+        return str(value)
+    digits = str(abs(value.numerator) * 10**places // value.denominator).rjust(places + 1, "0")
+    whole, part = digits[: len(digits) - places], digits[len(digits) - places :]
+    return f"{'-' * (value < 0)}{whole}{part and '.'}{part}"
+
+
+def bare(text: str) -> str:
+    """What a file says, for a message."""
+    return shown(Written(text))

@@ -1,0 +1,66 @@
+"""A record as part of a scene: its samples, not the file that they came from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from os import PathLike
+from typing import Annotated, Any
+
+from pydantic import Field, PlainSerializer, PlainValidator, ValidationError, ValidationInfo
+
+from wavesym.errors import SceneError
+from wavesym.fields.numbers import Exact, Numbers, Positive
+from wavesym.fields.table import SceneTable, first_error, shown, wrong
+from wavesym.records.read import read_record
+
+
+class Recording(SceneTable):
+    """What a file says: samples, and what it has of the time between them, the time of the first, and units."""
+
+    samples: Numbers = Field(description="a list of numbers", min_length=1)
+    spacing: Positive | None = None
+    start: Exact | None = None
+    unit: str = ""
+    clock: str = ""
+
+
+def recorded(
+    path: str | PathLike[str], column: str | None, told: Callable[[str], Fraction | None] = lambda _: None
+) -> Recording:
+    """What the file at `path` says; `told` is the spacing that a scene says, in the file's unit of time. SceneError."""
+    said = read_record(path, column)
+    spacing = told(said.clock)
+    even = said.even(spacing)
+    return Recording(
+        samples=said.samples,
+        spacing=even if spacing is None else said.spacing,
+        start=said.times[0] if said.times else None,
+        unit=said.unit,
+        clock=said.clock,
+    )
+
+
+def _recording(value: object, info: ValidationInfo) -> Recording:
+    """A record from its file, or as it is dumped."""
+    if isinstance(value, Recording):
+        return value
+    try:
+        if isinstance(value, Mapping):
+            return Recording.model_validate(value)
+        if isinstance(value, str | PathLike):
+            return recorded(value, info.data.get("column"), lambda _: info.data.get("spacing"))
+    except SceneError as error:
+        raise wrong(str(error)) from None
+    except ValidationError as error:
+        what, path = first_error(error)
+        raise wrong(what, *path) from None
+    raise wrong(f"{shown(value)} given, the path of a file expected")
+
+
+def _dumped(recording: Recording) -> dict[str, Any]:
+    return recording.model_dump(exclude_defaults=True)
+
+
+Recorded = Annotated[Recording, PlainValidator(_recording), PlainSerializer(_dumped, return_type=dict[str, Any])]
+"""The path of a file in a scene; a table of what was in it when the scene is dumped."""

@@ -1,0 +1,212 @@
+"""A chain in physical units: quantities in its parts and lengths for its places.
+
+The first rod is the unit: of length, of time by its delay, of impedance. Displacements are counted in its length,
+angles in radians.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from pydantic import Field
+
+from wavesym.fields.numbers import exact
+from wavesym.fields.table import SceneTable, listed, wrong
+from wavesym.scene.physical.chain_parts import OTHERS, RODS, LinkKeys, MotionKeys, RodKeys
+from wavesym.scene.physical.elastic import ElasticRod, Rods
+from wavesym.scene.physical.measured import measured, placed
+from wavesym.scene.physical.places import PlaceInMetres, place
+from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
+from wavesym.scene.physical.scale import Kind
+
+_Keys = tuple[str | int, ...]
+_Read = tuple[_Keys, object]
+"""A part and where it is: a table of keys, or what is no table of a part, as it is."""
+
+_TRANSLATION = {
+    "mass": "mass",
+    "displacement": "length",
+    "velocity": "velocity",
+    "acceleration": "acceleration",
+    "jerk": "jerk",
+    "spring": "stiffness",
+    "dashpot": "damping constant",
+    "force": "force",
+    "force rate": "force rate",
+}
+_ROTATION = {
+    "mass": "moment of inertia",
+    "displacement": "angle",
+    "velocity": "angular velocity",
+    "acceleration": "angular acceleration",
+    "jerk": "angular jerk",
+    "spring": "rotational stiffness",
+    "dashpot": "rotational damping constant",
+    "force": "moment",
+    "force rate": "moment rate",
+}
+
+
+class PhysicalBranch(SceneTable):
+    """Parts that start at a named node."""
+
+    from_: Any = Field(alias="from", description="the name of a node")
+    name: Any = Field(description="a name")
+    ratio: Any = 1
+    parts: Any = Field(description="a list of parts")
+
+
+class PhysicalChain(SceneTable):
+    """A chain that is written out, part by part."""
+
+    type: str
+    parts: Any = Field(description="a list of parts")
+    branch: tuple[PhysicalBranch, ...] = ()
+    damping: Any = None
+
+    def rewritten(self, kind: Kind) -> Rewritten:
+        """As a chain without units. Raises the error of `table.wrong`."""
+        main = _read(self.parts, kind, "parts")
+        branches = [_read(branch.parts, kind, "branch", k, "parts") for k, branch in enumerate(self.branch)]
+        names = _TRANSLATION if kind != "torsional" else _ROTATION
+        elastic: list[ElasticRod] = []
+        for keys, part in (read for line in (main, *branches) for read in line):
+            if isinstance(part, RodKeys):
+                with placed(*keys):
+                    elastic.append(part.elastic(names["dashpot"]))
+        if not elastic:
+            raise wrong("no rod given, at least 1 expected", "parts")
+        rods = Rods.of(elastic)
+        pen = _Pen(kind, names, rods)
+        table: dict[str, object] = {"type": "chain", "parts": pen.line("", main)}
+        if self.branch:
+            table["branch"] = [
+                {"from": each.from_, "name": each.name, "ratio": each.ratio, "parts": pen.line(each.name, parts)}
+                for each, parts in zip(self.branch, branches, strict=True)
+            ]
+        if self.damping is not None:
+            table["damping"] = self.damping
+        return Rewritten(
+            kind=kind,
+            rods=rods,
+            system=table,
+            displacement=pen.displacement,
+            force=pen.force,
+            lengths=(rods.first.length,),
+            acting=pen.acting,
+            lines=pen.lines,
+        )
+
+
+def _read(parts: object, kind: Kind, *at: str | int) -> list[_Read]:
+    """Parts by their keys."""
+    with placed(*at):
+        values = listed(parts)
+    found: list[_Read] = []
+    for k, value in enumerate(values):
+        with placed(*at, k):
+            found.append(((*at, k), _part(value, kind)))
+    return found
+
+
+def _part(value: object, kind: Kind) -> object:
+    if not isinstance(value, Mapping):
+        return value  # a mark, or what is refused with the chain
+    known: tuple[type[SceneTable], ...] = (RODS[kind], *OTHERS)
+    keys = next((each for each in known if each.key in value), LinkKeys)  # type: ignore[attr-defined]
+    if keys is LinkKeys and not value.keys() & {"spring", "dashpot"}:
+        return value
+    return keys.model_validate(value)
+
+
+@dataclass
+class _Pen:
+    """Writes parts without units, one line after another, and keeps what loads and places need to know of them."""
+
+    kind: Kind
+    names: Mapping[str, str]
+    rods: Rods
+
+    def __post_init__(self) -> None:
+        first, seconds = self.rods.first, self.rods.seconds
+        self.displacement = Fraction(1) if self.kind == "torsional" else first.length
+        self.force = first.stiffness * self.displacement
+        self.lines: dict[str, Fraction] = {}
+        self.moved: dict[object, str] = {}  # what a motion end is, by its name and its place
+        self._next = 0
+        self._units = {
+            "mass": first.mass,
+            "velocity": self.displacement / seconds,
+            "spring": first.stiffness,
+            "dashpot": first.stiffness * seconds,
+            "contact": self.displacement,
+        }
+
+    def line(self, name: str, parts: list[_Read]) -> list[object]:
+        """The parts of a line."""
+        x = Fraction(0)
+        written: list[object] = []
+        for keys, part in parts:
+            with placed(*keys):
+                if isinstance(part, RodKeys):
+                    length = self.rods.all[self._next].length
+                    written.append(self._rod(part, length))
+                    x += length
+                elif isinstance(part, SceneTable):
+                    table = self._converted(part)
+                    if isinstance(part, MotionKeys):
+                        self.moved |= {at: str(part.motion) for at in (part.name, (name, x)) if at is not None}
+                    written.append(table)
+                else:
+                    written.append(part)
+        self.lines[name] = x
+        return written
+
+    def _rod(self, part: RodKeys, length: Fraction) -> dict[str, object]:
+        table = self.rods.part(self._next, length / self.rods.first.length)
+        self._next += 1
+        table |= self._converted(part, "rod", "impedance", "speed", "strain", *part.made_of())
+        if part.strain is not None:
+            table["strain"] = self._strain(part.strain)
+        return table
+
+    def _strain(self, value: object) -> Fraction:
+        """Of a rod at first: a number, in torsion an angle per length."""
+        if self.kind != "torsional":
+            return exact(value)
+        with placed("strain"):
+            return measured(value, "rate of twist") * self.rods.first.length
+
+    def _converted(self, part: SceneTable, *without: str) -> dict[str, object]:
+        table: dict[str, object] = {}
+        for key, value in part:
+            if value is None or key in without:
+                continue
+            if key not in self._units:
+                table[key] = value
+                continue
+            least = None if key == "velocity" else 1 if key == "mass" else 0
+            with placed(key):
+                dimension = self.names["displacement" if key == "contact" else key]
+                table[key] = measured(value, dimension, least) / self._units[key]
+        return table
+
+    def acting(self, load: Mapping[str, Any]) -> LoadUnit:
+        """What a load does depends on where it is."""
+        if "at" not in load:
+            return LoadUnit(self.names["force"], self.names["force rate"], self.force)
+        with placed("at"):
+            found = place(load["at"], self.lines)
+        at: object = found.name if isinstance(found, PlaceInMetres) and found.x is None else (found.line, found.x)
+        unit = self.displacement / self.rods.seconds
+        added = {"at": found.dimensionless(self.rods.first.length)}
+        match self.moved.get(at):
+            case "velocity":
+                return LoadUnit(self.names["velocity"], self.names["acceleration"], unit, {}, added)
+            case "acceleration":
+                size = unit / self.rods.seconds
+                return LoadUnit(self.names["acceleration"], self.names["jerk"], size, {}, added)
+        return LoadUnit(self.names["force"], self.names["force rate"], self.force, {}, added)

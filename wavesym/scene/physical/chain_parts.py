@@ -1,0 +1,203 @@
+"""The parts of a chain in physical units, as tables of a scene: which keys they have; quantities are read later.
+
+What a key measures depends on how waves move the rods, which `[units]` says for the whole chain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from wavesym.fields.numbers import exact
+from wavesym.fields.table import SceneTable, shown, wrong
+from wavesym.scene.physical.elastic import ElasticRod
+from wavesym.scene.physical.measured import measured, missing, one_of, placed
+from wavesym.scene.physical.rounding import polar_moment
+from wavesym.scene.physical.scale import Kind
+
+
+class RodKeys(SceneTable):
+    """Keys of a rod of any kind. It may say its impedance and wave speed instead of what they follow from."""
+
+    key: ClassVar[str] = "rod"
+    needed: ClassVar[Mapping[str, str]]
+
+    rod: Any = Field(description='a length such as "1.2 m"')
+    impedance: Any = None
+    speed: Any = None
+    velocity: Any = None
+    strain: Any = None
+    spring: Any = None
+    dashpot: Any = None
+    name: Any = None
+
+    def elastic(self, dashpot: str) -> ElasticRod:
+        """As waves see it; `dashpot` is the dimension of impedances. Raises the error of `table.wrong`."""
+        with placed("rod"):
+            length = measured(self.rod, "length", 1)
+        if self.impedance is None and self.speed is None:
+            found = self._measured()
+            return ElasticRod(length, self._mass(found) * length, self._stiffness(found) / length, self._square(found))
+        for key in self.made_of():
+            if getattr(self, key) is not None:
+                given = "impedance" if self.impedance is not None else "speed"
+                raise wrong(f"given beside {given}, one of them expected", key)
+        impedance, speed = self._said("impedance", dashpot), self._said("speed", "velocity")
+        return ElasticRod(length, impedance / speed * length, impedance * speed / length)
+
+    def _said(self, key: str, dimension: str) -> Fraction:
+        value = getattr(self, key)
+        if value is None:
+            raise missing(dimension, key)
+        with placed(key):
+            return measured(value, dimension, 1)
+
+    def _measured(self) -> dict[str, Fraction]:
+        return {key: self._said(key, dimension) for key, dimension in self.needed.items()}
+
+    @classmethod
+    def made_of(cls) -> tuple[str, ...]:
+        """The keys that say what it is made of."""
+        return tuple(key for key in cls.model_fields if key not in RodKeys.model_fields)
+
+    def _mass(self, found: Mapping[str, Fraction]) -> Fraction:
+        """Per length."""
+        return found["rho"] * found["A"]
+
+    def _square(self, found: Mapping[str, Fraction]) -> Fraction | None:
+        """Of its width, where it should be small beside the length."""
+        return found["A"]
+
+    def _stiffness(self, found: Mapping[str, Fraction]) -> Fraction:
+        """Times length."""
+        return found["E"] * found["A"]
+
+
+class LongitudinalRod(RodKeys):
+    """It is stretched: E A and rho A."""
+
+    needed: ClassVar[Mapping[str, str]] = {"A": "area", "E": "modulus", "rho": "density"}
+
+    A: Any = None
+    E: Any = None
+    rho: Any = None
+
+
+class ShearRod(RodKeys):
+    """It is sheared: k G A and rho A."""
+
+    needed: ClassVar[Mapping[str, str]] = {"A": "area", "G": "modulus", "rho": "density"}
+
+    A: Any = None
+    G: Any = None
+    rho: Any = None
+    k: Any = None
+
+    def _square(self, found: Mapping[str, Fraction]) -> None:
+        """Shear asks for no slenderness: on the contrary."""
+
+    def _stiffness(self, found: Mapping[str, Fraction]) -> Fraction:
+        if self.k is None:
+            return found["G"] * found["A"]
+        with placed("k"):
+            factor = exact(self.k)
+            if factor <= 0:
+                raise wrong(f"{shown(self.k)} given, a positive number expected")
+        return factor * found["G"] * found["A"]
+
+
+class TorsionalRod(RodKeys):
+    """It is twisted: G J and rho J, J as it is or that of a round rod with a bore."""
+
+    needed: ClassVar[Mapping[str, str]] = {"G": "modulus", "rho": "density"}
+
+    J: Any = None
+    diameter: Any = None
+    bore: Any = None
+    G: Any = None
+    rho: Any = None
+
+    def _measured(self) -> dict[str, Fraction]:
+        return {"J": self._polar(), **super()._measured()}
+
+    def _polar(self) -> Fraction:
+        if one_of(self, "J", "diameter") == "J":
+            if self.bore is not None:
+                raise wrong("given beside J, one of them expected", "bore")
+            return self._said("J", "second moment of area")
+        diameter = self._said("diameter", "length")
+        bore = self._said("bore", "length") if self.bore is not None else Fraction(0)
+        if bore >= diameter:
+            raise wrong(f"{shown(self.bore)} given, less than the diameter expected", "bore")
+        return polar_moment(diameter, bore)
+
+    def _square(self, found: Mapping[str, Fraction]) -> Fraction | None:
+        return None if self.diameter is None else self._said("diameter", "length") ** 2
+
+    def _mass(self, found: Mapping[str, Fraction]) -> Fraction:
+        return found["rho"] * found["J"]
+
+    def _stiffness(self, found: Mapping[str, Fraction]) -> Fraction:
+        return found["G"] * found["J"]
+
+
+class MassKeys(SceneTable):
+    """A rigid mass, or a moment of inertia."""
+
+    key: ClassVar[str] = "mass"
+
+    mass: Any = Field(description="a mass")
+    velocity: Any = None
+    dashpot: Any = None
+    spring: Any = None
+    name: Any = None
+
+
+class JointKeys(SceneTable):
+    """A joint without mass."""
+
+    key: ClassVar[str] = "joint"
+
+    joint: Any = Field(description="true")
+    velocity: Any = None
+    dashpot: Any = None
+    spring: Any = None
+    name: Any = None
+
+
+class MotionKeys(SceneTable):
+    """An end that moves as its load says."""
+
+    key: ClassVar[str] = "motion"
+
+    motion: Any = Field(description='"velocity" or "acceleration"')
+    velocity: Any = None
+    name: Any = None
+
+
+class ContactKeys(SceneTable):
+    """A contact."""
+
+    key: ClassVar[str] = "contact"
+
+    contact: Any = Field(description="a gap")
+
+
+class LinkKeys(SceneTable):
+    """A spring and a dashpot between the parts on their two sides."""
+
+    key: ClassVar[str] = "spring"
+
+    spring: Any = None
+    dashpot: Any = None
+
+
+RODS: Mapping[Kind, type[RodKeys]] = {
+    "longitudinal": LongitudinalRod,
+    "torsional": TorsionalRod,
+    "shear": ShearRod,
+}
+OTHERS: tuple[type[SceneTable], ...] = (MassKeys, JointKeys, MotionKeys, ContactKeys)

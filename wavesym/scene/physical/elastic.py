@@ -1,0 +1,97 @@
+"""Rods as waves see them: how long, how heavy, how stiff; and what of them is irrational."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from wavesym.scene.physical.rounding import root, rounded_root
+
+
+@dataclass(frozen=True)
+class ElasticRod:
+    """A rod in SI base units: its length, its mass, and the force on it per metre that its ends part.
+
+    In torsion its moment of inertia, and the moment per radian. A wave takes sqrt(mass/stiffness) from end to end, and
+    its impedance is sqrt(mass stiffness).
+    """
+
+    length: Fraction
+    mass: Fraction
+    stiffness: Fraction
+    width_squared: Fraction | None = None
+
+    @property
+    def slenderness(self) -> float | None:
+        """How many times as long as wide it is, where that is known: of columns each, as if they were square."""
+        return None if self.width_squared is None else float(self.length**2 / self.width_squared) ** 0.5
+
+    @property
+    def delay_squared(self) -> Fraction:
+        """The square of how long a wave takes from end to end."""
+        return self.mass / self.stiffness
+
+
+@dataclass(frozen=True)
+class Rods:
+    """The rods of a scene, in order; all that is made relative is so to the first.
+
+    Irrational are its delay, l/c, which is rounded, and where rods differ the ratios of their delays, each of which is
+    rounded unless it is rational. Masses are kept, so that impedances follow: mass/delay.
+    """
+
+    all: tuple[ElasticRod, ...]
+    seconds: Fraction
+    ratios: tuple[Fraction, ...]
+
+    @classmethod
+    def of(cls, rods: Sequence[ElasticRod]) -> Rods:
+        """Rods with their delays."""
+        first = rods[0]
+        ratios: dict[Fraction, Fraction] = {}
+        for rod in rods:
+            square = rod.delay_squared / first.delay_squared
+            if square not in ratios:
+                ratios[square] = root(square)
+        return cls(
+            tuple(rods),
+            rounded_root(first.delay_squared),
+            tuple(ratios[rod.delay_squared / first.delay_squared] for rod in rods),
+        )
+
+    @property
+    def first(self) -> ElasticRod:
+        """The one whose length and delay are the units."""
+        return self.all[0]
+
+    @property
+    def in_step(self) -> bool:
+        """Whether a wave takes equally long through each of them."""
+        return all(ratio == 1 for ratio in self.ratios)
+
+    @property
+    def alike(self) -> bool:
+        """Whether they are as heavy and as stiff as one another, too."""
+        return self.in_step and all(rod.mass == self.first.mass for rod in self.all)
+
+    @property
+    def rounded(self) -> int:
+        """How many different ratios of delays are irrational, and so rounded."""
+        first = self.first.delay_squared
+        return len(
+            {ratio for rod, ratio in zip(self.all, self.ratios, strict=True) if ratio**2 != rod.delay_squared / first}
+        )
+
+    def impedance(self, number: int) -> Fraction:
+        """That of a rod, the first one's being 1."""
+        return self.all[number].mass / self.first.mass / self.ratios[number]
+
+    def part(self, number: int, length: Fraction) -> dict[str, object]:
+        """A rod as a part of a chain that is so long there."""
+        found: dict[str, object] = {"rod": length}
+        if (impedance := self.impedance(number)) != 1:
+            found["impedance"] = impedance
+        if (speed := length / self.ratios[number]) != 1:
+            found["speed"] = speed
+        return found

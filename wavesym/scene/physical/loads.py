@@ -1,0 +1,132 @@
+"""Loads in physical units as loads without: times in tau, values in units of the system."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from itertools import pairwise
+from os import PathLike
+from typing import Any
+
+from wavesym.errors import SceneError
+from wavesym.fields.dimensions import DIMENSIONS
+from wavesym.fields.numbers import exact
+from wavesym.fields.quantity import unit
+from wavesym.fields.table import Written, listed, shown, wrong
+from wavesym.records.record_file import as_decimal
+from wavesym.records.recording import Recording, recorded
+from wavesym.scene.physical.measured import measured, placed
+from wavesym.scene.physical.rewritten import LoadUnit
+
+_VALUES, _SLOPES = ("a", "steps"), ("b", "ramps")
+
+
+def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
+    """A load's table. Raises the error of `table.wrong`."""
+    table: dict[str, Any] = {}
+    for key, value in load.items():
+        new = acting.renamed.get(key, key)
+        with placed(key):
+            if key == "times":
+                table[new] = _times(value, seconds)
+            elif key in _VALUES:
+                table[new] = _all(value, acting.dimension, acting.size)
+            elif key in _SLOPES:
+                table[new] = _all(value, acting.slope, acting.size / seconds)
+            elif key == "spacing":
+                table[new] = measured(value, "time", 1) / seconds
+            elif key not in ("unit", "samples", "record", "start", "column"):
+                table[new] = value
+    if "record" in load:
+        table |= _recorded(load, acting, seconds)
+    elif "samples" in load:
+        table["samples"] = _samples(load, acting)
+    elif "unit" in load:
+        raise wrong("given without samples or a record, none expected", "unit")
+    return {**table, **acting.added}
+
+
+def _times(value: object, seconds: Fraction) -> list[Fraction]:
+    """Times in tau; here they are compared, as messages show them as they were given."""
+    values = listed(value)
+    times = []
+    for k, each in enumerate(values):
+        with placed(k):
+            times.append(measured(each, "time", 0))
+    for k, (before, time) in enumerate(pairwise(times), 1):
+        if time <= before:
+            raise wrong(f"{shown(values[k])} given, more than the {shown(values[k - 1])} before it expected", k)
+    return [time / seconds for time in times]
+
+
+def _all(value: object, dimension: str, size: Fraction) -> list[Fraction]:
+    numbers = []
+    for k, each in enumerate(listed(value)):
+        with placed(k):
+            numbers.append(measured(each, dimension) / size)
+    return numbers
+
+
+def _samples(load: Mapping[str, Any], acting: LoadUnit) -> list[Fraction]:
+    """Bare numbers, all in one unit."""
+    factor = _unit(load, acting)
+    numbers = []
+    for k, each in enumerate(listed(load["samples"])):
+        with placed("samples", k):
+            numbers.append(exact(each) * factor)
+    return numbers
+
+
+def _unit(load: Mapping[str, Any], acting: LoadUnit) -> Fraction:
+    """How much a sample of 1 is without units."""
+    if load.get("unit") is None:
+        example = DIMENSIONS[acting.dimension].example.partition(" ")[2]
+        raise wrong(f'missing, the unit of the samples such as "{example}" expected', "unit")
+    with placed("unit"):
+        return unit(load["unit"], acting.dimension) / acting.size
+
+
+def read(load: object) -> object:
+    """A load whose record is what was in its file, as it is dumped. Raises the error of `table.wrong`."""
+    if not isinstance(load, Mapping) or not isinstance(path := load.get("record"), str | PathLike):
+        return load
+    spacing = None
+    if "spacing" in load:
+        with placed("spacing"):
+            spacing = measured(load["spacing"], "time", 1)
+    with placed("record"):
+        try:
+            recording = recorded(path, load.get("column"), lambda clock: spacing and spacing / _clock(clock))
+        except SceneError as error:
+            raise wrong(str(error)) from None
+    return {**load, "record": recording.model_dump(exclude_defaults=True)}
+
+
+def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
+    """A record without units. What its file says may be said again, but not otherwise."""
+    with placed("record"):
+        recording = Recording.model_validate(load["record"])
+        clock = _clock(recording.clock)
+        said = unit(recording.unit, acting.dimension) / acting.size if recording.unit else None
+    factor = _unit(load, acting) if said is None or "unit" in load else said
+    if said is not None and said != factor:
+        expected = f"{shown(Written(recording.unit))} expected, as in the file, or none"
+        raise wrong(f"{shown(load['unit'])} given, {expected}", "unit")
+    made: dict[str, Any] = {"samples": [sample * factor for sample in recording.samples]}
+    table: dict[str, Any] = {"record": made}
+    for key, least, told in (("spacing", 1, recording.spacing), ("start", 0, recording.start)):
+        if told is not None:
+            made[key] = told * clock / seconds
+        if key in load:
+            with placed(key):
+                time = measured(load[key], "time", least)
+                if told is not None and time != told * clock:
+                    expected = f"{as_decimal(told)} {recording.clock or 's'} expected, as in the file, or none"
+                    raise wrong(f"{shown(load[key])} given, {expected}")
+            table[key] = time / seconds
+    return table
+
+
+def _clock(written: str) -> Fraction:
+    """A file's unit of time in seconds; one that it does not say is the second."""
+    return unit(written or "s", "time")

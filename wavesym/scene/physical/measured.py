@@ -1,0 +1,89 @@
+"""Fields of physical tables: quantities of a dimension, checked where they are read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import PlainValidator, ValidationError
+from pydantic_core import PydanticCustomError
+
+from wavesym.fields.dimensions import DIMENSIONS, with_article
+from wavesym.fields.numbers import written
+from wavesym.fields.quantity import quantity
+from wavesym.fields.table import SceneTable, first_error, shown, wrong
+
+
+@contextmanager
+def placed(*keys: str | int) -> Iterator[None]:
+    """Where in the scene it is that the error of `table.wrong`, or of a table's validation, is about."""
+    try:
+        yield
+    except PydanticCustomError as error:
+        context = error.context or {}
+        raise wrong(context["what"], *keys, *context["at"]) from None
+    except ValidationError as error:
+        what, path = first_error(error)
+        raise wrong(what, *keys, *path) from None
+
+
+def measured(value: object, dimension: str, least: int | None = None) -> Fraction:
+    """A quantity in SI base units, above 0 where `least` is 1, not below it where that is 0."""
+    number = quantity(value, dimension)
+    if least is not None and (number < 0 or (number == 0 and least)):
+        expected = "a positive" if least else "no negative"
+        raise wrong(f"{shown(value)} given, {expected} {dimension} expected")
+    return number
+
+
+def missing(dimension: str, *at: str | int) -> Exception:
+    """The error for a quantity that is not given."""
+    return wrong(f'missing, {with_article(dimension)} such as "{DIMENSIONS[dimension].example}" expected', *at)
+
+
+def _positive(dimension: str) -> Callable[[object], Fraction]:
+    return lambda value: measured(value, dimension, 1)
+
+
+Length = Annotated[Fraction, PlainValidator(_positive("length"))]
+Mass = Annotated[Fraction, PlainValidator(_positive("mass"))]
+Area = Annotated[Fraction, PlainValidator(_positive("area"))]
+Modulus = Annotated[Fraction, PlainValidator(_positive("modulus"))]
+Density = Annotated[Fraction, PlainValidator(_positive("density"))]
+Stiffness = Annotated[Fraction, PlainValidator(_positive("stiffness"))]
+SecondMoment = Annotated[Fraction, PlainValidator(_positive("second moment of area"))]
+Inertia = Annotated[Fraction, PlainValidator(_positive("moment of inertia"))]
+Velocity = Annotated[Fraction, PlainValidator(lambda value: measured(value, "velocity"))]
+
+
+def one_of(table: SceneTable, *keys: str) -> str:
+    """Which one of some keys is given. Raises the error of `table.wrong` where it is not one."""
+    given = [key for key in keys if getattr(table, key) is not None]
+    *others, last = keys
+    if not given:
+        raise wrong(f"missing, {', '.join(others)} or {last} expected", keys[0])
+    if len(given) > 1:
+        raise wrong(f"given beside {given[0]}, one of them expected", given[1])
+    return given[0]
+
+
+def plain(value: object) -> Any:
+    """A value of a scene as TOML has it, exact: text, integers, lists and tables."""
+    match value:
+        case Mapping():
+            return {str(key): plain(each) for key, each in value.items()}
+        case list() | tuple():
+            return [plain(each) for each in value]
+        case bool() | int() | str():
+            return str(value) if isinstance(value, str) else value
+        case Fraction():
+            return str(value)
+    text = written(value)
+    return value if text is None else text
+
+
+def tidy(number: Fraction) -> str:
+    """A number for a message, with 6 digits."""
+    return f"{float(number):.6g}"

@@ -1,0 +1,149 @@
+"""What one of each dimensionless number is in SI base units, and in the units that results are told in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, Literal
+
+from wavesym.fields.quantity import unit
+from wavesym.fields.table import SceneTable, shown, wrong
+from wavesym.model.clock import Clock
+from wavesym.numbers.doubles import rational
+from wavesym.scene.physical.elastic import Rods
+from wavesym.scene.physical.measured import placed
+
+Kind = Literal["longitudinal", "torsional", "shear"]
+KINDS: tuple[Kind, ...] = ("longitudinal", "torsional", "shear")
+_ALONG = {"velocity": "velocity", "acceleration": "acceleration", "force": "force"}
+_ROUND = {"velocity": "angular velocity", "acceleration": "angular acceleration", "force": "moment"}
+_DEFAULTS = {
+    "time": "s",
+    "length": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s^2",
+    "force": "N",
+    "moment": "N*m",
+    "angle": "rad",
+}
+
+
+class UnitsTable(SceneTable):
+    """`[units]`: how waves move the rods of a chain, and the units of results. In torsion velocities are angular."""
+
+    kind: object = None
+    time: object = None
+    length: object = None
+    velocity: object = None
+    acceleration: object = None
+    force: object = None
+    moment: object = None
+    angle: object = None
+
+    def chain_kind(self) -> Kind:
+        """How waves move the rods of a chain that is written out."""
+        if self.kind is None:
+            return "longitudinal"
+        for kind in KINDS:
+            if self.kind == kind:
+                return kind
+        raise wrong(f'{shown(self.kind)} given, "longitudinal", "torsional" or "shear" expected', "kind")
+
+
+@dataclass(frozen=True)
+class Results:
+    """The units of results, and what each of them is in SI base units."""
+
+    texts: Mapping[str, str]
+    sizes: Mapping[str, Fraction]
+
+    @classmethod
+    def of(cls, units: UnitsTable, kind: Kind) -> Results:
+        """Those of a scene. Raises the error of `table.wrong`."""
+        dimensions = {key: key for key in _DEFAULTS} | (_ROUND | {"force": "force"} if kind == "torsional" else _ALONG)
+        texts: dict[str, str] = {}
+        sizes: dict[str, Fraction] = {}
+        for key, usual in _DEFAULTS.items():
+            given = getattr(units, key)
+            if given is None:
+                given = usual.replace("m/", "rad/") if dimensions[key].startswith("angular") else usual
+            with placed(key):
+                sizes[key] = unit(given, dimensions[key])
+            texts[key] = str(given)
+        return cls(texts, sizes)
+
+    def told(self, dimension: str) -> tuple[Fraction, str]:
+        """The unit that a load of a dimension would be told in: its size and its text."""
+        key = dimension.removeprefix("angular ")
+        return self.sizes[key], self.texts[key]
+
+
+@dataclass(frozen=True)
+class Scale:
+    """One tau is `seconds`; a displacement of 1 is so many m (rad in torsion), a force of 1 so many N (N m).
+
+    `lengths` are those of the rods in units of x, in m; one alone where all are as long.
+    """
+
+    kind: Kind
+    seconds: Fraction
+    displacement: Fraction
+    force: Fraction
+    lengths: tuple[Fraction, ...]
+    results: Results
+    rods: Rods
+
+    @cached_property
+    def clock(self) -> Clock:
+        """Time as results tell it."""
+        per_tau = self.seconds / self.results.sizes["time"]
+        return Clock(rational(self.seconds), rational(per_tau), self.results.texts["time"])
+
+    @cached_property
+    def canonical(self) -> dict[str, Any]:
+        """What of it makes two scenes different, exact, for JSON."""
+        numbers = {"seconds": self.seconds, "displacement": self.displacement, "force": self.force}
+        return {
+            "kind": self.kind,
+            **{name: str(number) for name, number in numbers.items()},
+            "lengths": list(map(str, self.lengths)),
+            "results": {key: [text, str(self.results.sizes[key])] for key, text in self.results.texts.items()},
+        }
+
+    def factor(self, quantity: str, rod: int) -> Fraction:
+        """What an output is multiplied by, `rod` being that of its place (from 1)."""
+        sizes, moved = self.results.sizes, self._moved
+        match quantity:
+            case "strain":
+                length = self.lengths[(rod or 1) - 1 if len(self.lengths) > 1 else 0]
+                strain = self.displacement / length
+                return strain if self.kind != "torsional" else strain * sizes["length"] / sizes["angle"]
+            case "velocity":
+                return self.displacement / self.seconds / sizes["velocity"]
+            case "acceleration":
+                return self.displacement / self.seconds**2 / sizes["acceleration"]
+            case "force":
+                return self.force / sizes[self._pulled]
+        return self.displacement / sizes[moved]
+
+    def unit(self, quantity: str) -> str:
+        """The unit of an output; empty for a strain, which has none but in torsion: an angle per length."""
+        texts = self.results.texts
+        match quantity:
+            case "strain":
+                return f"{texts['angle']}/{texts['length']}" if self.kind == "torsional" else ""
+            case "velocity" | "acceleration":
+                return texts[quantity]
+            case "force":
+                return texts[self._pulled]
+        return texts[self._moved]
+
+    @property
+    def _moved(self) -> str:
+        return "angle" if self.kind == "torsional" else "length"
+
+    @property
+    def _pulled(self) -> str:
+        return "moment" if self.kind == "torsional" else "force"

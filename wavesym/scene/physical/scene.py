@@ -1,0 +1,139 @@
+"""A scene with [units], rewritten as one without; what was said is kept, so that it can be changed and printed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from pydantic_core import PydanticCustomError
+
+from wavesym.fields.numbers import exact
+from wavesym.fields.table import shown, wrong
+from wavesym.scene.physical.building import PhysicalBuilding
+from wavesym.scene.physical.chain import PhysicalChain
+from wavesym.scene.physical.collision import PhysicalCollision
+from wavesym.scene.physical.drive import PhysicalDrive
+from wavesym.scene.physical.loads import dimensionless, read
+from wavesym.scene.physical.measured import measured, placed, plain
+from wavesym.scene.physical.places import place
+from wavesym.scene.physical.rewritten import Rewritten
+from wavesym.scene.physical.said import words
+from wavesym.scene.physical.scale import Results, Scale, UnitsTable
+from wavesym.systems import SYSTEMS
+
+_SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
+    "collision": PhysicalCollision,
+    "drive": PhysicalDrive,
+    "building": PhysicalBuilding,
+}
+_LENGTHS = {"strain", "velocity", "displacement", "acceleration", "force", "relative"}
+"""Outputs whose places are lengths on a chain; a drift counts rods."""
+
+
+@dataclass(frozen=True)
+class PhysicalScene:
+    """What a scene with units `said`, the `fields` of the one without, and what their numbers are.
+
+    `inputs` is of each load what 1 is in the unit of results, and that unit.
+    """
+
+    said: dict[str, Any]
+    fields: dict[str, Any]
+    scale: Scale
+    kappa: tuple[Fraction, ...]
+    inputs: tuple[tuple[Fraction, str], ...] = ()
+
+    @property
+    def system(self) -> dict[str, str]:
+        """What it is made of, by key."""
+        return {key: words(value) for key, value in self.said["system"].items() if key != "type"}
+
+    @property
+    def loads(self) -> tuple[str, ...]:
+        """A line for each load."""
+        return tuple(map(words, self.said.get("load", ())))
+
+
+def physical(fields: Mapping[str, Any]) -> PhysicalScene:
+    """The fields of a scene with [units], rewritten. Raises the error of `table.wrong`, or of a table's validation."""
+    with placed("units"):
+        units = UnitsTable.model_validate(fields["units"])
+    made = dict(fields)
+    found = _system(fields.get("system"), units)
+    with placed("units"):
+        results = Results.of(units, found.kind)
+    with placed("system"):  # before loads and places on it
+        made["system"] = SYSTEMS[str(found.system["type"])].model_validate(found.system)
+    seconds = found.rods.seconds
+    said = dict(fields)
+    inputs = []
+    if isinstance(loads := fields.get("load"), list | tuple):
+        said["load"] = [_read(load, k) for k, load in enumerate(loads)]
+        made["load"] = [_load(load, k, found, seconds) for k, load in enumerate(said["load"])]
+        for acting in (found.acting(load) for load in said["load"] if isinstance(load, Mapping)):
+            size, text = results.told(acting.dimension)
+            inputs.append((acting.size / size, text))
+    if isinstance(output := fields.get("output"), Mapping):
+        with placed("output"):
+            made["output"] = _output(output, found, seconds)
+    scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
+    return PhysicalScene(plain(said), made, scale, found.kappa, tuple(inputs))
+
+
+def _system(table: object, units: UnitsTable) -> Rewritten:
+    if not isinstance(table, Mapping):
+        raise wrong(f"{shown(table)} given, a table expected", "system")
+    kind = table.get("type")
+    if kind == "chain":
+        with placed("units"):
+            moved = units.chain_kind()
+        with placed("system"):
+            return PhysicalChain.model_validate(table).rewritten(moved)
+    if not isinstance(kind, str) or kind not in _SYSTEMS:
+        *others, last = (f'"{name}"' for name in (*_SYSTEMS, "chain"))
+        given = "missing" if kind is None else f"{shown(kind)} given"
+        raise wrong(f"{given}, {', '.join(others)} or {last} expected", "system", "type")
+    if units.kind is not None:
+        raise wrong(f"given for a {kind}, none expected (only chains have a choice)", "units", "kind")
+    with placed("system"):
+        return _SYSTEMS[kind].model_validate(table).rewritten()
+
+
+def _read(load: object, k: int) -> object:
+    with placed("load", k):
+        return read(load)
+
+
+def _load(load: object, k: int, found: Rewritten, seconds: Fraction) -> object:
+    if not isinstance(load, Mapping):
+        return load
+    with placed("load", k):
+        return dimensionless(load, found.acting(load), seconds)
+
+
+def _output(output: Mapping[str, Any], found: Rewritten, seconds: Fraction) -> dict[str, Any]:
+    made = dict(output)
+    if "until" in output:
+        with placed("until"):
+            made["until"] = _until(output["until"], seconds)
+    if found.lines is not None:
+        for quantity in _LENGTHS & output.keys():
+            if isinstance(places := output[quantity], list | tuple):
+                made[quantity] = [_position(at, found, quantity, k) for k, at in enumerate(places)]
+    return made
+
+
+def _until(value: object, seconds: Fraction) -> object:
+    """A time; a number is one of tau."""
+    try:
+        return exact(value)
+    except PydanticCustomError:
+        return measured(value, "time", 1) / seconds
+
+
+def _position(at: object, found: Rewritten, quantity: str, k: int) -> object:
+    assert found.lines is not None  # places are lengths
+    with placed(quantity, k):
+        return place(at, found.lines).position(found.rods.first.length)

@@ -1,0 +1,93 @@
+"""Modes as C: a stream, one sample of the loads in and all outputs out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.modes.tables import LANES
+from wavesym.programs.program import Program, StreamedValues
+from wavesym.rendering import render
+from wavesym.targets.c.kernel import kernel
+from wavesym.targets.description import Description, constants
+from wavesym.targets.literals import Lines, c_constants, c_literals, c_tables
+
+_OWN = (
+    *("p11", "p12", "p21", "p22", "one0", "one1", "speed0", "speed1"),
+    *("moved_row", "moved_weight", "moving_row", "moving_weight", "load_weight"),
+)
+
+
+@dataclass(frozen=True)
+class CModes:
+    """templates/c/modes.c.j2; every table as the lines between its braces."""
+
+    scene: Description
+    tables: dict[str, Lines]
+    constants: dict[str, str]
+    moved: str
+    moving: str
+    lanes: str
+    kernel: str
+
+
+@dataclass(frozen=True)
+class CModesStream:
+    """templates/c/modes.h.j2: the loads and their units as text, and as constants."""
+
+    scene: Description
+    constants: dict[str, str]
+    sources: tuple[tuple[str, str], ...]
+    state: str
+
+
+@dataclass(frozen=True)
+class CModesSelfTest:
+    """templates/c/modes_selftest.c.j2: `expected` by output, then by sample; doubles whatever the program's type is."""
+
+    scene: Description
+    count: str
+    tables: dict[str, Lines]
+
+
+def source(scene: Description, program: Program) -> str:
+    """NAME.c."""
+    context = CModes(
+        scene=scene,
+        tables=c_tables({name: program.tables[name] for name in _OWN}, program.real),
+        constants=c_constants(program.constants, program.real),
+        moved=str(len(program.tables["moved_row"])),
+        moving=str(len(program.tables["moving_row"])),
+        lanes=str(LANES),
+        kernel=kernel("modes.c", scene),
+    )
+    return render("c/modes.c.j2", context)
+
+
+def streaming(scene: Description, program: Program) -> str:
+    """What NAME.h declares besides: the stream."""
+    names = [f"load@{source.partition(' ')[0]}" for source in program.sources]
+    context = CModesStream(
+        scene=scene,
+        constants=c_constants(program.constants, program.real),
+        sources=tuple(zip(program.sources, constants(names), strict=True)),
+        state=kernel("modes_state.h", scene),
+    )
+    return render("c/modes.h.j2", context)
+
+
+def selftest(scene: Description, program: Program, reference: StreamedValues) -> str:
+    """The program that holds a stream against reference values."""
+    rows = zip(reference.errors, reference.values, strict=True)
+    # the reference is rounded once
+    allowed = [error + 2.0**-52 * max(map(abs, row)) for error, row in rows]
+    context = CModesSelfTest(
+        scene=scene,
+        count=str(len(reference.loads)),
+        tables={
+            "loads": c_literals((value for row in reference.loads for value in row), program.real),
+            "expected": c_literals((value for row in reference.values for value in row), DOUBLE),
+            "allowed": c_literals(allowed, DOUBLE),
+        },
+    )
+    return render("c/modes_selftest.c.j2", context)
