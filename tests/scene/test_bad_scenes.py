@@ -62,7 +62,7 @@ HUGE = "1" + "0" * 4000
 MISTAKES = [
     # unknown and missing keys
     (DRIVE, 'name = "good"', 'name = "good"\ncolour = 1', "colour: unknown key, name, units, system, load or output expected"),
-    (DRIVE, "kappa =", "kapa =", "system.kapa: unknown key, type, m, kappa or inertia expected"),
+    (DRIVE, "kappa =", "kapa =", "system.kapa: unknown key, type, m, kappa, inertia or damping expected"),
     (DRIVE, "steps", '"st\\neps"', 'load[0]."st\\neps": unknown key, times, body, steps or ramps expected'),
     (DRIVE, "until", "untl", "output.untl: unknown key"),
     (DRIVE, 'name = "good"', "", "name: missing"),
