@@ -16,6 +16,7 @@ verification/ and papers/, what is measured by lab/. The heavy libraries load wh
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import islice
@@ -32,6 +33,7 @@ from wavesym.exact.network_table import NetworkTable, network_table
 from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
+from wavesym.fields.table import shown
 from wavesym.model.symbolic import generic, symbolic
 from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 from wavesym.programs.making import make
@@ -49,6 +51,7 @@ if TYPE_CHECKING:
     from wavesym.papers.entries import PaperEntry
 
 
+_UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
 _AT_ONCE = 5000  # tau of `run`
 MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
 
@@ -366,14 +369,16 @@ def record(path: Path, unit: str | None, column: str | None = None, picture: Pat
     """What a file of a record says, line by line; drawn too, where there is a path for it.
 
     `unit` is that of the samples where the file says none, `column` that of a CSV with several. SceneError for a file
-    that is damaged or says another unit, and for a picture with another suffix.
+    that is damaged or says another unit, and for a picture with another suffix; WavesymError for what is no unit.
     """
     from wavesym.documents.record import facts
     from wavesym.records.read import read_record
 
+    if unit is not None and not _UNIT.fullmatch(unit):
+        raise WavesymError(f"--unit: {shown(unit)} given, a unit such as g or m/s^2 expected")
     said = read_record(path, column)
     if unit is not None and said.unit not in ("", unit):
-        raise SceneError(f"--unit {unit} given, none expected (the file says {said.unit})", file=said.file)
+        raise SceneError(f"--unit {unit} given, {said.unit} expected, as in the file, or none", file=said.file)
     lines = facts(said, unit or said.unit)
     if picture is not None:
         from wavesym.report.record import draw

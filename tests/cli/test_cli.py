@@ -67,6 +67,10 @@ class Compiler(SimpleNamespace):
         self.asked.append(options)
         return [], iter(["symbols\n"])
 
+    def record(self, path: Path, *options: object) -> list[str]:
+        self.asked.append(options)
+        return [f"{path}: 2 samples"]
+
     def inspect(self, scene: object, *options: object) -> str:
         self.asked.append(options)
         return "nodes"
