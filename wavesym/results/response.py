@@ -90,7 +90,8 @@ def _program(model: Model, error: CostError) -> Program:
     Of samples and records it is told what each program would need.
     """
     tried = attempts(model)
-    if not model.spacing and not any(one.form or isinstance(one.error, ToleranceError) for one in tried):
+    served = any(one.form or isinstance(one.error, ToleranceError) for one in tried)
+    if not served and not model.spacing and not model.damping:
         raise error
     choice = best(model, tried)
     return assemble(choice.evaluator, Provenance(model, choice.reason))
