@@ -49,6 +49,10 @@ _DEFINITION = {
     "strain": "(l / {0}\u2080) \u2202{0}/\u2202x",
     "velocity": "(l / (c {0}\u2080)) \u2202{0}/\u2202t",
     "displacement": "{0} / {0}\u2080",
+    "acceleration": "(l\u00b2 / (c\u00b2 {0}\u2080)) \u2202\u00b2{0}/\u2202t\u00b2",
+    "force": "(l / (E A {0}\u2080)) force",
+    "drift": "\u0394{0} / {0}\u2080",
+    "relative": "({0} \u2212 {0} of the ground) / {0}\u2080",
 }
 
 

@@ -24,6 +24,7 @@ from wavesym.verification.graph_balance import Balancing
 from wavesym.verification.graph_characteristics import doubles_of, integrate_graph
 from wavesym.verification.graph_grid import GraphGrid, graph_grid
 from wavesym.verification.invariants import Balance, Evaluate, balances, values_per_window, watched
+from wavesym.verification.observed import observed, parted
 from wavesym.verification.outcome import FINE, MOST_MOVED, NO_GRID, Check, Outcome
 from wavesym.verification.reference import Known
 from wavesym.verification.refinement import Refinement, Solutions, shown
@@ -99,11 +100,13 @@ def integration(known: Known) -> list[Outcome]:
             return integrate_graph(made, known.until, steps)
         return integrate(model.named, model.loads, known.until, steps)
 
+    views = observed(model)
+
     def refined() -> list[Refinement]:
         found = []
-        for output in known.outputs:
-            coarse, half, quarter = (each.at(output.probe, known.taus) for each in motions)
-            rounding = motions[-1].roundoff(output.probe)
+        for output, view in zip(known.outputs, views, strict=True):
+            coarse, half, quarter = (view.values(partial(each.at, taus=known.taus), known.taus) for each in motions)
+            rounding = view.roundoff(motions[-1].roundoff)
             found.append(Solutions((coarse, half, quarter), output.values, rounding, output.scale).plain())
         return found
 
@@ -127,7 +130,10 @@ def spacetime(known: Known) -> list[Outcome]:
     With contacts N is so large that the same happens at them with 2N and 4N, and that is one more front.
     """
     model = known.model
-    first = grid(model) if model.chain else graph_grid(model)
+    views = observed(model)
+    apart = parted(model)
+    seen = apart.probes
+    first = grid(apart) if model.chain else graph_grid(apart)
     until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
     struck: Struck = []
     if isinstance(first, GraphGrid) and first.graph.contacts:
@@ -152,17 +158,20 @@ def spacetime(known: Known) -> list[Outcome]:
         step = f"at {first.tau(1):.1g} a step"
         note = f"{model.name}: to step between the fronts, central differences would take too long ({step})"
         return [Outcome(output.probe.name, {"to": "refused"}, True, note) for output in known.outputs]
-    truth = [np.array(values) for values in Reference(model).values([first.tau(k) for k in instants.tolist()])]
+    taus = [first.tau(k) for k in instants.tolist()]
+    truth = [np.array(values) for values in Reference(model).values(taus)]
 
     def motion(finer: int) -> Displaced:
         return first.finer(finer).integrate(finer * instants)
 
     def refined() -> list[Refinement]:
         found = []
-        for k, output in enumerate(known.outputs):
-            coarse, half, quarter = (each.values[k] for each in motions)
-            rounding = float(motions[-1].roundoff[k])
-            solutions = Solutions((coarse, half, quarter), truth[k], rounding, output.scale)
+        for output, view, exact in zip(known.outputs, views, truth, strict=True):
+            coarse, half, quarter = (
+                view.values(dict(zip(seen, each.values, strict=True)).__getitem__, taus) for each in motions
+            )
+            rounding = view.roundoff(dict(zip(seen, motions[-1].roundoff.tolist(), strict=True)).__getitem__)
+            solutions = Solutions((coarse, half, quarter), exact, rounding, output.scale)
             found.append(solutions.extrapolated() if first.aligned and not struck else solutions.wandering())
         return found
 
