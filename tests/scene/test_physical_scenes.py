@@ -384,6 +384,7 @@ REFUSED = [
     ),
     ("building", "load.0", {"record": "nowhere.at2"}, "load[0].record", "nowhere.at2"),
     ("building", "output.until", "3 m", "output.until", "(a length), a time"),
+    ("building", "output.until", "1e12 s", "output.until", "2.49735e+14 of tau, at most 1000000000 of tau"),
     ("building", "output.until", "0 s", "output.until", "a positive time"),
     ("building", "output.velocity", ["2 m"], "output.velocity[0]", "a number expected"),
     ("building", "output.velocity", [3], "output.velocity[0]", "a position from 0 to 2 expected"),
