@@ -11,6 +11,7 @@ from flint import fmpq
 from wavesym.model.model import Model
 from wavesym.model.network import Point
 from wavesym.model.probe import Probe
+from wavesym.model.reading import Gauge, Sum, Weighted
 from wavesym.numbers.doubles import nearest
 from wavesym.rivals.problem import Array, Evaluate, Rival
 
@@ -46,11 +47,10 @@ def summing(rival: Rival[P]) -> Rival[Summed[P]]:
     """The same method for any outputs."""
 
     def states(model: Model) -> Summed[P]:
-        read = list(
-            dict.fromkeys(each for terms in model.sums.values() for _, each in terms if each.quantity != "load")
-        )
+        sums = [_terms(model, probe) for probe in model.probes]
+        read = list(dict.fromkeys(each for terms in sums for _, each in terms if each.quantity != "load"))
         weights, loads = np.zeros((len(model.probes), len(read))), []
-        for output, terms in enumerate(model.sums.values()):
+        for output, terms in enumerate(sums):
             for weight, each in terms:
                 if each.quantity != "load":
                     weights[output, read.index(each)] = nearest(weight)
@@ -64,6 +64,13 @@ def summing(rival: Rival[P]) -> Rival[Summed[P]]:
         return evaluate if stated.plain else lambda taus: stated.added(evaluate(taus), taus)
 
     return Rival(rival.name, rival.language, rival.unit, rival.resolutions, states, prepare)
+
+
+def _terms(model: Model, probe: Probe) -> Sum:
+    """What an output is the sum of. Where modes are damped more acts on a mass than rods and loads."""
+    if probe.quantity == "acceleration" and model.damping is not None:
+        return (Weighted(probe.factor, Gauge(probe.quantity, probe.rod, probe.place, probe.point)),)
+    return model.sums[probe]
 
 
 def _acting(model: Model, point: Point, weight: fmpq) -> list[tuple[float, Array]]:

@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from wavesym.errors import CostError, ToleranceError
+from wavesym.errors import CostError, ToleranceError, WavesymError
 from wavesym.exact.reference import Reference
 from wavesym.model.model import Model
 from wavesym.programs.making import make
@@ -23,6 +23,7 @@ from wavesym.verification.graph import Struck, graph
 from wavesym.verification.graph_balance import Balancing
 from wavesym.verification.graph_characteristics import doubles_of, integrate_graph
 from wavesym.verification.graph_grid import GraphGrid, graph_grid
+from wavesym.verification.hat import at_samples
 from wavesym.verification.invariants import Balance, Evaluate, balances, values_per_window, watched
 from wavesym.verification.observed import observed, parted
 from wavesym.verification.outcome import FINE, MOST_MOVED, NO_GRID, Check, Outcome
@@ -54,7 +55,10 @@ Balances = Callable[[Evaluate, Sequence[float] | None], tuple[Balance, ...]]
 
 
 def generated(known: Known) -> list[Outcome]:
-    """The generated C, compiled and run, and the generated NumPy, against their proved bound."""
+    """The generated C, compiled and run, and the generated NumPy, against their proved bound.
+
+    C that takes loads sample by sample has its self-test alone.
+    """
     model = known.whole
     try:
         program = make(model, tested=True)
@@ -65,17 +69,40 @@ def generated(known: Known) -> list[Outcome]:
     bounds = [output["error_bound"] for output in json.loads(made[f"{model.name}.json"])["outputs"]]
     numpy = imported(made[f"{model.name}.py"], model.name).evaluate(np.array(known.taus))
     with compiled(made, len(known.outputs)) as built:
-        c = built(known.taus)
+        found = {"NumPy": numpy} if built.streams else {"C": built(known.taus), "NumPy": numpy}
         sound = built.selftest() == 0
     note = "" if sound else f"{model.name}: the self-test of the generated C fails"
     outcomes = []
-    for output, stated, bound, *values in zip(known.outputs, program.outputs, bounds, c, numpy, strict=True):
+    for output, stated, bound, *values in zip(known.outputs, program.outputs, bounds, *found.values(), strict=True):
         # the largest value may lie between the instants that are looked at, or beyond them
         errors = [output.error(each) * min(1.0, output.scale / (stated.largest or 1.0)) for each in values]
         allowed = 0.0 if stated.largest == 0 else bound + _ROUNDED
-        cells = dict(zip(("C", "NumPy", "bound"), map(shown, (*errors, bound)), strict=True))
+        cells = dict(zip((*found, "bound"), map(shown, (*errors, bound)), strict=True))
         passed = sound and all(error <= allowed for error in errors)
         outcomes.append(Outcome(output.probe.name, cells, passed, note))
+    return outcomes
+
+
+def records(known: Known) -> list[Outcome]:
+    """Modes against the march of one hat load, added up at the samples: over the whole horizon, with both bounds."""
+    model = known.whole
+    try:
+        program = make(model)
+    except WavesymError:  # said already
+        return []
+    if program.evaluator != "modes":
+        return []
+    try:
+        march = at_samples(model)
+    except WavesymError as refusal:
+        return [Outcome("record", {"march": "refused"}, True, str(refusal))]
+    values = program.evaluate(march.taus)
+    outcomes = []
+    for output, ours, other, wrong in zip(program.outputs, values, march.values, march.allowed, strict=True):
+        scale = output.largest or 1.0
+        error, allowed = float(np.max(np.abs(ours - other))) / scale, output.bound + wrong / scale + _ROUNDED
+        cells = {"samples": str(len(march.taus)), "error": shown(error), "allowed": shown(allowed)}
+        outcomes.append(Outcome(output.name, cells, error <= allowed))
     return outcomes
 
 
@@ -254,6 +281,11 @@ def _coarse(model: Model, what: str) -> str:
 
 CHECKS = (
     Check("Generated code, against its proved bound:", generated),
+    Check(
+        "Records that modes take, against the march of one hat load, added up at all samples. Allowed: what is proved\n"
+        "of both:",
+        records,
+    ),
     Check(
         "Integration along characteristics with N, 2N and 4N steps per unit of tau (type chain: per common measure\n"
         "of its delays). Allowed at 4N: the difference from 2N, and rounding:",
