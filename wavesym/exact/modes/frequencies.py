@@ -10,7 +10,7 @@ from flint import arb, ctx, fmpq
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut, cut
 from wavesym.exact.modes.shape import Mode, Trial, rigid, trial, yielding
-from wavesym.exact.modes.stiffness import Law, Stiffness, Vector
+from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, Vector
 from wavesym.model.network import Network
 
 _BITS = 192
@@ -87,7 +87,7 @@ class Spectrum:
 def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
     """Those after the first `known` ones."""
     free = rigid(stiffness.network)
-    ways: list[tuple[int, Law]] = []
+    ways: list[tuple[int, HarmonicLaw]] = []
     for times in (1, 4):
         bits = times * (_BITS + _BITS_A_ROW * len(stiffness.points))
         with ctx.workprec(bits):
@@ -116,7 +116,7 @@ def searched(stiffness: Stiffness, count: int) -> Vector:
     return np.asarray(high, np.float64)
 
 
-def _proved(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -> Mode | None:
+def _proved(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, bits: int) -> Mode | None:
     """The n-th mode; None where it cannot be told from others."""
     with ctx.workprec(bits):
         root = yielding(stiffness, law, arb(guess) * (1 - _OFF))
@@ -127,7 +127,7 @@ def _proved(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -> 
     return Mode(stiffness, w, points) if all(q.rad() < _SHARP for q in points) else None
 
 
-def _polished(stiffness: Stiffness, law: Law, n: int, guess: float, root: int, bits: int) -> arb | None:
+def _polished(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> arb | None:
     """The n-th frequency by Newton's method, from one near it."""
     near, small = arb(2) ** -42, arb(2) ** (-bits // 3)
     w = arb(guess)
@@ -142,12 +142,12 @@ def _polished(stiffness: Stiffness, law: Law, n: int, guess: float, root: int, b
     return None
 
 
-def _is(stiffness: Stiffness, law: Law, n: int, w: arb) -> bool:
+def _is(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> bool:
     """Whether the n-th frequency, and no other, is in a ball."""
     return stiffness.proved(law, w.lower()) == n - 1 and stiffness.proved(law, w.upper()) == n
 
 
-def _bisected(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -> arb | None:
+def _bisected(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, bits: int) -> arb | None:
     """The same by counting alone, where another frequency is too near for Newton's method."""
     low, high = arb(guess), arb(guess)
     reach = arb(2) ** -40

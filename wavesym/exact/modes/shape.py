@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from flint import arb, fmpq
 
-from wavesym.exact.modes.stiffness import Law, Stiffness, circular
+from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, circular
 from wavesym.model.network import End, Network
 
 
@@ -80,7 +80,7 @@ class Trial(NamedTuple):
         return (w * w + self.rest * self.rows[self.root] / self.mass).sqrt().mid()
 
 
-def yielding(stiffness: Stiffness, law: Law, w: arb) -> int:
+def yielding(stiffness: Stiffness, law: HarmonicLaw, w: arb) -> int:
     """The row on which a force moves most, near a frequency one that moves much in its mode."""
     diagonal, up = law.matrix(w, *circular(law, w))
     pivots = stiffness.pivots(diagonal, up)
@@ -93,7 +93,7 @@ def yielding(stiffness: Stiffness, law: Law, w: arb) -> int:
     return min(range(len(left)), key=lambda row: abs(left[row].mid()))
 
 
-def trial(stiffness: Stiffness, law: Law, w: arb, root: int) -> Trial:
+def trial(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> Trial:
     """How the chain moves at a frequency where only row `root` is held. Where nothing acts on it that is a mode.
 
     Determinants of branches instead of pivots: a part of the chain may have the same frequency as the whole.
@@ -119,7 +119,7 @@ def trial(stiffness: Stiffness, law: Law, w: arb, root: int) -> Trial:
     return Trial(rows, root, whole[root], _mass(law, w, rows, cot, csc))
 
 
-def _mass(law: Law, w: arb, found: Sequence[arb], cot: Sequence[arb], csc: Sequence[arb]) -> arb:
+def _mass(law: HarmonicLaw, w: arb, found: Sequence[arb], cot: Sequence[arb], csc: Sequence[arb]) -> arb:
     """The sum of M q^2, and of the integrals of Z u^2 over the delays of the bars."""
     total = sum((mass * q * q for mass, q in zip(law.mass, found, strict=True) if mass != 0), arb(0))
     # u = (left sin w(T - s) + right sin w s)/sin w T, so that its square has the integral

@@ -41,7 +41,7 @@ class Elastic:
 
 
 @dataclass(frozen=True)
-class Law:
+class HarmonicLaw:
     """The numbers of K in one arithmetic; rows run from the tips to the root. `over` is what springs add to `up`."""
 
     mass: list[Quantity]
@@ -118,7 +118,7 @@ class Stiffness:
                         )
         return list(found.items())
 
-    def law(self, number: Callable[[fmpq], Quantity]) -> Law:
+    def law(self, number: Callable[[fmpq], Quantity]) -> HarmonicLaw:
         """Its numbers in one arithmetic."""
         network, rows = self.network, self.rows
         free = [network.points[point] for point in self.points]
@@ -143,7 +143,7 @@ class Stiffness:
             )
             for bar in network.bars
         ]
-        return Law(
+        return HarmonicLaw(
             [number(point.mass) for point in free],
             [*map(number, held)],
             [*map(number, over)],
@@ -178,7 +178,7 @@ class Stiffness:
         return diagonal
 
     @cached_property
-    def _doubles(self) -> Law:
+    def _doubles(self) -> HarmonicLaw:
         return self.law(nearest)
 
     @cached_property
@@ -199,7 +199,7 @@ class Stiffness:
             negative = [pivot < 0 for pivot in self.pivots(diagonal, up)]
         return np.asarray(sum(turns[bar.delay] for bar in law.bars) + sum(negative, np.zeros(w.shape, np.int64)))
 
-    def proved(self, law: Law, w: arb) -> int | None:
+    def proved(self, law: HarmonicLaw, w: arb) -> int | None:
         """How many frequencies lie below w, proved; None where so many bits do not tell. `law` is in balls."""
         turns = [(w * delay / arb.pi()).floor().unique_fmpz() for delay in law.delays]
         if any(turn is None for turn in turns):
@@ -218,7 +218,7 @@ def _turns(angle: Vector, sine: Vector) -> NDArray[np.int64]:
     return nearest_turn - (np.where(nearest_turn % 2, -sine, sine) < 0)
 
 
-def circular(law: Law, w: arb) -> tuple[list[arb], list[arb]]:
+def circular(law: HarmonicLaw, w: arb) -> tuple[list[arb], list[arb]]:
     """cot and 1/sin of w times each delay."""
     pairs = [(w * delay).sin_cos() for delay in law.delays]
     return [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs]

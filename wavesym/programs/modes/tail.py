@@ -36,7 +36,7 @@ class Decline(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Tail:
+class LeftOut:
     """The modes after the first `count` with strain, none of which has a frequency below w."""
 
     damped: Damped
