@@ -33,7 +33,7 @@ from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
 from wavesym.model.symbolic import generic, symbolic
-from wavesym.numbers.doubles import fraction, nearest, rational
+from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
 from wavesym.results.response import Response
@@ -272,8 +272,8 @@ def _instants(model: Model, samples: int, at: Sequence[float] | None) -> Iterato
     elif at is not None:
         yield from ((time, clock.tau(time, until)) for time in at)
     else:
-        times = (clock.time(until * k / max(samples - 1, 1)) for k in range(samples))
-        yield from zip(times, grid(model, samples), strict=True)
+        taus = (until * k / max(samples - 1, 1) for k in range(samples))
+        yield from ((clock.time(tau), not_below(tau)) for tau in taus)
 
 
 def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:

@@ -57,8 +57,8 @@ class Motion:
             )
         if (loaded := self._knots.stretches) > MOST_LOADED:
             raise CostError(
-                f"load: {self._knots.told} are {loaded} stretches between loads, at most {MOST_LOADED} expected (fewer "
-                "load times or a shorter horizon help)"
+                f"load: {self._knots.told} are {loaded} stretches between loads, at most {MOST_LOADED} expected "
+                "(fewer load times help)"
             )
 
     @cached_property
