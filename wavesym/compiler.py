@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from wavesym.model.model import Model
     from wavesym.model.node import System
     from wavesym.papers.entries import PaperEntry
+    from wavesym.programs.program import Program
 
 
 _AT_ONCE = 5000  # tau of `run`
@@ -54,12 +55,13 @@ MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond 
 
 
 def evaluator(scene: Scene) -> Response:
-    """The outputs of a scene as a function of tau, each value right to the last bit.
+    """The outputs of a scene as a function of tau, each value right to the last bit where that takes no minutes.
 
     Called with an array of tau it gives an array of shape (outputs, *tau.shape). It has `outputs`, their names,
     `tau_max`, the end of the horizon, `error_bound`, and the `events` of contacts that open and close (`x`, `kind`,
-    `tau` as a ball, `double`, `digits`).
-    SceneError for what is no Scene; CostError, where it is called, for what would take minutes.
+    `tau` as a ball, `double`, `digits`). Elsewhere values are those of a `program` (else None), with its bound.
+    SceneError for what is no Scene; where it is called, CostError for what would take minutes with any program, and
+    ToleranceError where none meets the tolerance.
 
     >>> import wavesym
     >>> response = wavesym.evaluator(wavesym.Scene.from_toml("drive_m1"))
@@ -244,17 +246,27 @@ def _written(scene: Scene, directory: str | Path | None, language: str, request:
     return {folder / name: text for name, text in files(program, language).items()}
 
 
-def run(scene: Scene, samples: int, at: Sequence[float] | None = None) -> Iterator[str]:
+def run(
+    scene: Scene, samples: int, at: Sequence[float] | None = None, tell: Callable[[str], object] = lambda _: None
+) -> Iterator[str]:
     """The outputs as CSV lines, as they are computed: at `at`, or at `samples` equally spaced tau of the horizon.
 
-    Of a physical scene `at` are times in the unit of results, and so is the first column.
-
-    CostError where right to the last bit would cost too much, before there is a line.
+    Of a physical scene `at` are times in the unit of results, and so is the first column. Where values are not right to
+    the last bit, `tell` is told of which program they are, and its bound. ToleranceError or CostError where there is
+    none that will do, before there is a line.
     """
     model = lower(scene)
     response = Response(model)
     blocks = iter(partial(_rows, response, _instants(model, samples, at)), [])
-    return _csv(_columns(model), next(blocks, []), blocks)  # what goes wrong does so before the header
+    first = next(blocks, [])  # what goes wrong does so before the header
+    if made := response.program:
+        tell(f"values of {made.evaluator}, not right to the last bit: {_trusted(made)}")
+    return _csv(_columns(model), first, blocks)
+
+
+def _trusted(made: Program) -> str:
+    said = "proved bound" if made.proved else "estimate"
+    return f"{said} of the error {made.error_bound:g} of an output's largest value"
 
 
 def _columns(model: Model) -> list[str]:

@@ -55,7 +55,7 @@ class Compiler(SimpleNamespace):
     def no_load(self, scene: object) -> list[str]:
         return []
 
-    def run(self, scene: object, samples: int, at: list[float] | None) -> Iterator[str]:
+    def run(self, scene: object, samples: int, at: list[float] | None, tell: object) -> Iterator[str]:
         self.asked.append((samples, at))
         yield from ("tau,strain@0.5\n", "0.0,0.0\n")
 

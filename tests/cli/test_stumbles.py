@@ -142,7 +142,9 @@ def test_from_python_what_is_wrong_is_told() -> None:
     scene = wavesym.Scene.from_toml("drive_m1")
     with pytest.raises(wavesym.WavesymError, match=r"^language: fmu given, c, numpy or all expected$"):
         wavesym.generate(scene, language="fmu")
-    with pytest.raises(wavesym.WavesymError, match=r"^evaluator: clsed given, auto, closed, pieces or march expected$"):
+    with pytest.raises(
+        wavesym.WavesymError, match=r"^evaluator: clsed given, auto, closed, pieces, march or modes expected$"
+    ):
         wavesym.generate(scene, evaluator="clsed")
     with pytest.raises(wavesym.WavesymError, match=r"^precision: half given, double or single expected$"):
         wavesym.generate(scene, precision="half")

@@ -91,7 +91,7 @@ MISTAKES = [
     (COLLISION, "m = 4", "m = 5", "system.m: 5 given, an even integer of at least 4 expected"),
     (COLLISION, "m = 4", "m = 2", "system.m: 2 given, an even integer of at least 4 expected"),
     (DRIVE, "m = 2", "m = 0", "system.m: 0 given, an integer of at least 1 expected"),
-    (BUILDING, "m = 2", "m = 1", "system.m: 1 given, an integer of at least 2 expected"),
+    (BUILDING, "m = 2", "m = 0", "system.m: 0 given, an integer of at least 1 expected"),
     (DRIVE, "m = 2", "m = -2", "system.m: -2 given"),
     (DRIVE, "m = 2", "m = 2.0", "system.m: 2.0 given, an integer expected"),
     (DRIVE, "m = 2", "m = true", "system.m: true given, an integer expected"),

@@ -33,6 +33,8 @@ def lower(scene: Scene) -> Model:
         labels=_labels(scene),
         clock=scene.scale.clock if scene.scale else None,
         damping=_damping(scene),
+        inputs=_inputs(scene),
+        spacing=min((rational(load.step) for load in scene.load if load.step), default=None),
     )
 
 
@@ -59,6 +61,15 @@ def _loads(scene: Scene) -> tuple[Applied, ...]:
     if not scene.system.load_kinds:
         return (Applied("impact", fmpq(0), fmpq(1)),)
     return merged(unit for load in scene.load for unit in load.units())
+
+
+def _inputs(scene: Scene) -> dict[str, tuple[fmpq, str]]:
+    given = scene.physical.inputs if scene.physical else ()
+    return {
+        source: (rational(factor), unit)
+        for load, (factor, unit) in zip(scene.load, given, strict=False)
+        for source in load.sources
+    }
 
 
 def _probe(output: Observable, scale: Scale | None) -> Probe:
