@@ -80,19 +80,6 @@ class Trial(NamedTuple):
         return (w * w + self.rest * self.rows[self.root] / self.mass).sqrt().mid()
 
 
-def yielding(stiffness: Stiffness, law: HarmonicLaw, w: arb) -> int:
-    """The row on which a force moves most, near a frequency one that moves much in its mode."""
-    diagonal, up = law.matrix(w, *circular(law, w))
-    pivots = stiffness.pivots(diagonal, up)
-    # what is left of a row once all others are eliminated
-    left = list(pivots)
-    for row in reversed(range(len(left))):
-        parent = stiffness.parents[row]
-        if parent is not None:
-            left[row] = pivots[row] * left[parent] / (left[parent] + up[row] * up[row] / pivots[row])
-    return min(range(len(left)), key=lambda row: abs(left[row].mid()))
-
-
 def trial(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> Trial:
     """How the chain moves at a frequency where only row `root` is held. Where nothing acts on it that is a mode.
 

@@ -188,16 +188,35 @@ class Stiffness:
 
     def counted(self, w: Vector) -> NDArray[np.int64]:
         """How many frequencies lie below each w > 0, in doubles: right but for rounding."""
-        law = self._doubles
-        angles = [w * delay for delay in law.delays]
+        angles = [w * delay for delay in self._doubles.delays]
         sines = [np.sin(angle) for angle in angles]
         turns = [_turns(angle, sine) for angle, sine in zip(angles, sines, strict=True)]
         with np.errstate(all="ignore"):
-            csc = [1 / sine for sine in sines]
-            cot = [np.cos(angle) / sine for angle, sine in zip(angles, sines, strict=True)]
-            diagonal, up = law.matrix(w, cot, csc)
-            negative = [pivot < 0 for pivot in self.pivots(diagonal, up)]
-        return np.asarray(sum(turns[bar.delay] for bar in law.bars) + sum(negative, np.zeros(w.shape, np.int64)))
+            pivots, _ = self._eliminated(w, angles, sines)
+            negative = [pivot < 0 for pivot in pivots]
+        bars = self._doubles.bars
+        return np.asarray(sum(turns[bar.delay] for bar in bars) + sum(negative, np.zeros(w.shape, np.int64)))
+
+    def yielding(self, w: Vector) -> NDArray[np.int64]:
+        """The row on which a force moves most at each w, in doubles: one that moves much in the mode that is near."""
+        angles = [w * delay for delay in self._doubles.delays]
+        with np.errstate(all="ignore"):
+            pivots, up = self._eliminated(w, angles, [np.sin(angle) for angle in angles])
+            # what is left of a row once all others are eliminated
+            left = list(pivots)
+            for row in reversed(range(len(left))):
+                parent = self.parents[row]
+                if parent is not None:
+                    left[row] = pivots[row] * left[parent] / (left[parent] + up[row] * up[row] / pivots[row])
+        return np.asarray(np.argmin(np.nan_to_num(np.abs(left), nan=np.inf), axis=0))
+
+    def _eliminated(
+        self, w: Vector, angles: Sequence[Vector], sines: Sequence[Vector]
+    ) -> tuple[list[Vector], list[Any]]:
+        csc = [1 / sine for sine in sines]
+        cot = [np.cos(angle) / sine for angle, sine in zip(angles, sines, strict=True)]
+        diagonal, up = self._doubles.matrix(w, cot, csc)
+        return self.pivots(diagonal, up), up
 
     def proved(self, law: HarmonicLaw, w: arb) -> int | None:
         """How many frequencies lie below w, proved; None where so many bits do not tell. `law` is in balls."""
