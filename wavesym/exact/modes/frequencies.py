@@ -130,7 +130,8 @@ def _proved(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: 
 
 def _polished(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> arb | None:
     """The n-th frequency by Newton's method, from one near it."""
-    near, small = arb(2) ** -42, arb(2) ** (-bits // 3)
+    small = arb(2) ** (-bits // 3)
+    near = small.sqrt()
     w = arb(guess)
     for _ in range(_NEWTON):
         better = trial(stiffness, law, w, root).better(w)
