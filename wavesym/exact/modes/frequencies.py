@@ -48,7 +48,7 @@ def frequencies(network: Network, count: int) -> tuple[arb, ...]:
     >>> from wavesym import Scene
     >>> from wavesym.scene import lower
     >>> [float(w) for w in frequencies(lower(Scene.from_toml("drive_m1")).network, 2)]
-    [0.0, 1.5336592127]
+    [0.0, 1.1362489714714046]
     """
     return tuple(mode.frequency for mode in Spectrum(network).first(count))
 
