@@ -152,12 +152,13 @@ def attempt(
 def best(model: Model, tried: Sequence[Tried], optimize: str | None = None) -> Choice:
     """The best of what was tried and meets the tolerance, and why. ToleranceError where nothing does."""
     found = [(one.kind, one.form) for one in tried if one.form and not one.refusal]
+    # where modes are for something else altogether that is no news, but of a record that nothing serves
+    silent = found or not model.spacing
+    refused = [one.why for one in tried if one.refusal and not (silent and one.kind == "modes" and _unserved(one))]
     if not found:
         if len(tried) == 1 and tried[0].error:
             raise tried[0].error
-        raise unmet(model.tolerance, "; ".join(one.why for one in tried if one.refusal))
-    # where modes are for something else altogether, and another kind is found, that is no news
-    refused = [one.why for one in tried if one.refusal and not (one.kind == "modes" and _unserved(one))]
+        raise unmet(model.tolerance, "; ".join(refused))
     small = optimize == "size"
     name, chosen = min(found, key=lambda one: one[1].bytes if small else one[1].work)
     dearer = [f"{form.summary}, {'is larger' if small else 'takes longer'}" for _, form in found if form is not chosen]
