@@ -155,7 +155,8 @@ def test_of_a_record_that_is_too_much_all_the_causes_are_told(spacing):
     with pytest.raises(ToleranceError) as told:
         choose(lower(record))
     line = str(told.value)
-    assert f"march: load: times (k*spacing in a record) have {parts} different fractional parts, at most 16" in line
+    spaced = {"31.37": "3137/100", "1/200": "1/200"}[spacing]
+    assert f"march: load: times at a spacing of {spaced} have {parts} different fractional parts, at most 16" in line
     assert re.search(r"closed: load: \S+ increments would arrive at the outputs, at most 5.0e\+04 expected", line)
     assert re.search(r"pieces: load: 4 nodes times \d+ units of tau are \d+ stretches between loads, at most", line)
     assert ("modes: load: a jumps by 1 at tau = 0, no jump expected" in line) == (spacing == "31.37")

@@ -174,6 +174,8 @@ class _Chain:
             raise UnservedError(
                 "system: a motion or strain at tau = 0 given, rest expected in modes (pieces and march serve it)"
             )
+        if not self.drivers:
+            raise UnservedError("load: none that acts by output.until given, one expected in modes (all is at rest)")
         _ = self.loads  # refused before the work
         found = self.spectrum.first(count)
         return shares(found, self.spectrum.cut, self.seen, self.drivers)

@@ -21,6 +21,7 @@ from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
 from wavesym.scene.physical.said import words
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
+from wavesym.systems import SYSTEMS
 
 _SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
     "collision": PhysicalCollision,
@@ -63,8 +64,9 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     found = _system(fields.get("system"), units)
     with placed("units"):
         results = Results.of(units, found.kind)
+    with placed("system"):  # before loads and places on it
+        made["system"] = SYSTEMS[str(found.system["type"])].model_validate(found.system)
     seconds = found.rods.seconds
-    made["system"] = found.system
     said = dict(fields)
     inputs = []
     if isinstance(loads := fields.get("load"), list | tuple):
