@@ -59,7 +59,7 @@ record = "{record.resolve().as_posix()}"
 start = "0.02 s"
 [output]
 until = "31.18 s"
-tolerance = 1e-6
+tolerance = 1e-5
 acceleration = {floors}
 force = [0]
 drift = {floors}
