@@ -19,7 +19,7 @@ def test_frames_have_all_floors(tmp_path):
     model = lower(Scene.from_toml(path))
     assert len(model.probes) == 121
     assert len(model.network.bars) == 40
-    assert sum(load.source == "b" for load in model.loads) > 1500
+    assert sum(load.source == "b" for load in model.loads) > 900  # many samples lie on a line
 
 
 def test_a_stream_is_measured_sample_by_sample(tmp_path):
