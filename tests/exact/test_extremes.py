@@ -189,6 +189,17 @@ def test_a_bar_dropped_on_rigid_ground():
     assert greatest.value == pytest.approx(values.max(), abs=1e-3)
 
 
+def test_what_ends_where_a_contact_opens():
+    """The force of a mass on a fixed bar goes to 0, and the contact opens: that 0 is taken, at the event."""
+    parts = [{"mass": 1, "velocity": 1}, "contact", {"rod": 1}, "fixed"]
+    scene = chain(parts, 4, strain=["0+"])
+    (opens,) = wavesym.evaluator(scene).events
+    ((least, greatest),) = extremes(lower(scene))
+    assert opens.double == pytest.approx(3.0681, abs=1e-4)
+    assert greatest == Extreme(0.0, opens.double)
+    near(least, -2 - exp(-2), 2)
+
+
 # values anywhere
 
 

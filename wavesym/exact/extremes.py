@@ -174,8 +174,8 @@ class _Candidate:
     reached: bool
 
     @property
-    def order(self) -> tuple[fmpq, bool]:
-        return self.tau, not self.reached
+    def order(self) -> tuple[float, bool, fmpq]:
+        return self.double, not self.reached, self.tau
 
 
 def _found(pieces: Sequence[_Piece], size: arb) -> Range | None:
