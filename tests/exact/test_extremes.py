@@ -224,20 +224,20 @@ def assert_extremes_of(scene):
             assert response(tau)[k] == pytest.approx(each.value, rel=0, abs=1e-11 * size)
 
 
-@settings(max_examples=12)
+@settings(max_examples=8)
 @given(scenes(longest=False))
 def test_no_value_of_a_drawn_scene_lies_beyond(scene):
     with suppress(wavesym.RangeError):
         assert_extremes_of(scene)
 
 
-@settings(max_examples=8)
+@settings(max_examples=6)
 @given(chains(until=5))
 def test_no_value_of_a_drawn_chain_lies_beyond(table):
     assert_extremes_of(Scene(**table))
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(st.lists(st.fractions(-1, 1, max_denominator=12), min_size=1, max_size=9), st.sampled_from([1, -1]))
 def test_tops_of_polynomials(powers, sign):
     """Of any polynomial on [-1, 1], against NumPy's roots of its derivative."""
