@@ -16,6 +16,7 @@ verification/ and papers/, what is measured by lab/. The heavy libraries load wh
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import partial
@@ -35,8 +36,9 @@ from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
 from wavesym.fields.loads import SampledLoad
+from wavesym.fields.table import shown
 from wavesym.model.symbolic import generic, symbolic
-from wavesym.numbers.doubles import fraction, nearest, rational
+from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
 from wavesym.records.load import RecordedLoad
@@ -57,6 +59,7 @@ if TYPE_CHECKING:
     from wavesym.programs.program import Program
 
 
+_UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
 _AT_ONCE = 5000  # tau of `run`
 SAMPLES = 1001  # of `run`, where it is not told how many
 MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
@@ -160,6 +163,7 @@ def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
 def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
     """The unit responses of all sources of the scene's system."""
     model = lower(scene)
+    model.refuse_damping()
     until = rational(model.horizon())
     if model.chain is None:
         return network_table(model.network, intervals, until)
@@ -177,6 +181,7 @@ def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tu
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """
     model = lower(scene)
+    model.refuse_damping()
     symbols = in_rates(symbolic(_named(model, "--symbolic", "tables")))
     until = rational(model.horizon())
     refuse_costly(symbols.chain, intervals, until)
@@ -206,6 +211,7 @@ def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
     if isinstance(source, str):
         return derivation(source, m, format)
     model = lower(source)
+    model.refuse_damping()
     if model.chain is None:
         return network_derivation(model, format)
     return scene_derivation(source.name, symbolic(model.chain), format)
@@ -227,6 +233,7 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
 
 def _named(model: Model, option: str, command: str) -> Chain:
     """The chain as the paper has it. UnservedError where it is written out."""
+    model.refuse_damping()
     if model.chain is None:
         raise UnservedError(
             f"system.type: chain given with {option}, collision, drive or building expected (`{command}` without "
@@ -306,22 +313,41 @@ def run(
 ) -> Iterator[str]:
     """The outputs as CSV lines, as they are computed: at `at`, or at `samples` equally spaced tau of the horizon.
 
-    Where values are not right to the last bit, `tell` is told of which program they are, and its bound. ToleranceError
-    or CostError where there is none that will do, before there is a line.
+    Of a physical scene `at` are times in the unit of results, and so is the first column. Where values are not right to
+    the last bit, `tell` is told of which program they are, and its bound. ToleranceError or CostError where there is
+    none that will do, before there is a line.
     """
     model = lower(scene)
     response = Response(model)
-    taus = iter(at) if at is not None else grid(model, samples)
-    blocks = iter(partial(_rows, response, taus), [])
+    blocks = iter(partial(_rows, response, _instants(model, samples, at)), [])
     first = next(blocks, [])  # what goes wrong does so before the header
     if made := response.program:
         tell(f"values of {made.evaluator}, not right to the last bit: {_trusted(made)}")
-    return _csv(("tau", *response.outputs), first, blocks)
+    return _csv(_columns(model), first, blocks)
 
 
 def _trusted(made: Program) -> str:
     said = "proved bound" if made.proved else "estimate"
     return f"{said} of the error {made.error_bound:g} of an output's largest value"
+
+
+def _columns(model: Model) -> list[str]:
+    """The header of CSV, with units where there are any."""
+    names = [probe.told for probe in model.probes]
+    clock = model.clock
+    return ["tau" if clock is None else "time" if clock.unit == "s" else f"time [{clock.unit}]", *names]
+
+
+def _instants(model: Model, samples: int, at: Sequence[float] | None) -> Iterator[tuple[float, float]]:
+    """What stands in the first column, and the tau that it is."""
+    clock, until = model.clock, model.until
+    if clock is None:
+        yield from ((tau, tau) for tau in (at if at is not None else grid(model, samples)))
+    elif at is not None:
+        yield from ((time, clock.tau(time, until)) for time in at)
+    else:
+        taus = (until * k / max(samples - 1, 1) for k in range(samples))
+        yield from ((clock.time(tau), not_below(tau)) for tau in taus)
 
 
 def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:
@@ -331,10 +357,10 @@ def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[s
         yield from block
 
 
-def _rows(response: Response, taus: Iterator[float]) -> list[str]:
-    """The lines of the next tau, none where there are no more."""
-    some = list(islice(taus, _AT_ONCE))
-    values = np.vstack([np.asarray(some), response(some)]).T
+def _rows(response: Response, instants: Iterator[tuple[float, float]]) -> list[str]:
+    """The lines of the next instants, none where there are no more."""
+    some = list(islice(instants, _AT_ONCE))
+    values = np.vstack([np.asarray([first for first, _ in some]), response([tau for _, tau in some])]).T
     return [",".join(map(repr, row)) + "\n" for row in values.tolist()]
 
 
@@ -346,17 +372,25 @@ def grid(model: Model, samples: int) -> Iterator[float]:
 
 def events(scene: Scene) -> list[str]:
     """A line for each time that a contact opens or closes. CostError where that would take minutes to know."""
-    return [f"contact at x = {each.x} {each.kind} at tau = {each.digits}" for each in Response(lower(scene)).events]
+    model = lower(scene)
+    return [
+        f"contact at x = {each.x} {each.kind} at tau = {each.digits}{_in_time(model, each.double)}"
+        for each in Response(model).events
+    ]
+
+
+def _in_time(model: Model, tau: float) -> str:
+    """The same instant in the unit of a physical scene, to stand behind a tau."""
+    return f", {model.clock.told(rational(tau))}" if model.clock else ""
 
 
 def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
     """What a user might not expect: no load, tau out of range, contacts that open early enough to matter."""
     model = lower(scene)
-    last = model.horizon()
-    outside = sum(not 0 <= tau <= last for tau in taus)
-    lines = [f"{outside} of {len(taus)} tau are outside 0 to {scene.output.until}, where values are nan"] * bool(
-        outside
-    )
+    last, clock = model.horizon(), model.clock
+    outside = sum(not 0 <= tau <= last for _, tau in _instants(model, 0, taus))
+    what, end = ("times", clock.told(model.until)) if clock else ("tau", str(scene.output.until))
+    lines = [f"{outside} of {len(taus)} {what} are outside 0 to {end}, where values are nan"] * bool(outside)
     return [*_no_load(model), *lines, *_contact_warnings(model)]
 
 
@@ -374,7 +408,8 @@ def _no_load(model: Model) -> list[str]:
 def _contact_warnings(model: Model) -> list[str]:
     """A line for every contact that opens early enough to matter to an output."""
     return [
-        f"contact at x = {end.x} opens at tau = {end.digits}: what that can reach is computed as if it stayed closed"
+        f"contact at x = {end.x} opens at tau = {end.digits}{_in_time(model, end.double)}: what that can reach is "
+        "computed as if it stayed closed"
         for end in contact_ends(model)
     ]
 
@@ -382,8 +417,9 @@ def _contact_warnings(model: Model) -> list[str]:
 def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
     """Draw a scene as .svg, .png or .pdf; what the picture leaves out, line by line.
 
-    `kind`: "history", the outputs over tau, or "xt", place x time of all rods. SceneError for another suffix, before
-    the work; ToleranceError, CostError where nothing could be generated either.
+    `kind`: "history", the outputs over time; "xt", place x time of all rods; "envelope", the least and greatest along
+    the chain; "map", place x time as colours, for long horizons. SceneError for another suffix, before the work;
+    ToleranceError, CostError where nothing could be generated either.
     """
     from wavesym.report.saving import picture_format, save
 
@@ -393,12 +429,38 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
 
         save(xt.draw(lower(scene), scene.system.lines), path)
         return []
-    from wavesym.report.histories import histories
-    from wavesym.report.panels import draw, notes
+    if kind in ("envelope", "map"):
+        from wavesym.report import envelope, heatmap
+        from wavesym.report.along import along
 
-    made = histories(lower(scene))
-    save(draw(made), path)
+        found = along(scene)
+        if kind == "envelope":
+            save(envelope.draw(lower(scene), found), path)
+        else:
+            from wavesym.report.loads import load_histories
+
+            model = lower(scene)
+            save(heatmap.draw(model, found, load_histories(model, scene.scale)), path)
+        return []
+    from wavesym.report.groups import notes
+    from wavesym.report.histories import histories
+    from wavesym.report.loads import load_histories
+    from wavesym.report.panels import draw
+
+    model = lower(scene)
+    made = histories(model)
+    save(draw(made, load_histories(model, scene.scale)), path)
     return notes(made)
+
+
+def report(scene: Scene, path: Path, text: str) -> None:
+    """Write a scene, and what happens in it, as one page of HTML; `text` is what the scene was read from.
+
+    ToleranceError, CostError where nothing could be generated either.
+    """
+    from wavesym.report.page.document import page
+
+    write_whole({path: page(scene, text)})
 
 
 def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[list[str], list[str]]:
@@ -427,18 +489,34 @@ def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[li
     return [header, *rows], [*warnings(scene), said]
 
 
+def advise(scene: Scene, tolerance: float = 0.01, format: str = "text") -> str:
+    """Which model of a scene is enough, massless springs, consistent mass or waves, as text or json.
+
+    WavesymError for a tolerance that is not between 0 and 1; ToleranceError, CostError where nothing could be generated
+    either.
+    """
+    from wavesym.rivals.advice import advise as advice
+
+    if not 0 < tolerance < 1:
+        raise WavesymError(f"--tolerance: {tolerance:g} given, a number between 0 and 1 expected")
+    found = advice(lower(scene), tolerance)
+    return found.json() if format == "json" else found.text()
+
+
 def record(path: Path, unit: str | None, column: str | None = None, picture: Path | None = None) -> list[str]:
     """What a file of a record says, line by line; drawn too, where there is a path for it.
 
     `unit` is that of the samples where the file says none, `column` that of a CSV with several. SceneError for a file
-    that is damaged or says another unit, and for a picture with another suffix.
+    that is damaged or says another unit, and for a picture with another suffix; WavesymError for what is no unit.
     """
     from wavesym.documents.record import facts
     from wavesym.records.read import read_record
 
+    if unit is not None and not _UNIT.fullmatch(unit):
+        raise WavesymError(f"--unit: {shown(unit)} given, a unit such as g or m/s^2 expected")
     said = read_record(path, column)
     if unit is not None and said.unit not in ("", unit):
-        raise SceneError(f"--unit {unit} given, none expected (the file says {said.unit})", file=said.file)
+        raise SceneError(f"--unit {unit} given, {said.unit} expected, as in the file, or none", file=said.file)
     lines = facts(said, unit or said.unit)
     if picture is not None:
         from wavesym.report.record import draw

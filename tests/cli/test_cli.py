@@ -55,7 +55,7 @@ class Compiler(SimpleNamespace):
     def no_load(self, scene: object) -> list[str]:
         return []
 
-    def run(self, scene: object, samples: int, at: list[float] | None) -> Iterator[str]:
+    def run(self, scene: object, samples: int, at: list[float] | None, tell: object) -> Iterator[str]:
         self.asked.append((samples, at))
         yield from ("tau,strain@0.5\n", "0.0,0.0\n")
 
@@ -66,6 +66,10 @@ class Compiler(SimpleNamespace):
     def symbolic_tables_text(self, scene: object, *options: object) -> tuple[list[str], Iterator[str]]:
         self.asked.append(options)
         return [], iter(["symbols\n"])
+
+    def record(self, path: Path, *options: object) -> list[str]:
+        self.asked.append(options)
+        return [f"{path}: 2 samples"]
 
     def inspect(self, scene: object, *options: object) -> str:
         self.asked.append(options)

@@ -1,7 +1,5 @@
 """Modes are stepped exactly: against matrix exponentials, balls, published peaks, and as a stream in C."""
 
-import ctypes
-import subprocess
 from dataclasses import replace
 
 import numpy as np

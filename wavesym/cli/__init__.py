@@ -21,6 +21,7 @@ COMMANDS = (
     "init",
     "record",
     "inspect",
+    "advise",
     "derive",
     "tables",
     "generate",
@@ -29,6 +30,7 @@ COMMANDS = (
     "spectrum",
     "verify",
     "plot",
+    "report",
     "chart",
     "stability",
 )

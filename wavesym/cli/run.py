@@ -28,12 +28,18 @@ _DECIMAL = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
     type=click.IntRange(1, MOST_SAMPLES),
     help=f"How many equally spaced tau on [0, until].  [default: {DEFAULT_SAMPLES}]",
 )
-@click.option("--at", type=PATH, metavar="FILE", help="File of the tau to use instead: one decimal a line, # comments.")
+@click.option(
+    "--at",
+    type=PATH,
+    metavar="FILE",
+    help="File of the tau (with [units]: times) to use instead: one decimal a line, # comments.",
+)
 @click.option("-o", "out", type=PATH, metavar="OUT.csv", help="Where the values go.  [default: standard output]")
 def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) -> None:
     """Print the outputs of a scene as CSV, right to the last bit where that takes no minutes.
 
-    Else they are those of a program, which standard error names with its bound.
+    Else they are those of a program, which standard error names with its bound. With [units] in the scene it speaks
+    seconds.
 
     \b
     Example:

@@ -75,6 +75,7 @@ def signals(model: Model, most: float = inf, real: Real = DOUBLE) -> tuple[Signa
 
     CostError where the tables would have more than `most` numbers.
     """
+    model.refuse_damping()
     return observed(_ruled(model), model.probes, model.loads, rational(model.horizon(real)), most)
 
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from fractions import Fraction
 
 from flint import fmpq
+
+from wavesym.numbers.doubles import nearest, not_below, rational
 
 
 @dataclass(frozen=True)
@@ -14,3 +18,22 @@ class Clock:
     seconds: fmpq
     per_tau: fmpq
     unit: str = "s"
+
+    def time(self, tau: fmpq) -> float:
+        """The double nearest to a tau in the unit."""
+        return nearest(tau * self.per_tau)
+
+    def told(self, tau: fmpq) -> str:
+        """A tau in the unit, for people."""
+        return f"{self.time(tau):.9g} {self.unit}"
+
+    def tau(self, time: float, until: fmpq) -> float:
+        """The smallest double of tau not below a time, which stands for the shortest decimal that reads back to it.
+
+        So what begins at that decimal has begun. A time that is rounded from the horizon's, `until`, is within it.
+        """
+        if not math.isfinite(time):
+            return math.nan
+        last = not_below(until)
+        tau = not_below(rational(Fraction(repr(time))) / self.per_tau)
+        return min(tau, last) if time <= self.time(until) else tau

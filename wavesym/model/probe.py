@@ -24,3 +24,8 @@ class Probe:
     point: int | None = None
     factor: fmpq = _ONE
     unit: str = ""
+
+    @property
+    def told(self) -> str:
+        """Its name, with its unit in brackets where it has one."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from flint import fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.fields.loads import Load
 from wavesym.model.network import Network, Point
+from wavesym.scene.explicit_numbers import Dimensionless, InUnits, number_text
 from wavesym.scene.lowering import lower
 from wavesym.scene.outputs import QUANTITIES
 from wavesym.scene.scene import Scene
@@ -21,58 +22,75 @@ def explicit_text(scene: Scene) -> str:
 
 
 def _lines(scene: Scene) -> Iterator[str]:
-    if scene.system.type == "chain":
+    said = scene.physical.said["system"] if scene.physical else {}
+    if said.get("type", scene.system.type) == "chain":
         raise UnservedError("system.type: chain given, collision, drive or building expected (a chain is written out)")
     model = lower(scene)
-    yield f"# {scene.name}, a {scene.system.type}, written out part by part."
+    told = InUnits(scene.physical.scale, model.network) if scene.physical else Dimensionless()
+    yield f"# {scene.name}, a {said.get('type', scene.system.type)}, written out part by part."
     parted = model.labels.system.get("contacts") == "open"
-    if joined := [] if parted else [x for x, node in enumerate(model.named.nodes) if node.contact]:
+    if model.chain and (joined := [] if parted else [x for x, node in enumerate(model.chain.nodes) if node.contact]):
         at = ", ".join(map(str, joined))
         yield f"# Its contacts are closed, as in the paper's formal model: the rods are joined at {at}."
+    yield from told.remarks
     yield f"name = {json.dumps(scene.name)}"
     yield ""
+    if scene.physical:
+        yield "[units]"
+        units = {"kind": scene.physical.scale.kind, **scene.physical.said["units"]}
+        yield from (f"{key} = {json.dumps(value)}" for key, value in units.items())
+        yield ""
     yield "[system]"
     yield 'type = "chain"'
+    if damping := scene.system.model_dump(mode="json").get("damping"):
+        yield f"damping = {_value(damping)}"
     yield "parts = ["
-    yield from (f"  {part}," for part in _parts(model.network))
+    yield from (f"  {part}," for part in _parts(model.network, told))
     yield "]"
     for load in scene.load:
         yield ""
         yield "[[load]]"
-        yield from _load(load, model.network)
+        yield from _load(load, model.network, told)
     yield ""
     yield "[output]"
-    yield f"until = {_number(model.until)}"
-    yield f"tolerance = {_number(model.tolerance)}"
+    yield f"until = {told.time(model.until)}"
+    yield f"tolerance = {number_text(model.tolerance)}"
     for quantity in QUANTITIES:
         if positions := getattr(scene.output, quantity):
-            yield f"{quantity} = {json.dumps([position.written for position in positions])}"
+            if quantity == "relative" and not any(point.motion for point in model.network.points):
+                raise UnservedError(
+                    'output.relative: given with base = "force", "ground" expected (of a chain that is written out, '
+                    "displacements are relative to an end that moves as it is told)"
+                )
+            places = [told.position(position) if quantity != "drift" else position.written for position in positions]
+            yield f"{quantity} = {json.dumps(places)}"
 
 
-def _parts(network: Network) -> Iterator[str]:
-    rods = {bar.left: bar for bar in network.bars}
+def _parts(network: Network, told: Dimensionless) -> Iterator[str]:
+    rods = {bar.left: number for number, bar in enumerate(network.bars)}
     touching = {network.links[number].left for number in network.contacts}
     for number, point in enumerate(network.points):
         if point.motion:
-            yield _table({"motion": json.dumps("acceleration" if _accelerated(point) else "velocity")})
+            accelerated = point.motion == "acceleration" or _accelerated(point)
+            yield _table({"motion": json.dumps("acceleration" if accelerated else "velocity")})
         elif point.mass:
-            yield _table({"mass": _number(point.mass), **_other("dashpot", point.damping), **_moving(point.velocity)})
+            mass = {"mass": told.mass(point.mass), **_other("dashpot", point.damping)}
+            yield _table({**mass, **_moving(point.velocity, told)})
         elif point.damping:
             yield _table({"joint": "true", **_other("dashpot", point.damping)})
         if number in touching:
             yield '"contact"'
         elif number in rods:
-            bar = rods[number]
-            impedance = {} if bar.impedance == 1 else {"impedance": _number(bar.impedance)}
-            yield _table({"rod": _number(bar.length), **impedance, **_moving(bar.velocity)})
+            bar = network.bars[rods[number]]
+            yield _table({**told.rod(rods[number], bar), **_moving(bar.velocity, told)})
 
 
 def _accelerated(point: Point) -> bool:
-    """Whether its loads are accelerations, whose velocities are 0 at first."""
-    return point.motion is not None and all(not load.coefficients[0] for load in point.loads)
+    """Whether a velocity that is told is the integral of loads, which are accelerations."""
+    return point.motion == "velocity" and all(not load.coefficients[0] for load in point.loads)
 
 
-def _load(load: Load, network: Network) -> Iterator[str]:
+def _load(load: Load, network: Network, told: Dimensionless) -> Iterator[str]:
     """A load as steps and ramps of what acts on a node, or of how it moves."""
     units = {unit.source: (x, unit.coefficients) for x, point in enumerate(network.points) for unit in point.loads}
     place = 0
@@ -85,28 +103,32 @@ def _load(load: Load, network: Network) -> Iterator[str]:
         for k, c in enumerate(coefficients):
             terms[k] += applied.weight * c
     times = sorted(sums)
-    yield f"at = {place}"
-    yield f"times = {_listed(times)}"
+    yield f"at = {told.place(place)}"
+    yield f"times = {_listed(map(told.time, times))}"
+    moved = network.points[place].motion is not None
     for k, name in enumerate(("steps", "ramps")):
         if not k or any(sums[time][k] for time in times):
-            yield f"{name} = {_listed(sums[time][k] for time in times)}"
+            yield f"{name} = {_listed(told.load(sums[time][k], k, moved) for time in times)}"
 
 
-def _table(values: dict[str, str]) -> str:
+def _value(value: object) -> str:
+    """Text, numbers, lists and tables as TOML."""
+    if isinstance(value, Mapping):
+        return _table({key: _value(each) for key, each in value.items()})
+    return json.dumps(value)
+
+
+def _table(values: Mapping[str, str]) -> str:
     return f"{{ {', '.join(f'{key} = {value}' for key, value in values.items())} }}"
 
 
-def _moving(velocity: fmpq) -> dict[str, str]:
-    return _other("velocity", velocity)
+def _moving(velocity: fmpq, told: Dimensionless) -> dict[str, str]:
+    return {"velocity": told.velocity(velocity)} if velocity else {}
 
 
 def _other(key: str, value: fmpq) -> dict[str, str]:
-    return {key: _number(value)} if value else {}
+    return {key: number_text(value)} if value else {}
 
 
-def _listed(values: Iterable[fmpq]) -> str:
-    return f"[{', '.join(map(_number, values))}]"
-
-
-def _number(value: fmpq) -> str:
-    return str(value) if value.q == 1 else f'"{value}"'
+def _listed(values: Iterable[str]) -> str:
+    return f"[{', '.join(values)}]"

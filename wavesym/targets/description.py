@@ -21,11 +21,16 @@ _WIDTH = 110
 
 @dataclass(frozen=True)
 class NamedOutput:
-    """An output's name, as text and as a constant, and its proved bound, relative to its largest value."""
+    """An output's name, as text and as a constant, its proved bound, relative to its largest value, and its unit.
+
+    The unit is empty where the scene has none, and for what has no dimension; `told` is the name with it.
+    """
 
     name: str
     constant: str
     bound: str
+    unit: str
+    told: str
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,7 @@ class Description:
 
     `name_size` is what the longest name of an output takes in C; `command` makes the same file again.
     `real` and `numpy_real` are the type of all values in C and in NumPy; numbers that C reads have its suffix.
+    Of a scene with units `seconds` is what one tau is, in Python, and `c_seconds` in C; else these are empty.
     `trust` says what bounds of errors are: "proved" or "estimated". Where contacts open and close, `events` says what
     they do, and `event_count` how often; else that is empty.
     """
@@ -66,6 +72,7 @@ class Description:
     numpy_real: str
     reason: str
     units: str
+    quantities: str
     tolerance: str
     trust: str
     outputs: tuple[NamedOutput, ...]
@@ -78,6 +85,8 @@ class Description:
     contacts: tuple[NamedContact, ...]
     events: tuple[NamedEvent, ...]
     event_count: str
+    seconds: str
+    c_seconds: str
 
 
 def describe(program: Program) -> Description:
@@ -95,12 +104,13 @@ def describe(program: Program) -> Description:
         real=called.c_type,
         numpy_real=called.numpy_type,
         reason=origin.reason,
-        units="x in rod lengths, tau = c t / l" if model.chain else "places in lengths, tau in lengths at speed 1",
+        quantities=_quantities(names),
+        units=_units(model),
         tolerance=_tolerance(model),
         trust="proved" if program.proved else "estimated",
         outputs=tuple(
-            NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)))
-            for output, constant in zip(program.outputs, constants(names), strict=True)
+            NamedOutput(output.name, constant, literal(_not_below(output.bound, DOUBLE)), probe.unit, probe.told)
+            for output, constant, probe in zip(program.outputs, constants(names), model.probes, strict=True)
         ),
         output_count=str(len(names)),
         name_size=str(max(map(len, names)) + 1),
@@ -111,7 +121,32 @@ def describe(program: Program) -> Description:
         contacts=tuple(_contact(end, real) for end in origin.contacts),
         events=tuple(_event(event, real) for event in origin.events or ()),
         event_count="" if origin.events is None else str(len(origin.events)),
+        seconds=literal(nearest(model.clock.seconds)) if model.clock else "",
+        c_seconds=c_literal(real.nearest(model.clock.seconds), real) if model.clock else "",
     )
+
+
+def _quantities(names: Sequence[str]) -> str:
+    """In which order rows come: the first three always, of the others those that there are."""
+    found = [name.partition("@")[0] for name in names]
+    more = [words for quantity, words in _MORE.items() if quantity in found]
+    return ", ".join(["strains, velocities, displacements", *more])
+
+
+_MORE = {
+    "acceleration": "accelerations",
+    "force": "forces",
+    "drift": "drifts",
+    "relative": "relative displacements",
+}
+
+
+def _units(model: Model) -> str:
+    """What numbers count."""
+    places = "x in rod lengths, tau = c t / l" if model.chain else "places in lengths, tau in lengths at speed 1"
+    if model.clock is None:
+        return f"Everything is dimensionless: {places}, strain positive in tension."
+    return f"Time is tau, of which one is {literal(nearest(model.clock.seconds))} s; outputs have the units below."
 
 
 def constants(names: Sequence[str]) -> list[str]:
@@ -150,7 +185,8 @@ def _model(model: Model) -> list[str]:
         if numbers:
             lines.append(", ".join(f"{name}_{index} = {value}" for index, value in numbers.items()))
     lines += [f"load {number}: {line}" for number, line in enumerate(model.labels.loads) if line]
-    return [*lines, f"until = {model.until}, tolerance = {_tolerance(model)}"]
+    until = model.clock.told(model.until) if model.clock else model.until
+    return [*lines, f"until = {until}, tolerance = {_tolerance(model)}"]
 
 
 def _tolerance(model: Model) -> str:

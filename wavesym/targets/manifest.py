@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from wavesym.programs.program import Program
+from wavesym.programs.program import Program, ProgramOutput
 from wavesym.targets.description import Description
 
 SCHEMA_VERSION = 2
@@ -35,12 +35,27 @@ def manifest(description: Description, program: Program) -> str:
         "size": {"target": SMALL_TARGET, "data": program.bytes, "code_at_most": CODE_AT_MOST[program.kind]},
         "tau_max": program.tau_max,
         "error_bound": program.error_bound,
-        "outputs": [{"name": output.name, "error_bound": output.bound} for output in program.outputs],
+        **_clock(program),
+        "outputs": [_output(output, program) for output in program.outputs],
         **_driven(program),
         "contact_end": {contact.position: contact.digits for contact in description.contacts},
         **_events(description),
     }
     return json.dumps(content, indent=2) + "\n"
+
+
+def _clock(program: Program) -> dict[str, object]:
+    """What one tau is, of a scene with units."""
+    clock = program.provenance.model.clock
+    return {"seconds_per_tau": str(clock.seconds)} if clock else {}
+
+
+def _output(output: ProgramOutput, program: Program) -> dict[str, object]:
+    """An output, with its unit in a scene that has units; of a strain it is empty."""
+    model = program.provenance.model
+    units = {probe.name: probe.unit for probe in model.probes}
+    unit = {"unit": units[output.name]} if model.clock else {}
+    return {"name": output.name, "error_bound": output.bound, **unit}
 
 
 def _events(description: Description) -> dict[str, object]:

@@ -35,9 +35,10 @@ class HatResponse:
     spectra: NDArray[np.complex128]
 
     def respond(self, samples: Numbers) -> Numbers:
-        """All outputs at the samples of records: (records, outputs, n) from samples (records, n) or (records, n, loads).
+        """All outputs at the samples of records: (records, outputs, n).
 
-        A record rises to its first sample from 0 within the step before it. ValueError for one that is too long.
+        `samples` are (records, n), or (records, n, loads). A record rises to its first sample from 0 within the step
+        before it. ValueError for one that is too long.
         """
         given = np.asarray(samples, dtype=np.float64)
         given = given.reshape(*given.shape[:2], -1)
