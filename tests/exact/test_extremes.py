@@ -17,7 +17,7 @@ from tests.support.chains import chains
 from tests.support.scenes import scenes
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact import extremes as module
-from wavesym.exact.extremes import NOTHING, Extreme, extremes
+from wavesym.exact.extremes import NOTHING, TrueExtreme, extremes
 from wavesym.scene import Scene, lower
 
 GUN = [{"motion": "velocity", "name": "gun"}, {"rod": 4}, "absorbing"]
@@ -122,7 +122,7 @@ def test_a_jump_that_no_double_hits_counts_from_the_next():
 
 
 def test_what_is_constant_and_what_is_nothing():
-    assert shaped(3, times=[0], steps=["1/3"]) == (Extreme(1 / 3, 0.0), Extreme(1 / 3, 0.0))
+    assert shaped(3, times=[0], steps=["1/3"]) == (TrueExtreme(1 / 3, 0.0), TrueExtreme(1 / 3, 0.0))
     assert shaped(3, x=4, times=[0], steps=[1]) == NOTHING
     ((least, greatest),) = found([{"rod": 1}, "free"], 4, strain=["1"])
     assert (least, greatest) == NOTHING
@@ -174,7 +174,7 @@ def test_plateaus_behind_a_split_hopkinson_bar():
     parts = [{"motion": "velocity", "name": "gun"}, {"rod": 6}, {"rod": 1, "impedance": "1/4"}, {"rod": 2}, "absorbing"]
     for until, passed, since in ((8, 0.64, 7), (10, 0.8704, 9), ("25/2", 0.953344, 11)):
         ((least, greatest),) = found(parts, until, [{"at": "gun", "times": [0], "steps": [1]}], strain=["7+"])
-        assert (least, greatest) == (Extreme(-passed, since), Extreme(0.0, 0.0))
+        assert (least, greatest) == (TrueExtreme(-passed, since), TrueExtreme(0.0, 0.0))
 
 
 def test_a_bar_dropped_on_rigid_ground():

@@ -48,7 +48,7 @@ _ZERO, _ONE = fmpq(0), fmpq(1)
 
 
 @dataclass(frozen=True)
-class Extreme:
+class TrueExtreme:
     """A `value`, right to 2^-52 of the output's largest, and the first `tau` at which it is taken.
 
     Where it is not `reached` the output comes up to it from the left, and jumps at tau.
@@ -59,8 +59,8 @@ class Extreme:
     reached: bool = True
 
 
-Range = tuple[Extreme, Extreme]
-NOTHING: Range = (Extreme(0.0, 0.0), Extreme(0.0, 0.0))
+Range = tuple[TrueExtreme, TrueExtreme]
+NOTHING: Range = (TrueExtreme(0.0, 0.0), TrueExtreme(0.0, 0.0))
 
 
 def extremes(model: Model) -> list[Range]:
@@ -189,8 +189,8 @@ def _found(pieces: Sequence[_Piece], size: arb) -> Range | None:
     return _told(least, -1), _told(greatest, 1)
 
 
-def _told(found: _Candidate, sign: int) -> Extreme:
-    return Extreme(midpoint(sign * found.value) + 0.0, found.double, found.reached)  # no -0.0
+def _told(found: _Candidate, sign: int) -> TrueExtreme:
+    return TrueExtreme(midpoint(sign * found.value) + 0.0, found.double, found.reached)  # no -0.0
 
 
 class _Screen:
