@@ -40,7 +40,7 @@ _EQUAL, _FLAT, _KNOWN, _NEGLIGIBLE = arb(2) ** -60, arb(2) ** -64, arb(2) ** -70
 _POINTS = (33, 513)
 _ROUNDING = 2.0**-52
 _NEWTON = 200  # steps at most; a dozen do
-# measured: seconds for a piece, times its terms to the power of 3/2
+# measured: seconds for a piece of an output or wave, times its terms to the power of 3/2
 _COMPOSED, _MOST_SECONDS = 4e-7, 5
 # times the bits that there are to begin with: what needs more is not told from 0
 _MORE_BITS = 8
@@ -72,12 +72,12 @@ def extremes(model: Model) -> list[Range]:
     if model.damping is not None:
         raise UnservedError("system.damping: given, none expected (modes serve it)")
     motion = Motion(model, rational(model.horizon()))
-    pieces = sum(len(motion.starts(probe)) for probe in motion.probes)
+    pieces = motion.stretches + sum(len(motion.starts(probe)) for probe in motion.probes)
     if (seconds := pieces * (motion.first_bits // 4) ** 1.5 * _COMPOSED) > _MOST_SECONDS:
         raise CostError(
-            f"output.until: true extremes of {len(motion.probes)} outputs, {pieces} polynomials in {motion.first_bits} "
-            f"bits, would take about {seconds:.0f} s, at most {_MOST_SECONDS} expected (a shorter horizon or fewer "
-            "outputs help)"
+            f"output.until: true extremes of {len(motion.probes)} outputs, with their waves {pieces} polynomials in "
+            f"{motion.first_bits} bits, would take about {seconds:.0f} s, at most {_MOST_SECONDS} expected (a shorter "
+            "horizon or fewer outputs help)"
         )
     zero = silent(model, motion.until)
     return [
