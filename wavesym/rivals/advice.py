@@ -25,7 +25,7 @@ WEIGHTS: Mapping[str, float] = {"massless": 0.0, "consistent": 1.0}
 """The models in place of waves, from cheap to dear, and what of their mass the rods have."""
 
 # while a wave crosses the shortest rod, and in all
-_INSTANTS, _MOST_INSTANTS = 8, 40_000
+_INSTANTS, _MOST_INSTANTS = 8, 20_000
 # of what is told apart, what the waves themselves may be wrong by
 _EXACT = fmpq(1, 100)
 
