@@ -76,7 +76,7 @@ def test_waves_are_what_is_compared_with(monkeypatch, part):
     make = advice.make
 
     class Wrong:
-        kind, error_bound = "wrong", 0.0
+        evaluator, error_bound = "wrong", 0.0
 
         def __init__(self, *asked):
             self.evaluate = lambda taus: 1.1 * make(*asked).evaluate(taus)

@@ -58,7 +58,7 @@ def advise(model: Model, tolerance: float) -> Advice:
         tuple(
             (probe.name, probe.unit, float(np.max(np.abs(row)))) for probe, row in zip(model.probes, waves, strict=True)
         ),
-        f"{program.kind}, bound {program.error_bound:.1e}",
+        f"{program.evaluator}, bound {program.error_bound:.1e}",
         len(taus),
     )
 
