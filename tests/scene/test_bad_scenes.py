@@ -61,7 +61,12 @@ HUGE = "1" + "0" * 4000
 
 MISTAKES = [
     # unknown and missing keys
-    (DRIVE, 'name = "good"', 'name = "good"\ncolour = 1', "colour: unknown key, name, units, system, load or output expected"),
+    (
+        DRIVE,
+        'name = "good"',
+        'name = "good"\ncolour = 1',
+        "colour: unknown key, name, units, system, load or output expected",
+    ),
     (DRIVE, "kappa =", "kapa =", "system.kapa: unknown key, type, m, kappa or inertia expected"),
     (DRIVE, "steps", '"st\\neps"', 'load[0]."st\\neps": unknown key, times, body, steps or ramps expected'),
     (DRIVE, "until", "untl", "output.untl: unknown key"),
@@ -86,7 +91,7 @@ MISTAKES = [
     (COLLISION, "m = 4", "m = 5", "system.m: 5 given, an even integer of at least 4 expected"),
     (COLLISION, "m = 4", "m = 2", "system.m: 2 given, an even integer of at least 4 expected"),
     (DRIVE, "m = 2", "m = 0", "system.m: 0 given, an integer of at least 1 expected"),
-    (BUILDING, "m = 2", "m = 1", "system.m: 1 given, an integer of at least 2 expected"),
+    (BUILDING, "m = 2", "m = 0", "system.m: 0 given, an integer of at least 1 expected"),
     (DRIVE, "m = 2", "m = -2", "system.m: -2 given"),
     (DRIVE, "m = 2", "m = 2.0", "system.m: 2.0 given, an integer expected"),
     (DRIVE, "m = 2", "m = true", "system.m: true given, an integer expected"),
@@ -149,7 +154,12 @@ MISTAKES = [
     (DRIVE, "until = 10", "until = 1e300", "output.until: a number of about "),
     (BUILDING, "1e-8", "0", "output.tolerance: 0 given, a number between 0 and 1 expected"),
     (BUILDING, "1e-8", "1", "output.tolerance: 1 given, a number between 0 and 1 expected"),
-    (DRIVE, "strain = [0.5]", "", "output: no positions given, at least one of strain, velocity, displacement, acceleration, force, drift or relative"),
+    (
+        DRIVE,
+        "strain = [0.5]",
+        "",
+        "output: no positions given, at least one of strain, velocity, displacement, acceleration, force",
+    ),
     (DRIVE, "strain = [0.5]", "strain = []", "output: no positions given"),
     (DRIVE, "[0.5]", "[0, 2.5]", "output.strain[1]: 2.5 given, a position from 0 to 2 expected"),
     (DRIVE, "[0.5]", '["-1/2"]', "output.strain[0]: -1/2 given, a position from 0 to 2 expected"),

@@ -5,6 +5,7 @@ And what they do, by the exponential of a matrix: loads that are linear in time 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -81,15 +82,16 @@ def uniform(samples, spacing: fmpq) -> LinearLoads:
 
 
 def evaluator(system: ModalSystem, loads: LinearLoads, until: float, real: Real = DOUBLE) -> ModesEvaluator:
-    """The program of a system as it stands: its errors are those of rounding."""
+    """The program of a system as it stands: its errors are those of rounding. A stream counts load 0 in -2/3 N."""
     sources = tuple(f"load{j}" for j in range(system.pushes.shape[1]))
-    made = ModesEvaluator(system, loads, sources, loads.spacing(exact(until)), real, until)
+    units = ((fmpq(-3, 2), "N"), *((fmpq(1), ""),) * (len(sources) - 1))
+    made = ModesEvaluator(system, loads, sources, loads.spacing(exact(until)), real, until, units)
     errors, largest = made.rounding
     outputs = (
         ProgramOutput(f"displacement@{k}", error / size, size)
         for k, (error, size) in enumerate(zip(errors.tolist(), largest.tolist(), strict=True))
     )
-    return ModesEvaluator(system, loads, sources, made.spacing, real, until, tuple(outputs))
+    return replace(made, outputs=tuple(outputs))
 
 
 def by_exponentials(system: ModalSystem, loads: LinearLoads, tau: float) -> np.ndarray:

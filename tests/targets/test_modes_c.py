@@ -11,6 +11,7 @@ from flint import fmpq
 
 from tests.support.builds import LANGUAGES, STRICT
 from tests.support.oscillators import evaluator, exact, oscillators, storeys, uniform
+from wavesym.model.probe import Probe
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.assembly import assemble
 from wavesym.programs.modes.loads import LinearLoads
@@ -23,11 +24,13 @@ REALS = {"double": DOUBLE, "single": SINGLE}
 SAMPLES = [exact((5 * k * k + k) % 23 - 11) / 7 for k in range(1, 90)]
 MODEL = lower(Scene.from_toml("drive_m1"))  # for names in headers
 NAME = MODEL.name
+NEWTONS = -1.5  # of a load of 1
 
 
 def written(made, folder):
     """The files of an evaluator, self-test included."""
-    program = replace(assemble(made, Provenance(MODEL, made.summary)), reference=made.streamed())
+    model = MODEL.watching([Probe(output.name, "displacement", 1, fmpq(0)) for output in made.outputs])
+    program = replace(assemble(made, Provenance(model, made.summary)), reference=made.streamed())
     for file, text in files(program, "all").items():
         (folder / file).write_text(text)
     return program
@@ -58,7 +61,8 @@ class Stream:
         self.init(self.state.ctypes.data_as(ctypes.c_void_p))
 
     def step(self, loads, spacing=None):
-        given, out = np.array(loads, self.dtype), np.empty(self._outputs, self.dtype)
+        given, out = np.array(loads) * [NEWTONS, *[1] * (len(loads) - 1)], np.empty(self._outputs, self.dtype)
+        given = given.astype(self.dtype)
         status = self._step(self.state.ctypes.data, spacing or self.spacing, given.ctypes.data, out.ctypes.data)
         return status, out
 
@@ -144,7 +148,7 @@ def test_a_number_that_is_off_is_seen_by_the_selftest(tmp_path):
     source = tmp_path / f"{NAME}.c"
     text = source.read_text()
     assert selftest(tmp_path) == 0
-    for name in ("p11", "one1", "speed0", "moving_weight", "direct"):
+    for name in ("p11", "one1", "speed0", "moving_weight", "load_weight"):
         table = re.search(rf"real {name}\[\] = {{\n(.*?)}};", text, re.DOTALL)
         number = max(re.findall(r"[-\d.e]+", table[1]), key=lambda each: abs(float(each)))
         off = table[0].replace(number, repr(float(number) * (1 + 1e-9)), 1)
@@ -160,6 +164,7 @@ def test_a_stream_says_what_it_is(tmp_path):
     assert "_sample(" not in header
     assert f"#define {NAME.upper()}_SPACING 0.25" in header
     assert "from 0 to the first sample" in header
+    assert f"{NAME.upper()}_LOAD_LOAD0 = 0 /* load0 [N] */" in header
     assert "Proved: largest error" in header
     written(replace(made, proved=False), tmp_path)
     for file in (f"{NAME}.h", f"{NAME}.py"):

@@ -26,8 +26,11 @@ COMMANDS = (
     "tables",
     "generate",
     "run",
+    "summary",
+    "spectrum",
     "verify",
     "plot",
+    "report",
     "chart",
     "stability",
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from flint import fmpq
@@ -38,7 +38,8 @@ class Model:
 
     `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
     `tolerance` is relative to an output's largest value. Loads are sorted by time; where they have samples, the closest
-    are `spacing` apart. The `clock` is that of a physical scene, the `damping` that of its modes.
+    are `spacing` apart. The `clock` is that of a physical scene, the `damping` that of its modes; `inputs` says of the
+    sources of its loads what 1 is in the unit of results, and that unit.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Model:
     clock: Clock | None = None
     damping: Damping | None = None
     spacing: fmpq | None = None
+    inputs: Mapping[str, tuple[fmpq, str]] = field(default_factory=dict)
 
     @property
     def named(self) -> Chain:

@@ -85,9 +85,12 @@ class Response:
 
 
 def _program(model: Model, error: CostError) -> Program:
-    """What `generate` takes. ToleranceError where no program is good enough, the error where there is none at all."""
+    """What `generate` takes. ToleranceError where no program is good enough, the error where there is none at all.
+
+    Of samples and records it is told what each program would need.
+    """
     tried = attempts(model)
-    if not any(one.form or isinstance(one.error, ToleranceError) for one in tried):
+    if not model.spacing and not any(one.form or isinstance(one.error, ToleranceError) for one in tried):
         raise error
     choice = best(model, tried)
     return assemble(choice.evaluator, Provenance(model, choice.reason))

@@ -92,6 +92,7 @@ class Building(Preset):
 
     variants: ClassVar[tuple[System, ...]] = (BUILDING_FORCE, BUILDING_GROUND)
     counts: ClassVar[Mapping[str, str]] = {"kappa": "m + 1"}
+    fewest: ClassVar[int | None] = 1  # no floor, but a roof
     load_kinds: ClassVar[LoadKinds] = (Acceleration, SampledAcceleration, RecordedAcceleration)
 
     type: Literal["building"] = Field(description='"building"')

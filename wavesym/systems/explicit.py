@@ -35,7 +35,8 @@ class ExplicitChain(SceneTable):
 
     @model_validator(mode="after")
     def _possible(self) -> ExplicitChain:
-        if self.damping and (other := _damper(self.drawing.network({}))):
+        network = self.drawing.network({})  # which is refused where it cannot be drawn
+        if self.damping and (other := _damper(network)):
             raise wrong(f"given with {other}, one of them expected", "damping")
         return self
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from flint import arb
+from flint import arb, fmpq
 
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import bound
@@ -13,6 +13,8 @@ from wavesym.numbers.reals import Real
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.modes.system import modal_system
 from wavesym.programs.program import ProgramOutput
+
+_PLAIN = fmpq(1), ""
 
 
 def modes(model: Model, real: Real) -> ModesEvaluator:
@@ -24,7 +26,16 @@ def modes(model: Model, real: Real) -> ModesEvaluator:
     made = modal_system(model)
     sources = tuple(step.removesuffix(":step") or ramp.removesuffix(":ramp") for step, ramp in made.sources)
     spacing = made.loads.spacing(model.until, model.spacing)
-    evaluator = ModesEvaluator(made.system, made.loads, sources, spacing, real, model.horizon(real), proved=made.proved)
+    evaluator = ModesEvaluator(
+        made.system,
+        made.loads,
+        sources,
+        spacing,
+        real,
+        model.horizon(real),
+        tuple(model.inputs.get(step or ramp, _PLAIN) for step, ramp in made.sources),
+        proved=made.proved,
+    )
     totals = made.errors + evaluator.rounding.errors
     outputs = tuple(
         ProgramOutput(probe.name, _relative(error, size), size)

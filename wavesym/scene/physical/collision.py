@@ -49,7 +49,6 @@ class PhysicalCollision(SceneTable):
     type: str
     body: Annotated[tuple[Body, ...], FailFast(), BeforeValidator(listed)] = Field(description="a list of bodies")
     contacts: Any = "closed"
-    damping: Any = None
 
     def rewritten(self) -> Rewritten:
         """As a collision without units, or where rods differ, as a chain."""
@@ -69,8 +68,6 @@ class PhysicalCollision(SceneTable):
             table |= {"velocity": velocities, "contacts": self.contacts}
         else:
             table = {"type": "chain", "parts": self._parts(rods, velocities)}
-        if self.damping is not None:
-            table["damping"] = self.damping
         return Rewritten(
             kind="longitudinal",
             rods=rods,

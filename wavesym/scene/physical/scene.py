@@ -21,6 +21,7 @@ from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
 from wavesym.scene.physical.said import words
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
+from wavesym.systems import SYSTEMS
 
 _SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
     "collision": PhysicalCollision,
@@ -33,12 +34,16 @@ _LENGTHS = {"strain", "velocity", "displacement", "acceleration", "force", "rela
 
 @dataclass(frozen=True)
 class PhysicalScene:
-    """What a scene with units `said`, the `fields` of the one without, and what their numbers are."""
+    """What a scene with units `said`, the `fields` of the one without, and what their numbers are.
+
+    `inputs` is of each load what 1 is in the unit of results, and that unit.
+    """
 
     said: dict[str, Any]
     fields: dict[str, Any]
     scale: Scale
     kappa: tuple[Fraction, ...]
+    inputs: tuple[tuple[Fraction, str], ...] = ()
 
     @property
     def system(self) -> dict[str, str]:
@@ -59,17 +64,22 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     found = _system(fields.get("system"), units)
     with placed("units"):
         results = Results.of(units, found.kind)
+    with placed("system"):  # before loads and places on it
+        made["system"] = SYSTEMS[str(found.system["type"])].model_validate(found.system)
     seconds = found.rods.seconds
-    made["system"] = found.system
     said = dict(fields)
+    inputs = []
     if isinstance(loads := fields.get("load"), list | tuple):
         said["load"] = [_read(load, k) for k, load in enumerate(loads)]
         made["load"] = [_load(load, k, found, seconds) for k, load in enumerate(said["load"])]
+        for acting in (found.acting(load) for load in said["load"] if isinstance(load, Mapping)):
+            size, text = results.told(acting.dimension)
+            inputs.append((acting.size / size, text))
     if isinstance(output := fields.get("output"), Mapping):
         with placed("output"):
             made["output"] = _output(output, found, seconds)
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
-    return PhysicalScene(plain(said), made, scale, found.kappa)
+    return PhysicalScene(plain(said), made, scale, found.kappa, tuple(inputs))
 
 
 def _system(table: object, units: UnitsTable) -> Rewritten:
