@@ -143,6 +143,8 @@ def test_the_command(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["advise", "drive_m1", "--format", "json"]) == 0
     assert json.loads(capsys.readouterr().out)["enough"] == "waves"
+    assert main(["advise", "collision_m4"]) == 0
+    assert "computed as if it stayed closed" in capsys.readouterr().err
     assert main(["advise", "drive_m1", "--tolerance", "0.6"]) == 0
     assert "every output: massless" in capsys.readouterr().out
     for wrong in ("0", "1", "nan", "much"):

@@ -39,4 +39,7 @@ def advise(scene: Scene, tolerance: float, format: str) -> None:
 
     with progress(f"advise {scene.name}"):
         text = compiler.advise(scene, tolerance, format)
+        warnings = compiler.warnings(scene)
+    for warning in warnings:
+        click.echo(f"{scene.name}: {warning}", err=True)
     put(text)
