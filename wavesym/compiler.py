@@ -16,7 +16,9 @@ verification/ and papers/, what is measured by lab/. The heavy libraries load wh
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from fractions import Fraction
 from functools import partial
 from itertools import islice
 from pathlib import Path
@@ -34,14 +36,17 @@ from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
 from wavesym.fields.loads import SampledLoad
+from wavesym.fields.table import shown
 from wavesym.model.symbolic import generic, symbolic
-from wavesym.numbers.doubles import fraction, nearest, rational
+from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
+from wavesym.records.load import RecordedLoad
 from wavesym.results.peaks import table_of_peaks
 from wavesym.results.response import Response
 from wavesym.results.summary import Summary, summarised
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import drifts
 from wavesym.targets import LANGUAGES
 from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
@@ -51,20 +56,23 @@ if TYPE_CHECKING:
     from wavesym.model.model import Model
     from wavesym.model.node import System
     from wavesym.papers.entries import PaperEntry
+    from wavesym.programs.program import Program
 
 
+_UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
 _AT_ONCE = 5000  # tau of `run`
 SAMPLES = 1001  # of `run`, where it is not told how many
 MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
 
 
 def evaluator(scene: Scene) -> Response:
-    """The outputs of a scene as a function of tau, each value right to the last bit.
+    """The outputs of a scene as a function of tau, each value right to the last bit where that takes no minutes.
 
     Called with an array of tau it gives an array of shape (outputs, *tau.shape). It has `outputs`, their names,
     `tau_max`, the end of the horizon, `error_bound`, and the `events` of contacts that open and close (`x`, `kind`,
-    `tau` as a ball, `double`, `digits`).
-    SceneError for what is no Scene; CostError, where it is called, for what would take minutes.
+    `tau` as a ball, `double`, `digits`). Elsewhere values are those of a `program` (else None), with its bound.
+    SceneError for what is no Scene; where it is called, CostError for what would take minutes with any program, and
+    ToleranceError where none meets the tolerance.
 
     >>> import wavesym
     >>> response = wavesym.evaluator(wavesym.Scene.from_toml("drive_m1"))
@@ -88,11 +96,11 @@ def summary(scene: Scene, *, at_samples: bool = False) -> Summary:
 
     >>> import wavesym
     >>> strain = wavesym.summary(wavesym.Scene.from_toml("drive_m1")).outputs[0]
-    >>> strain.name, strain.max.value, strain.max.at.tau, strain.arrival.tau
-    ()
+    >>> print(f"{strain.name}: {strain.max.value:.6g} at {strain.max.at.tau:.6g}, from {strain.arrival.tau} on")
+    strain@0: 1.20241 at 6.46788, from 0.0 on
     """
     model = lower(scene)
-    return summarised(model, _own_samples(scene, model) if at_samples else None)
+    return summarised(model, _own_samples(scene, model) if at_samples else None, drifts(scene))
 
 
 def summary_text(scene: Scene, at_samples: bool, format: str) -> tuple[str, list[str]]:
@@ -104,11 +112,13 @@ def summary_text(scene: Scene, at_samples: bool, format: str) -> tuple[str, list
 
 def _own_samples(scene: Scene, model: Model) -> list[float]:
     """The samples of a record, or those of `run`."""
-    spacing = min((load.spacing for load in scene.load if isinstance(load, SampledLoad)), default=None)
-    if spacing is None:
+    combs = [(load.begin, load.step) for load in scene.load if isinstance(load, RecordedLoad)]
+    combs += [(Fraction(0), load.spacing) for load in scene.load if isinstance(load, SampledLoad)]
+    if not combs:
         return list(grid(model, SAMPLES))
-    count = int((model.until / rational(spacing)).floor()) + 1
-    return [nearest(k * rational(spacing)) for k in range(count)]
+    begin, step = (rational(number) for number in min(combs, key=lambda comb: comb[1]))
+    count = int(((model.until - begin) / step).floor()) + 1
+    return [nearest(begin + k * step) for k in range(-int((begin / step).floor()), count)]
 
 
 def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Any:
@@ -120,7 +130,7 @@ def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Any:
     >>> import wavesym
     >>> table = wavesym.peaks(wavesym.Scene.from_toml(name) for name in ("drive_m1", "building_m2"))
     >>> table["max"].shape
-    ()
+    (2, 10)
     """
     several = not isinstance(scenes, Scene)
     found = [summary(scene, at_samples=at_samples) for scene in ([scenes] if isinstance(scenes, Scene) else scenes)]
@@ -153,6 +163,7 @@ def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
 def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
     """The unit responses of all sources of the scene's system."""
     model = lower(scene)
+    model.refuse_damping()
     until = rational(model.horizon())
     if model.chain is None:
         return network_table(model.network, intervals, until)
@@ -170,6 +181,7 @@ def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tu
     Parameters and rates that are equal in the scene are equal in the table. CostError where it would be absurd.
     """
     model = lower(scene)
+    model.refuse_damping()
     symbols = in_rates(symbolic(_named(model, "--symbolic", "tables")))
     until = rational(model.horizon())
     refuse_costly(symbols.chain, intervals, until)
@@ -199,6 +211,7 @@ def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
     if isinstance(source, str):
         return derivation(source, m, format)
     model = lower(source)
+    model.refuse_damping()
     if model.chain is None:
         return network_derivation(model, format)
     return scene_derivation(source.name, symbolic(model.chain), format)
@@ -220,6 +233,7 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
 
 def _named(model: Model, option: str, command: str) -> Chain:
     """The chain as the paper has it. UnservedError where it is written out."""
+    model.refuse_damping()
     if model.chain is None:
         raise UnservedError(
             f"system.type: chain given with {option}, collision, drive or building expected (`{command}` without "
@@ -294,17 +308,27 @@ def _written(scene: Scene, directory: str | Path | None, language: str, request:
     return {folder / name: text for name, text in files(program, language).items()}
 
 
-def run(scene: Scene, samples: int, at: Sequence[float] | None = None) -> Iterator[str]:
+def run(
+    scene: Scene, samples: int, at: Sequence[float] | None = None, tell: Callable[[str], object] = lambda _: None
+) -> Iterator[str]:
     """The outputs as CSV lines, as they are computed: at `at`, or at `samples` equally spaced tau of the horizon.
 
-    Of a physical scene `at` are times in the unit of results, and so is the first column.
-
-    CostError where right to the last bit would cost too much, before there is a line.
+    Of a physical scene `at` are times in the unit of results, and so is the first column. Where values are not right to
+    the last bit, `tell` is told of which program they are, and its bound. ToleranceError or CostError where there is
+    none that will do, before there is a line.
     """
     model = lower(scene)
     response = Response(model)
     blocks = iter(partial(_rows, response, _instants(model, samples, at)), [])
-    return _csv(_columns(model), next(blocks, []), blocks)  # what goes wrong does so before the header
+    first = next(blocks, [])  # what goes wrong does so before the header
+    if made := response.program:
+        tell(f"values of {made.evaluator}, not right to the last bit: {_trusted(made)}")
+    return _csv(_columns(model), first, blocks)
+
+
+def _trusted(made: Program) -> str:
+    said = "proved bound" if made.proved else "estimate"
+    return f"{said} of the error {made.error_bound:g} of an output's largest value"
 
 
 def _columns(model: Model) -> list[str]:
@@ -322,8 +346,8 @@ def _instants(model: Model, samples: int, at: Sequence[float] | None) -> Iterato
     elif at is not None:
         yield from ((time, clock.tau(time, until)) for time in at)
     else:
-        times = (clock.time(until * k / max(samples - 1, 1)) for k in range(samples))
-        yield from zip(times, grid(model, samples), strict=True)
+        taus = (until * k / max(samples - 1, 1) for k in range(samples))
+        yield from ((clock.time(tau), not_below(tau)) for tau in taus)
 
 
 def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:
@@ -439,28 +463,6 @@ def report(scene: Scene, path: Path, text: str) -> None:
     write_whole({path: page(scene, text)})
 
 
-def record(path: Path, unit: str | None, column: str | None = None, picture: Path | None = None) -> list[str]:
-    """What a file of a record says, line by line; drawn too, where there is a path for it.
-
-    `unit` is that of the samples where the file says none, `column` that of a CSV with several. SceneError for a file
-    that is damaged or says another unit, and for a picture with another suffix.
-    """
-    from wavesym.documents.record import facts
-    from wavesym.records.read import read_record
-
-    said = read_record(path, column)
-    if unit is not None and said.unit not in ("", unit):
-        raise SceneError(f"--unit {unit} given, none expected (the file says {said.unit})", file=said.file)
-    lines = facts(said, unit or said.unit)
-    if picture is not None:
-        from wavesym.report.record import draw
-        from wavesym.report.saving import picture_format, save
-
-        picture_format(picture)
-        save(draw(said, unit or said.unit), picture)
-    return lines
-
-
 def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[list[str], list[str]]:
     """Response spectra as CSV lines, and what to say of them; drawn at `path`, too, where there is one.
 
@@ -490,12 +492,39 @@ def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[li
 def advise(scene: Scene, tolerance: float = 0.01, format: str = "text") -> str:
     """Which model of a scene is enough, massless springs, consistent mass or waves, as text or json.
 
-    ToleranceError, CostError where nothing could be generated either.
+    WavesymError for a tolerance that is not between 0 and 1; ToleranceError, CostError where nothing could be generated
+    either.
     """
     from wavesym.rivals.advice import advise as advice
 
+    if not 0 < tolerance < 1:
+        raise WavesymError(f"--tolerance: {tolerance:g} given, a number between 0 and 1 expected")
     found = advice(lower(scene), tolerance)
     return found.json() if format == "json" else found.text()
+
+
+def record(path: Path, unit: str | None, column: str | None = None, picture: Path | None = None) -> list[str]:
+    """What a file of a record says, line by line; drawn too, where there is a path for it.
+
+    `unit` is that of the samples where the file says none, `column` that of a CSV with several. SceneError for a file
+    that is damaged or says another unit, and for a picture with another suffix; WavesymError for what is no unit.
+    """
+    from wavesym.documents.record import facts
+    from wavesym.records.read import read_record
+
+    if unit is not None and not _UNIT.fullmatch(unit):
+        raise WavesymError(f"--unit: {shown(unit)} given, a unit such as g or m/s^2 expected")
+    said = read_record(path, column)
+    if unit is not None and said.unit not in ("", unit):
+        raise SceneError(f"--unit {unit} given, {said.unit} expected, as in the file, or none", file=said.file)
+    lines = facts(said, unit or said.unit)
+    if picture is not None:
+        from wavesym.report.record import draw
+        from wavesym.report.saving import picture_format, save
+
+        picture_format(picture)
+        save(draw(said, unit or said.unit), picture)
+    return lines
 
 
 def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:

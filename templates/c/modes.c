@@ -96,7 +96,7 @@ int name_step(stream *state, real dtau, const real *load, real *out)
     }
     for (int output = 0; output < OUTPUTS; ++output) {
         for (int j = 0; j < LOADS; ++j) {
-            const real *const factor = direct + 3 * (output * LOADS + j);
+            const real *const factor = load_weight + 3 * (output * LOADS + j);
             out[output] += factor[0] * state->load[j] + factor[1] * state->once[j] + factor[2] * state->twice[j];
         }
     }

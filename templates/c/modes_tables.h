@@ -29,4 +29,4 @@ extern const int moved_row[];
 extern const real moved_weight[];
 extern const int moving_row[];
 extern const real moving_weight[];
-extern const real direct[];
+extern const real load_weight[];

@@ -55,7 +55,7 @@ class Compiler(SimpleNamespace):
     def no_load(self, scene: object) -> list[str]:
         return []
 
-    def run(self, scene: object, samples: int, at: list[float] | None) -> Iterator[str]:
+    def run(self, scene: object, samples: int, at: list[float] | None, tell: object) -> Iterator[str]:
         self.asked.append((samples, at))
         yield from ("tau,strain@0.5\n", "0.0,0.0\n")
 
@@ -67,9 +67,21 @@ class Compiler(SimpleNamespace):
         self.asked.append(options)
         return [], iter(["symbols\n"])
 
+    def record(self, path: Path, *options: object) -> list[str]:
+        self.asked.append(options)
+        return [f"{path}: 2 samples"]
+
     def inspect(self, scene: object, *options: object) -> str:
         self.asked.append(options)
         return "nodes"
+
+    def summary_text(self, scene: object, *options: object) -> tuple[str, list[str]]:
+        self.asked.append(options)
+        return "least, greatest", []
+
+    def spectrum(self, scene: object, *options: object) -> tuple[list[str], list[str]]:
+        self.asked.append(options)
+        return ["period\n"], ["damping"]
 
     def derive(self, system: str, m: int | None, format: str) -> str:
         if m == 0:
@@ -96,7 +108,8 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
-    Path("mine.toml").write_text(SCENE)
+    for name in ("mine", "lab"):
+        Path(f"{name}.toml").write_text(SCENE)
     return tmp_path
 
 

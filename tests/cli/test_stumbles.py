@@ -142,7 +142,9 @@ def test_from_python_what_is_wrong_is_told() -> None:
     scene = wavesym.Scene.from_toml("drive_m1")
     with pytest.raises(wavesym.WavesymError, match=r"^language: fmu given, c, numpy or all expected$"):
         wavesym.generate(scene, language="fmu")
-    with pytest.raises(wavesym.WavesymError, match=r"^evaluator: clsed given, auto, closed, pieces or march expected$"):
+    with pytest.raises(
+        wavesym.WavesymError, match=r"^evaluator: clsed given, auto, closed, pieces, march or modes expected$"
+    ):
         wavesym.generate(scene, evaluator="clsed")
     with pytest.raises(wavesym.WavesymError, match=r"^precision: half given, double or single expected$"):
         wavesym.generate(scene, precision="half")
@@ -169,7 +171,10 @@ def test_a_scene_with_other_values() -> None:
         ("output.until[0]", "output.until[0]: nothing at [0]"),
         ("system..m", 'system..m: no path, one such as "output.until" or "load[0].times[2]" expected'),
         ("", 'scene: no path, one such as "output.until" or "load[0].times[2]" expected'),
-        ("output.untill", "output.untill: unknown key, until, tolerance, strain, velocity or displacement expected."),
+        (
+            "output.untill",
+            "output.untill: unknown key, until, tolerance, strain, velocity, displacement, acceleration, force, drift",
+        ),
         ("system.kappa[1]", "system.kappa[1]: -1 given, a positive number expected"),
     ],
 )

@@ -149,7 +149,7 @@ def test_a_record_that_nothing_can_run_is_told_all_the_causes(spacing, until):
         choose(lower(record))
     line = str(told.value)
     parts, spaced = {"31.37": (60, "3137/100"), "1/200": (200, "1/200")}[spacing]
-    assert f"march: load: at a spacing of {spaced} times have {parts} different fractional parts, at most 16" in line
+    assert f"march: load: times at a spacing of {spaced} have {parts} different fractional parts, at most 16" in line
     assert re.search(r"closed: load: \S+ increments would arrive at the outputs, at most 5.0e\+04 expected", line)
     assert re.search(r"pieces: load: 4 nodes times \d+ units of tau are \d+ stretches between loads, at most", line)
     assert line.count(" help") == 3

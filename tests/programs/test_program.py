@@ -71,7 +71,8 @@ def test_its_numbers_are_of_its_format(evaluator, precision):
 @pytest.mark.parametrize("kind", SCHEMES)
 def test_each_table_that_a_scheme_names_matters_to_it(kind):
     """Without one of them it is none."""
-    model, evaluator = (lower(CHAIN), "march") if kind == "rings" else (lower(SCENES["building"]), kind)
+    of_chain = {"rings": "march", "modes": "modes"}
+    model, evaluator = (lower(CHAIN), of_chain[kind]) if kind in of_chain else (lower(SCENES["building"]), kind)
     program = making.program(model, choose(model, evaluator).evaluator)
     scheme = SCHEMES[kind]
     assert set(scheme.TABLES) <= program.tables.keys()

@@ -46,7 +46,7 @@ def test_what_was_asked_for_is_in_the_files(model):
 @pytest.mark.parametrize(
     ("request_", "words"),
     [
-        (Request(evaluator="spline"), "evaluator: spline given, auto, closed, pieces or march expected"),
+        (Request(evaluator="spline"), "evaluator: spline given, auto, closed, pieces, march or modes expected"),
         (Request(precision="half"), "precision: half given, double or single expected"),
         (Request(optimize="cost"), "optimize: cost given, speed or size expected"),
     ],

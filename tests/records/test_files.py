@@ -90,7 +90,9 @@ def test_records_of_peer_are_read_digit_for_digit(name, count, step, peak):
     ["NPTS=   5, DT=   .0200 SEC", "NPTS= 5,DT=.02", "  5   0.0200   NPTS, DT", "5 .02", "npts=5 dt=2.0E-02 sec,"],
 )
 def test_both_forms_of_the_fourth_line_are_read(tmp_path, line):
-    path = made(tmp_path, AT2.replace("NPTS=   5, DT=   .0200 SEC", line), "a.AT2")
+    path = made(
+        tmp_path, AT2.replace("NPTS=   5, DT=   .0200 SEC", line), "a.txt" if "npts" in line.lower() else "a.AT2"
+    )
     read = read_record(path)
     assert read.samples == (Fraction(1, 10), Fraction(-1, 40), Fraction(3), Fraction(0), Fraction(3, 2))
     assert read.even() == Fraction(1, 50)

@@ -181,7 +181,7 @@ def test_a_path_counts_from_the_file_of_the_scene(tmp_path, monkeypatch, capsys)
         (
             "x\n1\n",
             {},
-            r"load\[0\].spacing: missing, the time between samples expected \(the file has no time col",
+            r"load\[0\].spacing: missing, the time between samples expected \(the file does not say it\)",
         ),
         ("x\n1\n", {"spacing": 0}, r"load\[0\].spacing: 0 given, a positive number expected"),
         (TAU, {"spacing": "1/2"}, r"load\[0\].record: .*: line 3: the time 0.4 given, 0.5 expected"),

@@ -128,7 +128,7 @@ def test_what_comes_after_an_opening_is_formal(monkeypatch: pytest.MonkeyPatch) 
     made = histories(lower(Scene.from_toml("collision_m4")))
     (end,) = contact_ends(made.model)
     for history in made.outputs:
-        assert history.formal == end.double + abs(nearest(history.output.x) - 2)
+        assert history.formal == end.double + abs(nearest(history.output.rod - 1 + history.output.place) - 2)
     figure = draw(made)
     lit = [line for line in figure.axes[0].lines if line.get_alpha() == panels._ALPHA[True]]
     assert any(len(line.get_xdata()) > 10 for line in lit)

@@ -1,6 +1,8 @@
 """Records of any spacing: the march of one hat, added up, against exact values."""
 
 from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,10 +10,14 @@ from flint import fmpq
 
 from wavesym.errors import CostError, UnservedError
 from wavesym.exact.reference import Reference
+from wavesym.programs.making import make
 from wavesym.programs.march.evaluator import march
+from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
-from wavesym.verification import hat
+from wavesym.verification import checks, hat
+from wavesym.verification.checks import records
 from wavesym.verification.hat import at_samples
+from wavesym.verification.reference import Known
 
 SAMPLES = [(37 * k * k) % 101 - 50 for k in range(25)]
 
@@ -31,7 +37,7 @@ def record(samples, spacing="1.37", until=36, **output):
 def test_a_record_that_the_march_refuses_is_what_it_is(first):
     model = record([first, *SAMPLES])
     with pytest.raises(
-        CostError, match=r"at a spacing of 137/100 times have 26 different fractional parts, at most 16"
+        CostError, match=r"times at a spacing of 137/100 have 26 different fractional parts, at most 16"
     ):
         march(model)
     found = at_samples(model)
@@ -93,3 +99,44 @@ def test_loads_that_are_no_record():
         at_samples(lower(Scene.from_toml("drive_m1")))
     with pytest.raises(UnservedError, match="no load that changes after tau = 0"):
         at_samples(replace(building, loads=building.loads[:1] * 0))
+
+
+@cache
+def made():
+    """A record that modes take, with their program."""
+    model = record([0, *SAMPLES], until=90, strain=["1/3"], velocity=[3], displacement=[], tolerance="1e-6")
+    return model, make(model, Request(evaluator="modes"))
+
+
+@pytest.fixture
+def modal(monkeypatch):
+    model, program = made()
+    monkeypatch.setattr(checks, "make", lambda _: program)
+    return model, program
+
+
+def test_modes_agree_with_the_march_of_a_hat(modal):
+    """Motion to 1e-11, strain to what is proved of the modes that are left out."""
+    model, program = modal
+    strain, velocity = records(Known(model, model, 90.0, (), ()))
+    assert strain.passed
+    assert velocity.passed
+    assert float(velocity.cells["error"]) < 1e-11
+    assert float(velocity.cells["allowed"]) < 1e-7
+    assert float(strain.cells["error"]) < program.outputs[0].bound < 1e-6
+
+
+def test_modes_that_are_wrong_are_seen(modal, monkeypatch):
+    model, program = modal
+    right = program.evaluate
+    wrong = SimpleNamespace(evaluator="modes", outputs=program.outputs, evaluate=lambda taus: right(taus + 1e-4))
+    monkeypatch.setattr(checks, "make", lambda _: wrong)
+    assert not any(outcome.passed for outcome in records(Known(model, model, 90.0, (), ())))
+
+
+def test_what_a_march_does_not_serve_is_said(modal, monkeypatch):
+    model, _ = modal
+    jumps = replace(model, loads=(*model.loads, replace(model.loads[0], source="a", time=fmpq(3))))
+    (outcome,) = records(Known(jumps, jumps, 90.0, (), ()))
+    assert (outcome.passed, outcome.cells) == (True, {"march": "refused"})
+    assert "jumps at tau = 3" in outcome.note

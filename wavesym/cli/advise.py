@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 @click.argument("scene", type=SCENE)
 @click.option(
     "--tolerance",
-    type=click.FloatRange(0, 1, min_open=True, max_open=True),
+    type=float,
     default=0.01,
     show_default=True,
     metavar="T",

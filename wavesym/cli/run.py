@@ -36,7 +36,10 @@ _DECIMAL = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?")
 )
 @click.option("-o", "out", type=PATH, metavar="OUT.csv", help="Where the values go.  [default: standard output]")
 def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) -> None:
-    """Print the outputs of a scene as CSV, right to the last bit. With [units] in the scene it speaks seconds.
+    """Print the outputs of a scene as CSV, right to the last bit where that takes no minutes.
+
+    Else they are those of a program, which standard error names with its bound. With [units] in the scene it speaks
+    seconds.
 
     \b
     Example:
@@ -53,7 +56,7 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
         refuse_scene(out)
     with progress(f"run {scene.name}"):
         warnings = [*compiler.warnings(scene, taus or ()), *compiler.events(scene)]
-        lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus)
+        lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus, warnings.append)
         if out is not None:
             write_whole({out: lines})
     for warning in warnings:

@@ -30,7 +30,7 @@ def spectrum(scene: Scene, damping: float, out: Path | None) -> None:
 
     \b
     Example:
-      wavesym spectrum SCENE --damping 0.02 -o floors.svg
+      wavesym spectrum lab.toml --damping 0.02 -o floors.svg
     """
     if out is not None:
         if not find_spec("matplotlib"):

@@ -15,7 +15,7 @@ _MEANING = {
 
 
 @dataclass(frozen=True)
-class Difference:
+class Discrepancy:
     """How far an output is from that of waves, in parts of its largest value: its history and its peak at most.
 
     inf where waves have not come to an output that moves without them.
@@ -30,7 +30,7 @@ class Candidate:
     """A model in place of waves, "massless" or "consistent": a difference for each output, or why it is `refused`."""
 
     name: str
-    differences: tuple[Difference, ...] = ()
+    differences: tuple[Discrepancy, ...] = ()
     refused: str = ""
 
     @property
@@ -85,7 +85,8 @@ class Advice:
             return
         yield f"  {WAVES:10}  {self.program}"
         yield ""
-        yield f"How far from waves, in parts of the largest value, at {self.instants} instants:"
+        yield "How far histories and their peaks are from those of waves, in parts of the largest value,"
+        yield f"at {self.instants} instants:"
         yield ""
         compared = [each for each in self.candidates if not each.refused]
         width = max(len("output"), *(len(name) for name, *_ in self.outputs))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from wavesym.results.summary import Instant, OutputSummary, Peak, Summary
+from wavesym.results.summary import OutputSummary, Peak, Summary, When
 
 FORMATS = ("text", "json")
 
@@ -33,7 +33,7 @@ def _peak(peak: Peak) -> dict[str, float | None]:
     return {"value": peak.value, "tau": peak.at.tau, "time": peak.at.time}
 
 
-def _spoken(at: Instant) -> float:
+def _spoken(at: When) -> float:
     """The time of a scene that has units, else tau."""
     return at.tau if at.time is None else at.time
 
@@ -47,6 +47,9 @@ def _lines(summary: Summary) -> Iterable[str]:
     yield ""
     if not all(peak.reached for peak in peaks):
         yield "-  it comes up to this value, and jumps then"
+    if (drift := summary.largest_drift) is not None:
+        peak, unit = drift.largest, f" {drift.unit}" * bool(drift.unit)
+        yield f"largest drift: {drift.name}, {_number(peak.value)}{unit} at {_number(_spoken(peak.at))}"
     yield f"{summary.how}: {summary.certain}"
 
 

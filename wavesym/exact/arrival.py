@@ -4,7 +4,8 @@ Transforms tell without rounding (see silence.py) what arrives at an output at e
 a rule: the beginning of the horizon is looked at, then twice as much, and so on, with the outputs that are left.
 
 Where contacts open and close no transform tells; there it is the start of the first piece that, in balls, certainly is
-not 0.
+not 0. What is at rest until loads that do not jump act on it needs no transform: the light cone tells, but for outputs
+that are 0 throughout.
 """
 
 from __future__ import annotations
@@ -44,6 +45,27 @@ def first_arrivals(model: Model) -> list[fmpq | None]:
         fronts = len(model.network.joints) * (1 + len(beginning.loads)) * early / shortest
         if early == until or fronts > _MOST:
             break
+    return found
+
+
+def light_arrivals(model: Model) -> list[fmpq | None]:
+    """When the first load can be felt by each output of a chain that rests until then; None: not on the horizon."""
+    network, last = model.network, rational(model.horizon())
+    begun: dict[int, fmpq] = {}
+    for number, point in enumerate(network.points):
+        sources = {unit.source for unit in point.loads}
+        times = [load.time for load in model.loads if load.source in sources]
+        if times:
+            joint = network.joint_of[number]
+            begun[joint] = min([begun[joint], *times] if joint in begun else times)
+    found: list[fmpq | None] = []
+    for probe in model.probes:
+        readings = [reading for _, reading in model.sums[probe]]
+        places = [(reading.rod - 1, reading.place) for reading in readings if reading.point is None]
+        points = [reading.point for reading in readings if reading.point is not None]
+        distances = network.distances(places, points)
+        times = [time + distances[joint] for joint, time in begun.items() if joint in distances]
+        found.append(min((time for time in times if time <= last), default=None))
     return found
 
 

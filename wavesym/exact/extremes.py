@@ -23,7 +23,7 @@ import numpy as np
 from flint import arb, arb_poly, ctx, fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import CostError
+from wavesym.errors import CostError, UnservedError
 from wavesym.exact.ball import Segment
 from wavesym.exact.motion import Motion, is_zero
 from wavesym.exact.silence import silent
@@ -34,14 +34,16 @@ from wavesym.numbers.doubles import middle, midpoint, nearest, not_below, ration
 
 Numbers = NDArray[np.float64]
 
-# of the largest value: what counts as equal, as constant, and how well it must be known
-_EQUAL, _FLAT, _KNOWN = arb(2) ** -60, arb(2) ** -64, arb(2) ** -70
+# of the largest value: what counts as equal, as constant, how well it must be known, and what is left out of series
+_EQUAL, _FLAT, _KNOWN, _NEGLIGIBLE = arb(2) ** -60, arb(2) ** -64, arb(2) ** -70, arb(2) ** -90
 # points of a piece in doubles: of all pieces, then of those that are left
 _POINTS = (33, 513)
 _ROUNDING = 2.0**-52
 _NEWTON = 200  # steps at most; a dozen do
-_BITS, _NEGLIGIBLE = 256, arb(2) ** -120
-_MOST_BITS = 1024
+# measured: seconds for a piece, times its terms to the power of 3/2
+_COMPOSED, _MOST_SECONDS = 4e-7, 5
+# times the bits that there are to begin with: what needs more is not told from 0
+_MORE_BITS = 8
 _ZERO, _ONE = fmpq(0), fmpq(1)
 
 
@@ -64,15 +66,19 @@ NOTHING: Range = (Extreme(0.0, 0.0), Extreme(0.0, 0.0))
 def extremes(model: Model) -> list[Range]:
     """The least and the greatest value of each output on the horizon of doubles.
 
-    CostError where that would take minutes, or where contacts open and close and more is needed than is known of them.
+    CostError where that would take minutes, or where contacts open and close and more is needed than is known of them;
+    UnservedError where modes are damped.
     """
+    if model.damping is not None:
+        raise UnservedError("system.damping: given, none expected (modes serve it)")
     motion = Motion(model, rational(model.horizon()))
-    if motion.first_bits > _MOST_BITS:
+    pieces = sum(len(motion.starts(probe)) for probe in motion.probes)
+    if (seconds := pieces * (motion.first_bits // 4) ** 1.5 * _COMPOSED) > _MOST_SECONDS:
         raise CostError(
-            f"output.until: {motion.first_bits} bits would be needed for extremes to tau = {float(motion.until):g}, at "
-            f"most {_MOST_BITS} expected (a shorter horizon, or smaller kappa, helps)"
+            f"output.until: true extremes of {len(motion.probes)} outputs, {pieces} polynomials in {motion.first_bits} "
+            f"bits, would take about {seconds:.0f} s, at most {_MOST_SECONDS} expected (a shorter horizon or fewer "
+            "outputs help)"
         )
-    motion.refuse_long(max(len(motion.starts(probe)) for probe in motion.probes))
     zero = silent(model, motion.until)
     return [
         NOTHING if nothing else _range(motion, probe, bool(model.network.contacts))
@@ -88,9 +94,12 @@ def _range(motion: Motion, probe: Probe, vague: bool) -> Range:
         if is_zero(segments):
             return NOTHING
         ends = [*(segment.start for segment in segments[1:]), motion.until]
+        stretches = list(zip(segments, ends, strict=True))
+        at_ends = (abs(segment.at(u)).lower() for segment, end in stretches for u in (_ZERO, end - segment.start))
+        negligible = max(at_ends) * _NEGLIGIBLE
         pieces = [
-            _Piece.of(segment, end, end == motion.until)
-            for segment, end in zip(segments, ends, strict=True)
+            _Piece.of(segment, end, segment is segments[-1], negligible)
+            for segment, end in stretches
             if not vague or segment.start == end or not_below(segment.start) < not_below(end)
         ]
         sizes = [piece.largest for piece in pieces]
@@ -99,7 +108,7 @@ def _range(motion: Motion, probe: Probe, vague: bool) -> Range:
         return _found(pieces, max(sizes))
 
     try:
-        return precise(attempt, motion.first_bits, max(motion.first_bits, _MOST_BITS))
+        return precise(attempt, motion.first_bits, _MORE_BITS * motion.first_bits)
     except ArithmeticError as error:
         raise CostError(f"output.until: for extremes of {probe.name}, {error} (a shorter horizon helps)") from None
 
@@ -119,12 +128,10 @@ class _Piece:
     last: bool
 
     @classmethod
-    def of(cls, segment: Segment, end: fmpq, last: bool) -> _Piece:
+    def of(cls, segment: Segment, end: fmpq, last: bool, negligible: arb) -> _Piece:
         (polynomial,) = segment.families.values()
-        length = end - segment.start
-        with ctx.workprec(_BITS):  # what so many bits do not hold goes into the radius
-            half = arb(length / 2)
-            middles, radius = _split(_shortened(polynomial, length)(arb_poly([half, half])))
+        half = arb((end - segment.start) / 2)
+        middles, radius = _split(_shortened(polynomial, 2 * half, negligible)(arb_poly([half, half])))
         return cls(segment.start, end, middles, radius, segment.from_zero, last)
 
     @property
@@ -142,12 +149,10 @@ class _Piece:
         )
 
 
-def _shortened(polynomial: arb_poly, length: fmpq) -> arb_poly:
+def _shortened(polynomial: arb_poly, length: arb, negligible: arb) -> arb_poly:
     """Without the highest powers, as far as they are negligible on [0, length]; they are in the ball of the first."""
-    powers = polynomial.coeffs()
-    sizes = [abs(c).upper() * arb(length) ** k for k, c in enumerate(powers)]
-    negligible, rest = max(sizes, default=arb(0)) * _NEGLIGIBLE, arb(0)
-    while powers and (more := (rest + sizes[len(powers) - 1]).upper()) <= negligible:
+    powers, rest = polynomial.coeffs(), arb(0)
+    while powers and (more := (rest + abs(powers[-1]) * length ** (len(powers) - 1)).upper()) <= negligible:
         rest = more
         powers.pop()
     return arb_poly([powers[0] + arb(0, rest), *powers[1:]]) if powers else arb_poly()
@@ -263,7 +268,7 @@ def _tops(coefficients: Sequence[arb], radius: arb, low: arb, flat: arb) -> Iter
     parts = [(whole, radius, _ZERO, _ONE)]
     while parts:
         polynomial, radius, centre, half = parts.pop()
-        c = polynomial.coeffs()
+        c = polynomial.coeffs() or [arb(0)]
         rest = sum(map(abs, c[1:]), arb(0))
         if not (c[0] + rest + radius).upper() >= low:
             continue

@@ -133,7 +133,10 @@ class Knots:
     @cached_property
     def _bearable(self) -> Mapping[int, fmpq]:
         """How long stretches of joints with springs may be."""
-        laws = {number: JointLaw.of(self._network, self._network.joints[number]) for number in self._last}
+        network = self._network
+        if not any(point.stiffness for point in network.points) and not any(link.stiffness for link in network.links):
+            return {}  # told without laws, whose derivation takes SymPy
+        laws = {number: JointLaw.of(network, network.joints[number]) for number in self._last}
         return {number: law.longest for number, law in laws.items() if law.longest is not None}
 
     @cached_property

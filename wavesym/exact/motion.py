@@ -43,6 +43,7 @@ class Motion:
     """
 
     def __init__(self, model: Model, until: fmpq) -> None:
+        model.refuse_damping()
         self.until = until
         self.probes = model.probes
         self._model, self._network = model, model.network

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf
 from typing import Protocol
 
@@ -74,6 +75,7 @@ def signals(model: Model, most: float = inf, real: Real = DOUBLE) -> tuple[Signa
 
     CostError where the tables would have more than `most` numbers.
     """
+    model.refuse_damping()
     return observed(_ruled(model), model.probes, model.loads, rational(model.horizon(real)), most)
 
 
@@ -99,7 +101,11 @@ class RuledChain:
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
         self.network = network_of(chain)
-        self.rules = Rules(chain)
+
+    @cached_property
+    def rules(self) -> Rules:
+        """Those of its nodes; to derive them takes SymPy."""
+        return Rules(self.chain)
 
     def parts(self, reading: Gauge) -> tuple[Part, Part]:
         """dU/dx = g' - f', dU/dtau = f' + g' + v, U = f + g + v tau, each on the clocks of (4.2)."""

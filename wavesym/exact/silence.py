@@ -65,11 +65,8 @@ def arrivals(model: Model, until: fmpq) -> list[fmpq | None]:
     """
     arriving, jumping = _Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums()
     return [
-        min(
-            (time for time in sums if sums[time] and (time < until or (probe.order == 0 and jumps[until]))),
-            default=None,
-        )
-        for probe, sums, jumps in zip(model.probes, arriving, jumping, strict=True)
+        min((time for time in sums if sums[time] and (time < until or jumps[until])), default=None)
+        for sums, jumps in zip(arriving, jumping, strict=True)
     ]
 
 

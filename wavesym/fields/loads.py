@@ -26,6 +26,11 @@ class Load(SceneTable):
     def sources(self) -> tuple[str, str]:
         """The unit loads that it is made of: a step, and a ramp."""
 
+    @property
+    def step(self) -> Fraction | None:
+        """The time between its samples, where it has any."""
+        return None
+
     def refused(self, m: int) -> tuple[str, str] | None:
         """What is wrong with it on a system of m elements, and under which key; None where nothing is."""
         return None
@@ -105,6 +110,11 @@ class SampledLoad(Load):
         if not samples:
             raise wrong("no numbers given, at least 1 expected")
         return samples
+
+    @property
+    def step(self) -> Fraction:
+        """The time between samples."""
+        return self.spacing
 
     def units(self) -> Iterator[Applied]:
         """The load as unit responses."""

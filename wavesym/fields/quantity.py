@@ -20,7 +20,7 @@ from wavesym.fields.table import Written, shown, wrong
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-_QUANTITY = re.compile(r"([+-]?[0-9]+(?:/[0-9]+|(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)) ?(\S.*)")
+_QUANTITY = re.compile(r"([+-]?[0-9]+(?:/[0-9]+|(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)) ?(?![eE][+-]?[0-9])([^\s0-9.+-].*)")
 _NAME = r"[A-Za-z\u00b5\u03bc%][A-Za-z_0-9]*"  # with either mu, for micro
 _UNIT = re.compile(rf"{_NAME}(?:\^-?[1-9])?(?:[*/]{_NAME}(?:\^-?[1-9])?)*")
 _FACTOR = re.compile(rf"([*/]?)({_NAME})(?:\^(-?[1-9]))?")

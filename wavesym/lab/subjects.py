@@ -23,6 +23,7 @@ from wavesym.programs.request import Request
 from wavesym.results.response import Response
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.problem import P, Rival
+from wavesym.rivals.sums import summing
 from wavesym.running.native import address, library
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import sources
@@ -90,7 +91,8 @@ def subjects(scene: Scene, samples: int) -> Iterator[Subject]:
                     continue
                 seen.add(made.c[f"{scene.name}.c"])
                 seconds = perf_counter() - start
-                for language, load in (("C", _c), ("NumPy", _numpy)):
+                streamed = evaluator == "modes"  # their C goes from sample to sample of a load
+                for language, load in (("NumPy", _numpy),) if streamed else (("C", _c), ("NumPy", _numpy)):
                     start = perf_counter()
                     sample, at = load(scene, made, samples, precision)
                     yield Subject(
@@ -123,7 +125,7 @@ def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
     """The rivals that take the scene, each from coarse to fine."""
     model = lower(scene)
     at = taus(model.horizon(), samples, "double")
-    for rival in RIVALS:
+    for rival in map(summing, RIVALS):
         try:
             stated = rival.states(model)
         except UnservedError:
@@ -141,7 +143,7 @@ def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
 def left_out(scene: Scene) -> Iterator[str]:
     """A line for each rival that does not take the scene: which, and why."""
     model = lower(scene)
-    for rival in RIVALS:
+    for rival in map(summing, RIVALS):
         try:
             rival.states(model)
         except UnservedError as error:

@@ -16,3 +16,9 @@ class Damping:
 
     ratios: tuple[fmpq, ...]
     modes: tuple[int, int] | None = None
+
+    @property
+    def told(self) -> str:
+        """In a line."""
+        ratios = ", ".join(map(str, self.ratios))
+        return f"{ratios} in modes {self.modes[0]} and {self.modes[1]}, Rayleigh" if self.modes else ratios

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from flint import fmpq
@@ -37,8 +37,9 @@ class Model:
     """A chain, the loads on it, what is watched until tau = `until`, and the error allowed.
 
     `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
-    `tolerance` is relative to an output's largest value. Loads are sorted by time. The `clock` is that of a physical
-    scene, the `damping` that of its modes.
+    `tolerance` is relative to an output's largest value. Loads are sorted by time; where they have samples, the closest
+    are `spacing` apart. The `clock` is that of a physical scene, the `damping` that of its modes; `inputs` says of the
+    sources of its loads what 1 is in the unit of results, and that unit.
     """
 
     name: str
@@ -51,6 +52,8 @@ class Model:
     labels: Labels
     clock: Clock | None = None
     damping: Damping | None = None
+    spacing: fmpq | None = None
+    inputs: Mapping[str, tuple[fmpq, str]] = field(default_factory=dict)
 
     @property
     def named(self) -> Chain:
@@ -76,6 +79,11 @@ class Model:
             if not terms:
                 found[Gauge("velocity", probe.rod, probe.place, probe.point)] = None
         return tuple(found)
+
+    def refuse_damping(self) -> None:
+        """UnservedError where modes are damped: for what knows nothing but waves."""
+        if self.damping is not None:
+            raise UnservedError("system.damping: given, none expected (only modes serve it)")
 
     def horizon(self, real: Real = DOUBLE) -> float:
         """The last tau in `real` numbers: the smallest of them that is not below `until`."""

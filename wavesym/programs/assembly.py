@@ -37,7 +37,7 @@ def assemble(
             return _march(evaluator, provenance)
         case RingMarch(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
             return Program("rings", evaluator.real, tau_max, outputs, tables, constants, evaluator.bytes, provenance)
-        case ModesEvaluator(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants, sources=sources):
+        case ModesEvaluator(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
             return Program(
                 "modes",
                 evaluator.real,
@@ -47,7 +47,7 @@ def assemble(
                 constants,
                 evaluator.bytes,
                 provenance,
-                sources=sources,
+                sources=evaluator.told_sources,
                 proved=evaluator.proved,
             )
 

@@ -9,22 +9,25 @@ from typing import NamedTuple, Protocol
 
 from flint import fmpq
 
-from wavesym.errors import CostError, RangeError, UnservedError, WavesymError
+from wavesym.errors import CostError, RangeError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.signal import refuse_many, signals
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.closed import ClosedForm, closed_form
 from wavesym.programs.march.evaluator import MarchEvaluator, marched, unmet
+from wavesym.programs.modes.evaluator import ModesEvaluator
+from wavesym.programs.modes.making import modes
 from wavesym.programs.pieces import Pieces, pieces
 from wavesym.programs.program import ProgramOutput
 from wavesym.programs.rings.evaluator import RingMarch, ring_march
 
-Made = ClosedForm | Pieces | MarchEvaluator | RingMarch
+Made = ClosedForm | Pieces | ModesEvaluator | MarchEvaluator | RingMarch
 
 _USUAL_TABLES = {"double": "speed", "single": "size"}
 # Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
 _WORTH_TRYING = 50_000
+_LAST = ("modes", "march")
 
 
 class Evaluator(Protocol):
@@ -109,13 +112,13 @@ def choose(
 
 
 def attempts(model: Model, precision: str = "double", optimize: str | None = None) -> tuple[Tried, ...]:
-    """All kinds of programs tried for a model; a march only where no other kind does.
+    """All kinds of programs tried for a model; modes, and then a march, only where no other kind does.
 
-    (A single value of a march takes as long as all windows before it, and so does trying one.)
+    (A single value of these takes as long as all steps or windows before it, and so does trying one.)
     """
     tried: list[Tried] = []
     for kind in MAKERS:
-        if kind == "march" and any(not one.refusal for one in tried):
+        if kind in _LAST and any(not one.refusal for one in tried):
             break
         tried.append(attempt(model, kind, precision, optimize=optimize))
     return tuple(tried)
@@ -135,6 +138,8 @@ def attempt(
         form = MAKERS[kind](model, REALS[precision], asked, windows, optimize or _USUAL_TABLES[precision])
     except CostError as refusal:
         return Tried(kind, None, str(refusal), refusal)
+    except ToleranceError as refusal:
+        return Tried(kind, None, str(refusal).partition(f"{kind}: ")[2], refusal)
     except OverflowError:
         beyond = f"numbers beyond the range of {precision} precision"
         return Tried(kind, None, beyond, RangeError(f"output: {kind} needs {beyond}"))
@@ -146,13 +151,18 @@ def attempt(
 def best(model: Model, tried: Sequence[Tried], optimize: str | None = None) -> Choice:
     """The best of what was tried and meets the tolerance, and why. ToleranceError where nothing does."""
     found = [(one.kind, one.form) for one in tried if one.form and not one.refusal]
-    refused = [one.why for one in tried if one.refusal]
+    # where modes are for something else altogether that is no news
+    refused = [one.why for one in tried if one.refusal and not (one.kind == "modes" and _unserved(one) and tried[1:])]
     if not found:
         raise unmet(model.tolerance, "; ".join(refused))
     small = optimize == "size"
     name, chosen = min(found, key=lambda one: one[1].bytes if small else one[1].work)
     dearer = [f"{form.summary}, {'is larger' if small else 'takes longer'}" for _, form in found if form is not chosen]
     return Choice(name, chosen, "; ".join([*refused, *dearer, chosen.summary]))
+
+
+def _unserved(one: Tried) -> bool:
+    return isinstance(one.error, UnservedError)
 
 
 def _closed(model: Model, real: Real, asked: bool, *_: object) -> ClosedForm:
@@ -165,6 +175,10 @@ def _pieces(model: Model, real: Real, asked: bool, windows: int | None, optimize
     return pieces(model, real, model.tolerance, optimize)
 
 
+def _modes(model: Model, real: Real, *_: object) -> ModesEvaluator:
+    return modes(model, real)
+
+
 def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator | RingMarch:
     if model.chain is None:
         if windows is not None:
@@ -174,4 +188,4 @@ def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -
 
 
 Maker = Callable[[Model, Real, bool, int | None, str], Made]
-MAKERS: dict[str, Maker] = {"closed": _closed, "pieces": _pieces, "march": _march}
+MAKERS: dict[str, Maker] = {"closed": _closed, "pieces": _pieces, "modes": _modes, "march": _march}

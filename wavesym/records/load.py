@@ -46,7 +46,7 @@ class RecordedLoad(Load):
         self._once("spacing", self.spacing, self.record.spacing)
         self._once("start", self.start, self.record.start)
         if self.spacing is None and self.record.spacing is None:
-            raise wrong("missing, the time between samples expected (the file has no time column)", "spacing")
+            raise wrong("missing, the time between samples expected (the file does not say it)", "spacing")
         if self.begin != 0 and self.begin < self.step:
             steps = f"{as_decimal(self.begin / self.step)} steps"
             key = "record" if self.start is None else "start"

@@ -7,6 +7,11 @@ from matplotlib.figure import Figure
 from wavesym.results.spectrum import Spectra
 
 
+def _plain(period: float, _: float) -> str:
+    """A number of ticks as people write it; 7 and 9 of a decade stand too close."""
+    return f"{period:g}" if f"{period:e}"[0] in "123468" else ""
+
+
 def draw(found: Spectra) -> Figure:
     """A line for each output, over the period on a logarithmic axis."""
     figure = Figure(figsize=(8, 5), layout="constrained")
@@ -18,6 +23,8 @@ def draw(found: Spectra) -> Figure:
     unit = next(iter(found.units))
     axes.set_ylabel(f"pseudo-acceleration [{unit}]" if unit else "pseudo-acceleration")
     axes.set_title(f"damping {found.damping:g}", loc="left", fontsize="medium")
+    axes.xaxis.set_major_formatter(_plain)
+    axes.xaxis.set_minor_formatter(_plain)
     axes.set_xlim(found.periods[0], found.periods[-1])
     axes.set_ylim(bottom=0)
     axes.grid(which="both", alpha=0.25)

@@ -1,17 +1,22 @@
-"""A scene's outputs as one function of tau, right to the last bit."""
+"""A scene's outputs as one function of tau: right to the last bit, or by a program where that would cost too much."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.events import events
 from wavesym.exact.reference import Reference
 from wavesym.model.event import ContactEvent
 from wavesym.model.model import Model
+from wavesym.programs.assembly import assemble
+from wavesym.programs.choice import attempts, best
+from wavesym.programs.program import Program, Provenance
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -21,12 +26,14 @@ if TYPE_CHECKING:
 class Response:
     """A scene's outputs as one function: the exact tables in ball arithmetic, each value rounded once.
 
+    Where these would cost too much, or nothing but modes serves the scene, it is the program that `generate` takes.
     `outputs` are their names, `tau_max` the end of the horizon; `error_bound` is relative to an output's largest value.
     `events` are what contacts do that open and close, in order of time.
     `wavesym.evaluator` makes it.
     """
 
     model: Model
+    _taken: list[Program] = field(default_factory=list, init=False, repr=False, compare=False)
 
     @cached_property
     def _reference(self) -> Reference:
@@ -42,7 +49,18 @@ class Response:
 
     @property
     def error_bound(self) -> float:
-        return 2.0**-53
+        program = self.program
+        return program.error_bound if program else 2.0**-53
+
+    @property
+    def program(self) -> Program | None:
+        """The program that values are of; None where they are right to the last bit. CostError as where it is called.
+
+        Many values may need one where a few do not.
+        """
+        if not self._taken:
+            self._values([])
+        return self._taken[0] if self._taken else None
 
     @cached_property
     def events(self) -> tuple[ContactEvent, ...]:
@@ -54,5 +72,25 @@ class Response:
         flat = taus.ravel()
         inside = (flat >= 0.0) & (flat <= self.tau_max)
         out = np.full((len(self.outputs), flat.size), np.nan)
-        out[:, inside] = self._reference.values(flat[inside].tolist())
+        out[:, inside] = self._values(flat[inside].tolist())
         return out.reshape(len(self.outputs), *taus.shape)
+
+    def _values(self, taus: Sequence[float]) -> ArrayLike:
+        if not self._taken:
+            try:
+                return self._reference.values(taus)
+            except CostError as error:
+                self._taken.append(_program(self.model, error))
+        return self._taken[0].evaluate(taus)
+
+
+def _program(model: Model, error: CostError) -> Program:
+    """What `generate` takes. ToleranceError where no program is good enough, the error where there is none at all.
+
+    Of samples and records it is told what each program would need.
+    """
+    tried = attempts(model)
+    if not model.spacing and not any(one.form or isinstance(one.error, ToleranceError) for one in tried):
+        raise error
+    choice = best(model, tried)
+    return assemble(choice.evaluator, Provenance(model, choice.reason))

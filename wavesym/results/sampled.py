@@ -15,24 +15,23 @@ from numpy.typing import NDArray
 Numbers = NDArray[np.float64]
 Evaluate = Callable[[Numbers], Numbers]
 
-PER_STEP = 16
 _FINER = 9
 _ROUNDS = 5  # each makes a part a quarter as wide
 _TOPS = 3  # of an output and a side that are looked at
 _EQUAL = 1e-14  # of the largest value: rounding makes no later instant of a plateau higher
 
 
-def sampled_extremes(evaluate: Evaluate, taus: Numbers, *, refined: bool = True) -> tuple[Numbers, Numbers]:
+def sampled_extremes(taus: Numbers, values: Numbers, evaluate: Evaluate | None = None) -> tuple[Numbers, Numbers]:
     """Values and tau, each (outputs, 2), of the least and the greatest value; the first of equal ones.
 
-    `taus` are in order; `evaluate` gives (outputs, taus). Unless it is `refined` only these are looked at.
+    `values` (outputs, taus) are those at `taus`, which are in order. What lies between is looked at where there is an
+    `evaluate`, which gives them for other tau.
     """
-    values = evaluate(taus)
     both = np.stack([-values, values], axis=1)  # (outputs, sides, taus): greatest values are looked for in each
     equal = _EQUAL * np.abs(values).max(axis=1)[:, None]
     at = (both >= both.max(axis=2, keepdims=True) - equal[:, :, None]).argmax(axis=2)
     best, when = np.take_along_axis(both, at[:, :, None], axis=2)[:, :, 0], taus[at]
-    if refined and taus.size > 2:
+    if evaluate is not None and taus.size > 2:
         for found, tau in _refined(evaluate, taus, _tops(both)):
             better = found > best + equal
             best[better], when[better] = found[better], tau[better]

@@ -8,9 +8,10 @@ and its pseudo-acceleration is w^2 max |u| on the horizon. With r = w (-z + i sq
 imaginary part of y, y' = r y + a, which is stepped exactly where a is linear. So all that is not exact is the straight
 line between two values of a, and the top of u between two steps, through which a parabola is laid.
 
-Both ask for short steps: 1/16 of the shortest period, and no more than 1/8 of the spacing of a record or of the
-crossing of the shortest rod (a floor moves with the modes of its rods, too). Where a can jump a step ends. The same
-with every other value tells how much the step matters: the error of what is told is about a third of that change.
+Both ask for short steps: 1/16 of the shortest period, and no more than 1/8 of the spacing of a record. (Floors
+move with the modes of their rods, too; the shortest period is that of the first of these.) There are _LEAST steps at
+least. Where a can jump a step ends. The same with every other value tells how much the step matters: the error of what
+is told is about a third of that change.
 """
 
 from __future__ import annotations
@@ -28,16 +29,17 @@ from wavesym.errors import CostError, SceneError
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.making import make
-from wavesym.results.stepping import jumps, just_before, step_of
+from wavesym.programs.program import Program
+from wavesym.results.stepping import jumps, just_before, sampled
 
 Numbers = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-PER_DECADE = 40  # periods, at numbers that are the same in all scenes
+PER_DECADE = 100  # periods, at numbers that are the same in all scenes; half as wide as peaks with 2 %
 _SHORTEST = 2  # crossings of the shortest rod: the period of its own first mode
 _PER_PERIOD, _PER_STEP = 16, 8
 _TOLERANCE = fmpq(1, 10**6)
-_MOST = 4_000_000  # steps
+_LEAST, _MOST = 8_000, 2_000_000  # steps
 _AT_ONCE = 256
 
 
@@ -72,17 +74,16 @@ def spectra(model: Model, damping: float) -> Spectra:
     per_tau = 1.0 if model.clock is None else nearest(model.clock.per_tau)
     periods = _periods(model, per_tau)
     shortest = periods[0] / per_tau
-    step = min(shortest / _PER_PERIOD, nearest(step_of(model)) / _PER_STEP)
-    if (count := nearest(model.until) / step) > _MOST:
+    until = nearest(model.until)
+    steps = [shortest / _PER_PERIOD, until / _LEAST]
+    step = min(steps if model.spacing is None else [*steps, nearest(model.spacing) / _PER_STEP])
+    if (count := until / step) > _MOST:
         raise CostError(
             f"output.until: a response spectrum would take {count:.1e} steps of tau = {step:g}, at most {_MOST:.1e} "
             "expected (a shorter horizon helps)"
         )
     program = make(watched)
-    edges = [0.0, *jumps(watched), program.tau_max]
-    stretches = [_stretch(low, high, step) for low, high in pairwise(edges) if low < high]
-    ends = np.cumsum([len(taus) for taus in stretches])[:-1]
-    accelerations = np.split(program.evaluate(np.concatenate(stretches)), ends, axis=1)
+    stretches, accelerations = zip(*_stretches(watched, program, step), strict=True)
     lengths = [(taus[-1] - taus[0]) / (len(taus) - 1) for taus in stretches]
     fine = _peaks(accelerations, lengths, periods / per_tau, damping)
     coarse = _peaks([a[:, ::2] for a in accelerations], [2 * h for h in lengths], periods / per_tau, damping)
@@ -106,12 +107,26 @@ def _periods(model: Model, per_tau: float) -> Numbers:
     first, last = ceil(PER_DECADE * log10(shortest)), floor(PER_DECADE * log10(longest))
     if first > last:
         raise SceneError(
-            f"{nearest(model.until):g} given, at least {2 * _SHORTEST * shortest / per_tau:g} expected for a response "
-            "spectrum",
+            f"{nearest(model.until):g} given, at least {2 * 10 ** (first / PER_DECADE) / per_tau:.5g} expected for a "
+            "response spectrum (in tau)",
             "output.until",
             model.name,
         )
     return np.asarray(10.0 ** (np.arange(first, last + 1) / PER_DECADE))
+
+
+def _stretches(model: Model, program: Program, step: float) -> list[tuple[Numbers, Numbers]]:
+    """Stretches without jumps, each of an even number of equal steps: instants, and the outputs there."""
+    if program.kind == "modes":
+        taus, values = sampled(model, program, step)  # nothing jumps; steps of panels of one length are equal
+        steps = np.diff(taus)
+        cuts = np.flatnonzero(np.abs(np.diff(steps)) > 1e-6 * steps[:-1]) + 1
+        ends = [0, *cuts.tolist(), len(steps)]
+        return [(taus[low : high + 1], values[:, low : high + 1]) for low, high in pairwise(ends)]
+    edges = [0.0, *jumps(model), program.tau_max]
+    every = [_stretch(low, high, step) for low, high in pairwise(edges) if low < high]
+    cuts = np.cumsum([len(taus) for taus in every])[:-1]
+    return list(zip(every, np.split(program.evaluate(np.concatenate(every)), cuts, axis=1), strict=True))
 
 
 def _stretch(low: float, high: float, step: float) -> Numbers:

@@ -2,24 +2,41 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-from math import nextafter
+from math import ceil, nextafter
 
-from flint import fmpq
+import numpy as np
+from numpy.typing import NDArray
 
 from wavesym.errors import CostError
 from wavesym.exact.knots import Knots
 from wavesym.model.model import Model
-from wavesym.numbers.doubles import not_below, rational
+from wavesym.numbers.doubles import nearest, not_below, rational
+from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.modes.panels import Panels
+from wavesym.programs.program import Program
 
+Numbers = NDArray[np.float64]
+
+_PER_STEP, _PER_CROSSING = 16, 4
 _MOST_JUMPS = 20_000  # stretches of all joints: where there are more, jumps lie closer than most samples
 
 
-def step_of(model: Model) -> fmpq:
-    """The time in which the shortest rod is crossed, or, where that is shorter, the usual one between two loads."""
-    times = sorted({load.time for load in model.loads})
-    gaps = sorted(after - before for before, after in pairwise(times))
-    return min([bar.delay for bar in model.network.bars] + gaps[len(gaps) // 2 : len(gaps) // 2 + 1])
+def spacing(model: Model) -> float:
+    """How far samples are to be apart: 16 in a step of samples and 4 in the crossing of a rod; else 16 in that."""
+    crossing = nearest(min(bar.delay for bar in model.network.bars))
+    if model.spacing is None:
+        return crossing / _PER_STEP
+    return min(nearest(model.spacing) / _PER_STEP, crossing / _PER_CROSSING)
+
+
+def sampled(model: Model, program: Program, step: float) -> tuple[Numbers, Numbers]:
+    """Instants no more than `step` apart, in order, with both sides of jumps, and the values of a program there."""
+    if program.kind == "modes" and program.real is DOUBLE:
+        return Panels.of(program).sampled(step)
+    count = ceil(program.tau_max / step)
+    fronts = jumps(model)
+    taus = np.unique([*np.linspace(0.0, program.tau_max, count + 1), *fronts, *map(just_before, fronts)])
+    return taus, program.evaluate(taus)
 
 
 def jumps(model: Model) -> list[float]:
@@ -28,7 +45,7 @@ def jumps(model: Model) -> list[float]:
     try:
         if knots.stretches > _MOST_JUMPS:
             return []
-        exact = {time for probe in model.probes for time in knots.breakpoints(probe)}
+        exact = {time for probe in model.probes for time in knots.breakpoints(model.sums[probe])}
     except CostError:
         return []
     return sorted({not_below(time) for time in exact if time > 0})

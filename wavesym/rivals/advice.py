@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 
 import numpy as np
 from flint import fmpq
 
-from wavesym.documents.advice import Advice, Candidate, Difference
-from wavesym.errors import UnservedError
+from wavesym.documents.advice import Advice, Candidate, Discrepancy
+from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.programs.making import make
-from wavesym.rivals.lumped import Lumped
+from wavesym.programs.program import Program
+from wavesym.programs.request import Request
+from wavesym.rivals.lumped import DiscreteModel
 from wavesym.rivals.mass import Elements
-from wavesym.rivals.network import network_problem
+from wavesym.rivals.modal_elements import RIVAL
 from wavesym.rivals.problem import Array
+from wavesym.rivals.sums import summing
 
 WEIGHTS: Mapping[str, float] = {"massless": 0.0, "consistent": 1.0}
 """The models in place of waves, from cheap to dear, and what of their mass the rods have."""
 
 # while a wave crosses the shortest rod, and in all
-_INSTANTS, _MOST_INSTANTS = 8, 200_000
+_INSTANTS, _MOST_INSTANTS = 8, 40_000
 # of what is told apart, what the waves themselves may be wrong by
 _EXACT = fmpq(1, 100)
 
@@ -40,7 +44,7 @@ def advise(model: Model, tolerance: float) -> Advice:
             refused[name] = str(error)
     if not histories:
         return Advice(model.name, tolerance, tuple(Candidate(name, refused=why) for name, why in refused.items()))
-    program = make(model.tolerating(max(model.tolerance, rational(tolerance) * _EXACT)))
+    program = _soonest(model.tolerating(max(model.tolerance, rational(tolerance) * _EXACT)))
     waves = program.evaluate(taus)
     return Advice(
         model.name,
@@ -59,22 +63,34 @@ def advise(model: Model, tolerance: float) -> Advice:
     )
 
 
-def springs(model: Model, weight: float) -> tuple[Array, Array]:
+def _soonest(model: Model) -> Program:
+    """A program of the waves: not the quickest one, but the one that is made soonest."""
+    for kind in ("modes", "march"):
+        with suppress(CostError, ToleranceError):
+            return make(model, Request(evaluator=kind))
+    return make(model)
+
+
+def springs(model: Model, weight: float, step: float | None = None) -> tuple[Array, Array]:
     """Instants, and the outputs there (outputs, instants), where each rod is one spring with `weight` of its mass.
 
-    UnservedError for contacts that open and close, and where rods that weigh nothing leave something free.
+    Instants are `step` apart at most, or as close as it takes to see a wave in the shortest rod.
+    UnservedError for contacts that open and close, for what nothing holds where rods weigh nothing, and for damping of
+    modes that there are not.
     """
-    problem = network_problem(model)
+    stated = summing(RIVAL).states(model)
+    problem = stated.problem
     one = np.ones(len(problem.ends), dtype=int)
-    step = max(float(np.min(problem.delay)) / _INSTANTS, problem.until / _MOST_INSTANTS)
-    return Lumped(Elements(problem, one, weight)).history(step)
+    close = max(float(np.min(problem.delay)) / _INSTANTS, problem.until / _MOST_INSTANTS)
+    taus, values = DiscreteModel(Elements(problem, one, weight)).history(step or close)
+    return taus, stated.added(values, taus)
 
 
-def _differences(ours: Array, waves: Array) -> Iterator[Difference]:
+def _differences(ours: Array, waves: Array) -> Iterator[Discrepancy]:
     for one, other in zip(ours, waves, strict=True):
         largest, size = float(np.max(np.abs(other))), float(np.max(np.abs(one)))
         scale = largest or (np.inf if size == 0 else 0.0)
         with np.errstate(divide="ignore"):
-            yield Difference(
+            yield Discrepancy(
                 *(float(np.divide(gap, scale)) for gap in (np.max(np.abs(one - other)), abs(size - largest)))
             )

@@ -15,6 +15,7 @@ from wavesym.rivals.problem import Array, Problem, Watch, problem
 
 def stated(model: Model) -> Problem:
     """The problem of a model. UnservedError where it is no line of equal rods between bodies that start as these do."""
+    model.refuse_damping()
     if model.chain and not model.network.contacts:
         return problem(model.chain, model.loads, model.probes, nearest(model.until))
     network = network_problem(model)

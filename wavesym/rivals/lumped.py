@@ -8,25 +8,26 @@ from functools import cached_property
 
 import numpy as np
 
+from wavesym.errors import UnservedError
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import fraction
+from wavesym.programs.modes.damped import damped
 from wavesym.rivals.mass import Elements, dense
-from wavesym.rivals.oscillators import DERIVED, KEPT, Ratios, condensed
+from wavesym.rivals.oscillators import DERIVED, KEPT, condensed
 from wavesym.rivals.problem import Array
-from wavesym.rivals.stepping import Part, stepped
+from wavesym.rivals.stepping import Batch, stepped
 
 
 @dataclass(frozen=True)
-class Lumped:
-    """The elements of a network; `ratios` says how its modes are damped."""
+class DiscreteModel:
+    """The elements of a network. Outputs are strains, displacements, velocities and accelerations."""
 
     elements: Elements
-    ratios: Ratios | None = None
 
     def history(self, step: float) -> tuple[Array, Array]:
         """Instants on [0, until], at most `step` apart, and the outputs there (outputs, instants).
 
-        UnservedError where rods are springs, and something without mass is held by none.
+        UnservedError where something without mass is held by no spring, and for the damping of modes that it has not.
         """
         problem = self.elements.problem
         taus, values = stepped(self._parts, self._events, problem.until, step)
@@ -58,7 +59,7 @@ class Lumped:
         return gained
 
     @cached_property
-    def _parts(self) -> list[Part]:
+    def _parts(self) -> list[Batch]:
         elements, size = self.elements, self.elements.size
         mass, damping, stiffness = (dense(e, size) for e in (elements.mass, elements.damping, elements.stiffness))
         told = {node: d for d, node in enumerate(self._driven) if node in elements.problem.told}
@@ -70,18 +71,19 @@ class Lumped:
                 at_once[node, d, 0] = 1.0
             else:
                 acting[node, d, 1] = 1.0
-        left = condensed(*(matrix[np.ix_(free, free)] for matrix in (mass, damping, stiffness)), acting[free])
+        inner = np.ix_(free, free)
+        left = condensed(mass[inner], damping[inner], stiffness[inner], acting[free])
         at_once[free] = left.at_once
         # what a told velocity gains at once is a blow to what has a share in its mass
         momentum = -self._changes[:, list(told.values()), 1] @ mass[list(told)][:, free]
         momentum[0] += elements.momentum[free]
-        own = left.oscillators(self._changes, momentum[:, left.heavy], self.ratios)
+        own = left.oscillators(self._changes, momentum[:, left.heavy], self._ratios)
         places = np.zeros((size, *own.places.shape[1:]))
         places[free] = np.tensordot(left.follows, own.places, 1)
         loads = np.broadcast_to(DERIVED, (len(self._driven), KEPT, KEPT))
         return [
-            Part(own.matrix, own.jumps, self._shown(own.matrix, places)),
-            Part(loads, self._changes, self._shown(loads, at_once)),
+            Batch(own.matrix, own.jumps, self._shown(own.matrix, places)),
+            Batch(loads, self._changes, self._shown(loads, at_once)),
         ]
 
     def _shown(self, matrix: Array, places: Array) -> Array:
@@ -92,44 +94,38 @@ class Lumped:
             places = np.einsum("ubs,bst->ubt", places, matrix)
         return total
 
+    def _ratios(self, w: Array) -> Array:
+        """How modes of frequencies w are damped."""
+        modal, strained = self.elements.problem.modal, w[w > 0].tolist()
+        if modal and modal.modes and max(modal.modes) > len(strained):
+            raise UnservedError(
+                f"system.damping: mode {max(modal.modes)} given, at most {len(strained)} expected of so few masses"
+            )
+        return damped(modal, strained).of(w)
+
     @cached_property
     def _weights(self) -> Array:
         """What displacements, velocities and accelerations of the unknowns count in outputs: (3, outputs, unknowns)."""
-        weights = np.zeros((3, len(self.elements.problem.probes), self.elements.size))
-        for row, probe in enumerate(self.elements.problem.probes):
-            if probe.quantity == "strain":
-                weights[:, row] = self._strain(probe)
-            else:
-                weights[_DERIVATIVE[probe.quantity], row] = self._moved(probe)
-        return weights
+        return np.stack([self._read(probe) for probe in self.elements.problem.probes], axis=1)
 
-    def _moved(self, probe: Probe) -> Array:
-        """How much the unknowns move a place: along a line from one end of its element to the other."""
-        weights = np.zeros(self.elements.size)
-        if probe.point is not None:
-            weights[probe.point] = 1.0
-            return weights
-        ends, factors, part, _ = self._element(probe)
-        np.add.at(weights, ends, factors * (1 - part, part))
-        return weights
-
-    def _strain(self, probe: Probe) -> Array:
-        """What strains a place: its element as a spring, and its mass, which moves along a line between its ends."""
+    def _read(self, probe: Probe) -> Array:
+        """The same for one output: (3, unknowns)."""
         weights = np.zeros((3, self.elements.size))
-        ends, factors, part, length = self._element(probe)
+        derivative = {"velocity": 1, "acceleration": 2}.get(probe.quantity, 0)
+        if probe.point is not None:
+            weights[derivative, probe.point] = 1.0
+            return weights
         problem, bar = self.elements.problem, probe.rod - 1
-        np.add.at(weights[0], ends, factors * (-1, 1) / (length * problem.speed[bar]))
-        balance = np.array([part - 1 / 3 - part**2 / 2, part**2 / 2 - 1 / 6])
-        np.add.at(weights[2], ends, self.elements.weight * factors * balance * (length / problem.speed[bar]))
-        return weights
-
-    def _element(self, probe: Probe) -> tuple[Array, Array, float, float]:
-        """The unknowns at the ends of an output's element, how fast these move there, the place in it, its delay."""
-        bar = probe.rod - 1
         place = float(fraction(probe.place)) * self.elements.cells[bar]
         first = min(int(place), int(self.elements.cells[bar]) - 1)
+        part, length, speed = place - first, self.elements.length(bar), float(problem.speed[bar])
         unknowns, factors = self.elements.along(bar)
-        return unknowns[first : first + 2], factors[first : first + 2], place - first, self.elements.length(bar)
-
-
-_DERIVATIVE = {"displacement": 0, "velocity": 1}
+        unknowns, factors = unknowns[first : first + 2], factors[first : first + 2]
+        if probe.quantity == "strain":
+            # as a spring, and what balances the element's mass, whose acceleration is a line between its ends
+            balance = np.array([part - 1 / 3 - part**2 / 2, part**2 / 2 - 1 / 6])
+            np.add.at(weights[0], unknowns, factors * (-1, 1) / (length * speed))
+            np.add.at(weights[2], unknowns, self.elements.weight * factors * balance * (length / speed))
+        else:
+            np.add.at(weights[derivative], unknowns, factors * (1 - part, part))
+        return weights

@@ -9,18 +9,18 @@ from functools import partial
 
 import numpy as np
 
-from wavesym.rivals.lumped import Lumped
+from wavesym.rivals.lumped import DiscreteModel
 from wavesym.rivals.mass import Elements
-from wavesym.rivals.network import NetworkProblem, network_problem
+from wavesym.rivals.network import NetworkProblem, damped_problem
 from wavesym.rivals.problem import Array, Evaluate, Rival
 
 
 def _prepare(problem: NetworkProblem, resolution: float) -> Evaluate:
     cells = np.maximum(np.rint(problem.delay * resolution), 1).astype(int)
-    return partial(_read, Lumped(Elements(problem, cells)), 1 / resolution)
+    return partial(_read, DiscreteModel(Elements(problem, cells)), 1 / resolution)
 
 
-def _read(model: Lumped, step: float, taus: Array) -> Array:
+def _read(model: DiscreteModel, step: float, taus: Array) -> Array:
     instants, values = model.history(step)
     return np.array([np.interp(taus, instants, row) for row in values])
 
@@ -30,6 +30,6 @@ RIVAL = Rival(
     "NumPy",
     "elements in a unit of delay",
     (4, 10, 20, 50, 100),
-    network_problem,
+    damped_problem,
     _prepare,
 )

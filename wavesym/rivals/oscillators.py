@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.rivals.problem import Array
@@ -24,7 +25,7 @@ DERIVED = np.eye(KEPT, k=1)
 _NOTHING = 1e-12
 
 Ratios = Callable[[Array], Array]
-"""Frequencies, ascending, to the damping ratio of each."""
+"""Frequencies, ascending, to the damping ratio of each; 0 is that of a motion without strain."""
 
 
 @dataclass(frozen=True)
@@ -54,9 +55,9 @@ class Condensed:
     acting: Array
     follows: Array
     at_once: Array
-    heavy: Array
+    heavy: NDArray[np.bool_]
 
-    def oscillators(self, changes: Array, momentum: Array, ratios: Ratios | None) -> Stepping:
+    def oscillators(self, changes: Array, momentum: Array, ratios: Ratios) -> Stepping:
         """Stepped mode by mode, or all in one where dashpots tie the modes.
 
         `changes` (events, loads, KEPT) is what the loads gain at events, `momentum` (events, heavy) what masses do.
@@ -64,14 +65,15 @@ class Condensed:
         tied = np.any(self.damping)
         return self._tied(changes, momentum) if tied else self._modal(changes, momentum, ratios)
 
-    def _modal(self, changes: Array, momentum: Array, ratios: Ratios | None) -> Stepping:
+    def _modal(self, changes: Array, momentum: Array, ratios: Ratios) -> Stepping:
         """x is the displacement of a mode, its velocity over `speed`, and its load and three derivatives."""
         root = np.linalg.cholesky(self.mass)
         whitened = np.linalg.solve(root, np.linalg.solve(root, self.stiffness).T)
         squares, shapes = np.linalg.eigh((whitened + whitened.T) / 2)
         shapes = np.linalg.solve(root.T, shapes)
-        frequency = np.sqrt(np.maximum(squares, 0.0))
-        damping = 2 * frequency * ratios(frequency) if ratios else np.zeros_like(frequency)
+        strained = squares > len(squares) * np.finfo(float).eps * squares[-1:]
+        frequency = np.sqrt(np.where(strained, squares, 0.0))
+        damping = 2 * frequency * ratios(frequency)
         speed = np.maximum(frequency, 1.0)
         matrix = np.zeros((len(frequency), 2 + KEPT, 2 + KEPT))
         matrix[:, 0, 1], matrix[:, 1, 0], matrix[:, 1, 1], matrix[:, 1, 2] = (
@@ -82,6 +84,8 @@ class Condensed:
         )
         matrix[:, 2:, 2:] = DERIVED
         felt = np.einsum("qn,qdk->ndk", shapes, self.acting)
+        # what is damped is the motion beside that in which all springs follow what is told
+        felt[..., 1] += (damping / np.where(strained, squares, 1.0))[:, np.newaxis] * felt[..., 0]
         jumps = np.empty((len(changes), len(frequency), 2 + KEPT))
         jumps[..., 0], jumps[..., 1] = 0.0, momentum @ shapes / speed
         for k in range(KEPT):

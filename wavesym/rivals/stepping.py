@@ -12,6 +12,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wavesym.numbers.doubles import not_below, rational
 from wavesym.rivals.problem import Array
@@ -21,7 +22,7 @@ _AT_ONCE = 2048  # instants
 
 
 @dataclass(frozen=True)
-class Part:
+class Batch:
     """Systems that do not feel each other, at rest before the first event: x (batch, size).
 
     `matrix` has shape (batch, size, size); at event e x gains jumps[e], of shape (events, batch, size); outputs gain
@@ -33,46 +34,47 @@ class Part:
     shown: Array
 
 
-def stepped(parts: Sequence[Part], events: Sequence[Fraction], until: float, step: float) -> tuple[Array, Array]:
+def stepped(batches: Sequence[Batch], events: Sequence[Fraction], until: float, step: float) -> tuple[Array, Array]:
     """Instants from 0 to `until`, and the outputs there, (outputs, instants); at an event they are what is after it.
 
     `events` are 0 = t_0 < t_1 < ... <= until. From one to the next instants are equally spaced, by `step` at most.
     """
     ends = [*events, Fraction(until)]
-    lengths = [after - before for before, after in pairwise(ends)]
-    counts = [max(1, int(np.ceil(float(length) / step))) for length in lengths]
+    kinds: dict[Fraction, int] = {}
+    kind = np.array([kinds.setdefault(after - before, len(kinds)) for before, after in pairwise(ends)])
+    lengths = np.array([float(length) for length in kinds])
+    counts = np.maximum(1, np.ceil(lengths / step).astype(int))
     spaced = [
-        not_below(rational(start)) + float(length) / n * np.arange(n)
-        for start, length, n in zip(events, lengths, counts, strict=True)
+        not_below(rational(start)) + lengths[k] / counts[k] * np.arange(counts[k])
+        for start, k in zip(events, kind, strict=True)
     ]
-    firsts = np.append(0, np.cumsum(counts))
-    values = np.zeros((len(parts[0].shown), firsts[-1] + 1))
-    for part in parts:
-        shown = part.shown.reshape(len(part.shown), -1)
-        states, last = _at_events(part, lengths)
+    firsts = np.append(0, np.cumsum(counts[kind]))
+    values = np.zeros((len(batches[0].shown), firsts[-1] + 1))
+    for batch in batches:
+        shown = batch.shown.reshape(len(batch.shown), -1)
+        states, last = _at_events(batch, lengths, kind)
         values[:, -1] += shown @ last.ravel()
-        for length in dict.fromkeys(lengths):
-            here = np.flatnonzero([each == length for each in lengths])
-            count = counts[here[0]]
-            leap = exponential(part.matrix * (float(length) / count))
+        for k, (length, count) in enumerate(zip(lengths, counts, strict=True)):
+            here = np.flatnonzero(kind == k)
+            leap = exponential(batch.matrix * (length / count))
             x, block = np.moveaxis(states[here], 0, -1), 1
             while block < count and block * len(here) < _AT_ONCE:
                 x, leap, block = np.concatenate([x, leap @ x], axis=-1), leap @ leap, 2 * block
-            for k in range(0, count, block):
-                columns = (firsts[here] + k + np.arange(min(block, count - k))[:, np.newaxis]).ravel()
+            for first in range(0, count, block):
+                columns = (firsts[here] + first + np.arange(min(block, count - first))[:, np.newaxis]).ravel()
                 values[:, columns] += shown @ x.reshape(shown.shape[1], x.shape[-1])[:, : len(columns)]
                 x = leap @ x
     return np.concatenate([*spaced, [until]]), values
 
 
-def _at_events(part: Part, lengths: Sequence[Fraction]) -> tuple[Array, Array]:
-    """x after each event, (events, batch, size), and at the end."""
-    over = {length: exponential(part.matrix * float(length)) for length in dict.fromkeys(lengths)}
-    states = np.empty_like(part.jumps)
-    x = np.zeros_like(part.jumps[0])
-    for k, length in enumerate(lengths):
-        states[k] = x + part.jumps[k]
-        x = (over[length] @ states[k][..., np.newaxis])[..., 0]
+def _at_events(batch: Batch, lengths: Array, kind: NDArray[np.int_]) -> tuple[Array, Array]:
+    """x after each event, (events, batch, size), and at the end; after event e comes a stretch of lengths[kind[e]]."""
+    over = [exponential(batch.matrix * length) for length in lengths]
+    states = np.empty_like(batch.jumps)
+    x = np.zeros_like(batch.jumps[0])
+    for e, k in enumerate(kind):
+        states[e] = x + batch.jumps[e]
+        x = (over[k] @ states[e][..., np.newaxis])[..., 0]
     return states, x
 
 

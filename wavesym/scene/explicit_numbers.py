@@ -10,6 +10,7 @@ from flint import fmpq
 
 from wavesym.model.network import Bar, Network
 from wavesym.numbers.doubles import fraction
+from wavesym.scene.physical.rounding import decimal_text
 from wavesym.scene.physical.scale import Scale
 from wavesym.systems.place import Position
 
@@ -17,9 +18,6 @@ from wavesym.systems.place import Position
 def number_text(value: fmpq) -> str:
     """An exact number as TOML."""
     return str(value) if value.q == 1 else f'"{value}"'
-
-
-_MOST_DIGITS = 40
 
 
 class Dimensionless:
@@ -123,18 +121,8 @@ class InUnits(Dimensionless):
     def _along(self, x: Fraction) -> str:
         lengths = self.scale.lengths
         whole = min(int(x), len(lengths) - 1)
-        return f"{_decimal(sum(lengths[:whole], Fraction(0)) + (x - whole) * lengths[whole])} m"
+        return f"{decimal_text(sum(lengths[:whole], Fraction(0)) + (x - whole) * lengths[whole])} m"
 
 
 def _quantity(value: Fraction, unit: str) -> str:
-    return json.dumps(f"{_decimal(value)} {unit}")
-
-
-def _decimal(value: Fraction) -> str:
-    """A number as a decimal where it is one, else as a ratio."""
-    digits = next((k for k in range(_MOST_DIGITS) if 10**k % value.denominator == 0), 0)
-    if value.denominator > 1 and not digits:
-        return str(value)
-    scaled = str(abs(value.numerator) * 10**digits // value.denominator).zfill(digits + 1)
-    sign, cut = "-" if value < 0 else "", len(scaled) - digits
-    return f"{sign}{scaled[:cut]}{(digits and '.') or ''}{scaled[cut:]}"
+    return json.dumps(f"{decimal_text(value)} {unit}")

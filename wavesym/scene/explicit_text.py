@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from flint import fmpq
 
@@ -42,6 +42,8 @@ def _lines(scene: Scene) -> Iterator[str]:
         yield ""
     yield "[system]"
     yield 'type = "chain"'
+    if damping := scene.system.model_dump(mode="json").get("damping"):
+        yield f"damping = {_value(damping)}"
     yield "parts = ["
     yield from (f"  {part}," for part in _parts(model.network, told))
     yield "]"
@@ -55,6 +57,11 @@ def _lines(scene: Scene) -> Iterator[str]:
     yield f"tolerance = {number_text(model.tolerance)}"
     for quantity in QUANTITIES:
         if positions := getattr(scene.output, quantity):
+            if quantity == "relative" and not any(point.motion for point in model.network.points):
+                raise UnservedError(
+                    'output.relative: given with base = "force", "ground" expected (of a chain that is written out, '
+                    "displacements are relative to an end that moves as it is told)"
+                )
             places = [told.position(position) if quantity != "drift" else position.written for position in positions]
             yield f"{quantity} = {json.dumps(places)}"
 
@@ -104,7 +111,14 @@ def _load(load: Load, network: Network, told: Dimensionless) -> Iterator[str]:
             yield f"{name} = {_listed(told.load(sums[time][k], k, moved) for time in times)}"
 
 
-def _table(values: dict[str, str]) -> str:
+def _value(value: object) -> str:
+    """Text, numbers, lists and tables as TOML."""
+    if isinstance(value, Mapping):
+        return _table({key: _value(each) for key, each in value.items()})
+    return json.dumps(value)
+
+
+def _table(values: Mapping[str, str]) -> str:
     return f"{{ {', '.join(f'{key} = {value}' for key, value in values.items())} }}"
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import replace
+from fractions import Fraction
 
 from flint import fmpq
 
+from wavesym.model.damping import Damping
 from wavesym.model.loads import Applied, merged
 from wavesym.model.model import Labels, Model
 from wavesym.model.probe import Probe
@@ -15,6 +17,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.scene.outputs import Observable
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.scene import Scene
+from wavesym.systems.place import Place
 
 
 def lower(scene: Scene) -> Model:
@@ -31,7 +34,23 @@ def lower(scene: Scene) -> Model:
         tolerance=rational(output.tolerance),
         labels=_labels(scene),
         clock=scene.scale.clock if scene.scale else None,
+        damping=_damping(scene),
+        inputs=_inputs(scene),
+        spacing=min((rational(load.step) for load in scene.load if load.step), default=None),
     )
+
+
+def _damping(scene: Scene) -> Damping | None:
+    """That of the modes, where it is any."""
+    damping: Damping | None = getattr(scene.system, "damping", None)  # a collision has none
+    return damping if damping and any(damping.ratios) else None
+
+
+def drifts(scene: Scene) -> tuple[Probe, ...]:
+    """The drift of every rod of the main line, as an output."""
+    rods = [station.right for station in scene.system.lines[""] if station.right is not None]
+    places = (Place(Fraction(k), 0, "", rod + 1, Fraction(1)) for k, rod in enumerate(rods, 1))
+    return tuple(_probe(Observable("drift", place.x, 0, f"drift@{place.x}", place), scene.scale) for place in places)
 
 
 def _labels(scene: Scene) -> Labels:
@@ -40,7 +59,7 @@ def _labels(scene: Scene) -> Labels:
         said["units"] = scene.scale.canonical
     canonical = json.dumps(said, sort_keys=True, separators=(",", ":"))
     return Labels(
-        system={"type": scene.system.type, **scene.system.choices},
+        system={"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)},
         loads=scene.physical.loads if scene.physical else tuple(load.told for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
     )
@@ -51,6 +70,15 @@ def _loads(scene: Scene) -> tuple[Applied, ...]:
     if not scene.system.load_kinds:
         return (Applied("impact", fmpq(0), fmpq(1)),)
     return merged(unit for load in scene.load for unit in load.units())
+
+
+def _inputs(scene: Scene) -> dict[str, tuple[fmpq, str]]:
+    given = scene.physical.inputs if scene.physical else ()
+    return {
+        source: (rational(factor), unit)
+        for load, (factor, unit) in zip(scene.load, given, strict=False)
+        for source in load.sources
+    }
 
 
 def _probe(output: Observable, scale: Scale | None) -> Probe:

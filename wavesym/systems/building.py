@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import partial
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field, SerializerFunctionWrapHandler, field_validator, model_serializer
 
+from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import Numbers, Positives
 from wavesym.fields.table import shown, wrong
@@ -91,11 +92,17 @@ class Building(Preset):
 
     variants: ClassVar[tuple[System, ...]] = (BUILDING_FORCE, BUILDING_GROUND)
     counts: ClassVar[Mapping[str, str]] = {"kappa": "m + 1"}
+    fewest: ClassVar[int | None] = 1  # no floor, but a roof
     load_kinds: ClassVar[LoadKinds] = (Acceleration, SampledAcceleration, RecordedAcceleration)
 
     type: Literal["building"] = Field(description='"building"')
     kappa: Positives = Field(description="a list of m + 1 positive numbers")
     base: Literal["force", "ground"] = Field(description='"force" or "ground"')
+    damping: ModalDamping = None
+
+    @model_serializer(mode="wrap")
+    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return without_damping(handler(self))
 
     @field_validator("base", mode="before")
     @classmethod
@@ -109,5 +116,5 @@ class Building(Preset):
 
     @property
     def choices(self) -> Mapping[str, str]:
-        """Which base."""
-        return {"base": self.base}
+        """Which base, and how its modes are damped."""
+        return {"base": self.base, **({"damping": self.damping.told} if self.damping else {})}

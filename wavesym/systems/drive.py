@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer
 
+from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import Integer, Numbers, Positives
 from wavesym.fields.table import shown
@@ -98,12 +99,23 @@ class Drive(Preset):
     """m shafts between m + 1 rigid discs at x = 0, 1, ... m."""
 
     variants: ClassVar[tuple[System, ...]] = (DRIVE,)
+    beside: ClassVar[tuple[System, ...]] = (DRIVE_RAMPS,)
     counts: ClassVar[Mapping[str, str]] = {"kappa": "m", "inertia": "m + 1"}
     load_kinds: ClassVar[LoadKinds] = (Moment, SampledMoment, RecordedMoment)
 
     type: Literal["drive"] = Field(description='"drive"')
     kappa: Positives = Field(description="a list of m positive numbers")
     inertia: Positives = Field(description="a list of m + 1 positive numbers")
+    damping: ModalDamping = None
+
+    @model_serializer(mode="wrap")
+    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return without_damping(handler(self))
+
+    @property
+    def choices(self) -> Mapping[str, str]:
+        """How its modes are damped."""
+        return {"damping": self.damping.told} if self.damping else {}
 
     def made(self, loads: Sequence[Load]) -> tuple[Chain, Network]:
         """The chain as the paper has it, with ramps where a load needs them, and as a network."""

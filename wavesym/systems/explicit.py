@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import ClassVar, Literal, cast
+from typing import Any, ClassVar, Literal, cast
 
 from flint import fmpq
-from pydantic import Field, model_validator
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
+from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds
-from wavesym.fields.table import SceneTable, shown
+from wavesym.fields.table import SceneTable, shown, wrong
 from wavesym.model.network import Network
 from wavesym.model.node import UnitLoad
 from wavesym.systems.chain_places import node, place
@@ -30,11 +31,18 @@ class ExplicitChain(SceneTable):
     type: Literal["chain"] = Field(description='"chain"')
     parts: Parts = Field(description="a list of parts")
     branch: tuple[Branch, ...] = ()
+    damping: ModalDamping = None
 
     @model_validator(mode="after")
     def _possible(self) -> ExplicitChain:
-        _ = self.drawing
+        network = self.drawing.network({})  # which is refused where it cannot be drawn
+        if self.damping and (other := _damper(network)):
+            raise wrong(f"given with {other}, one of them expected", "damping")
         return self
+
+    @model_serializer(mode="wrap")
+    def _said(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return without_damping(handler(self))
 
     @cached_property
     def drawing(self) -> Drawing:
@@ -52,7 +60,8 @@ class ExplicitChain(SceneTable):
         branches = {
             f"branch {each.name}": f"from {each.from_}, ratio {each.ratio}: {told(each.parts)}" for each in self.branch
         }
-        return {"parts": told(self.parts), **branches}
+        damping = {"damping": self.damping.told} if self.damping else {}
+        return {"parts": told(self.parts), **branches, **damping}
 
     def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place:
         """The place of an output. MisplacedError."""
@@ -79,6 +88,17 @@ class ExplicitChain(SceneTable):
 
     def _point(self, load: Load) -> int:
         return node(self.drawing, _at(load))
+
+
+def _damper(network: Network) -> str:
+    """What takes energy out of a chain, or opens and closes: empty where nothing does."""
+    for point in network.points:
+        if point.damping != 0:
+            return f"a dashpot or an absorbing end at {point.name or point.place}"
+    for link in network.links:
+        if link.damping != 0 or link.contact:
+            return "a contact" if link.contact else "a dashpot"
+    return ""
 
 
 def _at(load: Load) -> str:

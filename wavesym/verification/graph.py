@@ -168,7 +168,8 @@ class Graph:
 
 
 def graph(model: Model) -> Graph:
-    """The network of a model with its loads."""
+    """The network of a model with its loads. UnservedError where modes are damped."""
+    model.refuse_damping()
     network = model.network
     points, bars = network.points, network.bars
     damping, stiffness = (np.diag(_numbers(points, name)) for name in ("damping", "stiffness"))

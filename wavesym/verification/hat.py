@@ -15,7 +15,7 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import UnservedError
+from wavesym.errors import CostError, UnservedError
 from wavesym.model.loads import Applied
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest, not_below
@@ -25,6 +25,7 @@ from wavesym.programs.request import Request
 Values = NDArray[np.float64]
 
 _ROUNDOFF = 2.0**-53
+_MOST = 100_000  # samples
 
 
 @dataclass(frozen=True)
@@ -39,12 +40,18 @@ class Sampled:
 def at_samples(model: Model) -> Sampled:
     """The outputs of a model at all samples of its loads up to the horizon.
 
-    UnservedError for loads that jump after tau = 0 or lie on no spacing; ToleranceError, CostError of the march.
+    UnservedError for loads that jump after tau = 0, or do not change; ToleranceError, CostError of the march, or for
+    too many samples.
     """
     spacing = reduce(fmpq.gcd, (load.time for load in model.loads), fmpq(0))
     if spacing == 0:
         raise UnservedError("load: no load that changes after tau = 0 given, samples or a record expected")
     count = int((model.until / spacing).floor()) + 1
+    if count > _MOST:
+        raise CostError(
+            f"load: on the horizon there are {count} samples at a spacing of {nearest(spacing):g}, at most {_MOST} "
+            "expected (a shorter horizon helps)"
+        )
     taus = np.array([min(not_below(k * spacing), model.horizon()) for k in range(count)])
     values, allowed = np.zeros((len(model.probes), count)), np.zeros(len(model.probes))
     for (step, ramp), samples in _sampled(model, spacing, count).items():

@@ -17,7 +17,7 @@ from wavesym.scene import Scene, lower
 
 SUMMARY = "summary"
 _STAGES: Mapping[str, Callable[[Scene], Iterable[Section]]] = {
-    SUMMARY: lambda scene: summary(lower(scene)),
+    SUMMARY: lambda scene: summary(lower(scene), scene.physical),
     "scene": said,
     "model": lambda scene: modelled(lower(scene)),
     "laws": lambda scene: laws(lower(scene)),

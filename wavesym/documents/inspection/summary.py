@@ -8,13 +8,15 @@ from wavesym.documents.inspection.modelled import cone, kind, probes, rate
 from wavesym.documents.inspection.networked import counted, joint_laws, not_served
 from wavesym.documents.inspection.programmed import chosen, contacts
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section
+from wavesym.documents.inspection.units import in_units
 from wavesym.documents.inspection.variants import variants
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import attempts
+from wavesym.scene.physical.scene import PhysicalScene
 
 
-def summary(model: Model) -> Iterator[Section]:
+def summary(model: Model, physical: PhysicalScene | None = None) -> Iterator[Section]:
     """From the chain to the programs that were tried."""
     yield Facts(
         "system", "The chain, with the parameters that can matter", {**model.labels.system, **_parameters(model)}
@@ -24,6 +26,8 @@ def summary(model: Model) -> Iterator[Section]:
         "How long and how exactly",
         {"until": str(model.until), "tau_max": model.horizon(), "tolerance": str(model.tolerance)},
     )
+    if physical:
+        yield from in_units(physical, model)
     yield cone(model)
     yield joint_laws(model) if model.chain is None else _nodes(model)
     yield Listing("loads", "Loads", [{"load": told} for told in model.labels.loads if told], ("load",))

@@ -43,6 +43,7 @@ def _refuse_long(model: Model) -> None:
 
 
 def _made(model: Model) -> Table | NetworkTable:
+    model.refuse_damping()
     until = rational(model.horizon())
     if model.chain is None:
         return network_table(model.network, None, until, most=MOST_COUNTED)

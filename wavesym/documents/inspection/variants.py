@@ -9,6 +9,7 @@ from wavesym.model.model import Model
 from wavesym.programs.choice import MAKERS, Made, Tried, attempt
 from wavesym.programs.closed import ClosedForm
 from wavesym.programs.march.evaluator import MarchEvaluator
+from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.pieces import Pieces
 from wavesym.programs.rings.evaluator import RingMarch
 
@@ -17,7 +18,10 @@ MOST_BYTES = 64 << 10
 # Windows times operations of one: a march of so many takes some seconds.
 MOST_MARCHED = 2e7
 
-_NO_MARCH = "not tried: another program meets the tolerance, and trying a march takes as long as a run of all windows"
+_NOT_TRIED = {
+    "modes": "not tried: another program meets the tolerance",
+    "march": "not tried: another program meets the tolerance, and trying a march takes as long as a run of all windows",
+}
 
 
 def variants(model: Model, tried: Sequence[Tried]) -> Listing:
@@ -34,7 +38,7 @@ def _rows(model: Model, tried: Sequence[Tried]) -> Iterator[dict[str, Plain]]:
     done = {one.kind: one for one in tried}
     for kind in MAKERS:
         if kind not in done:
-            yield _row(Tried(kind, None, _NO_MARCH), "double", "speed")
+            yield _row(Tried(kind, None, _NOT_TRIED[kind]), "double", "speed")
             continue
         yield _row(first := done[kind], "double", "speed")
         if first.form is None:
@@ -69,9 +73,9 @@ def _dear(form: Made) -> str:
 
 
 def told_degrees(form: Made) -> Told | None:
-    """The lowest and the highest degree of its polynomials; a closed form has none."""
+    """The lowest and the highest degree of its polynomials; a closed form has none, nor have modes."""
     match form:
-        case ClosedForm():
+        case ClosedForm() | ModesEvaluator():
             return None
         case Pieces():
             low, high = form.degrees

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from flint import fmpq
 
@@ -39,15 +40,15 @@ def cut(network: Network, places: Iterable[tuple[int, fmpq]], *, aside: bool = F
     for bar, place in places:
         if 0 < place < 1:
             wanted[bar].add(place)
-    points, bars = list(network.points), []
-    firsts, cuts = [], []
-    for bar, inside in zip(network.bars, wanted, strict=True):
+    points, bars = list(network.points), list[Bar]()
+    firsts, cuts = list[int](), list[tuple[fmpq, ...]]()
+    for whole, inside in zip(network.bars, wanted, strict=True):
         if aside:
             edges = [_ZERO, *sorted(inside), _ONE]
-            inside |= {a + (b - a) * _ASIDE for a, b in zip(edges, edges[1:], strict=False)}
+            inside |= {a + (b - a) * _ASIDE for a, b in pairwise(edges)}
         firsts.append(len(bars))
         cuts.append(tuple(sorted(inside)))
-        bars += _pieces(bar, cuts[-1], len(points))
+        bars += _pieces(whole, cuts[-1], len(points))
         points += [Point(_ZERO)] * len(inside)
     return Cut(Network(tuple(points), tuple(bars), network.links), tuple(cuts), tuple(firsts))
 

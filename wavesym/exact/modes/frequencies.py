@@ -30,8 +30,8 @@ def refuse_damped(network: Network) -> None:
     for point in network.points:
         if point.damping != 0:
             raise UnservedError(
-                f"system: a dashpot or an absorbing end at {point.name or point.place or 'a node'} given, none expected "
-                "in modes (pieces and march serve it)"
+                f"system: a dashpot or an absorbing end at {point.name or point.place} given, none expected in modes "
+                "(pieces and march serve it)"
             )
     for link in network.links:
         if link.contact or link.damping != 0:
@@ -113,7 +113,7 @@ def searched(stiffness: Stiffness, count: int) -> Vector:
         middle = (low + high) / 2
         below = stiffness.counted(middle) < n
         low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return high
+    return np.asarray(high, np.float64)
 
 
 def _proved(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -> Mode | None:
@@ -129,7 +129,7 @@ def _proved(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -> 
 
 def _polished(stiffness: Stiffness, law: Law, n: int, guess: float, root: int, bits: int) -> arb | None:
     """The n-th frequency by Newton's method, from one near it."""
-    near, small = arb(2) ** -48, arb(2) ** (-bits // 3)
+    near, small = arb(2) ** -42, arb(2) ** (-bits // 3)
     w = arb(guess)
     for _ in range(_NEWTON):
         better = trial(stiffness, law, w, root).better(w)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 from flint import arb, fmpq
@@ -26,16 +27,26 @@ class Mode:
     def at(self, end: End) -> arb:
         """How far the end of a bar moves."""
         bar = self.stiffness.network.bars[end.bar]
-        return arb(bar.ratios[end.side]) * self.points[bar.right if end.side else bar.left]
+        return self.points[bar.right if end.side else bar.left] * bar.ratios[end.side]
 
     def slope(self, end: End) -> arb:
         """The strain there times the bar's speed."""
-        w, here, there = self.frequency, self.at(end), self.at(End(end.bar, 1 - end.side))
-        if w == 0:
+        if self.frequency == 0:
             return arb(0)
-        sine, cosine = (w * self.stiffness.network.bars[end.bar].delay).sin_cos()
-        slope = w * (there - here * cosine) / sine
+        here, there = self.at(end), self.at(End(end.bar, 1 - end.side))
+        sine, cosine = self.turned(self.stiffness.network.bars[end.bar].delay)
+        slope = self.frequency * (there - here * cosine) / sine
         return -slope if end.side else slope
+
+    def turned(self, delay: fmpq) -> tuple[arb, arb]:
+        """sin and cos of the frequency times a delay."""
+        if delay not in self._turned:
+            self._turned[delay] = (self.frequency * delay).sin_cos()
+        return self._turned[delay]
+
+    @cached_property
+    def _turned(self) -> dict[fmpq, tuple[arb, arb]]:
+        return {}
 
 
 def rigid(network: Network) -> tuple[fmpq, ...] | None:

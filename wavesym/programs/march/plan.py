@@ -193,6 +193,7 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
 
     CostError where load times have too many different fractional parts.
     """
+    model.refuse_damping()
     tau_max = model.horizon(real)
     columns = model.light_cone(rational(max(tau_max, float(windows))))
     nodes = [model.named.nodes[x] for x in columns]
@@ -225,9 +226,9 @@ def _panels(times: Sequence[fmpq]) -> tuple[MarchPanel, ...]:
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise CostError(
-            f"load: at a spacing of {spacing(times)} times have {len(cuts) - 1} different fractional parts, at most "
-            f"{MOST_PANELS} expected in a march (modes where no load jumps, a spacing of p/q with q up to "
-            f"{MOST_PANELS}, or fewer samples, helps)"
+            f"load: times at a spacing of {spacing(times)} have {len(cuts) - 1} different fractional parts, at most "
+            f"{MOST_PANELS} expected in a march (modes, a spacing of p/q with q up to {MOST_PANELS}, or "
+            "fewer samples, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 

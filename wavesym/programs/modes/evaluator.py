@@ -26,7 +26,8 @@ _ULPS = 8  # by which a step may differ from the spacing
 class ModesEvaluator:
     """A modal system under loads, stepped exactly in `real` numbers; a stream takes steps of `spacing`.
 
-    `sources` are the names of the loads. What is said of an error is `proved`, or an estimate.
+    `sources` are the names of the loads; a stream takes them in units of their own, one of which is `inputs` and its
+    name. What is said of an error is `proved`, or an estimate.
     """
 
     system: ModalSystem
@@ -35,6 +36,7 @@ class ModesEvaluator:
     spacing: fmpq
     real: Real
     tau_max: float
+    inputs: tuple[tuple[fmpq, str], ...]
     outputs: tuple[ProgramOutput, ...] = ()
     proved: bool = True
 
@@ -55,10 +57,23 @@ class ModesEvaluator:
         return rounded(self.system, self.loads, self.scheme, self.tau_max, self.real)
 
     @cached_property
+    def _stepper(self) -> Stepper:
+        """The system under loads in units of their own."""
+        sizes = np.array([nearest(size) for size, _ in self.inputs])
+        system = replace(self.system, pushes=self.system.pushes / sizes, direct=self.system.direct / sizes[:, None])
+        return Stepper(system, self.spacing)
+
+    @cached_property
     def tables(self) -> dict[str, tuple[float, ...]]:
         """The numbers of its program, in NumPy and as a stream."""
-        stream = stream_tables(Stepper(self.system, self.spacing), self.real)
+        stream = stream_tables(self._stepper, self.real)
         return scheme_tables(self.system, self.loads, self.real) | stream
+
+    @property
+    def told_sources(self) -> tuple[str, ...]:
+        """The names of the loads, with the units that a stream takes."""
+        pairs = zip(self.sources, self.inputs, strict=True)
+        return tuple(f"{source} [{unit}]" if unit else source for source, (_, unit) in pairs)
 
     @property
     def constants(self) -> dict[str, float]:
@@ -105,19 +120,24 @@ class ModesEvaluator:
     def streamed(self) -> StreamedValues:
         """For the self-test: loads up to the largest of the scene's that leap, and what comes of them."""
         largest = self.loads.largest or fmpq(1)
-        wanted = [
-            [largest * ((7 * k * k + 3 * k + 5 * j) % 17 - 8) / 8 for j in range(len(self.sources))]
+        given = [
+            tuple(self.real.nearest(size * largest * _leap(k, j)) for j, (size, _) in enumerate(self.inputs))
             for k in range(1, _CHECKED + 1)
         ]
-        given = [[self.real.nearest(value) for value in row] for row in wanted]
-        exact = [tuple(rational(value) for value in row) for row in given]
-        rest = (fmpq(0),) * len(self.sources)
+        exact = [tuple(map(rational, row)) for row in given]
+        plain = [tuple(value / size for value, (size, _) in zip(row, self.inputs, strict=True)) for row in exact]
+        rest = (fmpq(0),) * len(self.inputs)
         times = tuple(self.spacing * k for k in range(_CHECKED + 1))
-        loads = LinearLoads(times, (rest, *exact), rest)
+        loads = LinearLoads(times, (rest, *plain), rest)
         same = replace(self, loads=loads, tau_max=self.real.not_below(times[-1]))
-        values = Stepper(self.system, self.spacing).outputs(exact)
+        values = self._stepper.outputs(exact)
         return StreamedValues(
-            tuple(map(tuple, given)),
+            tuple(given),
             tuple(tuple(map(midpoint, row)) for row in values),
             tuple(same.rounding.errors.tolist()),
         )
+
+
+def _leap(k: int, j: int) -> fmpq:
+    """Numbers from -1 to 1 that differ much from one sample to the next, and from load to load."""
+    return fmpq((7 * k * k + 3 * k + 5 * j) % 17 - 8, 8)

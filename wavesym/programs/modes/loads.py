@@ -12,6 +12,7 @@ from flint import fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.model.loads import Applied
+from wavesym.numbers.doubles import nearest
 
 _STEPS_OF_ONE = 1000  # of a horizon, where there is nothing else to tell a spacing
 
@@ -60,8 +61,9 @@ def linear_loads(loads: Sequence[Applied], sources: Sequence[tuple[str, str]], u
             continue
         if load.source in steps:
             raise UnservedError(
-                f"load: {load.source} jumps by {load.weight} at tau = {load.time}, a load that does not jump expected "
-                "in modes (closed, pieces and march serve jumps)"
+                f"load: {load.source} jumps by {nearest(load.weight):g} at tau = {nearest(load.time):g}, a load that "
+                "does not jump expected in modes (a record whose `start` is a step later rises to its first sample; "
+                "closed, pieces and march serve jumps)"
             )
         slopes[place[load.source]][load.time] = load.weight
     times = sorted({fmpq(0), *(time for changes in slopes for time in changes)})

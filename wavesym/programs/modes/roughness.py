@@ -41,7 +41,7 @@ class Roughness:
         first = self.steps[0]
         dense = np.zeros(self.steps[-1] - first + 1)
         dense[np.array(self.steps) - first] = self.kinks
-        return min(plain, _partial(dense) * _MORE)
+        return float(min(plain, _partial(dense) * _MORE))
 
     def fading(self, rate: float) -> float:
         """The largest sum_{k <= n} |kinks_k| exp(-rate (times_n - times_k)) for any n."""
@@ -50,7 +50,7 @@ class Roughness:
         for time, kink in zip(self.times.tolist(), np.abs(self.kinks).tolist(), strict=True):
             total = total * float(np.exp(-rate * (time - before))) + kink
             largest, before = max(largest, total), time
-        return largest * _MORE
+        return float(largest * _MORE)
 
 
 def _partial(terms: Numbers) -> float:
@@ -64,14 +64,14 @@ def _partial(terms: Numbers) -> float:
     if count <= 32:
         points = _FINE * count
         turns = np.exp(-2j * np.pi / points * np.outer(np.arange(points), np.arange(count)))
-        return float(np.abs(np.cumsum(turns * terms, axis=1)).max()) / np.cos(np.pi / (2 * _FINE))
+        return float(np.abs(np.cumsum(turns * terms, axis=1)).max() / np.cos(np.pi / (2 * _FINE)))
     length = int(np.sqrt(count)) if count <= 4096 else count // 64
     points = 1 << int(np.ceil(np.log2(_FINE * count)))
     largest, sum_before = 0.0, np.zeros(points, complex)
     at = np.arange(points)
     for start in range(0, count, length):
         block = terms[start : start + length]
-        before = float(np.abs(sum_before).max()) / np.cos(np.pi * count / (2 * points))
+        before = float(np.abs(sum_before).max() / np.cos(np.pi * count / (2 * points)))
         largest = max(largest, before + _partial(block))
         sum_before += np.fft.fft(block, points) * np.exp(-2j * np.pi / points * ((at * start) % points))
     return largest

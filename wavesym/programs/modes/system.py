@@ -2,44 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import ceil, inf, log
 
 import numpy as np
-from flint import arb, ctx, fmpq
 
 from wavesym.errors import ToleranceError, UnservedError
-from wavesym.exact.modes.frequencies import Spectrum, refuse_damped
-from wavesym.exact.modes.shape import Mode
-from wavesym.exact.modes.statics import Shape, Statics
+from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.model.model import Model
-from wavesym.model.network import End, Network
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes.damped import Damped, damped
 from wavesym.programs.modes.loads import LinearLoads, linear_loads
 from wavesym.programs.modes.modal import ModalSystem, Numbers
-from wavesym.programs.modes.rounding import rounded
 from wavesym.programs.modes.roughness import Roughness, roughness
+from wavesym.programs.modes.rounding import rounded
+from wavesym.programs.modes.shares import Shares, shares
+from wavesym.programs.modes.silent import silent
 from wavesym.programs.modes.tables import scheme_tables
 from wavesym.programs.modes.tail import Tail
-from wavesym.programs.modes.watched import Driven, Seen, Watched, driven, ground
+from wavesym.programs.modes.watched import Driven, Seen, driven, places, seen
 from wavesym.programs.schemes.modes import ModesScheme
 
-_BITS = 256
 _FIRST = 6  # modes for a bar, for a start
-MOST = 6000  # modes
-MOST_WORK = 80_000  # modes times bars
+_MOST = 4000  # modes, and
+_MOST_WORK = 60_000  # modes times bars
+_REASONABLE = 0.1  # error relative to what a bound of the largest value may be read from
 
 
 @dataclass(frozen=True)
 class ModalModes:
-    """A modal system of a model under its loads.
+    """A modal system of a model under its loads, dimensionless in time, its outputs as users get them.
 
-    `errors` is what the modes that are left out can add to each output, in its own unit, `bounds` the same relative to
-    its largest value, of which `largest` is a lower bound (0, with error 0, for one that is 0 throughout the horizon).
-    `sources` names the step and the ramp of each load, which is a force on a node or the acceleration of an end.
+    `errors` is what the modes that are left out can add to each output at most, `bounds` the same relative to its
+    largest value, of which `largest` is a lower bound; all are 0 for an output that is 0 throughout the horizon.
+    `sources` are the step and the ramp of each load: a force on a node, or the acceleration of an end. `frequencies`
+    and `damping` are those of the modes alone: the system may have an oscillator more for each load.
     """
 
     system: ModalSystem
@@ -59,46 +58,64 @@ class ModalModes:
     @cached_property
     def bounds(self) -> Numbers:
         """Of each output, relative to its largest value."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(self.errors > 0, self.errors / self.largest, 0.0)
+        return _relative(self.errors, self.largest)
 
 
 def modal_system(model: Model) -> ModalModes:
-    """The first modes of a model, as many as make its truncation error half of its tolerance at most.
+    """The first modes of a model, as many as leave out at most half of its tolerance.
 
     UnservedError for what modes do not serve, ToleranceError where too many would be needed.
     """
     chain = _Chain(model)
-    chain.refuse()
-    count = chain.fewest
-    largest = np.zeros(len(model.probes))
     tolerance = nearest(model.tolerance) / 2
+    count, largest = chain.fewest, np.zeros(len(model.probes))
     while True:
-        made = chain.system(count)
-        largest = np.maximum(largest, chain.least_largest(made))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            worst = float(np.max(np.where(made.errors > 0, made.errors / largest, 0.0), initial=0.0))
+        known = chain.shares(count)
+        errors = chain.errors(known, count)
+        if np.any(errors > _REASONABLE * largest):
+            largest = np.maximum(largest, chain.reached(known, count))
+        worst = _relative(errors, largest).max(initial=0.0)
         if worst <= tolerance:
-            return ModalModes(
-                made.system, chain.pairs, chain.loads, made.errors, largest, made.frequencies, made.damping
-            )
-        if count == chain.most:
-            output = int(np.argmax(np.where(made.errors > 0, made.errors / np.maximum(largest, 1e-300), 0.0)))
-            raise ToleranceError(
-                f"output.tolerance: {nearest(model.tolerance):g} cannot be met: modes: {count} modes, at most "
-                f"{chain.most} expected, leave a bound of {2 * worst:.2g} for {model.probes[output].name}"
-            )
-        # errors fall with the square of the number of modes, or faster
-        more = min(max((worst / tolerance) ** 0.5, 1.25), 4.0)
-        count = min(int(count * more) + 1, chain.most)
+            break
+        # errors fall with a power of the number of modes, as they do from half of them
+        half = max(chain.fewest // 2, count // 2)
+        before = _relative(chain.errors(known, half), largest).max(initial=0.0)
+        power = max(log(before / worst) / log(count / half), 1.0) if worst < before < inf else 1.0
+        more = (worst / tolerance) ** (1 / power) if worst < inf else 4.0
+        if count == chain.most or (worst < _REASONABLE and count * more > 4 * chain.most):
+            raise _unmet(model, chain, errors, largest, (chain.most / count) ** power)
+        count = min(ceil(count * min(max(1.05 * more, 1.2), 8.0)), chain.most)
+    # of these as few as will do
+    low, high = chain.least - 1, count
+    while high - low > 1:
+        middle = (low + high) // 2
+        enough = _relative(chain.errors(known, middle), largest).max(initial=0.0) <= tolerance
+        low, high = (low, middle) if enough else (middle, high)
+    system = chain.system(known, high)
+    return ModalModes(
+        system,
+        chain.sources,
+        chain.loads,
+        chain.errors(known, high),
+        np.where(chain.silent, 0.0, largest),
+        known.w[:high],
+        system.damping[:high],
+    )
 
 
-@dataclass(frozen=True)
-class _Made:
-    system: ModalSystem
-    errors: Numbers
-    frequencies: Numbers
-    damping: Numbers
+def _unmet(model: Model, chain: _Chain, errors: Numbers, largest: Numbers, better: float) -> ToleranceError:
+    bounds = _relative(errors, largest)
+    worst = int(np.argmax(bounds))
+    what = f"leave a bound of about {2 * bounds[worst] / better:.2g} for {model.probes[worst].name}"
+    return ToleranceError(
+        f"output.tolerance: {nearest(model.tolerance):g} cannot be met: modes: {chain.most} modes, the most that are "
+        f"taken, {what}"
+    )
+
+
+def _relative(errors: Numbers, largest: Numbers) -> Numbers:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(errors > 0, errors / largest, 0.0)
 
 
 @dataclass(frozen=True)
@@ -108,227 +125,120 @@ class _Chain:
     model: Model
 
     @cached_property
-    def watched(self) -> Watched:
-        return Watched(self.model)
-
-    @cached_property
     def drivers(self) -> tuple[Driven, ...]:
         """The loads that act."""
         acting = {load.source for load in self.model.acting(self.model.until)}
         return tuple(each for each in driven(self.model.network) if {each.step, each.ramp} & acting)
 
     @cached_property
-    def pairs(self) -> tuple[tuple[str, str], ...]:
+    def sources(self) -> tuple[tuple[str, str], ...]:
         return tuple((each.step, each.ramp) for each in self.drivers)
 
     @cached_property
     def loads(self) -> LinearLoads:
-        return linear_loads(self.model.loads, self.pairs, self.model.until)
+        return linear_loads(self.model.loads, self.sources, self.model.until)
 
     @cached_property
     def rough(self) -> tuple[Roughness, ...]:
         return tuple(roughness(self.loads))
 
-    @property
-    def bars(self) -> int:
-        return len(self.model.network.bars)
+    @cached_property
+    def silent(self) -> tuple[bool, ...]:
+        return silent(self.model, self.drivers, self.loads)
+
+    @cached_property
+    def spectrum(self) -> Spectrum:
+        return Spectrum(self.model.network, places(self.model))
+
+    @cached_property
+    def least(self) -> int:
+        """As many modes as damping is said of, one more that has no strain, and one more to know a frequency of."""
+        damping = self.model.damping
+        return max(len(damping.ratios), *(damping.modes or (0,)), 0) + 2 if damping else 2
 
     @property
     def fewest(self) -> int:
-        ratios = len(self.model.damping.ratios) if self.model.damping else 0
-        pair = max(self.model.damping.modes or (0,)) if self.model.damping else 0
-        return max(_FIRST * self.bars, ratios, pair) + 2
+        """The modes to begin with."""
+        return max(_FIRST * len(self.model.network.bars), self.least)
 
     @property
     def most(self) -> int:
-        return max(min(MOST, MOST_WORK // self.bars), self.fewest)
+        """More are not taken."""
+        return max(min(_MOST, _MOST_WORK // len(self.model.network.bars)), self.fewest)
 
-    def refuse(self) -> None:
-        """UnservedError for what starts otherwise than at rest, and for what has no real modes."""
+    def shares(self, count: int) -> Shares:
+        """The first modes. UnservedError for what modes do not serve."""
         network = self.model.network
-        refuse_damped(network)
         moving = any(bar.velocity != 0 or bar.strain != 0 for bar in network.bars)
         if moving or any(point.velocity != 0 for point in network.points):
             raise UnservedError(
                 "system: a motion or strain at tau = 0 given, rest expected in modes (pieces and march serve it)"
             )
-        _ = self.loads
-
-    @cached_property
-    def silent(self) -> tuple[bool, ...]:
-        """Which outputs are 0 throughout the horizon: nothing has come there, or nothing can act there."""
-        return tuple(self._silent(number) for number in range(len(self.model.probes)))
-
-    def _silent(self, number: int) -> bool:
-        network, probe = self.model.network, self.model.probes[number]
-        if probe.rod and probe.quantity in ("strain", "force") and probe.place in (0, 1):
-            if network.is_free(End(probe.rod - 1, int(probe.place))):
-                return True
-        places = [] if probe.point is not None else [(probe.rod - 1, probe.place)]
-        points = [] if probe.point is None else [probe.point]
-        if probe.quantity == "drift":
-            places = [(probe.rod - 1, fmpq(0)), (probe.rod - 1, fmpq(1))]
-        if probe.quantity == "relative":
-            points.append(ground(network))
-        away = network.distances(places, points)
-        for j, each in enumerate(self.drivers):
-            begins = next((k for k, row in enumerate(self.loads.samples) if row[j] != 0), None)
-            start = self.loads.times[begins - 1] if begins else self.loads.times[-1]
-            acts = begins is not None or self.loads.slopes[j] != 0
-            if acts and start + away[network.joint_of[each.point]] < self.model.until:
-                return False
-        return True
-
-    @cached_property
-    def spectrum(self) -> Spectrum:
-        return Spectrum(self.model.network, self.watched.places)
-
-    def system(self, count: int) -> _Made:
-        """The system of the first `count` modes, and the errors of what is left out."""
+        if not self.drivers:
+            raise UnservedError("load: none that acts by output.until given, one expected in modes (all is at rest)")
+        _ = self.loads  # refused before the work
         found = self.spectrum.first(count)
-        with ctx.workprec(_BITS):
-            return self._system(found)
+        return shares(found, self.spectrum.cut, self.seen, self.drivers)
 
-    def _system(self, found: Sequence[Mode]) -> _Made:
-        network = self.spectrum.cut.network
-        statics = Statics(found[0].stiffness)
-        seen = self.watched.seen(self.spectrum.cut)
-        w = np.array([float(mode.frequency) for mode in found])
-        strained = [mode for mode in found if mode.frequency != 0]
-        rule = damped(self.model.damping, [float(mode.frequency) for mode in strained])
-        ratios = rule.of(w)
-        tail = Tail(rule, float(strained[-1].frequency.lower()), len(strained))
-        shapes = [self._shape(statics, driver) for driver in self.drivers]
-        shares = [[_share(network, driver, mode) for mode in found] for driver in self.drivers]
-        seens = [[each.of(mode) for mode in found] for each in seen]
-        spare = [arb(s) for s in self._spare_shares(statics, found, shares)]
-        made = _Rows(len(seen), len(found), len(self.drivers))
-        errors = np.zeros(len(seen))
-        for o, (output, row) in enumerate(zip(seen, seens, strict=True)):
-            if self.silent[o]:
-                continue
-            made.modes(o, output, row, w, ratios)
-            power = output.power()
-            left = output.total(statics) - _squares(row, found, power)
-            for j, (driver, share) in enumerate(zip(self.drivers, shares, strict=True)):
-                imposed, static = shapes[j]
-                decline = tail.declines(self.rough[j])[output.order]
-                known = 1 if imposed is None else 0
-                within = (left.upper().max(0) * spare[j].upper().max(0)).sqrt()
-                errors[o] += _above(within * decline.size * arb(tail.w) ** -(decline.power - power - known))
-                if imposed is not None:
-                    made.direct[o, j, 2 - output.order] += float(driver.gain * output.of(imposed))
-                if output.order == 2:
-                    made.direct[o, j, 0] += float(sum((a * b for a, b in zip(row, share, strict=True)), arb(0)))
-                    continue
-                rest = _rest(output, static, driver.gain, row, share, found)
-                if rule.rayleigh:
-                    made.late(o, j, output, rest, len(found))
-                    errors[o] += _above(abs(rest) * decline.size / arb(tail.above) ** 2)
-                elif output.order == 0:
-                    made.direct[o, j, 0] += float(rest)
-        pushes = np.array([[float(b) for b in share] for share in shares]).reshape(len(shares), len(found)).T
-        if rule.rayleigh:
-            above = np.full(len(shares), tail.above)
-            w_all, ratios_all = np.append(w, above), np.append(ratios, rule.of(above))
-            pushes = np.vstack([pushes, np.diag(above**2)])
+    @property
+    def seen(self) -> list[Seen]:
+        return [seen(self.model.network, self.spectrum.cut, probe) for probe in self.model.probes]
+
+    def rule(self, known: Shares) -> Damped:
+        """The damping of all modes."""
+        return damped(self.model.damping, known.w[known.w > 0].tolist())
+
+    def tail(self, known: Shares, count: int) -> Tail:
+        """The modes after the first `count`."""
+        taken = known.w[:count]
+        return Tail(self.rule(known), float(np.nextafter(taken[-1], 0.0)), int(np.count_nonzero(taken)))
+
+    def errors(self, known: Shares, count: int) -> Numbers:
+        """What the modes after the first `count` can add to each output."""
+        tail, rest = self.tail(known, count), known.rest(count)
+        left = [rows[:, count] for rows in known.spare]
+        made = np.zeros(len(self.model.probes))
+        for j, rough in enumerate(self.rough):
+            declines = tail.declines(rough)
+            for o, output in enumerate(self.seen):
+                decline = declines[output.order]
+                powers = known.powers[0][o] + known.powers[1][j]
+                made[o] += np.sqrt(left[0][o] * left[1][j]) * decline.size * tail.w ** float(powers - decline.power)
+                if tail.lags and output.order < 2:
+                    made[o] += abs(rest[o, j]) * decline.size / tail.above**2
+        return np.where(self.silent, 0.0, (1 + 1e-12) * made)
+
+    def system(self, known: Shares, count: int) -> ModalSystem:
+        """The system of the first `count` modes."""
+        w, values, pushes = known.w[:count], known.seen[:, :count], known.shares[:, :count]
+        tail, rule = self.tail(known, count), self.rule(known)
+        rest = known.rest(count)
+        orders = np.array([output.order for output in self.seen])[:, None]
+        damping = rule.of(w)
+        direct = np.zeros((*rest.shape, 3))
+        for order in range(3):
+            direct[:, :, 2 - order] += np.where(orders == order, known.imposed, 0.0)
+        direct[:, :, 0] += np.where(orders == 2, values @ pushes.T, 0.0)
+        if tail.lags:
+            # the modes left out, each load's as one
+            above = np.full(len(pushes), tail.above)
+            w, damping = np.append(w, above), np.append(damping, rule.of(above))
+            values = np.hstack([values, np.where(orders < 2, rest, 0.0)])
+            pushes = np.hstack([pushes, np.diag(above**2)])
         else:
-            w_all, ratios_all = w, ratios
-        columns = len(w_all)
-        system = ModalSystem(w_all, ratios_all, pushes, made.moved[:, :columns], made.moving[:, :columns], made.direct)
-        return _Made(system, errors, w, ratios)
+            direct[:, :, 0] += np.where(orders == 0, rest, 0.0)
+        moved = np.where(orders == 0, values, np.where(orders == 2, -w * w * values, 0.0))
+        moving = np.where(orders == 1, values, np.where(orders == 2, -2 * damping * w * values, 0.0))
+        heard = ~np.array(self.silent)
+        return ModalSystem(
+            w, damping, pushes.T.copy(), moved * heard[:, None], moving * heard[:, None], direct * heard[:, None, None]
+        )
 
-    def _shape(self, statics: Statics, driver: Driven) -> tuple[Shape | None, Shape]:
-        """What a load imposes, and the shape under it when it does not change, both but for its gain."""
-        if self.model.network.points[driver.point].motion is None:
-            return None, statics.under({driver.point: fmpq(1)})
-        imposed = statics.imposed(driver.point)
-        return imposed, statics.accelerated(imposed)
-
-    def _spare_shares(self, statics: Statics, found: Sequence[Mode], shares: Sequence[Sequence[arb]]) -> list[arb]:
-        """Of each load the sum over the modes left out of b^2/w^2 for a force, of b^2 for a motion."""
-        spare = []
-        for driver, share in zip(self.drivers, shares, strict=True):
-            imposed, static = self._shape(statics, driver)
-            total = statics.mass(imposed.points) if imposed else static.points[driver.point]
-            spare.append(total * driver.gain * driver.gain - _squares(share, found, 0 if imposed else 1))
-        return spare
-
-    def least_largest(self, made: _Made) -> Numbers:
+    def reached(self, known: Shares, count: int) -> Numbers:
         """What each output reaches at least, in spite of what is left out."""
         if not self.drivers:
             return np.zeros(len(self.model.probes))
-        tables = scheme_tables(made.system, self.loads, DOUBLE)
-        until = self.model.horizon()
-        scheme = ModesScheme(tables, {"loads": len(self.drivers)}, until, np.float64)
-        reached = rounded(made.system, self.loads, scheme, until, DOUBLE).largest
-        return np.maximum(reached - made.errors, 0.0)
-
-
-class _Rows:
-    """The rows of outputs as they are made; there is a column more for each load."""
-
-    def __init__(self, outputs: int, count: int, loads: int) -> None:
-        self.moved, self.moving = np.zeros((2, outputs, count + loads))
-        self.direct = np.zeros((outputs, loads, 3))
-
-    def modes(self, o: int, output: Seen, row: Sequence[arb], w: Numbers, ratios: Numbers) -> None:
-        """What the modes that are taken add."""
-        values = np.array([float(each) for each in row])
-        count = len(values)
-        match output.order:
-            case 0:
-                self.moved[o, :count] = values
-            case 1:
-                self.moving[o, :count] = values
-            case 2:
-                self.moved[o, :count] = -w * w * values
-                self.moving[o, :count] = -2 * ratios * w * values
-
-    def late(self, o: int, j: int, output: Seen, rest: arb, count: int) -> None:
-        """What the oscillator adds that stands for the modes left out."""
-        (self.moving if output.order else self.moved)[o, count + j] = float(rest)
-
-
-def _share(network: Network, driver: Driven, mode: Mode) -> arb:
-    """The share of a mode of mass 1 in a load."""
-    if network.points[driver.point].motion is None:
-        return mode.points[driver.point] * driver.gain
-    # what holds the end in the mode, over w^2, is the mass that both move together, the mode and what the end imposes
-    pull = arb(0)
-    for number, bar in enumerate(network.bars):
-        if bar.left == driver.point:
-            pull += mode.slope(End(number, 0)) * (bar.impedance * bar.ratios[0])
-        if bar.right == driver.point:
-            pull -= mode.slope(End(number, 1)) * (bar.impedance * bar.ratios[1])
-    for link in network.links:
-        if driver.point in (link.left, link.right):
-            other = link.right if link.left == driver.point else link.left
-            pull += mode.points[other] * (link.ratio * link.stiffness)
-    return -pull * driver.gain / (mode.frequency * mode.frequency)
-
-
-def _squares(row: Sequence[arb], found: Sequence[Mode], power: int) -> arb:
-    """The sum over modes with strain of squares over w^(2 power)."""
-    total = arb(0)
-    for value, mode in zip(row, found, strict=True):
-        if mode.frequency != 0:
-            square = mode.frequency * mode.frequency
-            total += value * value / (square if power == 1 else square * square if power else arb(1))
-    return total
-
-
-def _rest(
-    output: Seen, static: Shape, gain: fmpq, row: Sequence[arb], share: Sequence[arb], found: Sequence[Mode]
-) -> arb:
-    """What the modes left out do together under a load that does not change."""
-    rest = output.of(static) * gain
-    for value, part, mode in zip(row, share, found, strict=True):
-        if mode.frequency != 0:
-            rest -= value * part / (mode.frequency * mode.frequency)
-    return rest
-
-
-def _above(value: arb) -> float:
-    """A double that is not below."""
-    return float(np.nextafter(float(value.upper()), np.inf))
+        system, until = self.system(known, count), self.model.horizon()
+        scheme = ModesScheme(scheme_tables(system, self.loads, DOUBLE), {"loads": len(self.drivers)}, until, np.float64)
+        values = rounded(system, self.loads, scheme, until, DOUBLE).largest
+        return np.maximum(values - self.errors(known, count), 0.0)

@@ -41,7 +41,7 @@ def stream_tables(stepper: Stepper, real: Real) -> Tables:
 
     Of each mode the matrix of a step; of each load for each mode what it does where the step begins and ends. The
     outputs that displacements count in are moved_row[0 ...], with `moved_weight`: LANES of them, mode by mode, then the
-    next; so those that velocities count in.
+    next; so those that velocities count in. What loads and their integrals count is `load_weight`.
     """
     system = stepper.system
     modes, filled = len(system.frequency), padded(len(system.frequency))
@@ -55,7 +55,7 @@ def stream_tables(stepper: Stepper, real: Real) -> Tables:
         lanes[: len(used), :modes] = weights[used]
         made[f"{name}_row"] = tuple(used.tolist())
         made[f"{name}_weight"] = _as(real, lanes.reshape(-1, LANES, filled).transpose(0, 2, 1))
-    return made
+    return made | {"load_weight": _as(real, system.direct)}
 
 
 def padded(count: int) -> int:

@@ -44,7 +44,7 @@ class Tail:
     count: int
 
     def declines(self, load: Roughness) -> tuple[Decline, Decline, Decline]:
-        """Of what a load of size 1 does to their displacements (beyond statics or the lag), velocities, accelerations."""
+        """Of what a load does to their displacements (beyond statics, or the lag), velocities and accelerations."""
         steep, least = load.steepest, self.damped.least(self.w, self.count)
         if self.damped.rayleigh:
             a, b = self.damped.rayleigh
@@ -62,6 +62,11 @@ class Tail:
             Decline(min(steep + swing, crept / least if least < 1 else steep) if least else steep + swing, 2),
             Decline(min(swing, 2 * crept), 1),
         )
+
+    @property
+    def lags(self) -> bool:
+        """Whether they lag behind a load alike."""
+        return self.damped.rayleigh is not None
 
     @property
     def above(self) -> float:

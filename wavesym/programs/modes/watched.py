@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 from flint import arb, fmpq
 
@@ -19,7 +18,7 @@ from wavesym.model.probe import Probe
 
 @dataclass(frozen=True)
 class Seen:
-    """`order` times differentiated in time: the sum of weights times how far points move, or times a slope at an end."""
+    """What is differentiated in time `order` times: sums of weights times how far points move, or times a slope."""
 
     order: int
     points: Mapping[int, fmpq]
@@ -32,6 +31,7 @@ class Seen:
             return shape.slope(end) * weight
         return sum((shape.points[point] * weight for point, weight in self.points.items()), arb(0))
 
+    @property
     def power(self) -> int:
         """In how high a power of 1/w^2 its squares are summed up over all modes by `total`."""
         return 2 if self.slope else 0 if self.order == 2 else 1
@@ -88,23 +88,13 @@ def _felt(point: Point, coefficients: Sequence[fmpq]) -> list[fmpq]:
     return [k * fmpq(c) for k, c in enumerate(coefficients)][1:]
 
 
-@dataclass(frozen=True)
-class Watched:
-    """The outputs of a model on its network, cut where they are."""
-
-    model: Model
-
-    @cached_property
-    def places(self) -> tuple[tuple[int, fmpq], ...]:
-        """Where bars are to be cut."""
-        return tuple((probe.rod - 1, probe.place) for probe in self.model.probes if probe.rod)
-
-    def seen(self, network: Cut) -> list[Seen]:
-        """What each output is, its factor included."""
-        return [_seen(self.model.network, network, probe) for probe in self.model.probes]
+def places(model: Model) -> tuple[tuple[int, fmpq], ...]:
+    """Where bars are to be cut so that all outputs are at points."""
+    return tuple((probe.rod - 1, probe.place) for probe in model.probes if probe.rod)
 
 
-def _seen(network: Network, pieces: Cut, probe: Probe) -> Seen:
+def seen(network: Network, pieces: Cut, probe: Probe) -> Seen:
+    """What an output is, its factor included, on the network that is cut in pieces."""
     factor = probe.factor
     match probe.quantity:
         case "strain" | "force":
@@ -138,6 +128,6 @@ def _sum(*parts: Mapping[int, fmpq]) -> dict[int, fmpq]:
 
 
 def ground(network: Network) -> int:
-    """What relative displacements count from: the only point that moves as it is told, or the first one."""
+    """The point that relative displacements count from: the only one that moves as it is told, or the first one."""
     told = [number for number, point in enumerate(network.points) if point.motion in ("velocity", "acceleration")]
     return told[0] if len(told) == 1 else 0

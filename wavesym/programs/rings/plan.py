@@ -155,6 +155,7 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
     """
     network = model.network
     network.refuse_contacts()
+    model.refuse_damping()
     tau_max = model.horizon(real)
     until = rational(tau_max)
     reached = model.reached(until)
@@ -220,8 +221,8 @@ def _panels(times: list[fmpq], step: fmpq) -> tuple[MarchPanel, ...]:
     cuts = sorted({_ZERO, step} | {time - (time / step).floor() * step for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise CostError(
-            f"load: at a spacing of {spacing(times)} times leave {len(cuts) - 1} different remainders of the step "
-            f"{step}, at most {MOST_PANELS} expected in a march (modes where no load jumps, times in parts of {step},"
+            f"load: times at a spacing of {spacing(times)} leave {len(cuts) - 1} different remainders of the step "
+            f"{step}, at most {MOST_PANELS} expected in a march (modes, times in parts of {step},"
             " or fewer samples, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))

@@ -31,6 +31,7 @@ class ModesScheme:
     CONSTANTS = ("loads",)
 
     BLOCK = 512  # panels between which states are kept
+    SLOW = 2  # up to here a power series is summed, as differences would lose digits
     _AT_ONCE = 1 << 15  # numbers of an array
 
     def __init__(
@@ -77,7 +78,7 @@ class ModesScheme:
         out = np.full((self._direct.shape[2], flat.size), np.nan, self._real)
         if inside.stop > inside.start:
             out[:, order[inside]] = self._sorted(sorted_taus[inside])
-        return out.reshape(-1, *taus.shape)
+        return out.reshape(len(out), *taus.shape)
 
     def _sorted(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
         """The outputs at sorted tau in range: (outputs, tau.size)."""
@@ -159,7 +160,7 @@ class ModesScheme:
                     (p11, p12, p22, one, two), rule(s, w[columns], decay[columns], self._damping[columns]), strict=True
                 ):
                     array[:, columns] = made
-        slow = (w + 2 * decay) * s <= 2
+        slow = (w + 2 * decay) * s <= self.SLOW
         if slow.any():
             p12[slow], p22[slow], one[slow], two[slow] = self._slow(
                 *(np.broadcast_to(each, slow.shape)[slow] for each in (s, w, decay))

@@ -8,7 +8,7 @@ from wavesym.documents.advice import WAVES, Advice, Candidate
 from wavesym.errors import WavesymError
 from wavesym.model.model import Model
 from wavesym.report.timescale import Timescale
-from wavesym.results.summary import Instant, Peak, summarised
+from wavesym.results.summary import Peak, When, summarised
 from wavesym.rivals.advice import advise
 
 _TOLERANCE = 0.01  # of the largest value: what an engineer would not see
@@ -57,7 +57,7 @@ def _peak(peak: Peak, scale: Timescale) -> tuple[str, str]:
     return f"{peak.value:.6g}", _when(peak.at, scale) + "\u2212" * (not peak.reached)
 
 
-def _when(at: Instant, scale: Timescale) -> str:
+def _when(at: When, scale: Timescale) -> str:
     return f"{at.tau * scale.per_tau:.6g}"
 
 

@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, FailFast, Field, PlainValidator
 
 from wavesym.fields.numbers import Integer, Positive
 from wavesym.fields.table import SceneTable, listed, shown, wrong
-from wavesym.scene.physical.elastic import Elastic, Rods
+from wavesym.scene.physical.elastic import ElasticRod, Rods
 from wavesym.scene.physical.measured import (
     Area,
     Density,
@@ -39,6 +39,11 @@ class Columns(SceneTable):
     I: SecondMoment = Field(description='a second moment of area such as "57680 cm^4"')  # noqa: E741
     A: Area | None = None
     rho: Density | None = None
+
+    @property
+    def depth_squared(self) -> Fraction | None:
+        """That of a square column that has this area and second moment."""
+        return self.A and 12 * self.I / self.A
 
     def stiffness(self, height: Fraction) -> Fraction:
         """Of all of them."""
@@ -79,13 +84,14 @@ class Storey(SceneTable):
     column_mass: Mass | None = None
     floor_mass: Mass = Field(description='a mass such as "350 t"')
 
-    def rod(self) -> Elastic:
+    def rod(self) -> ElasticRod:
         """Its columns as one rod. Raises the error of `table.wrong`."""
         given = one_of(self, "stiffness", "columns", "shear")
         made = self.columns or self.shear
         stiffness = made.stiffness(self.height) if made else self.stiffness
         assert stiffness is not None  # one of the three is given
-        return Elastic(self.height, self._mass(given, made), stiffness)
+        depth = self.columns.depth_squared if self.columns else None
+        return ElasticRod(self.height, self._mass(given, made), stiffness, depth)
 
     def _mass(self, given: str, made: Columns | Shear | None) -> Fraction:
         area, rho = (made.area, made.rho) if made else (None, None)
@@ -150,11 +156,11 @@ class PhysicalBuilding(SceneTable):
             kappa=kappa,
         )
 
-    def _storeys(self) -> tuple[list[Elastic], list[Fraction]]:
+    def _storeys(self) -> tuple[list[ElasticRod], list[Fraction]]:
         """The rod of each storey, and the floor on it. Raises the error of `table.wrong`."""
         if not self.storey:
             raise wrong("no storey given, at least 1 expected", "storey")
-        rods: list[Elastic] = []
+        rods: list[ElasticRod] = []
         floors: list[Fraction] = []
         for k, storey in enumerate(self.storey):
             if not 0 < storey.count <= MOST_STOREYS - len(rods):

@@ -16,7 +16,7 @@ from pydantic import Field
 from wavesym.fields.numbers import exact
 from wavesym.fields.table import SceneTable, listed, wrong
 from wavesym.scene.physical.chain_parts import OTHERS, RODS, LinkKeys, MotionKeys, RodKeys
-from wavesym.scene.physical.elastic import Elastic, Rods
+from wavesym.scene.physical.elastic import ElasticRod, Rods
 from wavesym.scene.physical.measured import measured, placed
 from wavesym.scene.physical.places import PlaceInMetres, place
 from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
@@ -72,7 +72,7 @@ class PhysicalChain(SceneTable):
         main = _read(self.parts, kind, "parts")
         branches = [_read(branch.parts, kind, "branch", k, "parts") for k, branch in enumerate(self.branch)]
         names = _TRANSLATION if kind != "torsional" else _ROTATION
-        elastic: list[Elastic] = []
+        elastic: list[ElasticRod] = []
         for keys, part in (read for line in (main, *branches) for read in line):
             if isinstance(part, RodKeys):
                 with placed(*keys):

@@ -13,7 +13,7 @@ from pydantic import Field
 
 from wavesym.fields.numbers import exact
 from wavesym.fields.table import SceneTable, shown, wrong
-from wavesym.scene.physical.elastic import Elastic
+from wavesym.scene.physical.elastic import ElasticRod
 from wavesym.scene.physical.measured import measured, missing, one_of, placed
 from wavesym.scene.physical.rounding import polar_moment
 from wavesym.scene.physical.scale import Kind
@@ -34,19 +34,19 @@ class RodKeys(SceneTable):
     dashpot: Any = None
     name: Any = None
 
-    def elastic(self, dashpot: str) -> Elastic:
+    def elastic(self, dashpot: str) -> ElasticRod:
         """As waves see it; `dashpot` is the dimension of impedances. Raises the error of `table.wrong`."""
         with placed("rod"):
             length = measured(self.rod, "length", 1)
         if self.impedance is None and self.speed is None:
             found = self._measured()
-            return Elastic(length, self._mass(found) * length, self._stiffness(found) / length)
+            return ElasticRod(length, self._mass(found) * length, self._stiffness(found) / length, self._square(found))
         for key in self.made_of():
             if getattr(self, key) is not None:
                 given = "impedance" if self.impedance is not None else "speed"
                 raise wrong(f"given beside {given}, one of them expected", key)
         impedance, speed = self._said("impedance", dashpot), self._said("speed", "velocity")
-        return Elastic(length, impedance / speed * length, impedance * speed / length)
+        return ElasticRod(length, impedance / speed * length, impedance * speed / length)
 
     def _said(self, key: str, dimension: str) -> Fraction:
         value = getattr(self, key)
@@ -66,6 +66,10 @@ class RodKeys(SceneTable):
     def _mass(self, found: Mapping[str, Fraction]) -> Fraction:
         """Per length."""
         return found["rho"] * found["A"]
+
+    def _square(self, found: Mapping[str, Fraction]) -> Fraction | None:
+        """Of its width, where it should be small beside the length."""
+        return found["A"]
 
     def _stiffness(self, found: Mapping[str, Fraction]) -> Fraction:
         """Times length."""
@@ -91,6 +95,9 @@ class ShearRod(RodKeys):
     G: Any = None
     rho: Any = None
     k: Any = None
+
+    def _square(self, found: Mapping[str, Fraction]) -> None:
+        """Shear asks for no slenderness: on the contrary."""
 
     def _stiffness(self, found: Mapping[str, Fraction]) -> Fraction:
         if self.k is None:
@@ -126,6 +133,9 @@ class TorsionalRod(RodKeys):
         if bore >= diameter:
             raise wrong(f"{shown(self.bore)} given, less than the diameter expected", "bore")
         return polar_moment(diameter, bore)
+
+    def _square(self, found: Mapping[str, Fraction]) -> Fraction | None:
+        return None if self.diameter is None else self._said("diameter", "length") ** 2
 
     def _mass(self, found: Mapping[str, Fraction]) -> Fraction:
         return found["rho"] * found["J"]

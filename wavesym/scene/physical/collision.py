@@ -15,7 +15,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, FailFast, Field
 
 from wavesym.fields.table import SceneTable, listed, wrong
-from wavesym.scene.physical.elastic import Elastic, Rods
+from wavesym.scene.physical.elastic import ElasticRod, Rods
 from wavesym.scene.physical.measured import Area, Density, Length, Mass, Modulus, Velocity, tidy
 from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
 from wavesym.systems.collision import Collision, known_contacts
@@ -29,9 +29,9 @@ class RodOfBody(SceneTable):
     E: Modulus = Field(description='a modulus such as "210 GPa"')
     rho: Density = Field(description='a density such as "7850 kg/m^3"')
 
-    def rod(self) -> Elastic:
+    def rod(self) -> ElasticRod:
         """As waves see it."""
-        return Elastic(self.length, self.rho * self.A * self.length, self.E * self.A / self.length)
+        return ElasticRod(self.length, self.rho * self.A * self.length, self.E * self.A / self.length, self.A)
 
 
 class Body(SceneTable):
@@ -49,7 +49,6 @@ class PhysicalCollision(SceneTable):
     type: str
     body: Annotated[tuple[Body, ...], FailFast(), BeforeValidator(listed)] = Field(description="a list of bodies")
     contacts: Any = "closed"
-    damping: Any = None
 
     def rewritten(self) -> Rewritten:
         """As a collision without units, or where rods differ, as a chain."""
@@ -69,8 +68,6 @@ class PhysicalCollision(SceneTable):
             table |= {"velocity": velocities, "contacts": self.contacts}
         else:
             table = {"type": "chain", "parts": self._parts(rods, velocities)}
-        if self.damping is not None:
-            table["damping"] = self.damping
         return Rewritten(
             kind="longitudinal",
             rods=rods,

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, FailFast, Field
 
 from wavesym.fields.table import SceneTable, listed, shown, wrong
-from wavesym.scene.physical.elastic import Elastic, Rods
+from wavesym.scene.physical.elastic import ElasticRod, Rods
 from wavesym.scene.physical.measured import Density, Inertia, Length, Modulus, SecondMoment, one_of, placed
 from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
 from wavesym.scene.physical.rounding import polar_moment
@@ -30,13 +30,18 @@ class Round(SceneTable):
     G: Modulus = Field(description='a modulus such as "80 GPa"')
     rho: Density = Field(description='a density such as "7850 kg/m^3"')
 
-    def rod(self) -> Elastic:
+    def rod(self) -> ElasticRod:
         """As a rod. Raises the error of `table.wrong`."""
         if one_of(self, "J", "diameter") == "J" and self.bore is not None:
             raise wrong("given beside J, one of them expected", "bore")
         moment = self.J if self.diameter is None else self._polar(self.diameter)
         assert moment is not None  # one of the two is given
-        return Elastic(self.length, self.rho * moment * self.length, self.G * moment / self.length)
+        return ElasticRod(
+            self.length,
+            self.rho * moment * self.length,
+            self.G * moment / self.length,
+            self.diameter and self.diameter**2,
+        )
 
     def _polar(self, diameter: Fraction) -> Fraction:
         bore = self.bore or Fraction(0)

@@ -10,7 +10,7 @@ from wavesym.scene.physical.rounding import root, rounded_root
 
 
 @dataclass(frozen=True)
-class Elastic:
+class ElasticRod:
     """A rod in SI base units: its length, its mass, and the force on it per metre that its ends part.
 
     In torsion its moment of inertia, and the moment per radian. A wave takes sqrt(mass/stiffness) from end to end, and
@@ -20,6 +20,12 @@ class Elastic:
     length: Fraction
     mass: Fraction
     stiffness: Fraction
+    width_squared: Fraction | None = None
+
+    @property
+    def slenderness(self) -> float | None:
+        """How many times as long as wide it is, where that is known: of columns each, as if they were square."""
+        return None if self.width_squared is None else float(self.length**2 / self.width_squared) ** 0.5
 
     @property
     def delay_squared(self) -> Fraction:
@@ -35,12 +41,12 @@ class Rods:
     rounded unless it is rational. Masses are kept, so that impedances follow: mass/delay.
     """
 
-    all: tuple[Elastic, ...]
+    all: tuple[ElasticRod, ...]
     seconds: Fraction
     ratios: tuple[Fraction, ...]
 
     @classmethod
-    def of(cls, rods: Sequence[Elastic]) -> Rods:
+    def of(cls, rods: Sequence[ElasticRod]) -> Rods:
         """Rods with their delays."""
         first = rods[0]
         ratios: dict[Fraction, Fraction] = {}
@@ -55,7 +61,7 @@ class Rods:
         )
 
     @property
-    def first(self) -> Elastic:
+    def first(self) -> ElasticRod:
         """The one whose length and delay are the units."""
         return self.all[0]
 
@@ -68,6 +74,14 @@ class Rods:
     def alike(self) -> bool:
         """Whether they are as heavy and as stiff as one another, too."""
         return self.in_step and all(rod.mass == self.first.mass for rod in self.all)
+
+    @property
+    def rounded(self) -> int:
+        """How many different ratios of delays are irrational, and so rounded."""
+        first = self.first.delay_squared
+        return len(
+            {ratio for rod, ratio in zip(self.all, self.ratios, strict=True) if ratio**2 != rod.delay_squared / first}
+        )
 
     def impedance(self, number: int) -> Fraction:
         """That of a rod, the first one's being 1."""

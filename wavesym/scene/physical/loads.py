@@ -19,7 +19,6 @@ from wavesym.scene.physical.measured import measured, placed
 from wavesym.scene.physical.rewritten import LoadUnit
 
 _VALUES, _SLOPES = ("a", "steps"), ("b", "ramps")
-_MOST_TOLD = 8
 
 
 def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
@@ -131,16 +130,3 @@ def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> d
 def _clock(written: str) -> Fraction:
     """A file's unit of time in seconds; one that it does not say is the second."""
     return unit(written or "s", "time")
-
-
-def told(load: Mapping[str, Any]) -> str:
-    """A load as it was said, in a line; of a long list how long it is."""
-    words = []
-    for key, value in load.items():
-        if key == "record":
-            words.append(f"record of {len(value['samples'])} samples, 0 one step after the last")
-        elif isinstance(value, list):
-            words.append(f"{key} {', '.join(map(str, value))}" if len(value) <= _MOST_TOLD else f"{len(value)} {key}")
-        else:
-            words.append(f"{key} {value}")
-    return ", ".join(words)

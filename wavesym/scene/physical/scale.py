@@ -74,6 +74,11 @@ class Results:
             texts[key] = str(given)
         return cls(texts, sizes)
 
+    def told(self, dimension: str) -> tuple[Fraction, str]:
+        """The unit that a load of a dimension would be told in: its size and its text."""
+        key = dimension.removeprefix("angular ")
+        return self.sizes[key], self.texts[key]
+
 
 @dataclass(frozen=True)
 class Scale:

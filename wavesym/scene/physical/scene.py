@@ -15,11 +15,13 @@ from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.collision import PhysicalCollision
 from wavesym.scene.physical.drive import PhysicalDrive
-from wavesym.scene.physical.loads import dimensionless, read, told
+from wavesym.scene.physical.loads import dimensionless, read
 from wavesym.scene.physical.measured import measured, placed, plain
 from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
+from wavesym.scene.physical.said import words
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
+from wavesym.systems import SYSTEMS
 
 _SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
     "collision": PhysicalCollision,
@@ -32,17 +34,26 @@ _LENGTHS = {"strain", "velocity", "displacement", "acceleration", "force", "rela
 
 @dataclass(frozen=True)
 class PhysicalScene:
-    """What a scene with units `said`, the `fields` of the one without, and what their numbers are."""
+    """What a scene with units `said`, the `fields` of the one without, and what their numbers are.
+
+    `inputs` is of each load what 1 is in the unit of results, and that unit.
+    """
 
     said: dict[str, Any]
     fields: dict[str, Any]
     scale: Scale
     kappa: tuple[Fraction, ...]
+    inputs: tuple[tuple[Fraction, str], ...] = ()
+
+    @property
+    def system(self) -> dict[str, str]:
+        """What it is made of, by key."""
+        return {key: words(value) for key, value in self.said["system"].items() if key != "type"}
 
     @property
     def loads(self) -> tuple[str, ...]:
         """A line for each load."""
-        return tuple(map(told, self.said.get("load", ())))
+        return tuple(map(words, self.said.get("load", ())))
 
 
 def physical(fields: Mapping[str, Any]) -> PhysicalScene:
@@ -53,17 +64,22 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     found = _system(fields.get("system"), units)
     with placed("units"):
         results = Results.of(units, found.kind)
+    with placed("system"):  # before loads and places on it
+        made["system"] = SYSTEMS[str(found.system["type"])].model_validate(found.system)
     seconds = found.rods.seconds
-    made["system"] = found.system
     said = dict(fields)
+    inputs = []
     if isinstance(loads := fields.get("load"), list | tuple):
         said["load"] = [_read(load, k) for k, load in enumerate(loads)]
         made["load"] = [_load(load, k, found, seconds) for k, load in enumerate(said["load"])]
+        for acting in (found.acting(load) for load in said["load"] if isinstance(load, Mapping)):
+            size, text = results.told(acting.dimension)
+            inputs.append((acting.size / size, text))
     if isinstance(output := fields.get("output"), Mapping):
         with placed("output"):
             made["output"] = _output(output, found, seconds)
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
-    return PhysicalScene(plain(said), made, scale, found.kappa)
+    return PhysicalScene(plain(said), made, scale, found.kappa, tuple(inputs))
 
 
 def _system(table: object, units: UnitsTable) -> Rewritten:

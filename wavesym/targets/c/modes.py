@@ -14,7 +14,7 @@ from wavesym.targets.literals import Lines, c_constants, c_literals, c_tables
 
 _OWN = (
     *("p11", "p12", "p21", "p22", "one0", "one1", "speed0", "speed1"),
-    *("moved_row", "moved_weight", "moving_row", "moving_weight", "direct"),
+    *("moved_row", "moved_weight", "moving_row", "moving_weight", "load_weight"),
 )
 
 
@@ -33,7 +33,7 @@ class CModes:
 
 @dataclass(frozen=True)
 class CModesStream:
-    """templates/c/modes.h.j2: the names of the loads, as text and as constants."""
+    """templates/c/modes.h.j2: the loads and their units as text, and as constants."""
 
     scene: Description
     constants: dict[str, str]
@@ -66,10 +66,11 @@ def source(scene: Description, program: Program) -> str:
 
 def streaming(scene: Description, program: Program) -> str:
     """What NAME.h declares besides: the stream."""
+    names = [f"load@{source.partition(' ')[0]}" for source in program.sources]
     context = CModesStream(
         scene=scene,
         constants=c_constants(program.constants, program.real),
-        sources=tuple(zip(program.sources, constants([f"load@{name}" for name in program.sources]), strict=True)),
+        sources=tuple(zip(program.sources, constants(names), strict=True)),
         state=kernel("modes_state.h", scene),
     )
     return render("c/modes.h.j2", context)

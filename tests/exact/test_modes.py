@@ -1,0 +1,241 @@
+"""Exact modes: the frequency equation from the derived law, frequencies others know, none missed, closed sums."""
+
+from itertools import pairwise
+from math import pi
+
+import numpy as np
+import pytest
+import sympy
+from flint import arb, ctx, fmpq
+from scipy.linalg import eigh
+
+from tests.support.modal import NASTY, building, chain
+from wavesym.derivation.node_law import node_law
+from wavesym.errors import UnservedError
+from wavesym.exact.modes import frequencies as found
+from wavesym.exact.modes.frequencies import Spectrum, frequencies, searched
+from wavesym.exact.modes.statics import Statics
+from wavesym.exact.modes.stiffness import Stiffness
+from wavesym.model.network import Bar, End, Network, Point
+from wavesym.model.node import Node, Rod
+from wavesym.rivals.elements import Elements
+from wavesym.rivals.network import network_problem
+from wavesym.scene import Scene, lower
+
+W, E = sympy.symbols("w E")  # E = exp(-i w)
+COT, CSC = sympy.I * (1 + E**2) / (1 - E**2), 2 * sympy.I * E / (1 - E**2)
+
+
+def by_the_law(nodes, scale):
+    """Row by row what is 0 when all velocities are q exp(i w tau): the derived law, its waves between nodes solved."""
+    q = sympy.symbols(f"q:{len(nodes)}")
+
+    def sent(x, to):
+        # r = q - b, b = E l, l = q' - a', a' = E r
+        return (q[x] - E * q[to]) / (1 - E**2)
+
+    rows = []
+    for x, node in enumerate(nodes):
+        law = node_law().at(node)
+        left = E * sent(x - 1, x) if node.left else 0
+        right = E * sent(x + 1, x) if node.right else 0
+        moving = (law.own[0] * sympy.I * W + law.own[1]) * q[x]
+        rows.append((moving - law.left * left - law.right * right) * sympy.I * W * scale[x])
+    return q, rows
+
+
+def by_the_matrix(network):
+    """The same by the dynamic stiffness, held points with a row 0."""
+    stiffness = Stiffness(network)
+
+    def number(value):
+        return value if isinstance(value, sympy.Expr) else sympy.Rational(int(value.p), int(value.q))
+
+    diagonal, up = stiffness.law(number).matrix(W, [COT], [CSC])
+    count = len(network.points)
+    matrix = sympy.zeros(count, count)
+    for row, point in enumerate(stiffness.points):
+        matrix[point, point] = diagonal[row]
+        if (parent := stiffness.parents[row]) is not None:
+            matrix[point, stiffness.points[parent]] = matrix[stiffness.points[parent], point] = up[row]
+    return stiffness, matrix
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_frequency_equation_of_buildings_is_the_derived_law(m):
+    """For any kappa: alpha = beta = 2 kappa and inertia 1 are a mass 1/kappa between rods of impedance 1."""
+    kappa = sympy.symbols(f"kappa:{m + 1}", positive=True)
+    rod = Rod(0, 0)
+    inner = [Node(rod, rod, inertia=1, alpha=2 * k, beta=2 * k) for k in kappa[1:-1]]
+    # the first node is held: its row says nothing, its q is 0
+    held = Node(None, rod, inertia=0, alpha=0, beta=0, damping=1)
+    nodes = [held, *inner, Node(rod, None, inertia=1, alpha=2 * kappa[-1], beta=0)]
+    q, rows = by_the_law(nodes, [0, *(1 / k for k in kappa[1:])])
+    points = [Point(fmpq(0), motion="fixed"), *(Point(1 / k) for k in kappa[1:])]
+    one = fmpq(1)
+    _, matrix = by_the_matrix(Network(tuple(points), tuple(Bar(x, x + 1, one, one, one) for x in range(m))))
+    for x in range(1, m + 1):
+        row = sum(matrix[x, y] * q[y] for y in range(1, m + 1))
+        assert sympy.cancel(sympy.together(rows[x].subs(q[0], 0) - row)) == 0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_frequency_equation_of_drawn_chains_is_the_derived_law(seed):
+    draw = np.random.default_rng(seed)
+    kappa, inertia = ([f"{a}/{b}" for a, b in draw.integers(1, 30, (n, 2))] for n in (3, 4))
+    table = {"type": "drive", "m": 3, "kappa": kappa, "inertia": inertia}
+    if seed % 2:
+        table = {"type": "building", "m": 2, "kappa": kappa, "base": "force"}
+    model = lower(Scene(name="a", system=table, output={"until": 1, "velocity": [1]}))
+    rows_of = [
+        point.mass / node.inertia if node.inertia else 1
+        for point, node in zip(model.network.points, model.chain.nodes, strict=True)
+    ]
+    q, rows = by_the_law(model.chain.nodes, [sympy.Rational(str(factor)) for factor in rows_of])
+    _, matrix = by_the_matrix(model.network)
+    for x in range(len(q)):
+        row = sum(matrix[x, y] * q[y] for y in range(len(q)))
+        assert sympy.cancel(sympy.together(rows[x] - row)) == 0
+        assert row != 0
+
+
+def test_another_equation_is_not_the_derived_law():
+    kappa = sympy.Symbol("kappa")
+    rod = Rod(0, 0)
+    nodes = [Node(None, rod, 0, 0, 0, damping=1), Node(rod, None, inertia=1, alpha=2 * kappa, beta=0)]
+    q, rows = by_the_law(nodes, [0, 1 / kappa])
+    points = Point(fmpq(0), motion="fixed"), Point(2 / kappa)
+    _, matrix = by_the_matrix(Network(points, (Bar(0, 1, fmpq(1), fmpq(1), fmpq(1)),)))
+    assert sympy.cancel(rows[1].subs(q[0], 0) - matrix[1, 1] * q[1]) != 0
+
+
+def by_elements(model, count):
+    """The first frequencies of linear finite elements, extrapolated, and about how wrong that is."""
+    values = []
+    for resolution in (12, 24, 48):
+        problem = network_problem(model)
+        mass, _, stiffness = Elements(problem, 1 / resolution).assembled()
+        free = np.setdiff1d(np.arange(mass.shape[0]), problem.told)
+        squares = eigh(stiffness.toarray()[np.ix_(free, free)], mass.toarray()[np.ix_(free, free)], eigvals_only=True)
+        values.append(np.sqrt(np.maximum(squares[:count], 0.0)))
+    coarse, fine = ((4 * b - a) / 3 for a, b in pairwise(values))
+    return fine, np.abs(fine - coarse) + 1e-6 * fine + 1e-5
+
+
+@pytest.mark.parametrize("name", [name for name in NASTY if name != "a short rod"])
+def test_frequencies_are_those_of_finite_elements(name):
+    count = 9
+    expected, wrong = by_elements(NASTY[name], count)
+    made = np.array([float(w) for w in frequencies(NASTY[name].network, count)])
+    assert np.all(np.abs(made - expected) <= wrong)
+    assert np.max(wrong / np.maximum(expected, 0.02)) < 2e-2
+
+
+def test_frequencies_in_books():
+    """Bars without masses, a mass on a bar: w tan w = kappa; and a bar with a short piece is a bar."""
+    held = [float(w) for w in frequencies(NASTY["bare, held at both ends"].network, 20)]
+    assert held == pytest.approx([k * pi / 3 for k in range(1, 21)], rel=1e-15)
+    one_end = chain(["fixed", *({"rod": 1} for _ in range(5)), "free"])
+    assert [float(w) for w in frequencies(one_end.network, 9)] == pytest.approx(
+        [(k + 0.5) * pi / 5 for k in range(9)], rel=1e-15
+    )
+    with ctx.workprec(200):
+        for w in frequencies(building(["1", "3/5"]).network, 30):
+            assert (w * w.tan()).overlaps(arb(fmpq(3, 5)))
+            assert (w * w.tan()).rad() < 1e-10
+    pieces = chain(["fixed", {"rod": "1/1000"}, {"joint": True}, {"rod": "999/1000"}, {"mass": "5/3"}])
+    short = frequencies(pieces.network, 12)
+    assert all(a.overlaps(b) for a, b in zip(short, frequencies(building(["1", "3/5"]).network, 12), strict=True))
+
+
+@pytest.mark.parametrize("name", NASTY)
+def test_no_frequency_is_missed(name):
+    """Each ball lies above the one before; none but one of a free chain is 0; those left of w are as many as without
+    masses and springs, and at most one more for each point that is free."""
+    network = NASTY[name].network
+    spectrum = Spectrum(network)
+    made = spectrum.first(60)
+    edges = [mode.frequency for mode in made]
+    assert all(a < b for a, b in pairwise(edges))
+    assert sum(w == 0 for w in edges) == ("nothing" in name or "gears" in name)
+    stiffness = Stiffness(spectrum.cut.network)
+    for below, above in pairwise(edges[1:]):
+        w = float((below + above) / 2)
+        clamped = sum(int(w * float(bar.delay) / pi) for bar in network.bars)
+        count = edges.index(above)
+        assert stiffness.counted(np.array([w]))[0] == count
+        assert clamped <= count <= clamped + sum(point.motion is None for point in network.points)
+
+
+def test_a_frequency_that_was_missed_is_seen(monkeypatch):
+    """Where the search in doubles gives one frequency twice, counting in balls finds the other."""
+
+    def wrong(stiffness, count):
+        made = searched(stiffness, count)
+        made[3] = made[4]
+        return made
+
+    expected = frequencies(NASTY["heavy"].network, 8)
+    monkeypatch.setattr(found, "searched", wrong)
+    made = frequencies(NASTY["heavy"].network, 8)
+    assert all(a.overlaps(b) for a, b in zip(made, expected, strict=True))
+
+
+@pytest.mark.parametrize("name", NASTY)
+def test_modes_are_orthogonal(name):
+    """By Simpson's rule, which knows no formula."""
+    model = NASTY[name]
+    modes = Spectrum(model.network).first(7)
+    network = modes[0].stiffness.network
+    grams = np.zeros((7, 7))
+    for number, point in enumerate(network.points):
+        q = np.array([float(mode.points[number]) for mode in modes])
+        grams += float(fmpq(point.mass)) * np.outer(q, q)
+    for number, bar in enumerate(network.bars):
+        s = np.linspace(0, 1, 201)
+        weights = np.array([1, *([4, 2] * 99), 4, 1]) / 600 * float(bar.impedance * bar.delay)
+        moved = []
+        for mode in modes:
+            angle = float(mode.frequency) * float(bar.delay)
+            left, right = (float(mode.at(End(number, side))) for side in (0, 1))
+            shape = (
+                left + 0 * s
+                if angle == 0
+                else (left * np.sin(angle * (1 - s)) + right * np.sin(angle * s)) / np.sin(angle)
+            )
+            moved.append(shape)
+        grams += (np.array(moved) * weights) @ np.array(moved).T
+    assert grams == pytest.approx(np.eye(7), abs=3e-8)
+
+
+@pytest.mark.parametrize("name", ["springs", "a branch with gears", "a node at rest in the middle", "one storey"])
+def test_sums_over_all_modes_are_known(name):
+    """Sums over the first modes come near the closed forms, and never above where all terms are squares."""
+    count = 150
+    modes = Spectrum(NASTY[name].network).first(count)
+    with ctx.workprec(256):
+        statics = Statics(modes[0].stiffness)
+        network = statics.stiffness.network
+        strained = [mode for mode in modes if mode.frequency != 0]
+        for point in statics.stiffness.points:
+            shape = statics.under({point: fmpq(1)})
+            for end in (End(0, 0), End(len(network.bars) - 1, 1)):
+                total = sum((m.points[point] * m.at(end) / (m.frequency * m.frequency) for m in strained), arb(0))
+                assert abs(total - shape.at(end)) < 2e-3
+        for end in (End(0, 0), End(0, 1), End(len(network.bars) - 1, 1)):
+            total = sum((m.slope(end) * m.slope(end) / (m.frequency * m.frequency) ** 2 for m in strained), arb(0))
+            assert 0 <= statics.broken(end) - total < 2e-2
+
+
+def test_what_has_no_modes_is_refused():
+    """Dashpots, absorbing ends and contacts in one line; so are two branches that are the same."""
+    dashpot = chain(["fixed", {"rod": 1}, {"mass": 1, "dashpot": 1, "name": "hammer"}, {"rod": 1}, "free"])
+    with pytest.raises(UnservedError, match="at hammer given, none expected in modes"):
+        frequencies(dashpot.network, 1)
+    contact = chain([{"mass": 1, "velocity": 1}, "contact", {"rod": 1}, "fixed"], velocity=["0-"])
+    with pytest.raises(UnservedError, match="a contact at 0 given"):
+        frequencies(contact.network, 1)
+    same = [{"from": "g", "name": name, "parts": [{"rod": 1}, {"mass": 1}]} for name in "abc"]
+    star = chain(["fixed", {"rod": 1}, {"mass": 1, "name": "g"}, {"rod": 1}, "free"], branch=same)
+    with pytest.raises(UnservedError, match="two frequencies meet near"):
+        frequencies(star.network, 6)

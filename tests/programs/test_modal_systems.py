@@ -1,0 +1,232 @@
+"""Modal systems of models: their outputs against exact waves and finite elements, and what is left out, proved."""
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+import pytest
+from flint import fmpq
+from scipy.linalg import eigh
+from scipy.signal import lsim
+
+from tests.support.modal import building, chain, samples
+from wavesym.errors import ToleranceError, UnservedError
+from wavesym.exact.reference import Reference
+from wavesym.model.damping import Damping
+from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.modes import system as made_by
+from wavesym.programs.modes.roughness import Roughness, roughness
+from wavesym.programs.modes.rounding import rounded
+from wavesym.programs.modes.system import modal_system
+from wavesym.programs.modes.tables import scheme_tables
+from wavesym.programs.schemes.modes import ModesScheme
+from wavesym.rivals.elements import Elements
+from wavesym.rivals.network import network_problem
+
+PULSE = {"times": [0, "7/3", "5/2"], "a": [0, 0, 0], "b": [1, -3, 2]}
+PUSH = {"at": "n", "times": [0, "7/3", "5/2"], "ramps": [1, -3, 2]}
+ALL = {"strain": ["0", "1/2", "1-", "1+"], "velocity": ["1/2", 1], "displacement": ["1.3", 2], "acceleration": [1, 2]}
+MORE = {"force": [0], "drift": [1, 2], "relative": [2]}
+
+UNDAMPED = {
+    "ground": building(["1", "1/4", "3/5"], [samples(6)], until=6, tolerance="1e-3", **ALL, **MORE),
+    "force": building(["1/2", "1/4", "3/5"], [PULSE], base="force", tolerance="1e-3", **MORE),
+    "force, accelerations": building(
+        ["1/2", "1/4", "3/5"], [PULSE], base="force", tolerance="1/2", acceleration=[1, 2]
+    ),
+    "one storey": building(["1", "3/5"], [samples(9)], tolerance="1e-4", strain=[0, 1], acceleration=[1]),
+    "heavy": building(["1", "1e-3", "1e-3"], [samples(6)], until=5, tolerance="1e-1", **ALL),
+    "a chain with a branch": chain(
+        ["fixed", {"rod": 1}, {"mass": 1, "name": "n"}, {"rod": "1/2", "impedance": 2}, {"joint": True}],
+        [PUSH],
+        [{"from": "n", "name": "a", "ratio": -2, "parts": [{"rod": "1/3"}, {"mass": "1/2", "spring": 1}]}],
+        tolerance="1e-3",
+        strain=["0", "1+", "a:0", "a:1/3"],
+        velocity=["3/2", "a:1/6"],
+        displacement=["n", "a:1/3"],
+        acceleration=["n"],
+        until=7,
+    ),
+    "nothing holds it": chain(
+        [{"mass": 1, "name": "n"}, {"rod": 1}, {"mass": 2}, {"rod": 1, "speed": 2}, {"mass": 1, "name": "e"}],
+        [PUSH],
+        tolerance="1e-4",
+        strain=["0", "1-"],
+        velocity=["n", "e"],
+        displacement=["n", "3/2"],
+        acceleration=["e"],
+        until=9,
+    ),
+    "pushed where there is no mass": chain(
+        [{"motion": "acceleration", "name": "m"}, {"rod": 1}, {"joint": True, "name": "n"}, {"rod": 1}, {"mass": 1}],
+        [PUSH, {"at": "m", "times": ["1/2"], "ramps": ["1/3"]}],
+        tolerance="1e-2",
+        strain=["0", "1-", "1+"],
+        displacement=["3/2"],
+        relative=["2"],
+        until=6,
+    ),
+}
+
+
+def scheme(model, made):
+    tables = scheme_tables(made.system, made.loads, DOUBLE)
+    return ModesScheme(tables, {"loads": len(made.sources)}, model.horizon(), np.float64)
+
+
+def values(model, made, taus):
+    return scheme(model, made).evaluate(taus)
+
+
+def rounding(model, made):
+    return rounded(made.system, made.loads, scheme(model, made), model.horizon(), DOUBLE).errors
+
+
+def with_modes(model, count):
+    """The first `count` modes, and what the others can add."""
+    built = made_by._Chain(model)
+    known = built.shares(count)
+    errors = built.errors(known, count)
+    rest = np.zeros(count)
+    return made_by.ModalModes(built.system(known, count), built.sources, built.loads, errors, errors, known.w, rest)
+
+
+@pytest.mark.parametrize("name", UNDAMPED)
+def test_outputs_are_those_of_waves_but_for_what_is_left_out(name):
+    """With few modes and with enough, errors are within the bound, which meets the tolerance."""
+    model = UNDAMPED[name]
+    taus = np.linspace(0, model.horizon(), 75)
+    exact = np.array(Reference(model).values(taus.tolist()))
+    made = modal_system(model)
+    assert np.all(made.bounds <= float(fmpq(model.tolerance)))
+    assert np.all(made.largest <= 1.1 * np.abs(exact).max(axis=1))
+    for few in (made, with_modes(model, 3 * len(model.network.bars))):
+        error = np.abs(values(model, few, taus) - exact).max(axis=1)
+        assert np.all(error <= few.errors + rounding(model, few))
+
+
+def test_a_bound_can_fail():
+    """It is no more than 40 times what is wrong, and a mode less is more wrong than the bound."""
+    model = building(["1", "1/4", "3/5"], [samples(9)], strain=["0"])
+    model = model.watching(model.probes[:1])
+    taus = np.linspace(0, 10, 101)
+    exact = np.array(Reference(model).values(taus.tolist()))
+    made = with_modes(model, 40)
+    error = np.abs(values(model, made, taus) - exact).max()
+    assert made.errors / 40 < error <= made.errors
+    without = made.system.moved.copy()
+    without[0, 6] = 0
+    assert (
+        np.abs(values(model, replace(made, system=replace(made.system, moved=without)), taus) - exact).max()
+        > made.errors
+    )
+    assert np.abs(values(model, with_modes(model, 12), taus) - exact).max() > made.errors
+
+
+DAMPED = {
+    "a ratio": Damping((fmpq(1, 20),)),
+    "a list": Damping((fmpq(1, 50), fmpq(1, 5), fmpq(11, 10))),
+    "critical": Damping((fmpq(1),)),
+    "more": Damping((fmpq(3),)),
+    "nearly critical": Damping((fmpq(99, 100),)),
+    "Rayleigh": Damping((fmpq(1, 20),), (1, 2)),
+    "a little of Rayleigh": Damping((fmpq(1, 1000),), (1, 3)),
+}
+
+
+@pytest.mark.parametrize("name", DAMPED)
+def test_damped_modes_beyond_those_taken_are_within_the_bound(name):
+    model = replace(building(["1", "1/4", "3/5"], [samples(9)], **ALL, **MORE), damping=DAMPED[name])
+    taus = np.linspace(0, 10, 101)
+    many = values(model, with_modes(model, 300), taus)
+    for count in (8, 40):
+        few = with_modes(model, count)
+        assert np.all(np.abs(values(model, few, taus) - many).max(axis=1) <= few.errors)
+
+
+@pytest.mark.parametrize("name", ["a ratio", "a list", "Rayleigh"])
+def test_damped_outputs_are_those_of_finite_elements(name):
+    """Linear elements, extrapolated; each of their modes is damped and stepped by SciPy."""
+    damping = DAMPED[name]
+    load = samples(9)
+    model = replace(building(["1", "1/4", "3/5"], [load], tolerance="1e-4", relative=[1, 2]), damping=damping)
+    spacing = 0.7
+    times = np.arange(0, 10, spacing / 50)
+    ground = np.interp(times, spacing * np.arange(len(load["samples"])), load["samples"])
+    by_resolution = []
+    for resolution in (12, 24):
+        elements = Elements(network_problem(replace(model, damping=None)), 1 / resolution)
+        mass, _, stiffness = (matrix if matrix is None else matrix.toarray()[1:] for matrix in elements.assembled())
+        squares, shapes = eigh(stiffness[:, 1:], mass[:, 1:])
+        pulled = mass.sum(axis=1)  # by the ground, whose motion all else shares
+        w = np.sqrt(squares)
+        if damping.modes:
+            i, j = (w[n - 1] for n in damping.modes)
+            ratios = float(damping.ratios[0]) * (i * j / w + w) / (i + j)
+        else:
+            given = [float(ratio) for ratio in damping.ratios]
+            ratios = np.array([given[min(n, len(given) - 1)] for n in range(len(w))])
+        total = 0
+        for n in range(12):
+            made = lsim(([1], [1, 2 * ratios[n] * w[n], w[n] ** 2]), -shapes[:, n] @ pulled * ground, times)[1]
+            total = total + np.outer(shapes[[0, 1], n], made)
+        by_resolution.append(total)
+    expected = (4 * by_resolution[1] - by_resolution[0]) / 3
+    made = modal_system(model)
+    difference = np.abs(values(model, made, times)[-2:] - expected).max(axis=1)
+    assert np.all(difference <= 2e-4 * np.abs(expected).max(axis=1))
+
+
+def test_outputs_that_are_0_are_exactly_0():
+    """At a free end, and where nothing has come to; they have no error and are no hindrance to the others."""
+    bars = ["fixed", {"rod": 1}, {"mass": 1, "name": "n"}, {"rod": 1}, {"rod": 1}, "free"]
+    model = chain(bars, [PUSH], tolerance="1e-3", until="3/2", strain=["3", "1+"], velocity=["n", "2.7"])
+    made = modal_system(model)
+    assert made.bounds[0] == made.bounds[3] == 0
+    assert np.all(made.bounds[1:3] > 0)
+    assert not values(model, made, np.linspace(0, 1.5, 9))[[0, 3]].any()
+
+
+def test_what_modes_do_not_serve_is_refused():
+    step = {"times": [0], "a": [1], "b": [0]}
+    with pytest.raises(UnservedError, match="jumps"):
+        modal_system(building(["1", "1"], [step]))
+    with pytest.raises(UnservedError, match="at tau = 0 given, rest expected"):
+        modal_system(chain(["fixed", {"rod": 1, "velocity": 1}, {"mass": 1, "name": "n"}], [PUSH]))
+    told = chain([{"motion": "velocity", "name": "n"}, {"rod": 1}, {"mass": 1}], [PUSH])
+    with pytest.raises(UnservedError, match="a motion of told velocity given at n"):
+        modal_system(told)
+    with pytest.raises(
+        ToleranceError, match=r"1e-13 cannot be met: modes: 4000 modes.*a bound of about .* for velocity@1/2"
+    ):
+        modal_system(building(["1", "1"], [samples(9)], tolerance="1e-13", velocity=["1/2"]))
+
+
+def test_no_load_is_no_motion():
+    made = modal_system(building(["1", "1"]))
+    assert made.errors.tolist() == [0]
+    assert not made.system.moved.any()
+
+
+@pytest.mark.parametrize("count", [5, 60, 700])
+def test_kinks_in_step_are_not_underestimated(count):
+    """The largest partial sum of kinks at any frequency, against many frequencies; and it is worth its work."""
+    draw = np.random.default_rng(count)
+    kinks = draw.normal(size=count)
+    rough = Roughness(0.7 * np.arange(count), kinks, tuple(range(count)), 1.0)
+    w = np.sort(draw.uniform(0, 2 * np.pi / 0.7, 400))
+    sums = np.abs(np.cumsum(kinks * np.exp(-1j * np.outer(w, rough.times)), axis=1)).max(axis=1)
+    assert sums.max() <= rough.in_step <= 2 * sums.max()
+    assert rough.in_step <= np.abs(kinks).sum() * (1 + 1e-6)
+    assert rough.fading(1.0) <= np.abs(kinks).sum() * (1 + 1e-6)
+    assert rough.fading(1e9) == pytest.approx(np.abs(kinks).max())
+    assert Roughness(rough.times, kinks, None, inf).in_step == pytest.approx(np.abs(kinks).sum())
+
+
+def test_roughness_is_that_of_the_load():
+    """Changes of slope at their times: of 0, 2, 1, then constant in steps of 1/2."""
+    model = building(["1", "1"], [{"spacing": "1/2", "samples": [0, 2, 1]}])
+    (rough,) = roughness(made_by._Chain(model).loads)
+    assert rough.times.tolist() == [0, 0.5, 1]
+    assert rough.kinks.tolist() == [4, -6, 2]
+    assert (rough.steps, rough.steepest) == ((0, 1, 2), 4)

@@ -1,0 +1,250 @@
+"""Modes of scenes as programs: within their bounds of values that are exact, or of elements ever finer; and chosen."""
+
+import ctypes
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from flint import fmpq
+
+import wavesym
+from tests.support import oscillators
+from tests.support.oscillators import by_exponentials, exact
+from wavesym.cli import main
+from wavesym.errors import ToleranceError, UnservedError
+from wavesym.model.damping import Damping
+from wavesym.numbers.reals import DOUBLE, SINGLE
+from wavesym.programs import choice
+from wavesym.programs.choice import attempts, choose
+from wavesym.programs.making import make
+from wavesym.programs.modes import making
+from wavesym.programs.modes.making import modes
+from wavesym.programs.request import Request
+from wavesym.running.compiled import imported
+from wavesym.running.native import library
+from wavesym.scene import lower
+from wavesym.targets.files import files
+
+SAMPLES = [0, *((7 * k * k + 3 * k) % 17 - 8 for k in range(1, 20))]
+WATCHED = {
+    "strain": ["1/2", "1+"],
+    "velocity": [0, 2],
+    "displacement": ["1/2", 1],
+    "acceleration": [1],
+    "force": ["1/3"],
+    "drift": [2],
+}
+SCENES = {
+    "building": {
+        "system": {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "ground"},
+        "load": [{"spacing": "5/7", "samples": SAMPLES}],
+        "output": WATCHED | {"relative": [2]},
+    },
+    "drive, which nothing holds": {
+        "system": {"type": "drive", "m": 2, "kappa": ["1/4", "3/5"], "inertia": [1, 2, "1/2"]},
+        "load": [
+            {"body": 1, "spacing": "5/7", "samples": SAMPLES},
+            {"body": 3, "times": ["1/3", 4], "ramps": ["1/2", -1]},
+        ],
+        "output": WATCHED,
+    },
+    "chain of unequal rods with a spring": {
+        "system": {
+            "type": "chain",
+            "parts": [
+                {"motion": "acceleration", "name": "ground"},
+                {"rod": 1},
+                {"mass": 3, "spring": "1/5"},
+                {"rod": "3/2", "impedance": 2},
+                {"mass": "1/2", "name": "top"},
+            ],
+        },
+        "load": [{"at": "ground", "spacing": "5/7", "samples": SAMPLES}, {"at": "top", "times": [2], "ramps": [1]}],
+        "output": {"strain": ["1/2", "1+"], "velocity": ["top"], "displacement": [1], "relative": ["top"]},
+    },
+}
+
+
+def scene(name="building", tolerance="1e-4", until=12, **output):
+    of = SCENES[name]
+    return wavesym.Scene(
+        name="shaken",
+        system=of["system"],
+        load=of["load"],
+        output={**of["output"], "until": until, "tolerance": tolerance, **output},
+    )
+
+
+def wrong(model, real, right, taus):
+    """How far modes are from values that are right, and from what they may be at most, of each output."""
+    made = modes(model, real)
+    errors = np.abs(made.scheme.evaluate(taus).astype(float) - right).max(axis=1)
+    return made, errors, np.array([output.bound * output.largest for output in made.outputs])
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_modes_are_within_their_bounds_and_motion_is_nearly_exact(name):
+    given = scene(name)
+    model = lower(given)
+    taus = np.linspace(0, model.horizon(), 97)
+    response = wavesym.evaluator(given)
+    right = response(taus)
+    assert response.program is None
+    made, errors, bounds = wrong(model, DOUBLE, right, taus)
+    assert np.all(errors <= bounds)
+    assert made.error_bound <= 1e-4
+    largest = np.abs(right).max(axis=1)
+    assert np.all([output.largest for output in made.outputs] <= largest * 1.2)
+    bodies = [k for k, each in enumerate(made.outputs) if each.name.startswith(("displacement@1", "relative"))]
+    bodies = [k for k in bodies if "/" not in made.outputs[k].name]
+    assert bodies
+    assert np.all(errors[bodies] <= 1e-11 * largest[bodies])
+
+
+def test_floats_are_within_their_bounds():
+    given = scene(tolerance="1/20")
+    taus = np.linspace(0, 12, 97, dtype=np.float32).astype(float)
+    _, errors, bounds = wrong(lower(given), SINGLE, wavesym.evaluator(given)(taus), taus)
+    assert np.all(errors <= bounds)
+    assert np.all(bounds > 0)
+
+
+def test_a_frequency_that_is_off_is_beyond_the_bounds(monkeypatch):
+    right = making.modal_system
+
+    def off(model):
+        made = right(model)
+        return replace(made, system=replace(made.system, frequency=made.system.frequency * (1 + 1e-3)))
+
+    monkeypatch.setattr(making, "modal_system", off)
+    given = scene()
+    taus = np.linspace(0, 12, 97)
+    _, errors, bounds = wrong(lower(given), DOUBLE, wavesym.evaluator(given)(taus), taus)
+    assert not np.all(errors <= bounds)
+
+
+@pytest.mark.parametrize("ratio", ["1/20", "3/2"])
+def test_a_damped_building_is_what_elements_ever_finer_come_to(ratio):
+    """Of consistent mass, modally damped, stepped by exponentials of matrices; errors fall with the fourth power."""
+    building = scene(
+        until=9, **{name: [] for name in ("strain", "acceleration", "force", "relative")},
+        drift=[1, 2], velocity=[1, 2], displacement=[1, 2],
+    ).with_({"system.kappa": [1, "1/3", "1/3"]})  # fmt: skip
+    model = replace(lower(building), damping=Damping((exact(ratio),)))
+    made = modes(model, DOUBLE)
+    order = [list(model.probes).index(probe) for name in ("drift", "velocity", "displacement") for probe in model.probes
+             if probe.quantity == name]  # fmt: skip
+    for tau in (2.5, 8.0):
+        coarse, middle, fine = (
+            by_exponentials(oscillators.storeys(2, n, float(Fraction(ratio)), 3.0), made.loads, tau) for n in (4, 8, 16)
+        )
+        once, twice = middle + (middle - coarse) / 3, fine + (fine - middle) / 3
+        found = made.scheme.evaluate(tau)[order]
+        assert np.all(np.abs(found - twice) <= np.abs(once - twice) + 1e-4 * np.abs(twice))
+        assert np.all(np.abs(found - twice) <= 2e-3 * np.abs(twice).max())
+
+
+@pytest.mark.parametrize(("period", "published", "between"), [(0.5, 2.674, 2.68706), (1, 5.966, 5.96722)])
+def test_one_light_storey_has_the_published_peak(period, published, between):
+    """A rod of 1e-4 of the mass on it, 2 % of critical damping, under El Centro: peaks in inches, at samples too."""
+    record = oscillators.el_centro()
+    spacing = Fraction(0.02 * 100 * 2 * math.pi / period).limit_denominator(10**9)
+    second = float(spacing) / 0.02
+    storey = wavesym.Scene(
+        name="storey",
+        system={
+            "type": "chain",
+            "parts": [{"motion": "acceleration", "name": "ground"}, {"rod": 1}, {"mass": 10_000, "name": "floor"}],
+        },
+        load=[{"at": "ground", "spacing": spacing, "samples": [Fraction(int(a.p), int(a.q)) for a in record]}],
+        output={"until": spacing * (len(record) - 1), "tolerance": "1e-5", "relative": ["floor"]},
+    )
+    made = modes(replace(lower(storey), damping=Damping((fmpq(1, 50),))), DOUBLE)
+    inches = oscillators.INCHES_OF_G / second**2
+    taus = np.linspace(0, made.tau_max, 16 * (len(record) - 1) + 1)
+    values = inches * np.abs(made.scheme.evaluate(taus))[0]
+    assert values[::16].max() == pytest.approx(published, abs=6e-4)
+    assert values.max() == pytest.approx(between, abs=2e-4)
+
+
+LONG = scene(until=200, tolerance="1e-2").with_(
+    {"load[0].spacing": "5/397", "load[0].samples": [k % 7 for k in range(1500)]}
+)
+
+
+def test_what_auto_takes():
+    """Pieces where they do; modes for a record that would be too many pieces, or with damping; a march for jumps."""
+    model = lower(scene(until=5))
+    assert choose(model).name in ("closed", "pieces")
+    chosen = choose(lower(LONG))
+    assert chosen.name == "modes"
+    assert "pieces: " in chosen.reason
+    assert chosen.reason.endswith(chosen.evaluator.summary)
+    with pytest.raises(UnservedError, match=r"jumps by 1 at tau = 0"):
+        choose(lower(scene(until=5).with_({"load[0].samples[0]": 1})), "modes")
+    jump = lower(scene(until=5).with_({"load[0].samples[0]": 1}))
+    assert "modes" not in choose(jump).reason
+    assert [one.kind for one in attempts(jump)][:2] == ["closed", "pieces"]
+
+
+def test_a_tolerance_that_takes_too_many_modes_is_refused_with_all_that_was_tried(monkeypatch):
+    def refuse(model):
+        raise ToleranceError("output.tolerance: 0.01 cannot be met: modes: 7 modes leave 0.1")
+
+    monkeypatch.setattr(making, "modal_system", refuse)
+    monkeypatch.delitem(choice.MAKERS, "march")
+    with pytest.raises(
+        ToleranceError, match=r"^output.tolerance: 0.01 cannot be met: closed: .*; modes: 7 modes leave"
+    ):
+        choose(lower(LONG))
+    with pytest.raises(ToleranceError, match=r"^output.tolerance: 0.01 cannot be met: modes: 7 modes leave 0.1$"):
+        choose(lower(LONG), "modes")
+    with pytest.raises(ToleranceError, match="modes: 7 modes leave"):
+        wavesym.evaluator(LONG)([1.0])
+
+
+def test_c_takes_the_samples_of_the_scene_and_numpy_has_them(tmp_path):
+    program = make(lower(scene()), Request(evaluator="modes"), tested=True)
+    made = files(program, "all")
+    assert "--evaluator modes" in made["shaken.h"]
+    module = imported(made["shaken.py"], "shaken")
+    stream = library(made["shaken.c"], header=("shaken.h", made["shaken.h"]))
+    state = (ctypes.c_double * (2 * int(program.constants["modes"]) + 3))()
+    stream.shaken_init(state)
+    stream.shaken_step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p]
+    taus = np.linspace(-1, 13, 80)
+    np.testing.assert_array_equal(module.evaluate(taus), program.evaluate(taus))
+    out = np.empty(len(module.OUTPUTS))
+    spacing = float(Fraction(5, 7))
+    for k, sample in enumerate(SAMPLES[1:17], 1):
+        assert stream.shaken_step(state, spacing, (ctypes.c_double * 1)(sample), out.ctypes.data) == 0
+        allowed = [output.bound * output.largest for output in program.outputs]
+        assert np.all(np.abs(out - module.evaluate(k * 5 / 7)) <= np.array(allowed) + 1e-12)
+
+
+RUN = """
+name = "shaken"
+system = { type = "building", m = 2, kappa = ["1/30", "1/30", "1/30"], base = "ground" }
+load = [{ record = "RECORD", spacing = "4999/1000", start = "4999/1000" }]
+output = { until = 7500, tolerance = "1e-4", strain = [0], displacement = [2] }
+"""
+
+
+def test_run_says_that_values_are_of_modes_and_how_good(tmp_path, capsys):
+    record = tmp_path / "record.csv"
+    record.write_text("a\n" + "".join(f"{float(a)}\n" for a in oscillators.el_centro()[1:]))
+    path = tmp_path / "shaken.toml"
+    path.write_text(RUN.replace("RECORD", record.name))
+    assert main(["run", str(path), "--samples", "11"]) == 0
+    out, err = capsys.readouterr()
+    given = wavesym.Scene.from_toml(path)
+    response = wavesym.evaluator(given)
+    assert f"values of modes, not right to the last bit: proved bound of the error {response.error_bound:g}" in err
+    assert response.program.kind == "modes"
+    assert response.error_bound <= 1e-4
+    rows = np.array([[float(x) for x in line.split(",")] for line in out.splitlines()[1:]])
+    np.testing.assert_array_equal(rows[:, 1:].T, response(rows[:, 0]))
+    assert response([]).shape == (2, 0)
+    assert np.allclose(response(rows[5, 0]), rows[5, 1:], rtol=1e-9)  # one value alone

@@ -1,0 +1,136 @@
+"""Damping of modes in scenes: what may be said, what is refused, and who serves it."""
+
+import json
+from fractions import Fraction
+
+import pytest
+from flint import fmpq
+
+import wavesym
+from tests.support.modal import building, chain, samples
+from wavesym.errors import SceneError, UnservedError
+from wavesym.model.damping import Damping
+from wavesym.scene import Scene, lower
+
+PARTS = ["fixed", {"rod": 1}, {"mass": 1, "name": "n"}]
+
+
+def scene(damping, kind="building"):
+    system = {"type": "building", "m": 2, "kappa": [1, 1, 1], "base": "ground"}
+    if kind == "drive":
+        system = {"type": "drive", "m": 1, "kappa": [1], "inertia": [1, 1]}
+    if kind == "chain":
+        system = {"type": "chain", "parts": PARTS}
+    if damping is not None:
+        system["damping"] = damping
+    return Scene(name="a", system=system, load=[], output={"until": 3, "velocity": [1]})
+
+
+@pytest.mark.parametrize("kind", ["building", "drive", "chain"])
+@pytest.mark.parametrize(
+    ("damping", "ratios", "modes"),
+    [
+        ("0.05", ["1/20"], None),
+        (0.05, ["1/20"], None),
+        ("3/2", ["3/2"], None),
+        ([0, "0.05", 1], ["0", "1/20", "1"], None),
+        ({"modes": [3, 1], "ratio": "0.05"}, ["1/20"], (1, 3)),
+    ],
+)
+def test_damping_is_a_ratio_a_list_or_that_of_rayleigh(kind, damping, ratios, modes):
+    made = scene(damping, kind)
+    expected = Damping(tuple(fmpq(*Fraction(ratio).as_integer_ratio()) for ratio in ratios), modes)
+    assert lower(made).damping == expected
+    again = Scene(**json.loads(json.dumps(made.model_dump(mode="json"))))
+    assert lower(again).damping == expected
+    assert lower(again).labels == lower(made).labels
+    assert lower(made).labels.system["damping"]
+
+
+def test_no_damping_is_no_key_and_damping_of_0_is_none():
+    assert "damping" not in scene(None).model_dump()["system"]
+    assert lower(scene(0)).damping is None
+    assert lower(scene(None)).labels.sha256 != lower(scene(0)).labels.sha256
+
+
+@pytest.mark.parametrize(
+    ("damping", "message"),
+    [
+        (-0.05, "system.damping: -0.05 given, a ratio of at least 0 expected"),
+        ([0.1, -1], "system.damping[1]: -1 given, a ratio of at least 0 expected"),
+        ([], "system.damping: 0 ratios given, 1 to 1000 expected"),
+        ("5 %", 'system.damping: "5 %" given, a number expected (an integer, a decimal or "p/q")'),
+        (True, 'system.damping: true given, a number expected (an integer, a decimal or "p/q")'),
+        ({"modes": [1, 3]}, "system.damping.ratio: missing, a ratio expected"),
+        ({"ratio": 0.1}, "system.damping.modes: missing, the numbers of two modes expected"),
+        (
+            {"modes": [1, 3], "ratios": 0.1},
+            'system.damping.ratios: unknown key, modes or ratio expected. Did you mean "ratio"?',
+        ),
+        ({"modes": [1], "ratio": 0.1}, "system.damping.modes: a list given, a list of two modes expected"),
+        ({"modes": [1, 1], "ratio": 0.1}, "system.damping.modes: 1 given twice, two modes expected"),
+        (
+            {"modes": [0, 1], "ratio": 0.1},
+            "system.damping.modes[0]: 0 given, the number of a mode from 1 to 1000 expected",
+        ),
+        ({"modes": [1, 2], "ratio": -1}, "system.damping.ratio: -1 given, a ratio of at least 0 expected"),
+    ],
+)
+def test_what_is_no_damping_is_refused_in_one_line(damping, message):
+    with pytest.raises(SceneError) as caught:
+        scene(damping)
+    assert str(caught.value) == f"scene: {message}"
+
+
+@pytest.mark.parametrize(
+    ("parts", "other"),
+    [
+        (["fixed", {"rod": 1}, {"mass": 1, "dashpot": 1, "name": "n"}], "a dashpot or an absorbing end at n"),
+        (["fixed", {"rod": 1}, "absorbing"], "a dashpot or an absorbing end at 1"),
+        (["fixed", {"rod": 1, "dashpot": 2}, {"mass": 1}], "a dashpot"),
+        (["fixed", {"rod": 1}, "contact", {"rod": 1}, "fixed"], "a contact"),
+    ],
+)
+def test_dampers_at_places_are_refused_with_it(parts, other):
+    with pytest.raises(SceneError) as caught:
+        chain(parts, system={"damping": "0.05"}, velocity=["0"])
+    assert str(caught.value) == f"scene: system.damping: given with {other}, one of them expected"
+
+
+def test_a_collision_has_none():
+    system = {"type": "collision", "m": 4, "kappa": [1, 1], "velocity": [1, 0], "damping": 0.1}
+    with pytest.raises(SceneError, match=r"^scene: system\.damping: unknown key"):
+        Scene(name="a", system=system, output={"until": 1, "velocity": [1]})
+
+
+@pytest.mark.parametrize("evaluator", ["closed", "pieces", "march"])
+@pytest.mark.parametrize("kind", ["building", "drive", "chain"])
+def test_programs_of_waves_refuse_it(tmp_path, kind, evaluator):
+    with pytest.raises(UnservedError, match=r"^system.damping: given, none expected \(only modes serve it\)$"):
+        wavesym.generate(scene("0.05", kind), tmp_path / "a", evaluator=evaluator)
+    assert not (tmp_path / "a").exists()
+
+
+def test_what_computes_waves_refuses_it(tmp_path):
+    damped = scene("0.05")
+    for wanted in (
+        lambda: wavesym.tables(damped),
+        lambda: wavesym.compiler.symbolic_tables_text(damped, 1, "csv"),
+        lambda: wavesym.compiler.derive(damped, None),
+        lambda: wavesym.compiler.walks(damped, None, 1),
+        lambda: wavesym.compiler.verify([damped]),
+    ):
+        with pytest.raises(UnservedError, match=r"^system.damping: given, none expected"):
+            wanted()
+    assert "system.damping: given, none expected" in wavesym.compiler.inspect(damped, "table")
+
+
+def test_a_building_may_have_one_storey():
+    """What it does is what the chain does that it is: a bar under a mass."""
+    load = samples(5)
+    one = building(["1", "3/5"], [load], strain=["0"], displacement=[1], until=6)
+    parts = [{"motion": "acceleration", "name": "g"}, {"rod": 1}, {"mass": "5/3"}]
+    same = chain(parts, [{"at": "g", **load}], strain=["0"], velocity=[1], displacement=[1], until=6)
+    taus = [0.5, 1, 2.3, 4.7, 6]
+    values = [wavesym.results.response.Response(model)(taus) for model in (one, same)]
+    assert values[0] == pytest.approx(values[1], rel=1e-15)

@@ -1,0 +1,126 @@
+"""A scene in units: what its waves and periods are in seconds, and how far its model is the structure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from flint import arb
+
+from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
+from wavesym.errors import CostError
+from wavesym.exact.modes.frequencies import frequencies
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import midpoint
+from wavesym.scene.physical.rounding import DIGITS, decimal_text
+from wavesym.scene.physical.scene import PhysicalScene
+
+_PERIODS = 5
+_RIGID = 1  # modes of a chain that nothing holds
+_KAPPA = (1e-4, 10.0)
+_SLENDER = 5  # times as long as wide: where a rod begins to be one
+_NAMES = {"longitudinal": ("mass", "m"), "shear": ("mass", "m"), "torsional": ("moment of inertia", "rad")}
+
+
+def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
+    """The sections of a scene with [units]."""
+    scale, clock = physical.scale, model.clock
+    assert clock is not None  # a scene in units has one
+    rods, seconds = scale.rods, float(scale.seconds)
+    first = rods.first
+    periods, why = _periods(model, seconds)
+    limit = 1 / (2 * seconds * float(max(rods.ratios)))
+    yield Facts(
+        "units",
+        "In units",
+        {
+            "kind": scale.kind,
+            "seconds_per_tau": Told(
+                str(scale.seconds),
+                f"{_si(seconds, 's')}, l/c rounded to {DIGITS} digits: {decimal_text(scale.seconds)} s",
+            ),
+            "c": Told(float(first.length) / seconds, f"{float(first.length) / seconds:.6g} m/s, of the first rod"),
+            "kappa": Told([float(k) for k in physical.kappa], _several(sorted({float(k) for k in physical.kappa}))),
+            "periods": Told(
+                periods, why or ", ".join(f"T{k} = {_si(period, 's')}" for k, period in enumerate(periods, 1))
+            ),
+            "horizon": Told(
+                {"tau": model.horizon(), "time": clock.time(model.until), "unit": clock.unit},
+                f"{model.horizon():.6g} tau, {clock.told(model.until)}",
+            ),
+            "physics_up_to": Told(limit, f"{limit:.4g} Hz = c/(2 l): above it a rod is not what it stands for"),
+        },
+    )
+    if not rods.alike:
+        yield _rods(physical)
+    yield Listing("remarks", "Remarks", [{"remark": line} for line in remarks(physical)], ("remark",))
+
+
+def _periods(model: Model, seconds: float) -> tuple[list[float], str]:
+    """The longest periods in s, or why they are not known."""
+    try:
+        found = frequencies(model.network, _PERIODS + _RIGID)
+    except CostError as error:
+        return [], f"not known: {error}"
+    turning = [2 * arb.pi() / w * seconds for w in found if not w.contains(0)]
+    return [midpoint(period) for period in turning[:_PERIODS]], ""
+
+
+def _rods(physical: PhysicalScene) -> Listing:
+    """Rods that differ."""
+    rods, seconds = physical.scale.rods, float(physical.scale.seconds)
+    rows: list[dict[str, Plain | Told]] = []
+    for number, (rod, ratio) in enumerate(zip(rods.all, rods.ratios, strict=True), 1):
+        delay = seconds * float(ratio)
+        rows.append(
+            {
+                "rod": number,
+                "length": Told(float(rod.length), f"{float(rod.length):.6g} m"),
+                "l/c": Told(delay, _si(delay, "s")),
+                "c": Told(float(rod.length) / delay, f"{float(rod.length) / delay:.6g} m/s"),
+                "impedance": float(rods.impedance(number - 1)),
+            }
+        )
+    return Listing("rods_in_units", "Rods, with impedances over that of the first", rows)
+
+
+def remarks(physical: PhysicalScene) -> Iterator[str]:
+    """What someone who knows the structure should look at twice."""
+    rods = physical.scale.rods.all
+    if rounded := physical.scale.rods.rounded:
+        yield f"ratios of delays to the first are irrational and rounded likewise: {rounded}"
+    low, high = _KAPPA
+    for at, kappa in _runs([float(kappa) for kappa in physical.kappa]):
+        mass = _NAMES[physical.scale.kind][0]
+        if kappa < low:
+            yield f"kappa = {kappa:.3g} of {at}, below {low:g}: the {mass} of such rods hardly matters, springs may do"
+        if kappa > high:
+            yield f"kappa = {kappa:.3g} of {at}, above {high:g}: such bodies hardly matter beside their rods"
+    slender = [rod.slenderness for rod in rods]
+    for at, ratio in _runs(slender):
+        if ratio < _SLENDER:
+            verb = "are" if at.startswith("rods") else "is"
+            yield f"{at} {verb} {ratio:.3g} times as long as wide: below {_SLENDER}, what a section does matters, too"
+
+
+def _runs(values: Sequence[float | None]) -> Iterator[tuple[str, float]]:
+    """Equal values one after another as one: "rods 1 to 10"."""
+    start = 0
+    for k in range(1, len(values) + 1):
+        if k == len(values) or values[k] != values[start]:
+            if (value := values[start]) is not None:
+                yield f"rod {start + 1}" if k == start + 1 else f"rods {start + 1} to {k}", value
+            start = k
+
+
+def _several(values: Sequence[float]) -> str:
+    if len(values) > _PERIODS:
+        return f"{values[0]:.6g} to {values[-1]:.6g}"
+    return ", ".join(f"{value:.6g}" for value in values) or "-"
+
+
+def _si(seconds: float, unit: str) -> str:
+    """A time for people."""
+    for size, name in ((1.0, ""), (1e-3, "m"), (1e-6, "u")):
+        if seconds >= size:
+            return f"{seconds / size:.6g} {name}{unit}"
+    return f"{seconds:.6g} {unit}"
