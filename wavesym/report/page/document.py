@@ -18,7 +18,7 @@ from wavesym.report.histories import Histories, History, histories
 from wavesym.report.loads import load_histories
 from wavesym.report.page.crossings import crossings
 from wavesym.report.page.plots import Shown, along_pictures, maps, panel, picture
-from wavesym.report.page.said import Told, advice_told, extremes_told
+from wavesym.report.page.said import SaidTable, advice_told, extremes_told
 from wavesym.report.page.structure import structure
 from wavesym.report.timescale import Timescale, timescale
 from wavesym.scene import Scene, lower
@@ -42,8 +42,8 @@ class Report:
     per_tau: str
     time: str
     columns: int
-    extremes: Told
-    advice: Told
+    extremes: SaidTable
+    advice: SaidTable
     maps: tuple[Shown, ...]
     along: tuple[Shown, ...]
     scene: str

@@ -20,7 +20,7 @@ _CALLED = {
 
 
 @dataclass(frozen=True)
-class Told:
+class SaidTable:
     """A table, and what to know of it; no rows where there is only something to say."""
 
     head: tuple[str, ...]
@@ -28,12 +28,12 @@ class Told:
     notes: tuple[str, ...]
 
 
-def extremes_told(model: Model, scale: Timescale) -> Told:
+def extremes_told(model: Model, scale: Timescale) -> SaidTable:
     """Of each output the least and the greatest value, when, and when it first moves."""
     try:
         found = summarised(model)
     except WavesymError as error:
-        return Told((), (), (f"Not found: {error}",))
+        return SaidTable((), (), (f"Not found: {error}",))
     when = f"{scale.symbol} in {scale.unit}" if scale.unit else scale.symbol
     head = ("Output", "Least", f"at {when}", "Greatest", f"at {when}", f"First moves at {when}")
     rows = (
@@ -50,7 +50,7 @@ def extremes_told(model: Model, scale: Timescale) -> Told:
         "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
         f"How: {found.how}; {found.certain}",
     ]
-    return Told(head, tuple(rows), tuple(filter(None, notes)))
+    return SaidTable(head, tuple(rows), tuple(filter(None, notes)))
 
 
 def _peak(peak: Peak, scale: Timescale) -> tuple[str, str]:
@@ -61,23 +61,23 @@ def _when(at: When, scale: Timescale) -> str:
     return f"{at.tau * scale.per_tau:.6g}"
 
 
-def advice_told(model: Model) -> Told:
+def advice_told(model: Model) -> SaidTable:
     """Which of three models is enough for each output, over the horizon of the scene."""
     try:
         found = advise(model, _TOLERANCE)
     except WavesymError as error:
-        return Told((), (), (f"Not compared: {error}",))
+        return SaidTable((), (), (f"Not compared: {error}",))
     kept = [each for each in found.candidates if not each.refused]
     notes = [*_verdict(found), *(f"{_CALLED[each.name]}: {each.refused}" for each in found.candidates if each.refused)]
     if not found.outputs:
-        return Told((), (), tuple(notes))
+        return SaidTable((), (), tuple(notes))
     head = ("Output", *(f"{_CALLED[each.name]}, {what}" for each in kept for what in ("history", "peak")))
     rows = ((name, *_differences(kept, k)) for k, (name, *_) in enumerate(found.outputs))
     notes.append(
         f"Each number is the largest difference from waves at {found.instants} instants, in parts of the output's "
         "largest value: of the history at any time, and of the peak"
     )
-    return Told(head, tuple(rows), tuple(notes))
+    return SaidTable(head, tuple(rows), tuple(notes))
 
 
 def _verdict(found: Advice) -> list[str]:
