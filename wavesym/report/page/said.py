@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from wavesym.documents.advice import WAVES, Advice, Candidate
 from wavesym.errors import WavesymError
 from wavesym.model.model import Model
+from wavesym.model.probe import Probe
 from wavesym.report.timescale import Timescale
-from wavesym.results.summary import Peak, When, summarised
+from wavesym.results.summary import OutputSummary, Peak, When, summarised
 from wavesym.rivals.advice import advise
 
 _TOLERANCE = 0.01  # of the largest value: what an engineer would not see
@@ -28,10 +30,10 @@ class SaidTable:
     notes: tuple[str, ...]
 
 
-def extremes_told(model: Model, scale: Timescale) -> SaidTable:
-    """Of each output the least and the greatest value, when, and when it first moves."""
+def extremes_told(model: Model, drifts: Sequence[Probe], scale: Timescale) -> SaidTable:
+    """Of each output the least and the greatest value, when, and when it first moves; the largest of `drifts`."""
     try:
-        found = summarised(model)
+        found = summarised(model, drifts=drifts)
     except WavesymError as error:
         return SaidTable((), (), (f"Not found: {error}",))
     when = f"{scale.symbol} in {scale.unit}" if scale.unit else scale.symbol
@@ -46,11 +48,17 @@ def extremes_told(model: Model, scale: Timescale) -> SaidTable:
         for each in found.outputs
     )
     short = any(not peak.reached for each in found.outputs for peak in (each.min, each.max))
+    drift = found.largest_drift
     notes = [
+        drift and f"Largest drift of a rod: {drift.name}, {_sized(drift)} at {scale.told(drift.largest.at.tau)}",
         "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
         f"How: {found.how}; {found.certain}",
     ]
     return SaidTable(head, tuple(rows), tuple(filter(None, notes)))
+
+
+def _sized(output: OutputSummary) -> str:
+    return f"{output.largest.value:.6g} {output.unit}".rstrip()
 
 
 def _peak(peak: Peak, scale: Timescale) -> tuple[str, str]:
