@@ -48,17 +48,19 @@ def extremes_told(model: Model, drifts: Sequence[Probe], scale: Timescale) -> Sa
         for each in found.outputs
     )
     short = any(not peak.reached for each in found.outputs for peak in (each.min, each.max))
-    drift = found.largest_drift
     notes = [
-        drift and f"Largest drift of a rod: {drift.name}, {_sized(drift)} at {scale.told(drift.largest.at.tau)}",
+        _drift(found.largest_drift, scale),
         "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
         f"How: {found.how}; {found.certain}",
     ]
     return SaidTable(head, tuple(rows), tuple(filter(None, notes)))
 
 
-def _sized(output: OutputSummary) -> str:
-    return f"{output.largest.value:.6g} {output.unit}".rstrip()
+def _drift(found: OutputSummary | None, scale: Timescale) -> str:
+    if found is None:
+        return ""
+    value = f"{found.largest.value:.6g} {found.unit}".rstrip()
+    return f"Largest drift of a rod: {found.name}, {value} at {scale.told(found.largest.at.tau)}"
 
 
 def _peak(peak: Peak, scale: Timescale) -> tuple[str, str]:
