@@ -7,6 +7,8 @@ fronts are as crisp as the picture is fine.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -22,7 +24,9 @@ from wavesym.exact.field import Field
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.report.stations import open_times
+from wavesym.report.timescale import timescale
 from wavesym.report.xt_nodes import draw_nodes, legend
+from wavesym.scene.physical.scale import Scale
 from wavesym.systems.station import Lines, Station
 
 Array = NDArray[np.float64]
@@ -35,12 +39,22 @@ _NARROWEST = 0.12  # of all lines together: where names and numbers still fit
 _NAMED = {"velocity": "velocity", "force": "force (impedance times strain), pull red, push blue"}
 
 
-def draw(model: Model, lines: Lines) -> Figure:
-    """Velocity and force of all rods over the horizon, in a picture of each line. CostError as for their outputs."""
-    field = Field(model)
-    shown = {name: stations for name, stations in lines.items() if stations[-1].x}
-    until = nearest(model.until)
-    opened = open_times(model, field.events)
+def draw(model: Model, lines: Lines, scale: Scale | None = None) -> Figure:
+    """Velocity and force of all rods over the horizon, in a picture of each line. CostError as for their outputs.
+
+    Of a physical scene in the units of its `scale`; places count rods, but where a chain is written out they are in m.
+    """
+    field, time = Field(model), timescale(model)
+    until, length = nearest(model.until), _length(model, scale)
+    shown = {
+        name: tuple(replace(station, x=station.x * (length or 1)) for station in stations)
+        for name, stations in lines.items()
+        if stations[-1].x
+    }
+    opened = {
+        place: [(low * time.per_tau, high * time.per_tau) for low, high in spans]
+        for place, spans in open_times(model, field.events).items()
+    }
     figure = Figure(figsize=(_WIDTH, _HEIGHT), dpi=120)
     FigureCanvasAgg(figure)
     widths = _widths(shown)
@@ -56,23 +70,46 @@ def draw(model: Model, lines: Lines) -> Figure:
         wspace=0.2 if len(shown) > 1 else 0.1,
         hspace=0.16,
     )
-    figure.suptitle(f"{model.name}: {model.labels.system['type']}, tau upward to {until:g}", x=0.06, y=0.985, ha="left")
+    told = f"{model.name}: {model.labels.system['type']}, {time.symbol} upward to {time.of(until)}"
+    figure.suptitle(told, x=0.06, y=0.985, ha="left")
     figure.text(0.06, 0.935, legend(model.network, shown), fontsize=_FONT - 1, color="0.3")
     for first, quantity in ((0, "velocity"), (len(shown) + 1, "force")):
+        factor = float(scale.factor(quantity, 1)) if scale else 1.0
         images = [_image(field, stations, until, quantity) for stations in shown.values()]
         largest = max(float(np.max(np.abs(image[2]), initial=0.0)) for rods in images for image in rods) or 1.0
+        largest *= factor
         norm, colours = Normalize(-largest, largest), colormaps["RdBu_r"].resampled(_SHADES)
         for column, ((name, stations), rods) in enumerate(zip(shown.items(), images, strict=True)):
             axes = figure.add_subplot(grid[0, first + column])
             for x, tau, values in rods:
-                axes.pcolormesh(x, tau, values, cmap=colours, norm=norm, rasterized=True)
-            _frame(axes, name, stations, until, column == 0)
-            draw_nodes(axes, model.network, stations, opened, until)
+                axes.pcolormesh(x, tau * time.per_tau, values * factor, cmap=colours, norm=norm, rasterized=True)
+            _frame(axes, stations, until * time.per_tau, column == 0)
+            draw_nodes(axes, model.network, stations, opened, until * time.per_tau)
+            axes.set_xlabel(f"{name}{name and ':'}x{' in m' if length else ''}", fontsize=_FONT)
+            if column == 0:
+                axes.set_ylabel(time.title if time.unit else "tau", fontsize=_FONT)
         place = figure.add_subplot(grid[1, first : first + len(shown)])
         bar = figure.colorbar(ScalarMappable(norm, colours), cax=place, orientation="horizontal")
         bar.ax.tick_params(labelsize=_FONT - 1)
-        bar.set_label(_NAMED[quantity], fontsize=_FONT)
+        bar.ax.xaxis.get_offset_text().set_fontsize(_FONT - 1)
+        bar.set_label(_named(quantity, scale), fontsize=_FONT)
     return figure
+
+
+def _length(model: Model, scale: Scale | None) -> Fraction | None:
+    """What one unit of x is in m; None where places count rods, whose lengths may differ."""
+    if scale is None or model.labels.system["type"] != "chain" or len(scale.lengths) > 1:
+        return None
+    return scale.lengths[0]
+
+
+def _named(quantity: str, scale: Scale | None) -> str:
+    """For the title of a bar of colours."""
+    if scale is None:
+        return _NAMED[quantity]
+    name = "moment" if (quantity, scale.kind) == ("force", "torsional") else quantity
+    signs = ", pull red, push blue" if (quantity, scale.kind) == ("force", "longitudinal") else ""
+    return f"{name} in {scale.unit(quantity)}{signs}"
 
 
 def _widths(lines: Lines) -> list[float]:
@@ -96,11 +133,8 @@ def _image(field: Field, stations: Sequence[Station], until: float, quantity: st
     return images
 
 
-def _frame(axes: Axes, name: str, stations: Sequence[Station], until: float, first: bool) -> None:
+def _frame(axes: Axes, stations: Sequence[Station], until: float, first: bool) -> None:
     axes.set_xlim(0, float(stations[-1].x))
     axes.set_ylim(0, until)
-    axes.set_xlabel(f"{name}:x" if name else "x", fontsize=_FONT)
     axes.locator_params(axis="x", nbins=6 if first else 3)
     axes.tick_params(labelsize=_FONT - 1, labelleft=first)
-    if first:
-        axes.set_ylabel("tau", fontsize=_FONT)

@@ -35,8 +35,9 @@ def refuse_damped(network: Network) -> None:
             )
     for link in network.links:
         if link.contact or link.damping != 0:
-            what = "contact" if link.contact else "dashpot"
-            raise UnservedError(f"system: a {what} at {link.place} given, none expected in modes (pieces serve it)")
+            what, serve = ("contact", "pieces serve") if link.contact else ("dashpot", "pieces and march serve")
+            at = link.place or network.points[link.left].name or network.points[link.left].place
+            raise UnservedError(f"system: a {what} at {at} given, none expected in modes ({serve} it)")
 
 
 def frequencies(network: Network, count: int) -> tuple[arb, ...]:
