@@ -79,10 +79,10 @@ generated: install
 	done
 	$(BIN)/wavesym verify --published --format markdown > generated/errata.md
 
-# the pictures of examples/chains, drawn anew
+# the pictures of examples/, drawn anew by the commands of their pages
 examples: install
-	@set -e; for scene in examples/chains/*.toml; do \
-		$(TOLD) $(BIN)/wavesym plot $$scene --kind xt -o $${scene%.toml}.png; \
+	@set -e; PATH="$(CURDIR)/$(BIN):$$PATH"; for page in examples/*/README.md; do \
+		( cd $$(dirname $$page) && grep '^wavesym plot' README.md | $(TOLD) sh -e ); \
 	done
 
 check-all: lint .venv/.test

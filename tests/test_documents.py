@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import click
+import numpy as np
 import pytest
 
 import wavesym
@@ -35,7 +36,8 @@ from wavesym.scene import Scene
 
 ROOT = Path(wavesym.__file__).parents[1]
 PAGES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.md"))
-DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, "examples/chains/README.md", "examples/frames/README.md")
+EXAMPLES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").rglob("*.md"))
+DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, *EXAMPLES)
 READ_ELSEWHERE = {"order", "exceptions", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
 LONG = re.compile(r"wavesym (chart|stability|plot --published|verify --published)\b")  # half a minute and more
@@ -72,10 +74,11 @@ class Reader:
     """Does in a folder what a document says; with `patience` what takes long too, and each command as a process."""
 
     def __init__(self, folder: Path, patience: bool, beside: Path | None = None) -> None:
-        """`beside` is where scenes lie that a document does not show; copies of them are read."""
+        """`beside` is a folder of examples/, whose scenes and records a document does not show; copies are read."""
         self.folder, self.patience = folder, patience
-        for scene in beside.glob("*.toml") if beside else ():
-            shutil.copy(scene, folder)
+        if beside:
+            shutil.copytree(ROOT / "examples", folder / "examples", ignore=shutil.ignore_patterns("*.png"))
+            self.folder = folder / beside.relative_to(ROOT)
         self.unused: set[str] = set()
         programs = folder / "bin"
         programs.mkdir()
@@ -158,7 +161,7 @@ class Reader:
 
 def reader(name: str, folder: Path, patience: bool) -> Reader:
     """Of a document of the project."""
-    return Reader(folder, patience, (ROOT / name).parent if name.startswith("examples/") else None)
+    return Reader(folder, patience, (ROOT / name).parent if name in EXAMPLES else None)
 
 
 def assert_made(targets: list[str]) -> None:
@@ -195,7 +198,23 @@ def test_what_a_document_says_works(name: str, tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_all_that_a_document_says_works(name: str, tmp_path: Path) -> None:
-    assert reader(name, tmp_path, patience=True).read(document(name)) == document(name).count("```") // 2
+    follower = reader(name, tmp_path, patience=True)
+    assert follower.read(document(name)) == document(name).count("```") // 2
+    if name in EXAMPLES:
+        assert_kept(follower.folder, (ROOT / name).parent)
+
+
+def assert_kept(made: Path, kept: Path) -> None:
+    """What the commands of a page made is what is kept beside it: pictures, but for another machine's fonts, and data."""
+    from matplotlib.image import imread
+
+    assert {path.name for path in made.glob("*.png")} == {path.name for path in kept.glob("*.png")}
+    for picture in made.glob("*.png"):
+        now, then = (imread(folder / picture.name)[:, :, :3] for folder in (made, kept))
+        assert now.shape == then.shape, picture.name
+        assert np.mean(np.abs(now - then)) < 2e-3, f"{picture.name}: make examples"
+    for data in kept.glob("*.csv"):
+        assert (made / data.name).read_bytes() == data.read_bytes(), data.name
 
 
 @pytest.mark.slow
@@ -249,9 +268,7 @@ def test_the_readme_is_one_screen() -> None:
 
 def test_no_source_names_a_document_that_is_not_here() -> None:
     there = {
-        path.name
-        for folder in (".", "docs", "bench", "generated", "examples/chains")
-        for path in (ROOT / folder).glob("*.md")
+        path.name for folder in (".", "docs", "bench", "generated", "examples") for path in (ROOT / folder).glob("*.md")
     }
     for path in (path for room in ("wavesym", "tests", "templates") for path in (ROOT / room).rglob("*.*")):
         if path.suffix in {".py", ".c", ".h", ".j2", ".toml"}:
