@@ -205,7 +205,7 @@ def test_all_that_a_document_says_works(name: str, tmp_path: Path) -> None:
 
 
 def assert_kept(made: Path, kept: Path) -> None:
-    """What the commands of a page made is what is kept beside it: pictures, but for another machine's fonts, and data."""
+    """What the commands of a page made is what is kept beside it: data, and pictures but for other fonts."""
     from matplotlib.image import imread
 
     assert {path.name for path in made.glob("*.png")} == {path.name for path in kept.glob("*.png")}

@@ -93,6 +93,30 @@ def test_contacts_open_at_first_and_at_last():
     assert open_times(model, events) == {"1": [(0.0, 2.0), (5.0, 6.0)], "2": [(3.0, 9.0)]}
 
 
+def test_units_are_on_the_axes_and_in_the_colours():
+    """A shaft that is written out in m, and drawn in ms, rpm and kN m: each cell is what an output there is."""
+    shaft = {"rod": "2 m", "diameter": "50 mm", "G": "80 GPa", "rho": "7850 kg/m^3"}
+    scene = wavesym.Scene(
+        name="shaft",
+        units={"kind": "torsional", "time": "ms", "velocity": "rpm", "moment": "kN*m"},
+        system={"type": "chain", "parts": [{"mass": "1 kg*m^2", "velocity": "100 rpm"}, shaft, "fixed"]},
+        output={"until": "2 ms", "velocity": ["1.5 m"], "force": ["1.5 m"]},
+    )
+    figure = xt.draw(lower(scene), scene.system.lines, scene.scale)
+    until = float(lower(scene).until)
+    for quantity, axes in zip((0, 1), figure.axes[::2], strict=False):
+        assert axes.get_xlim() == (0, 2)
+        assert axes.get_ylim() == pytest.approx((0, 2))
+        assert (axes.get_xlabel(), axes.get_ylabel()) == ("x in m", "t in ms")
+        cells = axes.collections[0].get_array()
+        rows, columns = cells.shape
+        near = [int(part * rows) for part in (0.2, 0.5, 0.9)]
+        there = wavesym.evaluator(scene)([(row + 0.4142) / rows * until for row in near])[quantity]
+        assert np.max(np.abs(cells[near, int(0.75 * columns)] - there)) < 0.01 * np.max(np.abs(cells))
+        assert np.max(np.abs(there)) > 0.1 * np.max(np.abs(cells))
+    assert [axes.get_xlabel() for axes in figure.axes[1::2]] == ["velocity in rpm", "moment in kN*m"]
+
+
 def test_names_do_not_lie_over_one_another():
     """Nor over the numbers at the axis: the first name begins at its place, the last one ends there."""
     named = [{"mass": 1, "name": "a_long_name"}, {"rod": "1/50"}, {"mass": 1, "name": "another_name"}, {"rod": 3}]

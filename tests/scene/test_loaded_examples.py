@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from itertools import pairwise
 from math import exp, log, pi, sin, sqrt
 from pathlib import Path
 
@@ -97,7 +98,7 @@ def test_the_wall_is_a_dashpot_until_the_neighbours_answer() -> None:
 
     response = wavesym.evaluator(wall)
     times = np.array([0.2e-3, 0.8e-3, 1.1e-3, 1.9e-3, 2.8e-3])
-    floor, roof, _, start, *_ = response(times / seconds(wall))
+    floor, roof, *_ = response(times / seconds(wall))
     assert floor == pytest.approx([1000 * speed(t) for t in times], rel=1e-9)
     assert not roof.any()
     assert response([0.0])[3][0] == pytest.approx(force / mass, rel=THE_SAME)
@@ -152,7 +153,7 @@ def test_the_first_of_the_wave_at_the_surface_is_a_product() -> None:
     )
     impedances = [2400, 840, 456, 272]
     product = Fraction(1)
-    for below, above in zip(impedances, impedances[1:], strict=False):
+    for below, above in pairwise(impedances):
         product *= Fraction(2 * below, below + above)
     times = np.array([0.14, 0.17, 0.24])
     outcrop, _, surface = wavesym.evaluator(soil)(times / seconds(soil))
