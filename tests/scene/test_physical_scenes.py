@@ -583,6 +583,36 @@ def test_remarks_are_made_of_what_is_odd() -> None:
     assert not list(remarks(physical(BUILDING)))
 
 
+@pytest.mark.parametrize(("unit", "shown"), [("s", ("ms", 1e3)), ("ms", ("ms", 1e3)), ("min", ("min", 1 / 60))])
+def test_places_and_times_of_pictures_have_units(unit: str, shown: tuple[str, float]) -> None:
+    pytest.importorskip("matplotlib")
+    from matplotlib.figure import Figure
+
+    from wavesym.report.xt import _in_units
+
+    scene = Scene(**(CHAIN | {"units": {"time": unit, "length": "mm"}}))
+    assert scene.physical
+    axes, until = Figure().add_subplot(), lower(scene).horizon()
+    _in_units(axes, scene.physical, "arm", 1, until, True)
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("arm:x in mm", f"t in {shown[0]}")
+    for tau, label in zip(axes.get_yticks(), axes.get_yticklabels(), strict=True):
+        assert float(label.get_text()) == pytest.approx(tau / until * 2e-3 * shown[1], abs=1e-12)
+    for x, label in zip(axes.get_xticks(), axes.get_xticklabels(), strict=True):
+        assert float(label.get_text()) == pytest.approx(x * 1200, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_colours_of_pictures_have_units() -> None:
+    pytest.importorskip("matplotlib")
+    from wavesym.report import xt
+
+    scene = Scene(**CHAIN)
+    figure = xt.draw(lower(scene), scene.system.lines, scene.physical)
+    labels = {each.get_xlabel() for each in figure.axes}
+    assert labels >= {"arm:x in m", "x in m", "velocity in m/s", "force in N, pull red, push blue"}
+    assert figure.get_suptitle() == "good: chain, t upward to 0.002 s"
+
+
 def test_scenes_without_units_do_not_wait_for_pint() -> None:
     code = "import sys, wavesym; wavesym.tables(wavesym.Scene.from_toml('drive_m1')); assert 'pint' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=FRAMES.parents[1])

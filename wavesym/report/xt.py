@@ -16,13 +16,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from wavesym.exact.field import Field
+from wavesym.model.clock import Clock
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.report.stations import open_times
 from wavesym.report.xt_nodes import draw_nodes, legend
+from wavesym.scene.physical.scene import PhysicalScene
 from wavesym.systems.station import Lines, Station
 
 Array = NDArray[np.float64]
@@ -35,8 +38,11 @@ _NARROWEST = 0.12  # of all lines together: where names and numbers still fit
 _NAMED = {"velocity": "velocity", "force": "force (impedance times strain), pull red, push blue"}
 
 
-def draw(model: Model, lines: Lines) -> Figure:
-    """Velocity and force of all rods over the horizon, in a picture of each line. CostError as for their outputs."""
+def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> Figure:
+    """Velocity and force of all rods over the horizon, in a picture of each line. CostError as for their outputs.
+
+    A `physical` scene has its units at the axes.
+    """
     field = Field(model)
     shown = {name: stations for name, stations in lines.items() if stations[-1].x}
     until = nearest(model.until)
@@ -56,7 +62,8 @@ def draw(model: Model, lines: Lines) -> Figure:
         wspace=0.2 if len(shown) > 1 else 0.1,
         hspace=0.16,
     )
-    figure.suptitle(f"{model.name}: {model.labels.system['type']}, tau upward to {until:g}", x=0.06, y=0.985, ha="left")
+    end = f"t upward to {model.clock.told(model.until)}" if model.clock else f"tau upward to {until:g}"
+    figure.suptitle(f"{model.name}: {model.labels.system['type']}, {end}", x=0.06, y=0.985, ha="left")
     figure.text(0.06, 0.935, legend(model.network, shown), fontsize=_FONT - 1, color="0.3")
     for first, quantity in ((0, "velocity"), (len(shown) + 1, "force")):
         images = [_image(field, stations, until, quantity) for stations in shown.values()]
@@ -67,11 +74,18 @@ def draw(model: Model, lines: Lines) -> Figure:
             for x, tau, values in rods:
                 axes.pcolormesh(x, tau, values, cmap=colours, norm=norm, rasterized=True)
             _frame(axes, name, stations, until, column == 0)
+            if physical:
+                _in_units(axes, physical, name, float(stations[-1].x), until, column == 0)
             draw_nodes(axes, model.network, stations, opened, until)
         place = figure.add_subplot(grid[1, first : first + len(shown)])
+        label = _NAMED[quantity]
+        if physical:
+            size = float(physical.scale.factor(quantity, 1))
+            norm = Normalize(-largest * size, largest * size)
+            label = f"{quantity} in {physical.scale.unit(quantity)}{', pull red, push blue' * (quantity == 'force')}"
         bar = figure.colorbar(ScalarMappable(norm, colours), cax=place, orientation="horizontal")
         bar.ax.tick_params(labelsize=_FONT - 1)
-        bar.set_label(_NAMED[quantity], fontsize=_FONT)
+        bar.set_label(label, fontsize=_FONT)
     return figure
 
 
@@ -104,3 +118,30 @@ def _frame(axes: Axes, name: str, stations: Sequence[Station], until: float, fir
     axes.tick_params(labelsize=_FONT - 1, labelleft=first)
     if first:
         axes.set_ylabel("tau", fontsize=_FONT)
+
+
+def _in_units(axes: Axes, physical: PhysicalScene, name: str, long: float, until: float, first: bool) -> None:
+    """Axes that count the time, and where places are lengths these; named systems go on counting rods."""
+    length = physical.length
+    per_tau, unit = _readable(physical.scale.clock, until)
+    times = MaxNLocator(8).tick_values(0, until * per_tau)
+    axes.set_yticks([time / per_tau for time in times if time <= until * per_tau])
+    axes.set_yticklabels([f"{time:g}" for time in times if time <= until * per_tau])
+    axes.set_ylim(0, until)
+    if first:
+        axes.set_ylabel(f"t in {unit}", fontsize=_FONT)
+    if length is None:
+        return
+    places = MaxNLocator(6 if first else 3).tick_values(0, long * length)
+    axes.set_xticks([place / length for place in places if place <= long * length])
+    axes.set_xticklabels([f"{place:g}" for place in places if place <= long * length])
+    axes.set_xlim(0, long)
+    axes.set_xlabel(f"{name}:x in {physical.scale.results.texts['length']}".removeprefix(":"), fontsize=_FONT)
+
+
+def _readable(clock: Clock, until: float) -> tuple[float, str]:
+    """One tau in the clock's unit, or in a smaller one where seconds would have many zeros."""
+    per_tau = nearest(clock.per_tau)
+    smaller = ((1.0, "s"), (1e3, "ms"), (1e6, "us")) if clock.unit == "s" else ((1.0, clock.unit),)
+    size, unit = next((each for each in smaller if until * per_tau * each[0] >= 1), smaller[-1])
+    return per_tau * size, unit
