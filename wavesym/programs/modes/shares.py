@@ -14,6 +14,7 @@ from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.statics import Shape, Statics
 from wavesym.model.network import End, Network
+from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.modal import Numbers
 from wavesym.programs.modes.watched import Driver, Seen
 
@@ -78,7 +79,7 @@ def shares(found: Sequence[Mode], pieces: Cut, seen: Sequence[Seen], drivers: Se
         gains = [driver.gain for driver in drivers]
         return Shares(
             w=np.array([float(mode.frequency) for mode in found]),
-            seen=_array([[each.of(mode) for mode in found] for each in seen], len(found)),
+            seen=np.array([_column(each, found) for each in seen]).reshape(len(seen), len(found)),
             shares=_array([[_share(network, each, mode) for mode in found] for each in drivers], len(found)),
             imposed=_array(
                 [
@@ -93,6 +94,14 @@ def shares(found: Sequence[Mode], pieces: Cut, seen: Sequence[Seen], drivers: Se
             powers=(np.array([each.power for each in seen]), np.array([1 if s is None else 0 for s, _ in shapes])),
             totals=(_above([each.total(statics) for each in seen]), _above(share_totals)),
         )
+
+
+def _column(output: Seen, found: Sequence[Mode]) -> list[float]:
+    if len(output.points) == 1:  # so are most, of many modes
+        ((point, weight),) = output.points.items()
+        factor = nearest(weight)
+        return [factor * float(mode.points[point]) for mode in found]
+    return [float(output.of(mode)) for mode in found]
 
 
 def _shapes(statics: Statics, driver: Driver) -> tuple[Shape | None, Shape]:

@@ -27,7 +27,7 @@ from wavesym.programs.schemes.modes import ModesScheme
 
 _FIRST = 6  # modes for a bar, for a start
 _MOST = 4000  # modes, and
-_MOST_WORK = 60_000  # modes times bars
+_MOST_WORK = 100_000  # modes times bars
 _REASONABLE = 0.1  # error relative to what a bound of the largest value may be read from
 
 
