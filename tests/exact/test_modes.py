@@ -112,7 +112,7 @@ def test_another_equation_is_not_the_derived_law():
 def by_elements(model, count):
     """The first frequencies of linear finite elements, extrapolated, and about how wrong that is."""
     values = []
-    for resolution in (10, 20, 40):
+    for resolution in (12, 24, 48):
         problem = network_problem(model)
         mass, _, stiffness = Elements(problem, 1 / resolution).assembled()
         free = np.setdiff1d(np.arange(mass.shape[0]), problem.told)
@@ -130,7 +130,7 @@ ELEMENTS = [
 
 @pytest.mark.parametrize("name", ELEMENTS)
 def test_frequencies_are_those_of_finite_elements(name):
-    count = 9
+    count = 6
     expected, wrong = by_elements(NASTY[name], count)
     made = np.array([float(w) for w in frequencies(NASTY[name].network, count)])
     assert np.all(np.abs(made - expected) <= wrong)
@@ -149,6 +149,8 @@ def test_frequencies_in_books():
         for w in frequencies(building(["1", "3/5"]).network, 30):
             assert (w * w.tan()).overlaps(arb(fmpq(3, 5)))
             assert (w * w.tan()).rad() < 1e-10
+    alone = chain(["fixed", {"rod": 2}, "fixed"])
+    assert [float(w) for w in frequencies(alone.network, 3)] == pytest.approx([pi / 2, pi, 3 * pi / 2], rel=1e-15)
     pieces = chain(["fixed", {"rod": "1/1000"}, {"joint": True}, {"rod": "999/1000"}, {"mass": "5/3"}])
     short = frequencies(pieces.network, 12)
     assert all(a.overlaps(b) for a, b in zip(short, frequencies(building(["1", "3/5"]).network, 12), strict=True))

@@ -6,9 +6,12 @@ from math import inf
 import numpy as np
 import pytest
 from flint import fmpq
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.linalg import eigh
 from scipy.signal import lsim
 
+from tests.support.drawn import systems
 from tests.support.modal import building, chain, samples
 from wavesym.errors import ToleranceError, UnservedError
 from wavesym.exact.reference import Reference
@@ -22,6 +25,7 @@ from wavesym.programs.modes.tables import scheme_tables
 from wavesym.programs.schemes.modes import ModesScheme
 from wavesym.rivals.elements import Elements
 from wavesym.rivals.network import network_problem
+from wavesym.scene import Scene, lower
 
 PULSE = {"times": [0, "7/3", "5/2"], "a": [0, 0, 0], "b": [1, -3, 2]}
 PUSH = {"at": "n", "times": [0, "7/3", "5/2"], "ramps": [1, -3, 2]}
@@ -103,6 +107,30 @@ def test_outputs_are_those_of_waves_but_for_what_is_left_out(name):
     for few in (made, with_modes(model, 3 * len(model.network.bars))):
         error = np.abs(values(model, few, taus) - exact).max(axis=1)
         assert np.all(error <= few.errors + rounding(model, few))
+
+
+@pytest.mark.slow
+@settings(max_examples=40)
+@given(st.data())
+def test_drawn_chains_under_drawn_loads_are_within_the_bound(data):
+    """Equal and nearly equal parameters, a storey to three, loads that are linear between drawn instants."""
+    table = data.draw(systems(("drive", "building"), largest=3))
+    times = sorted(data.draw(st.lists(st.fractions(0, 4, max_denominator=7), min_size=1, max_size=4, unique=True)))
+    slopes = st.integers(-5, 5).filter(bool)
+    ramps = data.draw(st.lists(slopes, min_size=len(times), max_size=len(times)))
+    load = {"times": times, "ramps": ramps, "body": 1}
+    if table["type"] == "building":
+        load = {"times": times, "b": ramps}
+    place = st.fractions(0, table["m"], max_denominator=5)
+    output = {name: [data.draw(place)] for name in ("velocity", "displacement")}
+    output["strain"] = [data.draw(place.filter(lambda x: x.denominator > 1 or x in (0, table["m"])))]
+    model = lower(Scene(name="a", system=table, load=[load], output={"until": 5, **output}))
+    taus = np.linspace(0, 5, 41)
+    exact = np.array(Reference(model).values(taus.tolist()))
+    for count in (5 * table["m"], 60):
+        made = with_modes(model, count)
+        error = np.abs(values(model, made, taus) - exact).max(axis=1)
+        assert np.all(error <= made.errors + (rounding(model, made) if made.sources else 0))
 
 
 def test_a_bound_can_fail():
@@ -203,9 +231,12 @@ def test_what_modes_do_not_serve_is_refused():
 
 
 def test_no_load_is_no_motion():
-    made = modal_system(building(["1", "1"]))
-    assert made.errors.tolist() == [0]
-    assert not made.system.moved.any()
+    """Outputs are exactly 0; of a building the system is ready for its load."""
+    for model in (building(["1", "1"]), chain(["free", {"rod": 1}, {"mass": 1}, {"rod": 1}, "fixed"])):
+        made = modal_system(model)
+        assert made.errors.tolist() == made.bounds.tolist() == [0]
+        assert not values(model, made, np.linspace(0, 10, 5)).any()
+    assert modal_system(building(["1", "1"])).sources == (("a", "b"),)
 
 
 @pytest.mark.parametrize("count", [5, 60, 700])
