@@ -13,7 +13,7 @@ from scipy.signal import lsim
 
 from tests.support.drawn import systems
 from tests.support.modal import building, chain, samples
-from wavesym.errors import ToleranceError, UnservedError
+from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.model.damping import Damping
 from wavesym.numbers.reals import DOUBLE
@@ -230,6 +230,11 @@ def test_what_modes_do_not_serve_is_refused():
         modal_system(building(["1", "1"], [samples(9)], tolerance="1e-13", velocity=["1/2"]))
 
 
+def test_many_rods_are_refused_at_once():
+    with pytest.raises(CostError, match=r"^system.m: 400 rods in modes, at most 129 expected"):
+        modal_system(building(["1"] * 401, [samples(3)]))
+
+
 def test_no_load_is_no_motion():
     """Outputs are exactly 0; of a building the system is ready for its load."""
     for model in (building(["1", "1"]), chain(["free", {"rod": 1}, {"mass": 1}, {"rod": 1}, "fixed"])):
@@ -249,6 +254,14 @@ def test_kinks_in_step_are_not_underestimated(count):
     sums = np.abs(np.cumsum(kinks * np.exp(-1j * np.outer(w, rough.times)), axis=1)).max(axis=1)
     assert sums.max() <= rough.in_step <= 2 * sums.max()
     assert rough.in_step <= np.abs(kinks).sum() * (1 + 1e-6)
+    some = 0.3
+    total = max(
+        sum(abs(kinks[k]) * np.exp(-some * (rough.times[n] - rough.times[k])) for k in range(n + 1))
+        for n in range(min(count, 60))
+    )
+    assert total <= rough.fading(some)
+    if count <= 60:
+        assert rough.fading(some) == pytest.approx(total)
     assert rough.fading(1.0) <= np.abs(kinks).sum() * (1 + 1e-6)
     assert rough.fading(1e9) == pytest.approx(np.abs(kinks).max())
     assert Roughness(rough.times, kinks, None, inf).in_step == pytest.approx(np.abs(kinks).sum())

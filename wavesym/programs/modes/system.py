@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, inf, log
+from math import ceil, inf, isqrt, log
 
 import numpy as np
 from flint import fmpq
 
-from wavesym.errors import ToleranceError, UnservedError
+from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest
@@ -180,8 +180,17 @@ class _Chain:
                 "system: a motion or strain at tau = 0 given, rest expected in modes (pieces and march serve it)"
             )
         _ = self.loads  # refused before the work
+        self._refuse_many(len(network.bars))
         found = self.spectrum.first(count)
         return shares(found, self.spectrum.cut, self.seen, self.drivers)
+
+    def _refuse_many(self, rods: int) -> None:
+        most = isqrt(_MOST_WORK // _FIRST)
+        if rods <= most:
+            return
+        if self.model.chain is None:
+            raise CostError(f"system.parts: {rods} rods in modes, at most {most} expected (fewer rods or march helps)")
+        raise CostError(f"system.m: {rods} rods in modes, at most {most} expected (fewer rods or march helps)")
 
     @property
     def seen(self) -> list[Seen]:
