@@ -2,6 +2,7 @@
 
 The first word after ``` says what a block is, a second one the file that it is saved as:
 toml, c     a scene, a program in C; a later command uses the file
+csv         a record, which a scene or a command uses
 python      a program, which runs
 sh          commands, line by line
 text        all that the block before it puts out, to the character
@@ -103,6 +104,8 @@ class Reader:
                 Scene.from_toml(self.folder / block.file)
                 self.unused.add(block.file)
             case "c":
+                self.unused.add(block.file)
+            case "csv":
                 self.unused.add(block.file)
             case "python":
                 return self.process([sys.executable, "-c", block.text])

@@ -2,6 +2,7 @@
 
     Scene       what is modelled, which loads act, which outputs are wanted, for how long and how exactly
     evaluator   the outputs of a scene as a function of tau, right to the last bit
+    summary     the least and the greatest value of each output, and when; `peaks` of several scenes as arrays
     tables      the exact coefficients of its wave functions
     generate    its C and NumPy programs, written to files
 
@@ -20,7 +21,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from wavesym.compiler import evaluator, generate, tables
+    from wavesym.compiler import evaluator, generate, peaks, summary, tables
     from wavesym.errors import CostError, RangeError, SceneError, ToleranceError, WavesymError
     from wavesym.scene import Scene
 
@@ -34,6 +35,8 @@ __all__ = [
     "__version__",
     "evaluator",
     "generate",
+    "peaks",
+    "summary",
     "tables",
 ]
 __version__ = "0.1.0"
@@ -48,6 +51,8 @@ _HOMES = {
     "WavesymError": "wavesym.errors",
     "evaluator": "wavesym.compiler",
     "generate": "wavesym.compiler",
+    "peaks": "wavesym.compiler",
+    "summary": "wavesym.compiler",
     "tables": "wavesym.compiler",
 }
 

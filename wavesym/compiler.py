@@ -16,15 +16,18 @@ verification/ and papers/, what is measured by lab/. The heavy libraries load wh
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from fractions import Fraction
 from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from wavesym.difference import Difference
+from wavesym.documents.summary import summary_text as told
 from wavesym.documents.tables import symbolic_lines, table_lines
 from wavesym.errors import SceneError, UnservedError, WavesymError
 from wavesym.exact.contact import contact_ends
@@ -32,12 +35,18 @@ from wavesym.exact.network_table import NetworkTable, network_table
 from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
+from wavesym.fields.loads import SampledLoad
+from wavesym.fields.table import shown
 from wavesym.model.symbolic import generic, symbolic
 from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
+from wavesym.records.load import RecordedLoad
+from wavesym.results.peaks import table_of_peaks
 from wavesym.results.response import Response
+from wavesym.results.summary import Summary, summarised
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import drifts
 from wavesym.targets import LANGUAGES
 from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
@@ -50,7 +59,9 @@ if TYPE_CHECKING:
     from wavesym.programs.program import Program
 
 
+_UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
 _AT_ONCE = 5000  # tau of `run`
+SAMPLES = 1001  # of `run`, where it is not told how many
 MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
 
 
@@ -73,6 +84,57 @@ def evaluator(scene: Scene) -> Response:
     if not isinstance(scene, Scene):
         raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
     return Response(lower(scene))
+
+
+def summary(scene: Scene, *, at_samples: bool = False) -> Summary:
+    """Of each output the least and the greatest value, when, and when it first differs from 0.
+
+    They are true extremes, also between samples, and proved where `run` is right to the last bit (`proved`, `how`,
+    `bound`); or, `at_samples`, those of the values at the samples of a record, else at 1001 equally spaced tau.
+    `outputs` have `name`, `unit`, `min`, `max` and `arrival`; a `min` has `value`, `at` (`tau` and `time`), `reached`.
+    ToleranceError, CostError where nothing could be generated either.
+
+    >>> import wavesym
+    >>> strain = wavesym.summary(wavesym.Scene.from_toml("drive_m1")).outputs[0]
+    >>> print(f"{strain.name}: {strain.max.value:.6g} at {strain.max.at.tau:.6g}, from {strain.arrival.tau} on")
+    strain@0: 1.20241 at 6.46788, from 0.0 on
+    """
+    model = lower(scene)
+    return summarised(model, _own_samples(scene, model) if at_samples else None, drifts(scene))
+
+
+def summary_text(scene: Scene, at_samples: bool, format: str) -> tuple[str, list[str]]:
+    """A summary as text or json, and what a user might not expect of it."""
+    found = summary(scene, at_samples=at_samples)
+    unproved = [] if found.proved or format == "text" else [f"{found.how}: {found.certain}"]
+    return told(found, format), [*warnings(scene), *unproved]
+
+
+def _own_samples(scene: Scene, model: Model) -> list[float]:
+    """The samples of a record, or those of `run`."""
+    combs = [(load.begin, load.step) for load in scene.load if isinstance(load, RecordedLoad)]
+    combs += [(Fraction(0), load.spacing) for load in scene.load if isinstance(load, SampledLoad)]
+    if not combs:
+        return list(grid(model, SAMPLES))
+    begin, step = (rational(number) for number in min(combs, key=lambda comb: comb[1]))
+    count = int(((model.until - begin) / step).floor()) + 1
+    return [nearest(begin + k * step) for k in range(-int((begin / step).floor()), count)]
+
+
+def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Any:
+    """Extremes of one scene, or of several, as arrays: `min`, `max`, `tau_min`, `tau_max`, `arrival` (a tau).
+
+    An xarray.Dataset with the dimensions `case` (of several scenes) and `output`, or, where xarray is not installed, a
+    dict of NumPy arrays with these shapes, and `case` and `output`, the names. What a scene does not have is NaN.
+
+    >>> import wavesym
+    >>> table = wavesym.peaks(wavesym.Scene.from_toml(name) for name in ("drive_m1", "building_m2"))
+    >>> table["max"].shape
+    (2, 10)
+    """
+    several = not isinstance(scenes, Scene)
+    found = [summary(scene, at_samples=at_samples) for scene in ([scenes] if isinstance(scenes, Scene) else scenes)]
+    return table_of_peaks(found, several)
 
 
 def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
@@ -355,8 +417,9 @@ def _contact_warnings(model: Model) -> list[str]:
 def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
     """Draw a scene as .svg, .png or .pdf; what the picture leaves out, line by line.
 
-    `kind`: "history", the outputs over tau, or "xt", place x time of all rods. SceneError for another suffix, before
-    the work; ToleranceError, CostError where nothing could be generated either.
+    `kind`: "history", the outputs over time; "xt", place x time of all rods; "envelope", the least and greatest along
+    the chain; "map", place x time as colours, for long horizons. SceneError for another suffix, before the work;
+    ToleranceError, CostError where nothing could be generated either.
     """
     from wavesym.report.saving import picture_format, save
 
@@ -366,26 +429,94 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
 
         save(xt.draw(lower(scene), scene.system.lines), path)
         return []
-    from wavesym.report.histories import histories
-    from wavesym.report.panels import draw, notes
+    if kind in ("envelope", "map"):
+        from wavesym.report import envelope, heatmap
+        from wavesym.report.along import along
 
-    made = histories(lower(scene))
-    save(draw(made), path)
+        found = along(scene)
+        if kind == "envelope":
+            save(envelope.draw(lower(scene), found), path)
+        else:
+            from wavesym.report.loads import load_histories
+
+            model = lower(scene)
+            save(heatmap.draw(model, found, load_histories(model, scene.scale)), path)
+        return []
+    from wavesym.report.groups import notes
+    from wavesym.report.histories import histories
+    from wavesym.report.loads import load_histories
+    from wavesym.report.panels import draw
+
+    model = lower(scene)
+    made = histories(model)
+    save(draw(made, load_histories(model, scene.scale)), path)
     return notes(made)
+
+
+def report(scene: Scene, path: Path, text: str) -> None:
+    """Write a scene, and what happens in it, as one page of HTML; `text` is what the scene was read from.
+
+    ToleranceError, CostError where nothing could be generated either.
+    """
+    from wavesym.report.page.document import page
+
+    write_whole({path: page(scene, text)})
+
+
+def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[list[str], list[str]]:
+    """Response spectra as CSV lines, and what to say of them; drawn at `path`, too, where there is one.
+
+    SceneError for a scene without outputs of quantity acceleration; ToleranceError, CostError as in `spectra`.
+    """
+    from wavesym.results.spectrum import spectra
+
+    if path is not None:
+        from wavesym.report.saving import picture_format
+
+        picture_format(path)
+    found = spectra(lower(scene), damping)
+    if path is not None:
+        from wavesym.report.saving import save
+        from wavesym.report.spectra import draw
+
+        save(draw(found), path)
+    names = [f"{name} [{unit}]" if unit else name for name, unit in zip(found.names, found.units, strict=True)]
+    header = ",".join(["period" if found.time_unit is None else f"period [{found.time_unit}]", *names]) + "\n"
+    rows = (",".join(map(repr, row)) + "\n" for row in np.vstack([found.periods, found.values]).T.tolist())
+    said = (
+        f"damping {damping:g}, values {found.step:g} tau apart; with half as many spectra change by {found.change:.1e}"
+    )
+    return [header, *rows], [*warnings(scene), said]
+
+
+def advise(scene: Scene, tolerance: float = 0.01, format: str = "text") -> str:
+    """Which model of a scene is enough, massless springs, consistent mass or waves, as text or json.
+
+    WavesymError for a tolerance that is not between 0 and 1; ToleranceError, CostError where nothing could be generated
+    either.
+    """
+    from wavesym.rivals.advice import advise as advice
+
+    if not 0 < tolerance < 1:
+        raise WavesymError(f"--tolerance: {tolerance:g} given, a number between 0 and 1 expected")
+    found = advice(lower(scene), tolerance)
+    return found.json() if format == "json" else found.text()
 
 
 def record(path: Path, unit: str | None, column: str | None = None, picture: Path | None = None) -> list[str]:
     """What a file of a record says, line by line; drawn too, where there is a path for it.
 
     `unit` is that of the samples where the file says none, `column` that of a CSV with several. SceneError for a file
-    that is damaged or says another unit, and for a picture with another suffix.
+    that is damaged or says another unit, and for a picture with another suffix; WavesymError for what is no unit.
     """
     from wavesym.documents.record import facts
     from wavesym.records.read import read_record
 
+    if unit is not None and not _UNIT.fullmatch(unit):
+        raise WavesymError(f"--unit: {shown(unit)} given, a unit such as g or m/s^2 expected")
     said = read_record(path, column)
     if unit is not None and said.unit not in ("", unit):
-        raise SceneError(f"--unit {unit} given, none expected (the file says {said.unit})", file=said.file)
+        raise SceneError(f"--unit {unit} given, {said.unit} expected, as in the file, or none", file=said.file)
     lines = facts(said, unit or said.unit)
     if picture is not None:
         from wavesym.report.record import draw

@@ -67,14 +67,29 @@ class Compiler(SimpleNamespace):
         self.asked.append(options)
         return [], iter(["symbols\n"])
 
+    def record(self, path: Path, *options: object) -> list[str]:
+        self.asked.append(options)
+        return [f"{path}: 2 samples"]
+
     def inspect(self, scene: object, *options: object) -> str:
         self.asked.append(options)
         return "nodes"
+
+    def summary_text(self, scene: object, *options: object) -> tuple[str, list[str]]:
+        self.asked.append(options)
+        return "least, greatest", []
+
+    def spectrum(self, scene: object, *options: object) -> tuple[list[str], list[str]]:
+        self.asked.append(options)
+        return ["period\n"], ["damping"]
 
     def derive(self, system: str, m: int | None, format: str) -> str:
         if m == 0:
             raise ValueError("--m: 0 given, at least 1 expected")
         return f"{system} {m}"
+
+    def report(self, scene: object, path: Path, text: str) -> None:
+        self.asked.append(path)
 
     def plot(self, scene: object, path: Path, kind: str) -> list[str]:
         self.asked.append(path)
@@ -96,7 +111,8 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
-    Path("mine.toml").write_text(SCENE)
+    for name in ("mine", "lab"):
+        Path(f"{name}.toml").write_text(SCENE)
     return tmp_path
 
 

@@ -171,7 +171,10 @@ def test_a_scene_with_other_values() -> None:
         ("output.until[0]", "output.until[0]: nothing at [0]"),
         ("system..m", 'system..m: no path, one such as "output.until" or "load[0].times[2]" expected'),
         ("", 'scene: no path, one such as "output.until" or "load[0].times[2]" expected'),
-        ("output.untill", "output.untill: unknown key, until, tolerance, strain, velocity or displacement expected."),
+        (
+            "output.untill",
+            "output.untill: unknown key, until, tolerance, strain, velocity, displacement, acceleration, force, drift",
+        ),
         ("system.kappa[1]", "system.kappa[1]: -1 given, a positive number expected"),
     ],
 )

@@ -22,13 +22,12 @@ from wavesym.lab.atlas import twisted_shaft as twist
 from wavesym.lab.atlas.attempts import ROUNDED, truth
 from wavesym.lab.atlas.drawing import draw
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, to_csv
-from wavesym.lab.atlas.lumped import strains
 from wavesym.lab.atlas.scenes import TOLERANCE, aimed, drive, made
 from wavesym.programs import pieces
 from wavesym.programs.choice import choose
 from wavesym.report.saving import save
 from wavesym.rivals import characteristics, differences, elements, laplace, modes, steps
-from wavesym.rivals.line import stated
+from wavesym.rivals.advice import springs
 from wavesym.scene import lower
 
 
@@ -159,13 +158,11 @@ def check_orders(family):
 
 def test_masses_and_springs_swing_as_they_should():
     """Two equal discs: s'' = -2 kappa s - kappa; a foundation that is pushed strains rod 1 by a/kappa_0 at once."""
-    step, count = 0.1, 400
-    two = strains(stated(lower(drive([Fraction(1, 50)], [1, 1], 40))), step, count)
-    t = step * np.arange(count + 1)
+    t, two = springs(lower(drive([Fraction(1, 50)], [1, 1], 40)), 0.0)
     np.testing.assert_allclose(two[0], (np.cos(np.sqrt(2 / 50) * t) - 1) / 2, atol=1e-12)
     system = {"type": "building", "m": 2, "kappa": ["1/4", "1/5", "1/5"], "base": "force"}
     pushed = made(system, [{"times": [0], "a": [1], "b": [0]}], 4, strain=["1/2"])
-    np.testing.assert_allclose(np.abs(strains(stated(lower(pushed)), step, 9)[0]), 4, rtol=1e-12)
+    np.testing.assert_allclose(np.abs(springs(lower(pushed), 0.0)[1]), 4, rtol=1e-12)
 
 
 # the march on long horizons

@@ -4,7 +4,7 @@ import random
 from fractions import Fraction
 
 import pytest
-from flint import ctx
+from flint import ctx, fmpq
 
 import wavesym
 from tests.support.generated import files
@@ -190,16 +190,17 @@ def test_one_value_that_needs_many_bits_does_not_cost_the_others(monkeypatch):
         output={"until": 2, "strain": ["1/4", "1/2"]},
     )
     lengths = {}
-    value = motion._value
+    values = motion._values
 
-    def counted(waves, probe, start):
-        found = value(waves, probe, start)
-        lengths.setdefault((probe.name, ctx.prec), []).append(found.polynomial.length())
+    def counted(waves, terms, start):
+        found = list(values(waves, terms, start))
+        ((_, gauge),) = terms
+        lengths.setdefault((gauge.place, ctx.prec), []).extend(known.polynomial.length() for _, known in found)
         return found
 
-    monkeypatch.setattr(motion, "_value", counted)
+    monkeypatch.setattr(motion, "_values", counted)
     taus = [0.1 * k for k in range(20)] + [1.0]
     first, _ = Reference(lower(scene)).values(taus)
     assert first[-1] == 0.0
-    assert lengths["strain@1/4", 2048]
-    assert max(lengths["strain@1/2", 128]) <= 33
+    assert lengths[fmpq(1, 4), 2048]
+    assert max(lengths[fmpq(1, 2), 128]) <= 33

@@ -17,8 +17,8 @@ from wavesym.programs.march import given as proving
 from wavesym.programs.march.bound import Roundings, largest_wave, reading_weights
 from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.given import SMOOTH, batch_size, given
-from wavesym.programs.march.plan import plan
-from wavesym.programs.march.run import LEFT, RIGHT, Block, Run
+from wavesym.programs.march.plan import LEFT, RIGHT, plan
+from wavesym.programs.march.run import Block, Run
 from wavesym.programs.march.sampler import OutputSampler
 from wavesym.programs.march.tail import tail_after
 from wavesym.running.compiled import imported
@@ -102,16 +102,18 @@ def test_what_is_proved_is_the_sum_over_all_single_loads(made_from, degree, real
                 continue
             energies[n] += largest * float(np.sum(roundings.of(block)))
             for o, watch in enumerate(watches):
-                integrals[n, o] += largest * watch.size(block, weights[1])[0]
+                integrals[n, o] += largest * watch.size(block, weights[1], summed=True)[0]
                 if n == windows - 1:
-                    values[o] += largest * watch.size(block, weights[0])[0]
+                    values[o] += largest * watch.size(block, weights[0], summed=False)[0]
     proved = proving._given(prepared, degree, real, windows, scale)
     assert proved.windows == windows
     smooth = tail_after(prepared, degree, windows, [windows * jump for jump in proving._jumps(prepared)])
     stretches, lost = 2 * len(prepared.panels) + 2, 4 * (degree + 3) ** 2 * float(real.smallest / scale)
     for o, output in enumerate(prepared.outputs):
-        impedance = float(prepared.junctions[output.right].right)
-        if output.quantity == "displacement":
+        right, left = output.heard
+        assert (right.way, left.way) == (RIGHT, LEFT)
+        impedance = float(prepared.junctions[right.column].right)
+        if right.summed:
             expected = 2 * np.sum(np.cumsum(energies)) / sqrt(impedance)
             expected += unit * (24 * stretches * np.sum(integrals[:, o])) + windows * stretches * lost
             expected += 2 * unit * (np.arange(1, windows + 1) @ integrals[:, o])

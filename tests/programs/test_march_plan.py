@@ -6,7 +6,7 @@ import pytest
 from flint import fmpq
 
 from wavesym.numbers.reals import DOUBLE, SINGLE
-from wavesym.programs.march.plan import Channel, LoadEvent, MarchPanel, Watched, plan
+from wavesym.programs.march.plan import LEFT, RIGHT, Channel, HeardWave, LoadEvent, MarchPanel, Watched, plan
 from wavesym.programs.march.run import Run, operator_count
 from wavesym.scene import Scene, lower
 
@@ -96,22 +96,28 @@ def test_accelerations_are_integrated_where_the_ground_moves():
     assert pushed.events[1].powers == tuple(numbers(-38, -10, 0))
 
 
+def waves_of_rod(name, sign, left_node, right_node, delay, summed=False):
+    """The wave to the right of the node on the left, `sign` times, and that to the left of the other."""
+    to_the_right = HeardWave(RIGHT, left_node, delay, fmpq(sign), summed)
+    return Watched(name, (to_the_right, HeardWave(LEFT, right_node, 1 - delay, fmpq(1), summed)))
+
+
 def test_outputs_have_the_waves_of_their_rod():
     outputs = {"strain": ["1/2", "1-", "1+"], "velocity": [0, 2], "displacement": ["7/4"]}
     made = planned(DRIVE, until=4, **outputs)
     assert made.outputs == (
-        Watched("strain@1/2", "strain", 0, 1, fmpq(1, 2)),
-        Watched("strain@1-", "strain", 0, 1, fmpq(1)),
-        Watched("strain@1+", "strain", 1, 2, fmpq(0)),
-        Watched("velocity@0", "velocity", 0, 1, fmpq(0)),
-        Watched("velocity@2", "velocity", 1, 2, fmpq(1)),
-        Watched("displacement@7/4", "displacement", 1, 2, fmpq(3, 4)),
+        waves_of_rod("strain@1/2", -1, 0, 1, fmpq(1, 2)),
+        waves_of_rod("strain@1-", -1, 0, 1, fmpq(1)),
+        waves_of_rod("strain@1+", -1, 1, 2, fmpq(0)),
+        waves_of_rod("velocity@0", 1, 0, 1, fmpq(0)),
+        waves_of_rod("velocity@2", 1, 1, 2, fmpq(1)),
+        waves_of_rod("displacement@7/4", 1, 1, 2, fmpq(3, 4), summed=True),
     )
     # columns count from the first node of the light cone
     tall = {"type": "drive", "m": 40, "kappa": [1] * 40, "inertia": [1] * 41}
     cut = planned(tall, until="3/2", velocity=["41/2"])
     assert (cut.first, len(cut.junctions)) == (19, 4)
-    assert cut.outputs[0] == Watched("velocity@41/2", "velocity", 1, 2, fmpq(1, 2))
+    assert cut.outputs[0] == waves_of_rod("velocity@41/2", 1, 1, 2, fmpq(1, 2))
     # and what is beyond them is felt after that, or never
     assert (cut.valid, made.valid) == (1.5, inf)
 

@@ -88,18 +88,19 @@ def test_sizes_are_those_of_both_waves_on_the_larger_panel():
     weights = np.arange(1.0, made.degree + 2)
     assert len(made.plan.panels) == 3
     for output in made.plan.outputs:
+        right, left = output.heard
         expected = [
             max(
-                weights @ np.abs(waves[n, RIGHT, p, output.right + 1])
-                + weights @ np.abs(waves[n, LEFT, p, output.left + 1])
+                weights @ np.abs(waves[n, RIGHT, p, right.column + 1])
+                + weights @ np.abs(waves[n, LEFT, p, left.column + 1])
                 for waves in (block.before, block.after)
                 for p in range(3)
             )
             for n in range(made.plan.windows)
         ]
-        np.testing.assert_allclose(
-            OutputSampler(made.plan, output, made.degree).size(block, weights), expected, rtol=1e-14
-        )
+        sampler = OutputSampler(made.plan, output, made.degree)
+        np.testing.assert_allclose(sampler.size(block, weights, summed=right.summed), expected, rtol=1e-14)
+        assert not np.any(sampler.size(block, weights, summed=not right.summed))
 
 
 def drive(until, time=0, tolerance="1e-10"):

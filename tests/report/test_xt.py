@@ -10,7 +10,8 @@ import wavesym
 from wavesym.exact.field import Field
 from wavesym.exact.reference import Reference
 from wavesym.model.event import ContactEvent
-from wavesym.report import xt, xt_nodes
+from wavesym.report import xt
+from wavesym.report.stations import open_times
 from wavesym.scene import Scene, lower
 
 CHAIN = {
@@ -68,7 +69,7 @@ def test_contacts_are_white_while_they_are_open_and_masses_black(tmp_path):
 
     parts = [{"mass": 1, "velocity": 1}, {"contact": 2}, {"rod": 10, "velocity": "1/2"}, "fixed"]
     model, lines = _made(parts, until=8, strain=["5"])
-    assert xt_nodes.open_times(model, Field(model).events) == {"0": [(0.0, 4.0)]}
+    assert open_times(model, Field(model).events) == {"0": [(0.0, 4.0)]}
     figure = xt.draw(model, lines)
     figure.savefig(tmp_path / "open.png")
     picture = imread(tmp_path / "open.png")[:, :, :3]
@@ -89,7 +90,7 @@ def test_contacts_open_at_first_and_at_last():
     model, _ = _made([{"rod": 1}, {"contact": 1}, {"rod": 1}, "contact", {"rod": 1}], until=9, strain=["1/2"])
     said = [("1", "closes", 2), ("2", "opens", 3), ("1", "opens", 5), ("1", "closes", 6)]
     events = [ContactEvent(x, kind, arb(tau)) for x, kind, tau in said]
-    assert xt_nodes.open_times(model, events) == {"1": [(0.0, 2.0), (5.0, 6.0)], "2": [(3.0, 9.0)]}
+    assert open_times(model, events) == {"1": [(0.0, 2.0), (5.0, 6.0)], "2": [(3.0, 9.0)]}
 
 
 def test_names_do_not_lie_over_one_another():

@@ -11,12 +11,12 @@ from wavesym.compiler import evaluator
 from wavesym.errors import UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.lab.subjects import left_out
-from wavesym.rivals import characteristics, elements, laplace, modes
+from wavesym.rivals import characteristics, elements, laplace, modal_elements, modes
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.line import stated
 from wavesym.scene import Scene, lower
 
-NETWORKS = (elements.RIVAL, laplace.RIVAL)
+NETWORKS = (elements.RIVAL, modal_elements.RIVAL, laplace.RIVAL)
 
 
 def scene(parts, branch=(), load=(), **output):
@@ -93,13 +93,18 @@ def test_laplace_converges(name):
     assert math.log(first / last, 5) > 2
 
 
+@pytest.mark.parametrize(
+    ("rival", "coarse", "order"),
+    [(elements.RIVAL, 40, 0.8), (modal_elements.RIVAL, 8, 0.7)],
+    ids=["Newmark", "modal"],
+)
 @pytest.mark.parametrize("name", SCENES)
-def test_elements_converge_where_nothing_jumps(name):
+def test_elements_converge_where_nothing_jumps(name, rival, coarse, order):
     """Displacements, or what is as smooth."""
     smooth = [k for k, output in enumerate(lower(SCENES[name]).probes) if output.quantity == "displacement"] or [2]
-    first, last = (np.max(errors(elements.RIVAL, name, n)[smooth]) for n in (40, 160))
-    assert last < 2e-3
-    assert math.log(first / last, 4) > 0.8
+    first, last = (np.max(errors(rival, name, n)[smooth]) for n in (coarse, 4 * coarse))
+    assert last < 0.08 / coarse
+    assert math.log(first / last, 4) > order
 
 
 @pytest.mark.parametrize("rival", NETWORKS, ids=lambda rival: rival.name)
@@ -115,7 +120,7 @@ def test_elements_converge_where_nothing_jumps(name):
     ids=["delays", "springs", "links", "gears", "strain"],
 )
 def test_a_fault_is_seen(rival, name, broken):
-    resolution = {"finite elements, Newmark": 100, "Laplace inversion": 1000}[rival.name]
+    resolution = {"finite elements, Newmark": 100, "finite elements, modal": 40, "Laplace inversion": 1000}[rival.name]
     right, wrong = np.median(errors(rival, name, resolution)), np.max(errors(rival, name, resolution, broken))
     assert right < 0.05
     assert wrong > 3 * right

@@ -154,7 +154,12 @@ MISTAKES = [
     (DRIVE, "until = 10", "until = 1e300", "output.until: a number of about "),
     (BUILDING, "1e-8", "0", "output.tolerance: 0 given, a number between 0 and 1 expected"),
     (BUILDING, "1e-8", "1", "output.tolerance: 1 given, a number between 0 and 1 expected"),
-    (DRIVE, "strain = [0.5]", "", "output: no positions given, at least one of strain, velocity or displacement"),
+    (
+        DRIVE,
+        "strain = [0.5]",
+        "",
+        "output: no positions given, at least one of strain, velocity, displacement, acceleration, force",
+    ),
     (DRIVE, "strain = [0.5]", "strain = []", "output: no positions given"),
     (DRIVE, "[0.5]", "[0, 2.5]", "output.strain[1]: 2.5 given, a position from 0 to 2 expected"),
     (DRIVE, "[0.5]", '["-1/2"]', "output.strain[0]: -1/2 given, a position from 0 to 2 expected"),

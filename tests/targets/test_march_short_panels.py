@@ -127,10 +127,9 @@ def in_numpy(text):
 
     def read(both, t):
         n, at = np.zeros(1, int), np.array([t])
-        for output, quantity in enumerate(scheme.quantity):
-            read = scheme._gathered if quantity == scheme.DISPLACEMENT else scheme._arrived
-            left, right = read(both, output, n, at)
-            yield (left - right if quantity == scheme.STRAIN else left + right)[0]
+        for output in range(scheme.outputs):
+            sums, values = (scheme._heard(output, summed=summed) for summed in (True, False))
+            yield (scheme._gathered(both, sums, n, at) + scheme._arrived(both, values, n, at))[0]
 
     return lambda both, t: np.array(list(read(both, t)))
 

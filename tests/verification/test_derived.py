@@ -43,7 +43,7 @@ def test_all_holds(capsys):
     assert tuple(found) == THEOREMS
     for lines in found.values():
         proofs = [line for line in lines if line.startswith("  PASS")]
-        for system in ("collision", "drive", "building-force", "building-ground"):
+        for system in ("collision", "drive", "drive-ramps", "building-force", "building-ground"):
             assert any(line.startswith(f"  PASS  {system}") for line in proofs)
         # the argument stands before its proofs, in sentences
         argument = " ".join(" ".join(lines[: lines.index(proofs[0])]).split())

@@ -20,14 +20,16 @@ if TYPE_CHECKING:
 @click.option("--published", is_flag=True, help="Figs. 6, 7 and 8 of the paper instead, as .svg and .png into DIR.")
 @click.option(
     "--kind",
-    type=click.Choice(["history", "xt"]),
+    type=click.Choice(["history", "xt", "envelope", "map"]),
     default="history",
     show_default=True,
-    help="The outputs over tau, or place x time of all rods.",
+    help="The outputs over time; place x time of all rods; least and greatest along the chain; storey x time.",
 )
 @click.option("-o", "out", type=PATH, metavar="FILE|DIR", required=True, help="The picture: .svg, .png or .pdf.")
 def plot(scene: Scene | None, published: bool, kind: str, out: Path) -> None:
-    """Draw the histories of a scene's outputs: what jumps is drawn as a jump. Or all rods over place and time.
+    """Draw the histories of a scene's outputs: what jumps is drawn as a jump. Or all of its chain.
+
+    A place x time diagram (xt) is for horizons in which waves can be told apart, a storey x time map for long records.
 
     With --published, the figures of section 5 of the paper, with what it says of them marked and judged; takes half a
     minute, and prints the paths of what it wrote.

@@ -21,7 +21,7 @@ def record(file: Path, unit: str | None, column: str | None, out: Path | None) -
 
     \b
     Example:
-      wavesym record quake.at2 -o quake.svg
+      wavesym record ground.csv --column north -o ground.svg
     """
     context = click.get_current_context()
     if out is not None:

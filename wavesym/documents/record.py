@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from wavesym.records.record_file import RecordFile, tidy
+from wavesym.records.record_file import RecordFile, as_decimal
 
 AFTER = "0: in a straight line within one step, and for good"
 
@@ -46,7 +46,7 @@ class RecordFacts:
 
     def when(self, time: Fraction) -> str:
         """A time with its unit."""
-        return f"{tidy(time)} {self.clock}".rstrip()
+        return f"{as_decimal(time)} {self.clock}".rstrip()
 
     def peaked(self) -> str:
         """The peak with the file's digits, and when."""

@@ -58,6 +58,18 @@ def smooth_starts(model: Model, until: fmpq) -> list[fmpq | None]:
     ]
 
 
+def arrivals(model: Model, until: fmpq) -> list[fmpq | None]:
+    """When each output first differs from 0 on [0, until]; None where it does not.
+
+    Not where contacts open and close.
+    """
+    arriving, jumping = _Fronts(model, until, _T).sums(), _Fronts(model, until, 0).sums()
+    return [
+        min((time for time in sums if sums[time] and (time < until or jumps[until])), default=None)
+        for sums, jumps in zip(arriving, jumping, strict=True)
+    ]
+
+
 class _Fronts:
     """All that leaves joints, front by front, at one t."""
 

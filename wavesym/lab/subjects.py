@@ -23,6 +23,7 @@ from wavesym.programs.request import Request
 from wavesym.results.response import Response
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.problem import P, Rival
+from wavesym.rivals.sums import summing
 from wavesym.running.native import address, library
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import sources
@@ -124,7 +125,7 @@ def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
     """The rivals that take the scene, each from coarse to fine."""
     model = lower(scene)
     at = taus(model.horizon(), samples, "double")
-    for rival in RIVALS:
+    for rival in map(summing, RIVALS):
         try:
             stated = rival.states(model)
         except UnservedError:
@@ -142,7 +143,7 @@ def opponents(scene: Scene, samples: int) -> Iterator[Subject]:
 def left_out(scene: Scene) -> Iterator[str]:
     """A line for each rival that does not take the scene: which, and why."""
     model = lower(scene)
-    for rival in RIVALS:
+    for rival in map(summing, RIVALS):
         try:
             rival.states(model)
         except UnservedError as error:

@@ -201,6 +201,15 @@ class Network:
         bare = point.mass == point.damping == point.stiffness == 0 and point.motion is None and not point.loads
         return alone and bare and not any(number in (link.left, link.right) for link in self.links)
 
+    @cached_property
+    def ends_at(self) -> Mapping[int, tuple[End, ...]]:
+        """The ends of bars at each point that has some, in their order."""
+        found: dict[int, list[End]] = {}
+        for number, bar in enumerate(self.bars):
+            for side, point in enumerate((bar.left, bar.right)):
+                found.setdefault(point, []).append(End(number, side))
+        return {point: tuple(ends) for point, ends in found.items()}
+
     def beyond(self, end: End) -> End:
         """The other end of a bar."""
         return End(end.bar, 1 - end.side)

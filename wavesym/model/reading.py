@@ -100,11 +100,10 @@ def ground(network: Network) -> int:
 
 def _acting(network: Network, point: int, before: int | None = None) -> Iterator[Weighted]:
     """All that acts on a point, and on what touches it; contacts `before` are followed already."""
-    for number, bar in enumerate(network.bars):
-        for side, sign in ((0, 1), (1, -1)):
-            if network.point_at(End(number, side)) == point:
-                pull = sign * bar.ratios[side] * bar.impedance * bar.speed
-                yield Weighted(pull, Gauge("strain", number + 1, fmpq(side)))
+    for number, side in network.ends_at.get(point, ()):
+        bar = network.bars[number]
+        pull = (1, -1)[side] * bar.ratios[side] * bar.impedance * bar.speed
+        yield Weighted(pull, Gauge("strain", number + 1, fmpq(side)))
     body = network.points[point]
     yield Weighted(-body.damping, _at_point("velocity", network, point))
     yield Weighted(-body.stiffness, _at_point("displacement", network, point))
@@ -125,10 +124,9 @@ def _acting(network: Network, point: int, before: int | None = None) -> Iterator
 
 def _at_point(quantity: str, network: Network, point: int) -> Gauge:
     """Of a point, at the end of a rod that moves as it does where there is one."""
-    for number, bar in enumerate(network.bars):
-        for side in (0, 1):
-            if network.point_at(End(number, side)) == point and bar.ratios[side] == 1:
-                return Gauge(quantity, number + 1, fmpq(side))
+    for number, side in network.ends_at.get(point, ()):
+        if network.bars[number].ratios[side] == 1:
+            return Gauge(quantity, number + 1, fmpq(side))
     return Gauge(quantity, 0, _ZERO, point)
 
 

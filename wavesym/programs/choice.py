@@ -152,8 +152,9 @@ def attempt(
 def best(model: Model, tried: Sequence[Tried], optimize: str | None = None) -> Choice:
     """The best of what was tried and meets the tolerance, and why. ToleranceError where nothing does."""
     found = [(one.kind, one.form) for one in tried if one.form and not one.refusal]
-    # where modes are for something else altogether that is no news
-    refused = [one.why for one in tried if one.refusal and not (one.kind == "modes" and _unserved(one) and tried[1:])]
+    # where modes are for something else altogether that is no news, but of a record that nothing serves
+    silent = found or not model.spacing
+    refused = [one.why for one in tried if one.refusal and not (silent and one.kind == "modes" and _unserved(one))]
     if not found:
         if len(tried) == 1 and tried[0].error:
             raise tried[0].error

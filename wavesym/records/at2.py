@@ -20,7 +20,7 @@ _KNOWN = {"G": "g", "CM/S": "cm/s", "CM": "cm", "CM/S/S": "cm/s^2", "CM/S2": "cm
 
 def is_at2(lines: Sequence[str]) -> bool:
     """Whether the fourth line says so."""
-    return len(lines) >= _HEADER and lines[_HEADER - 1].lstrip()[:4].upper() == "NPTS"
+    return len(lines) >= _HEADER and "NPTS" in lines[_HEADER - 1].upper()
 
 
 def at2(file: str, lines: Sequence[str]) -> RecordFile:
@@ -42,8 +42,8 @@ def at2(file: str, lines: Sequence[str]) -> RecordFile:
     if len(samples) < count:
         what = f"the file ends after {len(samples)} numbers, the {count} of NPTS on line {_HEADER} expected"
         raise damaged(file, places[-1] if places else _HEADER, what)
-    units = _UNITS.search(" ".join(lines[: _HEADER - 1]))
-    unit = _KNOWN.get(units[1].upper(), "") if units else ""
+    units = (_KNOWN.get(word.upper()) for word in _UNITS.findall(" ".join(lines[: _HEADER - 1])))
+    unit = next(filter(None, units), "")
     return RecordFile(file, "AT2", tuple(samples), tuple(written), tuple(places), unit, "s", step)
 
 

@@ -76,9 +76,9 @@ def _rows(lines: Sequence[str]) -> Iterator[tuple[int, str]]:
 
 def _column(place: int, header: str) -> _Column:
     if found := _BRACKETS.fullmatch(header):
-        return _Column(place, header, found[1], (found[2] or found[3] or "").strip())
+        return _Column(place, header, found[1], bare((found[2] or found[3] or "").strip()))
     if found := _SUFFIX.fullmatch(header):
-        return _Column(place, header, found[1], found[2])
+        return _Column(place, header, found[1], bare(found[2]))
     return _Column(place, header, header, "")
 
 

@@ -16,7 +16,7 @@ from wavesym.fields.loads import Load, linear
 from wavesym.fields.numbers import Exact, Positive
 from wavesym.fields.table import shown, wrong
 from wavesym.model.loads import Applied
-from wavesym.records.record_file import tidy
+from wavesym.records.record_file import as_decimal
 from wavesym.records.recording import Recorded
 
 
@@ -46,16 +46,16 @@ class RecordedLoad(Load):
         self._once("spacing", self.spacing, self.record.spacing)
         self._once("start", self.start, self.record.start)
         if self.spacing is None and self.record.spacing is None:
-            raise wrong("missing, the time between samples expected (the file has no time column)", "spacing")
+            raise wrong("missing, the time between samples expected (the file does not say it)", "spacing")
         if self.begin != 0 and self.begin < self.step:
-            least = f"0 or at least the {tidy(self.step)} between samples expected (it comes from 0 within that time)"
+            steps = f"{as_decimal(self.begin / self.step)} steps"
             key = "record" if self.start is None else "start"
-            raise wrong(f"the first sample at {tidy(self.begin)} given, {least}", key)
+            raise wrong(f"a first sample after {steps} given, at 0 or after at least 1 expected (it comes from 0)", key)
         return self
 
     def _once(self, key: str, here: Fraction | None, there: Fraction | None) -> None:
-        if here is not None and there is not None:
-            raise wrong(f"{tidy(here)} given, none expected (the file says {tidy(there)})", key)
+        if here is not None and there is not None and here != there:
+            raise wrong(f"{as_decimal(here)} given, {as_decimal(there)} expected, as in the file, or none", key)
 
     @property
     def step(self) -> Fraction:

@@ -18,7 +18,7 @@ _EXPECTED = "a file of AT2 or CSV"
 def read_record(path: str | PathLike[str], column: str | None = None) -> RecordFile:
     """The samples of a file, in `column` where a CSV has more than one. SceneError says which line is damaged.
 
-    A name that ends in .at2, or a fourth line that begins with NPTS, makes it AT2.
+    A name that ends in .at2, or NPTS in the fourth line, makes it AT2.
     """
     file = os.fspath(path)
     _refuse_special(file)

@@ -14,6 +14,7 @@ from wavesym.fields.table import Written, shown
 # as Fortran writes them, too: .0200, 5., -.1234E-02, 1.5D+00
 _DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eEdD]([+-]?[0-9]{1,4}))?")
 _LARGEST = Fraction(10) ** LARGEST_EXPONENT
+_SMALLEST = 1 / _LARGEST
 _NEAR = Fraction(1, 10)  # of a step: times that are written with few digits
 
 
@@ -47,20 +48,22 @@ class RecordFile:
             return None
         step = times[1] - times[0] if told is None else told
         for k, (before, time) in enumerate(pairwise(times), 1):
-            if time <= before:
-                what = f"the time {tidy(time)} given, more than the {tidy(before)} before it expected"
+            if (since := time - before) <= 0:
+                what = f"the time {as_decimal(time)} given, more than the {as_decimal(before)} before it expected"
                 raise damaged(self.file, self.lines[k], what)
+            if since == step and told is None:  # as up to here
+                continue
             expected = times[0] + k * step
-            if abs(time - expected) > (0 if told is None else _NEAR * step):
-                what = f"the time {tidy(time)} given, {tidy(expected)} expected ({_even(step, told)})"
+            if told is None or abs(time - expected) > _NEAR * step:
+                what = f"the time {as_decimal(time)} given, {as_decimal(expected)} expected ({_even(step, told)})"
                 raise damaged(self.file, self.lines[k], what)
         return step
 
 
 def _even(step: Fraction, told: Fraction | None) -> str:
     if told is not None:
-        return f"samples {tidy(step)} apart, as `spacing` says"
-    return f"samples {tidy(step)} apart, as the first two; where times are rounded, `spacing` in the scene says it"
+        return f"samples {as_decimal(step)} apart, as `spacing` says"
+    return f"samples {as_decimal(step)} apart, as the first two; of rounded times `spacing` in the scene says it"
 
 
 def damaged(file: str, line: int, what: str) -> SceneError:
@@ -79,10 +82,10 @@ def decimal(text: str) -> Fraction | None:
     below = len(part) - power
     number = int(f"{found[1]}{whole}{part}")
     value = Fraction(number, 10**below) if below > 0 else Fraction(number * 10**-below)
-    return value if not number or 1 / _LARGEST <= abs(value) <= _LARGEST else None
+    return value if not (number and power) or _SMALLEST <= abs(value) <= _LARGEST else None
 
 
-def tidy(value: Fraction) -> str:
+def as_decimal(value: Fraction) -> str:
     """A number as a decimal where it ends as one, else as a fraction."""
     places = next((k for k in range(LONGEST) if 10**k % value.denominator == 0), None)
     if places is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from os import PathLike
 from typing import Annotated, Any
@@ -25,9 +25,12 @@ class Recording(SceneTable):
     clock: str = ""
 
 
-def recorded(path: str | PathLike[str], column: str | None, spacing: Fraction | None) -> Recording:
-    """What the file at `path` says; `spacing`, in its unit of time, where a scene does. SceneError."""
+def recorded(
+    path: str | PathLike[str], column: str | None, told: Callable[[str], Fraction | None] = lambda _: None
+) -> Recording:
+    """What the file at `path` says; `told` is the spacing that a scene says, in the file's unit of time. SceneError."""
     said = read_record(path, column)
+    spacing = told(said.clock)
     even = said.even(spacing)
     return Recording(
         samples=said.samples,
@@ -46,7 +49,7 @@ def _recording(value: object, info: ValidationInfo) -> Recording:
         if isinstance(value, Mapping):
             return Recording.model_validate(value)
         if isinstance(value, str | PathLike):
-            return recorded(value, info.data.get("column"), info.data.get("spacing"))
+            return recorded(value, info.data.get("column"), lambda _: info.data.get("spacing"))
     except SceneError as error:
         raise wrong(str(error)) from None
     except ValidationError as error:

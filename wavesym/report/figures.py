@@ -7,16 +7,14 @@ measured for it. Below the panels is what was found. All of it comes from `paper
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from itertools import pairwise
+from dataclasses import replace
 from pathlib import Path
 from textwrap import wrap
 
 import numpy as np
-from flint import fmpq
 from matplotlib.figure import Figure
 
 from wavesym.model.model import Model
-from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest
 from wavesym.papers.pielorz1979.figure_scenes import TriedLoad, contact_end, figure, loads
 from wavesym.papers.pielorz1979.figures import (
@@ -32,8 +30,10 @@ from wavesym.papers.pielorz1979.measures import Finding
 from wavesym.papers.pielorz1979.paper import records
 from wavesym.papers.pielorz1979.transcript import entries
 from wavesym.papers.record import Record, shown
-from wavesym.report.histories import Histories, History, histories
-from wavesym.report.panels import CHARACTERS, Instant, Mark, PlotPanel, axis_title, stacked
+from wavesym.report.groups import Mark, PlotPanel, axis_title
+from wavesym.report.histories import Histories, histories
+from wavesym.report.loads import load_histories
+from wavesym.report.panels import CHARACTERS, Instant, stacked
 from wavesym.report.saving import save
 from wavesym.scene import lower
 
@@ -113,23 +113,12 @@ def _ends(record: Record) -> list[Instant]:
 
 
 def _load(model: Model) -> PlotPanel:
-    """The load over tau, exactly: steps and ramps, summed. The moments of Fig. 7 are equal: one stands for both."""
-    moments = sorted({load.source for load in model.loads} - {"a", "b"})
-    acting = [load for load in model.loads if load.source not in moments[1:]]
-    times = sorted({load.time for load in acting} | {model.until})
-
-    def value(tau: fmpq, since: fmpq) -> float:
-        """At tau, under what has begun by `since`."""
-        begun = (load for load in acting if load.time <= since)
-        values = (load.weight * (tau - load.time if load.source == "b" else 1) for load in begun)
-        return nearest(sum(values, fmpq(0)))
-
-    stretches = tuple(
-        np.array([(nearest(low), value(low, low)), (nearest(high), value(high, low))]) for low, high in pairwise(times)
-    )
-    name = " = ".join(moments) or "acceleration of the base"
+    """The load over tau. The moments of Fig. 7 are equal: one stands for both."""
+    first, *others = load_histories(model)
+    name = " = ".join(load.name for load in (first, *others))
+    moments = model.labels.system["type"] == "drive"
     unit = "moment\nin G J\u2080\u2081 \u03b8\u2080 / l" if moments else "load (3.2)\n(dimensionless)"
-    return PlotPanel(unit, (History(Probe(name, "load", 1, fmpq(0)), stretches),), height=1.2)
+    return PlotPanel(unit, (replace(first, output=replace(first.output, name=name)),), height=1.2)
 
 
 def _title(number: int, model: Model, load: TriedLoad) -> Iterator[str]:

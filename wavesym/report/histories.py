@@ -1,12 +1,13 @@
 """Outputs over time, ready to be drawn: as right as a picture can show, and broken where they jump.
 
-Values are those of the program that `generate` would write, with a tolerance that no eye can tell from a smaller one:
-so there is a picture of every scene that can be generated. When fronts can arrive is known from the loads and the
+Values are those of a program that `generate` can write, with a tolerance that no eye can tell from a smaller one: so
+there is a picture of every scene that can be generated. When fronts can arrive is known from the loads and the
 places alone; there an output is asked for its value and for the one just before.
 """
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, nextafter
@@ -15,17 +16,23 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
+from wavesym.errors import WavesymError
 from wavesym.exact.contact import ContactEnd, contact_ends
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.programs.making import make
+from wavesym.programs.program import Program
+from wavesym.programs.request import KINDS, Request
 
 Points = NDArray[np.float64]
 
 _TOLERANCE = fmpq(1, 10**6)
 _VISIBLE = 1e-5  # smaller jumps, relative to the largest value, are no jumps
 _LEAST, _PER_UNIT, _MOST = 1200, 32, 200_000  # instants
+_VALUES = 400_000  # of all outputs together
+# what a picture can show, of an output's largest value: modes take the more of them the less that is
+_QUICK = {kind: least for kind, least in (("march", _TOLERANCE), ("modes", fmpq(1, 10**4))) if kind in KINDS}
 MOST_FRONTS = 50_000  # more of them lie far closer than the dots of a picture
 
 
@@ -50,6 +57,11 @@ class History:
         """All vertices, in order."""
         return np.vstack(self.stretches)
 
+    @cached_property
+    def real(self) -> Points:
+        """The vertices that are no formal continuation."""
+        return self.points[self.points[:, 0] <= self.formal]
+
     @property
     def zero(self) -> bool:
         """Whether it is 0 throughout."""
@@ -58,22 +70,26 @@ class History:
 
 @dataclass(frozen=True)
 class Histories:
-    """The outputs of a model; contacts that open; whether fronts lie too close to be told apart."""
+    """The outputs of a model; contacts that open; whether fronts lie too close to be told apart; what computed them."""
 
     model: Model
     outputs: tuple[History, ...]
     contacts: tuple[ContactEnd, ...]
     dense: bool
+    program: Program | None = None
 
 
-def histories(model: Model) -> Histories:
-    """The histories of all outputs. ToleranceError, CostError where nothing can be generated either."""
-    program = make(model.tolerating(max(model.tolerance, _TOLERANCE)))
+def histories(model: Model, columns: int = 1) -> Histories:
+    """The histories of all outputs. ToleranceError, CostError where nothing can be generated either.
+
+    Their instants lie at the edges of so many `columns` of equal width, and between them.
+    """
+    program = drawable(model)
     contacts = contact_ends(model)
     formal = [_formal(model, probe, contacts) for probe in model.probes]
-    dense = sum(len(_parts(model, probe)) for probe in model.probes) * model.until > MOST_FRONTS
+    dense = _dense(model)
     fronts = [[] if dense else arrivals(model, probe) for probe in model.probes]
-    taus = _instants(program.tau_max, fronts, formal)
+    taus = _instants(program.tau_max, columns, fronts, formal)
     values = program.evaluate(taus)
     return Histories(
         model,
@@ -83,7 +99,16 @@ def histories(model: Model) -> Histories:
         ),
         contacts,
         dense,
+        program,
     )
+
+
+def drawable(model: Model) -> Program:
+    """A program of a model for pictures: of those that will do that which is made most quickly."""
+    for kind, least in _QUICK.items():
+        with suppress(WavesymError):
+            return make(model.tolerating(max(model.tolerance, least)), Request(kind))
+    return make(model.tolerating(max(model.tolerance, _TOLERANCE)))
 
 
 def arrivals(model: Model, probe: Probe) -> list[float]:
@@ -93,6 +118,14 @@ def arrivals(model: Model, probe: Probe) -> list[float]:
     """
     times = {part + n for part in _parts(model, probe) for n in range(int((model.until - part).floor()) + 1)}
     return sorted(not_below(time) for time in times if 0 < time <= model.until)
+
+
+def _dense(model: Model) -> bool:
+    """Whether there are more fronts than can be seen."""
+    loads = {load.time - load.time.floor() for load in model.loads}
+    if len(loads) * len(model.probes) * model.until > MOST_FRONTS:  # each output has as many at least
+        return True
+    return sum(len(_parts(model, probe)) for probe in model.probes) * model.until > MOST_FRONTS
 
 
 def _parts(model: Model, probe: Probe) -> set[fmpq]:
@@ -113,8 +146,9 @@ def _formal(model: Model, probe: Probe, contacts: tuple[ContactEnd, ...]) -> flo
     return min((end.double + abs(x - end.x) for end in contacts for x in places), default=inf)
 
 
-def _instants(until: float, fronts: list[list[float]], formal: list[float]) -> Points:
-    count = min(max(_LEAST, int(_PER_UNIT * until)), _MOST)
+def _instants(until: float, columns: int, fronts: list[list[float]], formal: list[float]) -> Points:
+    most = min(_MOST, max(_LEAST, _VALUES // len(formal)))
+    count = columns * -(-min(max(_LEAST, int(_PER_UNIT * until)), most) // columns)
     sudden = [tau for own in fronts for tau in own]
     before = [nextafter(tau, 0) for tau in sudden]
     late = [tau for tau in formal if tau < until]

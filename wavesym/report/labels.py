@@ -50,11 +50,14 @@ def label(axes: Axes, curves: Sequence[Curve], fontsize: float) -> None:
     places: list[_Place | None] = [None] * len(curves)
     for _ in range(_ROUNDS):
         for k, (points, size) in enumerate(zip(pixels, sizes, strict=True)):
+            if not curves[k].text:  # there only to be kept free
+                continue
             taken = [place.box for j, place in enumerate(places) if place and j != k]
             places[k] = _best(points, size, inside, ink, taken)
     back = axes.transData.inverted()
     for text, curve, place in zip(texts, curves, places, strict=True):
-        assert place
+        if place is None:
+            continue
         x, y = back.transform(((place.box.x0 + place.box.x1) / 2, (place.box.y0 + place.box.y1) / 2))
         text.set(x=x, y=y, ha="center", va="center")
         if place.distance > _LEADER:

@@ -6,7 +6,7 @@ Dashes tell curves apart without their colour, and the colours differ in how dar
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from textwrap import wrap
 
@@ -16,11 +16,14 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
 
-from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest
+from wavesym.report.groups import PlotPanel, load_panel, notes, panels, restless
 from wavesym.report.histories import Histories, History, Points
 from wavesym.report.labels import Curve, label
+from wavesym.report.reduction import reduced
+from wavesym.report.timescale import Timescale, timescale
 
 FONT = 8.5
 CHARACTERS = 180  # in a line of text across the figure
@@ -41,23 +44,11 @@ _STYLES: tuple[tuple[_Dashes, str], ...] = (
     ((0, (3, 1)), "#777777"),
 )
 _ALPHA = {False: 1.0, True: 0.55}  # of what is formal
-_MOST_PANELS = 6  # of a quantity
 _VERTICES, _ANCHORS = 18, 8  # of a curve, as labels see it; of those, places where its name may hang
 _NEAR = 0.03  # curves this near to each other, in heights of a panel, are not told apart by a label
-_SYMBOL = {"collision": "u", "drive": "\u03b8", "building": "y"}
-_DEFINITION = {
-    "strain": "(l / {0}\u2080) \u2202{0}/\u2202x",
-    "velocity": "(l / (c {0}\u2080)) \u2202{0}/\u2202t",
-    "displacement": "{0} / {0}\u2080",
-}
-
-
-@dataclass(frozen=True)
-class Mark:
-    """Something to be seen on a curve: its number, and one point or two that a line joins, (n, 2)."""
-
-    text: str
-    points: Points
+_COLUMNS = 2000  # of a panel
+_HALO = [withStroke(linewidth=2, foreground="white")]
+_LOAD = 1.2  # inches
 
 
 @dataclass(frozen=True)
@@ -69,76 +60,20 @@ class Instant:
     dashes: str = ":"
 
 
-@dataclass(frozen=True)
-class PlotPanel:
-    """Curves that share an axis: what is drawn upwards, how high the panel is (inches), what is marked."""
-
-    title: str
-    histories: tuple[History, ...]
-    marks: tuple[Mark, ...] = ()
-    height: float = 2.7
-
-
-def draw(histories: Histories) -> Figure:
-    """The outputs of a scene; the same bytes from the same scene when it is written by `saving.save`."""
+def draw(histories: Histories, loads: Sequence[History] = ()) -> Figure:
+    """The outputs of a scene under its loads; the same bytes from the same scene where `saving.save` writes it."""
     model = histories.model
-    until = nearest(model.until)
+    until, scale = nearest(model.until), timescale(model)
     size = f"m = {model.chain.m}" if model.chain else f"{len(model.network.bars)} rods"
-    title = [f"{model.name}: {model.labels.system['type']}, {size}, tau to {until:g}"]
+    title = [f"{model.name}: {model.labels.system['type']}, {size}, {scale.symbol} to {scale.of(until)}"]
     title += [line for note in notes(histories) for line in wrap(note, CHARACTERS)]
     opened = [
-        Instant(end.double, f"contact at x = {end.x} opens, tau = {end.double:.4g}") for end in histories.contacts
+        Instant(end.double, f"contact at x = {end.x} opens, {scale.told(end.double)}") for end in histories.contacts
     ]
     if opened:
         title.append("thin and light: the formal continuation, as if the opened contact stayed closed")
-    return stacked(panels(histories), until, title, instants=opened)
-
-
-def notes(histories: Histories) -> list[str]:
-    """What is not drawn, a line each."""
-    lines = []
-    for quantity, shown in _quantities(histories).items():
-        if len(shown) > _MOST_PANELS * len(_STYLES):
-            lines.append(
-                f"{quantity}: the first {_MOST_PANELS * len(_STYLES)} of {len(shown)} outputs that move are drawn"
-            )
-    if still := [history.name for history in histories.outputs if history.zero]:
-        lines.append(f"0 throughout: {', '.join(still)}")
-    if histories.dense:
-        lines.append("fronts lie closer than the picture resolves: they are not drawn one by one")
-    return lines
-
-
-def panels(histories: Histories) -> list[PlotPanel]:
-    """A panel for each quantity that moves, or several where one would be crowded; an empty one if nothing moves."""
-    result = []
-    for quantity, shown in _quantities(histories).items():
-        count = min(-(-len(shown) // len(_STYLES)), _MOST_PANELS)
-        kept = shown[: count * len(_STYLES)]
-        title = axis_title(histories.model, quantity)
-        result += [PlotPanel(title, tuple(part)) for part in _even(kept, count)]
-    return result or [PlotPanel(axis_title(histories.model, histories.outputs[0].output.quantity), ())]
-
-
-def axis_title(model: Model, quantity: str) -> str:
-    """A quantity as section 4 of the paper makes it dimensionless."""
-    letter = _SYMBOL.get(model.labels.system["type"], "u")
-    return f"{quantity}\n{_DEFINITION[quantity].format(letter)} (dimensionless)"
-
-
-def _quantities(histories: Histories) -> dict[str, list[History]]:
-    """What moves, by quantity."""
-    found: dict[str, list[History]] = {}
-    for history in histories.outputs:
-        if not history.zero:
-            found.setdefault(history.output.quantity, []).append(history)
-    return found
-
-
-def _even(shown: Sequence[History], count: int) -> list[Sequence[History]]:
-    """Parts that differ by one at most."""
-    cuts = [len(shown) * k // count for k in range(count + 1)]
-    return [shown[low:high] for low, high in pairwise(cuts)]
+    acting = [load_panel(loads[: len(_STYLES)], _LOAD)] if loads else []
+    return stacked([*acting, *panels(histories)], until, title, instants=opened, scale=scale)
 
 
 def stacked(
@@ -147,10 +82,15 @@ def stacked(
     title: Sequence[str],
     below: Sequence[str] = (),
     instants: Sequence[Instant] = (),
+    scale: Timescale = Timescale(),  # noqa: B008  (frozen)
 ) -> Figure:
-    """Panels one under the other, lines of text above and below them."""
-    above, under = (len(title) + 0.9) * _LINE, _AXIS + (len(below) + 0.6) * _LINE * bool(below)
-    height = above + sum(panel.height + _GAP for panel in panels) - _GAP + under
+    """Panels one under the other, lines of text above and below them; all in tau, drawn in the time of `scale`."""
+    panels, until = [_clocked(panel, scale) for panel in panels], until * scale.per_tau
+    instants = [replace(instant, tau=instant.tau * scale.per_tau) for instant in instants]
+    gaps = [0.0 if panel.goes_on(before) else _GAP for before, panel in pairwise(panels)]
+    gaps = [_GAP, *gaps]
+    above, under = (len(title) + 0.9) * _LINE - _GAP, _AXIS + (len(below) + 0.6) * _LINE * bool(below)
+    height = above + sum(gaps) + sum(panel.height for panel in panels) + under
     with mpl.rc_context({"font.size": FONT, "font.family": "DejaVu Sans"}):
         figure = Figure(figsize=(_WIDTH, height), dpi=100)
         FigureCanvasAgg(figure)
@@ -160,17 +100,31 @@ def stacked(
         for k, line in enumerate(reversed(below)):
             figure.text(0.1 / _WIDTH, (k + 0.6) * _LINE / height, line, va="baseline")
         top = height - above
-        for k, panel in enumerate(panels):
-            top -= panel.height
+        for k, (panel, gap) in enumerate(zip(panels, gaps, strict=True)):
+            top -= gap + panel.height
             width = 1 - (_LEFT + _RIGHT) / _WIDTH
             axes = figure.add_axes((_LEFT / _WIDTH, top / height, width, panel.height / height))
             axes.set_xlim(0, _BEYOND * until)
             axes.yaxis.set_label_coords(-_TITLE / _WIDTH / width, 0.5)
             axes.tick_params(labelbottom=k == len(panels) - 1)
             _fill(axes, panel, instants)
-            top -= _GAP
-        axes.set_xlabel("tau = c t / l (dimensionless)")
+        axes.set_xlabel(scale.title)
     return figure
+
+
+def _clocked(panel: PlotPanel, scale: Timescale) -> PlotPanel:
+    """A panel in the time of `scale`."""
+    if not scale.unit:
+        return panel
+    factor = np.array((scale.per_tau, 1.0))
+    return replace(
+        panel,
+        histories=tuple(
+            replace(each, stretches=tuple(part * factor for part in each.stretches), formal=each.formal * factor[0])
+            for each in panel.histories
+        ),
+        marks=tuple(replace(mark, points=mark.points * factor) for mark in panel.marks),
+    )
 
 
 def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
@@ -188,11 +142,24 @@ def _fill(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> None:
     for mark in panel.marks:
         upright = mark.points[0, 0] == mark.points[-1, 0]
         axes.plot(*mark.points.T, "-o" if upright else ":o", color="black", markersize=3, linewidth=0.9, zorder=4)
+    if panel.limits:
+        _strip(axes, panel)
+        return
     names = _named(axes, panel, instants)
     if names:
         label(axes, names, FONT)
     for text in axes.texts:  # legible even where curves leave no room
-        text.set(zorder=5, path_effects=[withStroke(linewidth=2, foreground="white")])
+        text.set(zorder=5, path_effects=_HALO)
+
+
+def _strip(axes: Axes, panel: PlotPanel) -> None:
+    """A strip with the axis of its like, and what there is to say of it in the room above its curve."""
+    assert panel.limits is not None  # of a strip
+    low, high = panel.limits
+    size = high - low
+    axes.set_ylim(low - 0.1 * size, high + 0.5 * size)
+    axes.yaxis.set_major_locator(MaxNLocator(3))
+    axes.text(0.004, 0.95, panel.told, transform=axes.transAxes, va="top", path_effects=_HALO)
 
 
 def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Curve]:
@@ -208,7 +175,7 @@ def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Cu
         else:  # no name can hang on the rest of the curve, yet none may cover it
             curves.append(Curve(history.name, thinned(places, _ANCHORS), color, "bold"))
             curves.append(Curve("", shape, "none", "normal"))
-    curves += [Curve(mark.text, mark.points, "black", "bold") for mark in panel.marks]
+    curves += [Curve(mark.text, mark.points, "black", mark.weight) for mark in panel.marks]
     for instant in instants:
         upright = np.column_stack([np.full(9, instant.tau), np.linspace(low, high, 9)])
         curves.append(Curve(instant.text, upright, "black", "normal"))
@@ -217,9 +184,10 @@ def _named(axes: Axes, panel: PlotPanel, instants: Sequence[Instant]) -> list[Cu
 
 def _curve(axes: Axes, history: History, dashes: _Dashes, color: str) -> None:
     """A curve between its fronts, thin upright lines where it jumps; thin and light where it is formal."""
-    for stretch in history.stretches:
+    until, thick = float(history.points[-1, 0]), 0.9 if restless(history) else 1.4
+    for stretch in (reduced(each, until, _COLUMNS) for each in history.stretches):
         tau = stretch[:, 0]
-        for formal, width in ((False, 1.4), (True, 0.7)):
+        for formal, width in ((False, thick), (True, 0.7)):
             part = stretch[tau >= history.formal if formal else tau <= history.formal]
             if len(part):
                 axes.plot(*part.T, color=color, linestyle=dashes, linewidth=width, alpha=_ALPHA[formal])

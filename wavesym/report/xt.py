@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 from wavesym.exact.field import Field
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest
-from wavesym.report.xt_nodes import draw_nodes, legend, open_times
+from wavesym.report.stations import open_times
+from wavesym.report.xt_nodes import draw_nodes, legend
 from wavesym.systems.station import Lines, Station
 
 Array = NDArray[np.float64]

@@ -6,39 +6,19 @@ which lies over it as everything does elsewhere.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
 from matplotlib.transforms import ScaledTranslation
 
-from wavesym.model.event import ContactEvent
-from wavesym.model.model import Model
 from wavesym.model.network import Link, Network, Point
-from wavesym.numbers.doubles import nearest
+from wavesym.report.stations import Opened, standing
 from wavesym.systems.station import Lines, Station
 
 _MASS, _LINK, _CONTACT, _THIN = 4.0, 2.5, 5.0, 0.6  # points
 _MOVED, _HELD = "0.55", "gold"
 _FONT, _LETTER, _ROW = 8, 0.62, 10  # points; of the font's size; points
-
-Opened = Mapping[str, Sequence[tuple[float, float]]]
-"""When the contacts are open, by their places."""
-
-
-def open_times(model: Model, events: Iterable[ContactEvent]) -> Opened:
-    """From when to when each contact is open."""
-    contacts = [link for link in model.network.links if link.contact]
-    found: dict[str, list[tuple[float, float]]] = {link.place: [] for link in contacts}
-    since = {link.place: 0.0 for link in contacts if link.gap}
-    for event in events:
-        if event.kind == "opens":
-            since[event.x] = event.double
-        else:
-            found[event.x].append((since.pop(event.x), event.double))
-    for place, begun in since.items():
-        found[place].append((begun, nearest(model.until)))
-    return found
 
 
 def legend(network: Network, lines: Lines) -> str:
@@ -85,14 +65,11 @@ class _Item:
 
 def _items(network: Network, station: Station) -> Iterator[_Item]:
     """From left to right; what has no mass and stands beside a link has no line of its own."""
-    for before, number in zip((None, *station.points), station.points, strict=False):
-        links = [link for link in network.links if (link.left, link.right) == (before, number)]
-        yield from (_Item(link, _CONTACT if link.contact else _LINK) for link in links)
-        point = network.points[number]
-        if point.mass or point.motion:
-            yield _Item(point, _MASS)
-        elif len(station.points) == 1:
-            yield _Item(point, _THIN)
+    for what in standing(network, station):
+        if isinstance(what, Link):
+            yield _Item(what, _CONTACT if what.contact else _LINK)
+        else:
+            yield _Item(what, _MASS if what.mass or what.motion else _THIN)
 
 
 def _outside(items: Sequence[_Item]) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from wavesym.rivals import characteristics, differences, elements, laplace, modes, steps
+from wavesym.rivals import characteristics, differences, elements, laplace, modal_elements, modes, steps
 from wavesym.rivals.peers import PEERS
 from wavesym.rivals.problem import Rival
 
@@ -13,6 +13,7 @@ RIVALS: tuple[Rival[Any], ...] = (
     characteristics.FOURTH,
     differences.RIVAL,
     elements.RIVAL,
+    modal_elements.RIVAL,
     modes.RIVAL,
     steps.RIVAL,
     laplace.RIVAL,

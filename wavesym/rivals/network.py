@@ -10,6 +10,7 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.errors import UnservedError
+from wavesym.model.damping import Damping
 from wavesym.model.model import Model
 from wavesym.model.network import Bar, Network
 from wavesym.model.probe import Probe
@@ -26,7 +27,8 @@ class NetworkProblem:
     At tau = 0 nothing is displaced: what a bar is strained then is counted besides. `velocity`, `mass` have shape
     (points,), `damping`, `stiffness` (points, points). The velocity of a point that is `told` its motion is its load,
     at tau = 0, too.
-    `ends` has the points of each bar's left and right end, `ratios` their ratios, both (bars, 2).
+    `ends` has the points of each bar's left and right end, `ratios` their ratios, both (bars, 2). `modal` is how
+    modes are damped besides.
     """
 
     mass: Array
@@ -44,6 +46,7 @@ class NetworkProblem:
     events: tuple[Event, ...]
     probes: tuple[Probe, ...]
     until: float
+    modal: Damping | None = None
 
     @property
     def points(self) -> int:
@@ -68,8 +71,13 @@ class NetworkProblem:
 
 
 def network_problem(model: Model) -> NetworkProblem:
-    """The network of a model with its loads. UnservedError where contacts open and close."""
+    """The network of a model with its loads. UnservedError where contacts open and close, and for modal damping."""
     model.refuse_damping()
+    return damped_problem(model)
+
+
+def damped_problem(model: Model) -> NetworkProblem:
+    """The network of a model with its loads and its modal damping. UnservedError where contacts open and close."""
     network = model.network
     if network.contacts:
         raise UnservedError("system: a contact that opens and closes given, none expected")
@@ -100,6 +108,7 @@ def network_problem(model: Model) -> NetworkProblem:
         events=events,
         probes=model.probes,
         until=nearest(model.until),
+        modal=model.damping,
     )
 
 

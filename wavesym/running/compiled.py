@@ -27,10 +27,13 @@ class Compiled:
     def __init__(self, library: Path, selftest: Path, name: str, outputs: int, longest: int) -> None:
         loaded = ctypes.CDLL(str(library))
         doubles = ctypes.POINTER(ctypes.c_double)
-        self._eval = getattr(loaded, f"{name}_eval")
-        self._eval.argtypes = [ctypes.c_double, doubles]
-        self._sample = getattr(loaded, f"{name}_sample")
-        self._sample.argtypes = [ctypes.c_double, ctypes.c_double, ctypes.c_size_t, doubles]
+        self.streams = not hasattr(loaded, f"{name}_eval")
+        """Whether it takes loads sample by sample: it has no values at any tau then."""
+        if not self.streams:
+            self._eval = getattr(loaded, f"{name}_eval")
+            self._eval.argtypes = [ctypes.c_double, doubles]
+            self._sample = getattr(loaded, f"{name}_sample")
+            self._sample.argtypes = [ctypes.c_double, ctypes.c_double, ctypes.c_size_t, doubles]
         self._selftest = selftest
         self._outputs = outputs
         names = (ctypes.c_char * longest * outputs).in_dll(loaded, f"{name}_output_name")

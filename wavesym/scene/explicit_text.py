@@ -57,6 +57,11 @@ def _lines(scene: Scene) -> Iterator[str]:
     yield f"tolerance = {number_text(model.tolerance)}"
     for quantity in QUANTITIES:
         if positions := getattr(scene.output, quantity):
+            if quantity == "relative" and not any(point.motion for point in model.network.points):
+                raise UnservedError(
+                    'output.relative: given with base = "force", "ground" expected (of a chain that is written out, '
+                    "displacements are relative to an end that moves as it is told)"
+                )
             places = [told.position(position) if quantity != "drift" else position.written for position in positions]
             yield f"{quantity} = {json.dumps(places)}"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import replace
+from fractions import Fraction
 
 from flint import fmpq
 
@@ -16,6 +17,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.scene.outputs import Observable
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.scene import Scene
+from wavesym.systems.place import Place
 
 
 def lower(scene: Scene) -> Model:
@@ -42,6 +44,13 @@ def _damping(scene: Scene) -> Damping | None:
     """That of the modes, where it is any."""
     damping: Damping | None = getattr(scene.system, "damping", None)  # a collision has none
     return damping if damping and any(damping.ratios) else None
+
+
+def drifts(scene: Scene) -> tuple[Probe, ...]:
+    """The drift of every rod of the main line, as an output."""
+    rods = [station.right for station in scene.system.lines[""] if station.right is not None]
+    places = (Place(Fraction(k), 0, "", rod + 1, Fraction(1)) for k, rod in enumerate(rods, 1))
+    return tuple(_probe(Observable("drift", place.x, 0, f"drift@{place.x}", place), scene.scale) for place in places)
 
 
 def _labels(scene: Scene) -> Labels:

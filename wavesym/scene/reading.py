@@ -36,15 +36,20 @@ def read_toml(source: str | PathLike[str]) -> tuple[str, dict[str, Any]]:
 
     `source` is a path, `-` for standard input, or the name of a built-in scene. Raises SceneError.
     """
+    file, text = toml_text(source)
+    return file, _beside(os.path.dirname(os.fspath(source)), _parsed(file, text))
+
+
+def toml_text(source: str | PathLike[str]) -> tuple[str, str]:
+    """The name a source goes by in messages, and its text, not parsed yet. Raises SceneError."""
     path = os.fspath(source)
     if path in builtin_names():
-        return path, _parsed(path, _builtin(path).decode())
+        return path, _builtin(path).decode()
     try:
-        file, text = read_text(path, f"a TOML file, - or a built-in scene ({', '.join(builtin_names())})")
+        return read_text(path, f"a TOML file, - or a built-in scene ({', '.join(builtin_names())})")
     except SceneError as error:
         meant = did_you_mean(path, builtin_names())
         raise SceneError(f"{error.what}{meant and f'. {meant}'}", error.path, error.file) from None
-    return file, _beside(os.path.dirname(path), _parsed(file, text))
 
 
 def _beside(folder: str, fields: dict[str, Any]) -> dict[str, Any]:

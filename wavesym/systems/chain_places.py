@@ -119,4 +119,4 @@ def _held(drawing: Drawing, station: Station, loaded: Collection[int]) -> bool:
 
 
 def _bare(point: Point) -> bool:
-    return point == Point(fmpq(0), velocity=point.velocity)
+    return point == Point(fmpq(0), velocity=point.velocity, name=point.name)

@@ -99,6 +99,7 @@ class Drive(Preset):
     """m shafts between m + 1 rigid discs at x = 0, 1, ... m."""
 
     variants: ClassVar[tuple[System, ...]] = (DRIVE,)
+    beside: ClassVar[tuple[System, ...]] = (DRIVE_RAMPS,)
     counts: ClassVar[Mapping[str, str]] = {"kappa": "m", "inertia": "m + 1"}
     load_kinds: ClassVar[LoadKinds] = (Moment, SampledMoment, RecordedMoment)
 

@@ -27,11 +27,13 @@ class Preset(SceneTable):
     """m elastic elements of a system, with numbers for its parameters.
 
     `variants` are what `derive` prints of it; their m and their indices say how many numbers a list has, `counts` the
-    formula as users know it. `fewest` is the smallest m, where it is less than that of the general statement of which
+    formula as users know it. `beside` are systems that it becomes under loads that the paper does not have; they are
+    proved as the variants are. `fewest` is the smallest m, where it is less than that of the general statement of which
     `variants` are families. `load_kinds` are the tables that its loads may be, `no_loads` why there are none.
     """
 
     variants: ClassVar[tuple[System, ...]]
+    beside: ClassVar[tuple[System, ...]] = ()
     counts: ClassVar[Mapping[str, str]]
     fewest: ClassVar[int | None] = None
     load_kinds: ClassVar[LoadKinds] = ()

@@ -72,6 +72,7 @@ class Description:
     numpy_real: str
     reason: str
     units: str
+    quantities: str
     tolerance: str
     trust: str
     outputs: tuple[NamedOutput, ...]
@@ -103,6 +104,7 @@ def describe(program: Program) -> Description:
         real=called.c_type,
         numpy_real=called.numpy_type,
         reason=origin.reason,
+        quantities=_quantities(names),
         units=_units(model),
         tolerance=_tolerance(model),
         trust="proved" if program.proved else "estimated",
@@ -122,6 +124,21 @@ def describe(program: Program) -> Description:
         seconds=literal(nearest(model.clock.seconds)) if model.clock else "",
         c_seconds=c_literal(real.nearest(model.clock.seconds), real) if model.clock else "",
     )
+
+
+def _quantities(names: Sequence[str]) -> str:
+    """In which order rows come: the first three always, of the others those that there are."""
+    found = [name.partition("@")[0] for name in names]
+    more = [words for quantity, words in _MORE.items() if quantity in found]
+    return ", ".join(["strains, velocities, displacements", *more])
+
+
+_MORE = {
+    "acceleration": "accelerations",
+    "force": "forces",
+    "drift": "drifts",
+    "relative": "relative displacements",
+}
 
 
 def _units(model: Model) -> str:

@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from wavesym.errors import CostError, ToleranceError
+from wavesym.errors import CostError, ToleranceError, WavesymError
 from wavesym.exact.reference import Reference
 from wavesym.model.model import Model
 from wavesym.programs.making import make
@@ -19,11 +19,14 @@ from wavesym.running.compiled import compiled, imported
 from wavesym.targets.files import files
 from wavesym.verification.characteristics import COARSEST, Integrated, integrate
 from wavesym.verification.contacts import fronts, happening
+from wavesym.verification.damped import damped
 from wavesym.verification.graph import Struck, graph
 from wavesym.verification.graph_balance import Balancing
 from wavesym.verification.graph_characteristics import doubles_of, integrate_graph
 from wavesym.verification.graph_grid import GraphGrid, graph_grid
+from wavesym.verification.hat import at_samples
 from wavesym.verification.invariants import Balance, Evaluate, balances, values_per_window, watched
+from wavesym.verification.observed import observed, parted
 from wavesym.verification.outcome import FINE, MOST_MOVED, NO_GRID, Check, Outcome
 from wavesym.verification.reference import Known
 from wavesym.verification.refinement import Refinement, Solutions, shown
@@ -53,7 +56,10 @@ Balances = Callable[[Evaluate, Sequence[float] | None], tuple[Balance, ...]]
 
 
 def generated(known: Known) -> list[Outcome]:
-    """The generated C, compiled and run, and the generated NumPy, against their proved bound."""
+    """The generated C, compiled and run, and the generated NumPy, against their proved bound.
+
+    C that takes loads sample by sample has its self-test alone.
+    """
     model = known.whole
     try:
         program = make(model, tested=True)
@@ -64,17 +70,40 @@ def generated(known: Known) -> list[Outcome]:
     bounds = [output["error_bound"] for output in json.loads(made[f"{model.name}.json"])["outputs"]]
     numpy = imported(made[f"{model.name}.py"], model.name).evaluate(np.array(known.taus))
     with compiled(made, len(known.outputs)) as built:
-        c = built(known.taus)
+        found = {"NumPy": numpy} if built.streams else {"C": built(known.taus), "NumPy": numpy}
         sound = built.selftest() == 0
     note = "" if sound else f"{model.name}: the self-test of the generated C fails"
     outcomes = []
-    for output, stated, bound, *values in zip(known.outputs, program.outputs, bounds, c, numpy, strict=True):
+    for output, stated, bound, *values in zip(known.outputs, program.outputs, bounds, *found.values(), strict=True):
         # the largest value may lie between the instants that are looked at, or beyond them
         errors = [output.error(each) * min(1.0, output.scale / (stated.largest or 1.0)) for each in values]
         allowed = 0.0 if stated.largest == 0 else bound + _ROUNDED
-        cells = dict(zip(("C", "NumPy", "bound"), map(shown, (*errors, bound)), strict=True))
+        cells = dict(zip((*found, "bound"), map(shown, (*errors, bound)), strict=True))
         passed = sound and all(error <= allowed for error in errors)
         outcomes.append(Outcome(output.probe.name, cells, passed, note))
+    return outcomes
+
+
+def records(known: Known) -> list[Outcome]:
+    """Modes against the march of one hat load, added up at the samples: over the whole horizon, with both bounds."""
+    model = known.whole
+    try:
+        program = make(model)
+    except WavesymError:  # said already
+        return []
+    if program.evaluator != "modes":
+        return []
+    try:
+        march = at_samples(model)
+    except WavesymError as refusal:
+        return [Outcome("record", {"march": "refused"}, True, str(refusal))]
+    values = program.evaluate(march.taus)
+    outcomes = []
+    for output, ours, other, wrong in zip(program.outputs, values, march.values, march.allowed, strict=True):
+        scale = output.largest or 1.0
+        error, allowed = float(np.max(np.abs(ours - other))) / scale, output.bound + wrong / scale + _ROUNDED
+        cells = {"samples": str(len(march.taus)), "error": shown(error), "allowed": shown(allowed)}
+        outcomes.append(Outcome(output.name, cells, error <= allowed))
     return outcomes
 
 
@@ -99,11 +128,13 @@ def integration(known: Known) -> list[Outcome]:
             return integrate_graph(made, known.until, steps)
         return integrate(model.named, model.loads, known.until, steps)
 
+    views = observed(model)
+
     def refined() -> list[Refinement]:
         found = []
-        for output in known.outputs:
-            coarse, half, quarter = (each.at(output.probe, known.taus) for each in motions)
-            rounding = motions[-1].roundoff(output.probe)
+        for output, view in zip(known.outputs, views, strict=True):
+            coarse, half, quarter = (view.values(partial(each.at, taus=known.taus), known.taus) for each in motions)
+            rounding = view.roundoff(motions[-1].roundoff)
             found.append(Solutions((coarse, half, quarter), output.values, rounding, output.scale).plain())
         return found
 
@@ -127,7 +158,10 @@ def spacetime(known: Known) -> list[Outcome]:
     With contacts N is so large that the same happens at them with 2N and 4N, and that is one more front.
     """
     model = known.model
-    first = grid(model) if model.chain else graph_grid(model)
+    views = observed(model)
+    apart = parted(model)
+    seen = apart.probes
+    first = grid(apart) if model.chain else graph_grid(apart)
     until = min(known.until, _LONGEST, MOST_MOVED / first.finer(4).cost(1.0))
     struck: Struck = []
     if isinstance(first, GraphGrid) and first.graph.contacts:
@@ -152,17 +186,20 @@ def spacetime(known: Known) -> list[Outcome]:
         step = f"at {first.tau(1):.1g} a step"
         note = f"{model.name}: to step between the fronts, central differences would take too long ({step})"
         return [Outcome(output.probe.name, {"to": "refused"}, True, note) for output in known.outputs]
-    truth = [np.array(values) for values in Reference(model).values([first.tau(k) for k in instants.tolist()])]
+    taus = [first.tau(k) for k in instants.tolist()]
+    truth = [np.array(values) for values in Reference(model).values(taus)]
 
     def motion(finer: int) -> Displaced:
         return first.finer(finer).integrate(finer * instants)
 
     def refined() -> list[Refinement]:
         found = []
-        for k, output in enumerate(known.outputs):
-            coarse, half, quarter = (each.values[k] for each in motions)
-            rounding = float(motions[-1].roundoff[k])
-            solutions = Solutions((coarse, half, quarter), truth[k], rounding, output.scale)
+        for output, view, exact in zip(known.outputs, views, truth, strict=True):
+            coarse, half, quarter = (
+                view.values(dict(zip(seen, each.values, strict=True)).__getitem__, taus) for each in motions
+            )
+            rounding = view.roundoff(dict(zip(seen, motions[-1].roundoff.tolist(), strict=True)).__getitem__)
+            solutions = Solutions((coarse, half, quarter), exact, rounding, output.scale)
             found.append(solutions.extrapolated() if first.aligned and not struck else solutions.wandering())
         return found
 
@@ -245,6 +282,16 @@ def _coarse(model: Model, what: str) -> str:
 
 CHECKS = (
     Check("Generated code, against its proved bound:", generated),
+    Check(
+        "Damped modes: generated NumPy against finite elements, N, 2N and 4N in the shortest rod, extrapolated.\n"
+        "Allowed: the difference from what N and 2N extrapolate to, and the proved bound:",
+        damped,
+    ),
+    Check(
+        "Records that modes take, against the march of one hat load, added up at all samples. Allowed: what is proved\n"
+        "of both:",
+        records,
+    ),
     Check(
         "Integration along characteristics with N, 2N and 4N steps per unit of tau (type chain: per common measure\n"
         "of its delays). Allowed at 4N: the difference from 2N, and rounding:",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import pairwise
 
 import numpy as np
@@ -14,6 +14,7 @@ from wavesym.model.event import ContactEvent
 from wavesym.verification.graph import Struck, alike, graph
 from wavesym.verification.graph_fronts import SAME, Fronts, Undecided, integrate_fronts
 from wavesym.verification.graph_grid import LATE, graph_grid
+from wavesym.verification.observed import observed, parted
 from wavesym.verification.outcome import MOST_MOVED, NO_GRID, Outcome
 from wavesym.verification.reference import Known
 from wavesym.verification.refinement import Solutions, shown
@@ -40,11 +41,12 @@ def fronts(known: Known) -> list[Outcome]:
         return [Outcome(output.probe.name, {"N": "refused"}, True, note) for output in known.outputs]
     outcomes = []
     taus = np.array(known.taus)
-    for output in known.outputs:
-        clear = np.all([each.apart(output.probe, known.taus) > _CLOSE for each in solved], axis=0)
+    for output, view in zip(known.outputs, observed(model), strict=True):
+        far = [each.apart(probe, known.taus) for each in solved for _, probe in view.shares]
+        clear = np.all(np.array(far) > _CLOSE, axis=0)
         seen = taus[clear].tolist()
-        coarse, half, quarter = (each.at(output.probe, seen) for each in solved)
-        rounding = _ROUNDED * max(1.0, float(np.max(np.abs(quarter), initial=0.0)))
+        coarse, half, quarter = (view.values(partial(each.at, taus=seen), seen) for each in solved)
+        rounding = _ROUNDED * max(view.roundoff(lambda _: 1.0), float(np.max(np.abs(quarter), initial=0.0)))
         refined = Solutions((coarse, half, quarter), output.values[clear], rounding, output.scale).plain()
         outcomes.append(Outcome(output.probe.name, refined.cells(solved[0].points), refined.right))
     return outcomes
@@ -56,7 +58,7 @@ def happening(known: Known) -> list[Outcome]:
     made = graph(model)
     if not made.contacts:
         return []
-    solved, stepped = _solved(known), graph_grid(model).struck(known.until, MOST_MOVED)
+    solved, stepped = _solved(known), graph_grid(parted(model)).struck(known.until, MOST_MOVED)
     methods = {
         "fronts": None if isinstance(solved, str) else _Method(_between(solved), 0.0),
         "grid": _Method(stepped[1], LATE * float(stepped[0].step)) if stepped else None,

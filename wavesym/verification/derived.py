@@ -71,7 +71,7 @@ def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[s
 
     `watch` goes through the systems as they are proved.
     """
-    systems = [system for preset in presets().values() for system in preset.variants]
+    systems = [system for preset in presets().values() for system in (*preset.variants, *preset.beside)]
     proofs = [proof for system in watch(systems) for proof in (*_proofs(system), *_routes(system))]
     theorems = dict.fromkeys(proof.theorem for proof in proofs)
     lines = (line for theorem in theorems for line in _told(theorem, [p for p in proofs if p.theorem is theorem]))

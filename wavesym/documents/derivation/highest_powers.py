@@ -245,6 +245,13 @@ _EQUAL_BODIES = PowerFamily(
     ),
 )
 
+_DRIVES = (
+    _DRIVE,
+    _equal_discs("on inner disc $s$", Integer(2), _m, _s),
+    _equal_discs("on the first disc", Integer(1), Integer(1), Integer(2)),
+    _equal_discs("on the last disc", exact(_m + 1), exact(_m + 1), _m),
+)
+
 POWERS: dict[str, tuple[PowerFamily, ...]] = {
     "collision": (
         _collision("the first body, $l = 1$", 1, Integer(1), 2, 4),
@@ -252,12 +259,8 @@ POWERS: dict[str, tuple[PowerFamily, ...]] = {
         _collision("an inner body $l$", 3, exact(_m - 3), 4, 6),
         _EQUAL_BODIES,
     ),
-    "drive": (
-        _DRIVE,
-        _equal_discs("on inner disc $s$", Integer(2), _m, _s),
-        _equal_discs("on the first disc", Integer(1), Integer(1), Integer(2)),
-        _equal_discs("on the last disc", exact(_m + 1), exact(_m + 1), _m),
-    ),
+    "drive": _DRIVES,
+    "drive-ramps": _DRIVES,
     "building-force": (_BUILDING, _EQUAL_FLOORS),
     "building-ground": (_BUILDING, _EQUAL_FLOORS),
 }

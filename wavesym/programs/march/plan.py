@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import pairwise
 from math import inf
 
@@ -34,6 +34,7 @@ LEFT, RIGHT, LOAD = 0, 1, 2
 MOST_PANELS = 16
 # of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
 _ESTIMATED = 100
+_LONG = 12  # characters of a fraction that is easier to read as a decimal
 
 
 @dataclass(frozen=True)
@@ -197,7 +198,7 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
     columns = model.light_cone(rational(max(tau_max, float(windows))))
     nodes = [model.named.nodes[x] for x in columns]
     loads = model.acting(rational(tau_max))
-    panels = _panels(load.time for load in loads)
+    panels = _panels([load.time for load in loads])
     loaded = tuple(column for column, node in enumerate(nodes) if node.loads)
     starts = [rod.velocity / 2 if rod else fmpq(0) for rod in (*(node.left for node in nodes), nodes[-1].right)]
     return Plan(
@@ -221,14 +222,21 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
     )
 
 
-def _panels(times: Iterable[fmpq]) -> tuple[MarchPanel, ...]:
+def _panels(times: Sequence[fmpq]) -> tuple[MarchPanel, ...]:
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise CostError(
-            f"load: times (k*spacing in a record) have {len(cuts) - 1} different fractional parts, at most "
-            f"{MOST_PANELS} expected in a march (a spacing of p/q with q up to {MOST_PANELS}, or fewer samples, helps)"
+            f"load: times at a spacing of {spacing(times)} have {len(cuts) - 1} different fractional parts, at most "
+            f"{MOST_PANELS} expected in a march (modes, a spacing of p/q with q up to {MOST_PANELS}, or "
+            "fewer samples, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
+
+
+def spacing(times: Iterable[fmpq]) -> str:
+    """What all times are multiples of, to be read."""
+    exact = reduce(fmpq.gcd, times, fmpq(0))
+    return str(exact) if len(str(exact)) < _LONG else f"{nearest(exact):.9g}"
 
 
 def _junctions(nodes: Sequence[Node]) -> Iterator[Junction]:

@@ -14,7 +14,6 @@ from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.modes.system import modal_system
 from wavesym.programs.program import ProgramOutput
 
-
 _PLAIN = fmpq(1), ""
 
 

@@ -179,6 +179,8 @@ class _Chain:
             raise UnservedError(
                 "system: a motion or strain at tau = 0 given, rest expected in modes (pieces and march serve it)"
             )
+        if not self.drivers:
+            raise UnservedError("load: none that acts by output.until given, one expected in modes (all is at rest)")
         _ = self.loads  # refused before the work
         self._refuse_many(len(network.bars))
         found = self.spectrum.first(count)

@@ -22,7 +22,7 @@ from wavesym.model.network import End, Network
 from wavesym.model.reading import Sum
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch
+from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch, spacing
 from wavesym.programs.rings.space import SHOWN, JointSpace, Port, joint_space
 
 FINEST = 64
@@ -221,8 +221,9 @@ def _panels(times: list[fmpq], step: fmpq) -> tuple[MarchPanel, ...]:
     cuts = sorted({_ZERO, step} | {time - (time / step).floor() * step for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise CostError(
-            f"load: times (k*spacing in a record) leave {len(cuts) - 1} different remainders of the step {step}, at "
-            f"most {MOST_PANELS} expected in a march (times in parts of {step}, or fewer samples, help)"
+            f"load: times at a spacing of {spacing(times)} leave {len(cuts) - 1} different remainders of the step "
+            f"{step}, at most {MOST_PANELS} expected in a march (modes, times in parts of {step},"
+            " or fewer samples, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 

@@ -12,9 +12,10 @@ from wavesym.errors import SceneError
 from wavesym.fields.dimensions import DIMENSIONS
 from wavesym.fields.numbers import exact
 from wavesym.fields.quantity import unit
-from wavesym.fields.table import listed, shown, wrong
+from wavesym.fields.table import Written, listed, shown, wrong
+from wavesym.records.record_file import as_decimal
 from wavesym.records.recording import Recording, recorded
-from wavesym.scene.physical.measured import measured, placed, tidy
+from wavesym.scene.physical.measured import measured, placed
 from wavesym.scene.physical.rewritten import LoadUnit
 
 _VALUES, _SLOPES = ("a", "steps"), ("b", "ramps")
@@ -95,32 +96,37 @@ def read(load: object) -> object:
             spacing = measured(load["spacing"], "time", 1)
     with placed("record"):
         try:
-            recording = recorded(path, load.get("column"), spacing)
+            recording = recorded(path, load.get("column"), lambda clock: spacing and spacing / _clock(clock))
         except SceneError as error:
             raise wrong(str(error)) from None
     return {**load, "record": recording.model_dump(exclude_defaults=True)}
 
 
 def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
-    """A record without units. What its file says is not said again; times without a unit are in seconds."""
+    """A record without units. What its file says may be said again, but not otherwise."""
     with placed("record"):
         recording = Recording.model_validate(load["record"])
-        clock = unit(recording.clock or "s", "time")
-    for key, said in (("spacing", recording.spacing), ("start", recording.start), ("unit", recording.unit)):
-        if said and key in load:
-            told = said if isinstance(said, str) else f"{tidy(said)} {recording.clock or 's'}"
-            raise wrong(f"{shown(load[key])} given, none expected (the file says {told})", key)
-    if recording.unit:
-        with placed("record"):
-            factor = unit(recording.unit, acting.dimension) / acting.size
-    else:
-        factor = _unit(load, acting)
+        clock = _clock(recording.clock)
+        said = unit(recording.unit, acting.dimension) / acting.size if recording.unit else None
+    factor = _unit(load, acting) if said is None or "unit" in load else said
+    if said is not None and said != factor:
+        expected = f"{shown(Written(recording.unit))} expected, as in the file, or none"
+        raise wrong(f"{shown(load['unit'])} given, {expected}", "unit")
     made: dict[str, Any] = {"samples": [sample * factor for sample in recording.samples]}
-    for key, said in (("spacing", recording.spacing), ("start", recording.start)):
-        if said is not None:
-            made[key] = said * clock / seconds
     table: dict[str, Any] = {"record": made}
-    if "start" in load:
-        with placed("start"):
-            table["start"] = measured(load["start"], "time") / seconds
+    for key, least, told in (("spacing", 1, recording.spacing), ("start", 0, recording.start)):
+        if told is not None:
+            made[key] = told * clock / seconds
+        if key in load:
+            with placed(key):
+                time = measured(load[key], "time", least)
+                if told is not None and time != told * clock:
+                    expected = f"{as_decimal(told)} {recording.clock or 's'} expected, as in the file, or none"
+                    raise wrong(f"{shown(load[key])} given, {expected}")
+            table[key] = time / seconds
     return table
+
+
+def _clock(written: str) -> Fraction:
+    """A file's unit of time in seconds; one that it does not say is the second."""
+    return unit(written or "s", "time")

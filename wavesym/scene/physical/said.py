@@ -22,7 +22,7 @@ def words(value: Any) -> str:
 
 def _keyed(key: str, value: Any) -> str:
     if key == "record":
-        return f"record of {len(value['samples'])} samples"
+        return f"record of {len(value['samples'])} samples, 0 one step after the last"
     if isinstance(value, list) and not any(isinstance(each, Mapping) for each in value):
         if len(value) > _MOST_NUMBERS:
             return f"{len(value)} {key}"

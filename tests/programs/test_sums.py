@@ -1,0 +1,198 @@
+"""Programs of acceleration, force, drift and relative motion: within their bounds, in C and NumPy, times a factor."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from flint import fmpq
+from numpy.typing import NDArray
+
+from tests.exact.test_sums import ALL
+from tests.support.generated import files
+from tests.targets.test_march_hand import march
+from wavesym.errors import UnservedError
+from wavesym.exact.reference import Reference
+from wavesym.model.model import Model
+from wavesym.programs.choice import choose
+from wavesym.programs.making import program
+from wavesym.programs.march.evaluator import marched
+from wavesym.programs.march.plan import LOAD
+from wavesym.programs.rings.evaluator import ring_march
+from wavesym.running.compiled import compiled, imported
+from wavesym.scene import Scene, lower
+
+Values = NDArray[np.float64]
+OPEN = [part for part in ALL["system"]["parts"] if part != "contact"]
+MASSES = ["first", "gear", "hung", "struck", "tip", "a:0"]
+CHAIN = {
+    **ALL,
+    "system": {**ALL["system"], "parts": OPEN},
+    "output": {
+        "until": "61/13",
+        "velocity": ["hung"],
+        "displacement": ["gear"],
+        "acceleration": MASSES,
+        "force": ["0", "1+", "a:1/4"],
+        "drift": [1, 2, 3, "a:1"],
+        "relative": ["base", "gear", "hung"],
+    },
+}
+BUILDING = {
+    "name": "building",
+    "system": {"type": "building", "m": 3, "kappa": ["1/4", "1/2", "1.001", "1/5"], "base": "ground"},
+    "load": [{"times": [0, "3/2"], "a": [1, -1], "b": [0, "1/7"]}],
+    "output": {
+        "until": "87/13",
+        "displacement": [3],
+        "acceleration": [1, 2, 3],
+        "force": [0, "2-", "5/2"],
+        "drift": [1, 3],
+        "relative": [0, 1, "5/2"],
+    },
+}
+DRIVE = {
+    "name": "drive",
+    "system": {"type": "drive", "m": 2, "kappa": [1, "1/2"], "inertia": [1, 2, "1/2"]},
+    "load": [
+        {"body": 1, "times": [0, "3/2"], "steps": [1, "-1/2"]},
+        {"body": 2, "times": ["1/3"], "steps": ["1/5"]},
+        {"body": 3, "times": ["1/3"], "steps": [2]},
+    ],
+    "output": {"until": "87/13", "acceleration": [0, 1, 2], "force": ["1+"], "drift": [1, 2]},
+}
+SCENES: dict[str, dict[str, Any]] = {"chain": CHAIN, "building": BUILDING, "drive": DRIVE}
+KINDS = [
+    pytest.param(name, kind, marks=pytest.mark.slow) if (name, kind) == ("chain", "pieces") else (name, kind)
+    for name in SCENES
+    for kind in ("closed", "pieces", "march")
+    if (name, kind) != ("chain", "closed")
+]
+
+
+def model(name: str, factor: fmpq | None = None, tolerance: str = "1e-6") -> Model:
+    given = SCENES[name]
+    made = lower(Scene(**{**given, "output": {**given["output"], "tolerance": tolerance}}))
+    if factor is None:
+        return made
+    return made.watching(replace(probe, factor=(-1) ** k * factor**k) for k, probe in enumerate(made.probes))
+
+
+def instants(reference: Reference) -> Values:
+    """Breakpoints, the doubles before them, and others."""
+    breaks = np.array(reference.breakpoints())
+    even = np.linspace(0, reference.tau_max, 40)
+    taus = np.concatenate([breaks, np.nextafter(breaks[breaks > 0], 0), even])
+    return np.unique(taus[taus <= reference.tau_max])
+
+
+def missed(values: Values, reference: Reference, taus: Values, bounds: list[float]) -> float:
+    """The largest error, in what is allowed."""
+    exact = np.array(reference.values(taus.tolist()))
+    sizes = [float(size.upper()) for size in reference.largest()]
+    worst = 0.0
+    for row, truth, bound, size in zip(values, exact, bounds, sizes, strict=True):
+        if size == 0:
+            assert bound == 0
+            assert not row.any()
+        else:
+            worst = max(worst, float(np.max(np.abs(row - truth))) / size / (bound + 2.0**-52))
+    return worst
+
+
+@pytest.mark.parametrize(("name", "kind"), KINDS)
+def test_every_program_keeps_its_bounds(name: str, kind: str) -> None:
+    given = model(name, fmpq(10**9, 7))
+    reference = Reference(given)
+    taus = instants(reference)
+    form = choose(given, kind).evaluator
+    bounds = [output.bound for output in form.outputs]
+    assert missed(program(given, form).evaluate(taus), reference, taus, bounds) <= 1
+    assert max(bounds) <= 1e-6
+
+
+@pytest.mark.parametrize(("name", "kind"), [("chain", "march"), ("drive", "march")])
+def test_c_and_numpy_are_one(name: str, kind: str) -> None:
+    given = model(name)
+    reference = Reference(given)
+    taus = instants(reference)
+    made = files(given, "all", kind)
+    bounds = [output.bound for output in choose(given, kind).evaluator.outputs]
+    with compiled(made, len(given.probes)) as built:
+        c = np.array(built(taus.tolist()))
+        assert built.selftest() == 0
+    assert missed(c, reference, taus, bounds) <= 1
+    assert missed(imported(made[f"{given.name}.py"], given.name).evaluate(taus), reference, taus, bounds) <= 1
+    header = made[f"{given.name}.h"]
+    assert f"{given.name.upper()}_ACCELERATION_{'FIRST' if name == 'chain' else '1'} =" in header
+    assert "strains, velocities, displacements, accelerations, forces, drifts" in header
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_factor_is_a_factor(name: str) -> None:
+    """Values are rounded once, and errors relative to largest values are what they were."""
+    plain, scaled = model(name), model(name, fmpq(3, 10**7))
+    taus = np.linspace(0.1, 4.6, 9).tolist()
+    factors = [float(probe.factor) for probe in scaled.probes]
+    values, others = (np.array(Reference(each).values(taus)) for each in (plain, scaled))
+    np.testing.assert_allclose(others, values * np.array(factors)[:, np.newaxis], rtol=4e-16, atol=0)
+    marching = marched if plain.chain else ring_march
+    before, after = (marching(each, degree=20) for each in (plain, scaled))
+    for one, other, factor in zip(before.outputs, after.outputs, factors, strict=True):
+        assert other.bound == pytest.approx(one.bound, rel=0.02)
+        assert other.largest == pytest.approx(one.largest * abs(factor), rel=1e-6)
+
+
+def test_what_a_load_does_is_read_on_its_own_panel() -> None:
+    """A body that is pushed is accelerated at once, also where the push changes inside a window."""
+    made = marched(model("drive"))
+    assert {heard.way for heard in made.plan.outputs[0].heard} > {LOAD}
+    before, after = program(model("drive"), made).evaluate([np.nextafter(1.5, 0), 1.5])[0]
+    assert after - before == pytest.approx(-0.5, rel=1e-12)
+
+
+def test_a_program_that_drops_a_load_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    given = model("drive")
+    reference = Reference(given)
+    taus = instants(reference)
+    made = marched(given)
+    deaf = replace(
+        made,
+        plan=replace(
+            made.plan,
+            outputs=tuple(
+                replace(output, heard=tuple(heard for heard in output.heard if heard.way != LOAD))
+                for output in made.plan.outputs
+            ),
+        ),
+    )
+    assert missed(program(given, deaf).evaluate(taus), reference, taus, [output.bound for output in made.outputs]) > 1e6
+
+
+def test_loads_that_are_given_by_hand_accelerate_at_once() -> None:
+    """The scene's own, at the points of each panel: every output is the same, and is proved for any such load."""
+    own = Scene(**{**DRIVE, "name": "made", "output": {**DRIVE["output"], "tolerance": "1e-6"}})
+    scenes_own, by_hand = march(own), march(own)
+    panels, steps = by_hand.made.plan.panels, [[(0, 1), (1.5, -0.5)], [(1 / 3, 0.2)], [(1 / 3, 2)]]
+    assert by_hand.made.plan.ways > LOAD
+    for window in range(4):
+        starts = [window + float(panel.start) for panel in panels]
+        loads = [[sum(step for time, step in each if time <= start + 1e-9) for start in starts] for each in steps]
+        assert scenes_own.advance() == by_hand.advance(np.array(loads)[:, :, np.newaxis]) == 0
+        np.testing.assert_allclose(by_hand.values(), scenes_own.values(), rtol=0, atol=1e-12)
+    driven = marched(lower(own), windows=4).given
+    assert driven is not None
+    assert max(driven.errors) < 1e-6
+
+
+def test_contacts_are_refused_by_the_march_alone() -> None:
+    given = lower(Scene(**{**ALL, "output": {**CHAIN["output"], "until": 5, "tolerance": "1e-6"}}))
+    form = choose(given, "pieces").evaluator
+    reference = Reference(given)
+    taus = instants(reference)
+    bounds = [output.bound for output in form.outputs]
+    assert missed(program(given, form).evaluate(taus), reference, taus, bounds) <= 1
+    with pytest.raises(UnservedError, match="opens and closes"):
+        choose(given, "march")

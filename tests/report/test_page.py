@@ -1,0 +1,243 @@
+"""The page of a scene: it is whole, says what is so, can be used by all, and its cursor reads what curves are."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import wavesym
+from tests.report.browser import axe, reported
+from wavesym.cli import main
+from wavesym.report.page.curves import HEIGHT, Grid
+from wavesym.report.page.document import page
+from wavesym.report.page.structure import structure
+from wavesym.scene import Scene, lower, toml_text
+
+PAYLOAD = '# </pre><script>alert("in")</script> & "quoted"\n'
+VOID = {"meta", "input", "br", "link", "img"}
+SCRIPTS = 1
+
+
+class Read(HTMLParser):
+    """The tags of a page, with their attributes; `open` are those that are not closed."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.wrong: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        if not self.open or self.open.pop() != tag:
+            self.wrong.append(tag)
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        """The attributes of each tag of a kind."""
+        return [attributes for name, attributes in self.tags if name == tag]
+
+
+def faults(text: str) -> list[str]:
+    """What is wrong with a page, as far as its tags tell."""
+    read = Read(text)
+    ids = Counter(attributes["id"] for _, attributes in read.tags if "id" in attributes)
+    found = [f"not closed: {tag}" for tag in [*read.wrong, *read.open]]
+    found += [f"twice: {name}" for name, count in ids.items() if count > 1]
+    for tag, attributes in read.tags:
+        for key in ("aria-labelledby", "for"):
+            found += [f"{key}: {name}" for name in (attributes.get(key) or "").split() if name not in ids]
+        address = attributes.get("href") or attributes.get("src") or ""
+        if address.startswith("#"):
+            found += [f"leads nowhere: {address}"] * (address[1:] not in ids)
+        elif address and not address.startswith("data:image/png;base64,"):
+            found.append(f"from outside: {address}")
+        if tag == "svg" and "aria-hidden" not in attributes and attributes.get("role") != "img":
+            found.append("an svg without a role")
+        if tag == "th" and "scope" not in attributes:
+            found.append("th without scope")
+    if len(read.all("script")) != SCRIPTS:
+        found.append("scripts")
+    return found
+
+
+@pytest.fixture(scope="module")
+def building() -> str:
+    return page(Scene.from_toml("building_m2"), PAYLOAD + toml_text("building_m2")[1])
+
+
+def test_the_page_is_whole_and_needs_nothing_from_outside(building: str) -> None:
+    assert faults(building) == []
+    assert len(building.encode()) < 400_000
+    assert not re.search(r"https?://(?!www\.w3\.org)", building)
+    assert "@import" not in building
+
+
+def test_what_is_missing_is_seen(building: str) -> None:
+    assert faults(building.replace('id="history-1-told"', ""))
+    assert faults(building.replace("</section>", "", 1))
+    assert faults(building.replace("&lt;script&gt;", "<script>"))
+
+
+def test_text_stays_text(building: str) -> None:
+    assert "&lt;/pre&gt;&lt;script&gt;alert(&#34;in&#34;)&lt;/script&gt; &amp;" in building
+    assert 'alert("in")' not in building
+
+
+def test_same_scene_same_page(building: str) -> None:
+    assert page(Scene.from_toml("building_m2"), PAYLOAD + toml_text("building_m2")[1]) == building
+
+
+def test_every_output_has_a_curve_extremes_and_a_verdict(building: str) -> None:
+    for name in wavesym.evaluator(Scene.from_toml("building_m2")).outputs:
+        assert building.count(f'data-name="{name}"') == 1
+        assert building.count(f'<th scope="row">{name}</th>') == 2
+
+
+def vertices(path: str) -> Iterator[tuple[int, int]]:
+    """The corners of a path of M, l and v, in columns and steps."""
+    x = y = 0
+    for command, rest in re.findall(r"([Mlv])([^Mlv]*)", path):
+        numbers = [int(number) for number in re.findall(r"-?\d+", rest)]
+        if command == "v":
+            moves = [(0, number) for number in numbers]
+        else:
+            moves = list(zip(numbers[::2], numbers[1::2], strict=True))
+        for dx, dy in moves:
+            x, y = (dx, dy) if command == "M" else (x + dx, y + dy)
+            yield x, y
+
+
+def curves(text: str) -> Iterator[tuple[str, Grid, list[tuple[int, int]]]]:
+    """Each curve of an output, with its grid and the corners of all its lines."""
+    for svg in re.findall(r"<svg[^>]*timed.*?</svg>", text, re.DOTALL):
+        columns, low, high = (re.search(rf'data-{key}="([^"]*)"', svg)[1] for key in ("columns", "low", "high"))  # type: ignore[index]
+        for name, inside in re.findall(r'<g class="curve[^"]*" data-name="([^"]*)">(.*?)</g>', svg, re.DOTALL):
+            paths = re.findall(r'class="(?:real|formal)" d="([^"]*)"', inside)
+            grid = Grid(int(columns), 1.0, float(low), float(high))
+            yield name, grid, [corner for path in paths for corner in vertices(path)]
+
+
+def strays(text: str, scene: Scene) -> list[str]:
+    """The outputs whose curves are, at some of their corners, farther than a step from what exact values do there."""
+    response = wavesym.evaluator(scene)
+    found = []
+    for name, grid, corners in curves(text):
+        if name not in response.outputs:
+            continue
+        column, step = np.array(corners[::60]).T
+        size = (grid.high - grid.low) / HEIGHT
+        drawn = grid.high - step * size
+        # what the output does in the column, before and at its start and up to its end
+        taus = np.clip((column[:, None] + [-1e-9, 0, 0.5, 1]) / grid.columns, 0, 1) * response.tau_max
+        values = response(taus)[response.outputs.index(name)]
+        if np.any(drawn < values.min(axis=1) - size) or np.any(drawn > values.max(axis=1) + size):
+            found.append(name)
+    return found
+
+
+def test_curves_are_the_outputs(building: str) -> None:
+    scene = Scene.from_toml("building_m2")
+    assert strays(building, scene) == []
+    moved = re.sub(r'(class="real" d="M\d+ )(\d+)', lambda found: found[1] + str(int(found[2]) + 5), building)
+    assert len(strays(moved, scene)) == len(scene.outputs)
+
+
+def test_the_cursor_reads_values_off(building: str, tmp_path: Path) -> None:
+    """The script, run in a browser: by the keyboard's slider, and by a mouse over a picture."""
+    scene = Scene.from_toml("building_m2")
+    response = wavesym.evaluator(scene)
+    script = """
+      const slider = document.getElementById("cursor");
+      const read = () => [Number(slider.value), slider.getAttribute("aria-valuetext"),
+        Object.fromEntries(Array.from(document.querySelectorAll("svg.timed"), (plot) => Array.from(
+          plot.querySelectorAll(".curve"), (curve, k) =>
+            [curve.dataset.name, plot.closest("figure").querySelectorAll(".value")[k].textContent])).flat())];
+      const said = [];
+      slider.value = 777; slider.dispatchEvent(new Event("input")); said.push(read());
+      const plot = document.querySelectorAll("svg.timed")[1], box = plot.getBoundingClientRect();
+      plot.dispatchEvent(new PointerEvent("pointermove", { clientX: box.left + box.width / 2, clientY: box.top + 5 }));
+      said.push(read());
+      report(said);
+    """
+    by_key, by_mouse = reported(building, script, tmp_path)  # type: ignore[misc]
+    assert by_key[0] == 777
+    assert 500 < by_mouse[0] < 660
+    for column, told, said in (by_key, by_mouse):
+        tau = column / 1200 * response.tau_max
+        assert told == f"tau = {tau:.2f}"
+        for name, value in zip(response.outputs, response([tau])[:, 0], strict=True):
+            (size,) = (grid.high - grid.low for curve, grid, _ in curves(building) if curve == name)
+            assert float(said[name]) == pytest.approx(value, abs=0.006 * size)
+
+
+def test_axe_finds_nothing(building: str, tmp_path: Path) -> None:
+    script = axe() + "\n;axe.run(document).then((found) => report(found.violations.map((each) => each.id)));"
+    assert reported(building, script, tmp_path) == []
+    broken = building.replace('role="img"', "").replace("<label ", "<span ").replace("</label>", "</span>")
+    assert "label" in reported(broken, script, tmp_path)  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("name", ["collision_m4", "drive_m1"])
+def test_other_systems_have_pages(name: str) -> None:
+    text = page(Scene.from_toml(name), toml_text(name)[1])
+    assert faults(text) == []
+    assert strays(text, Scene.from_toml(name)) == []
+
+
+CHAIN = {
+    "type": "chain",
+    "parts": [
+        {"motion": "velocity", "name": "shaker"},
+        {"rod": 1, "name": "first"},
+        {"mass": 2, "name": "hub", "spring": 1, "dashpot": "1/2"},
+        {"spring": 3},
+        {"mass": 1, "name": "ring"},
+        {"rod": "1/2", "impedance": 4},
+        "contact",
+        {"rod": 1},
+        "fixed",
+    ],
+    "branch": [{"from": "hub", "name": "arm", "parts": [{"rod": 1}, {"mass": 1, "name": "tip"}]}],
+}
+
+
+def test_all_that_a_chain_is_made_of_is_drawn() -> None:
+    load = [{"at": "shaker", "times": [0], "steps": [1]}, {"at": "tip", "times": [0], "steps": [1]}]
+    scene = Scene(name="chain", system=CHAIN, load=load, output={"until": 4, "velocity": ["hub", "arm:1/2"]})
+    made = structure(lower(scene), scene.system.lines)
+    assert faults(f"<script></script>{made.drawn}") == []
+    for name in ("shaker", "first", "hub", "ring", "arm", "tip"):
+        assert made.drawn.count(f">{name}<") == 1
+    assert made.drawn.count('class="mass"') == 3
+    assert made.drawn.count('class="rod"') == 4
+    assert made.drawn.count('class="place"') == 2
+    assert "1 contact" in made.told
+
+
+def test_report_is_a_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["report", "drive_m1", "-o", "drive.txt"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+    Path("mine.toml").write_text(PAYLOAD + toml_text("drive_m1")[1], encoding="utf-8")
+    assert main(["report", "mine.toml", "-o", "drive.html"]) == 0
+    text = Path("drive.html").read_text(encoding="utf-8")
+    assert "&lt;script&gt;" in text
+    assert str(tmp_path) not in text

@@ -1,0 +1,85 @@
+"""Integrators judge sums from their own strains and motions: right ones pass, a wrong factor in one does not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from flint import fmpq
+
+from wavesym.model.model import Model
+from wavesym.model.network import Network
+from wavesym.model.probe import Probe
+from wavesym.model.reading import Sum, Weighted, readings
+from wavesym.scene import Scene, lower
+from wavesym.verification import checks, contacts
+from wavesym.verification.reference import known
+
+DRIVE = {
+    "name": "drive",
+    "system": {"type": "drive", "m": 2, "kappa": [1, "1/2"], "inertia": [1, 2, "1/2"]},
+    "load": [{"body": 2, "times": [0, "1/2"], "steps": [1, "-1/2"]}],
+    "output": {"until": 3, "tolerance": "1e-6", "acceleration": [1], "force": ["1/2"], "drift": [2]},
+}
+STRUCK = {
+    "name": "struck",
+    "system": {
+        "type": "chain",
+        "parts": [
+            {"motion": "velocity", "name": "base"},
+            {"rod": 1, "impedance": 2},
+            {"mass": 1, "name": "post", "dashpot": "1/5"},
+            {"rod": 1},
+            "contact",
+            {"mass": 2, "name": "ram", "velocity": -1, "spring": 1},
+        ],
+    },
+    "load": [{"at": "base", "times": [0], "steps": ["1/3"]}, {"at": "ram", "times": ["1/2"], "steps": [-1]}],
+    "output": {
+        "until": 3,
+        "tolerance": "1e-6",
+        "acceleration": ["post", "ram"],
+        "force": ["1-"],
+        "drift": [1],
+        "relative": ["ram"],
+    },
+}
+JUDGES = [
+    (DRIVE, checks.integration),
+    (DRIVE, checks.spacetime),
+    (STRUCK, checks.spacetime),
+    (STRUCK, contacts.fronts),
+]
+EACH = pytest.mark.parametrize(
+    ("scene", "judge"), JUDGES, ids=["steps of a drive", "grid of a drive", "grid of a chain", "fronts of a chain"]
+)
+
+
+def model(scene: dict[str, Any]) -> Model:
+    """Its outputs with factors, as those of physical scenes have."""
+    made = lower(Scene(**scene))
+    return made.watching(replace(probe, factor=fmpq(-(10**6) * (k + 1), 7)) for k, probe in enumerate(made.probes))
+
+
+@EACH
+def test_what_is_right_passes(scene: dict[str, Any], judge: Any) -> None:
+    outcomes = judge(known(model(scene)))
+    assert len(outcomes) == len(model(scene).probes)
+    assert all(outcome.passed for outcome in outcomes)
+    assert any("at 4N" in outcome.cells for outcome in outcomes)
+
+
+@EACH
+def test_a_term_that_is_a_little_wrong_is_seen(
+    scene: dict[str, Any], judge: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In each output the last term, whatever it is: a strain, a velocity, a displacement or a load."""
+
+    def wrong(network: Network, probe: Probe) -> Sum:
+        *terms, (weight, gauge) = readings(network, probe)
+        return (*terms, Weighted(weight * fmpq(1001, 1000), gauge))
+
+    for module in ("model.model", "exact.signal"):
+        monkeypatch.setattr(f"wavesym.{module}.readings", wrong)
+    assert not any(outcome.passed for outcome in judge(known(model(scene))))

@@ -1,0 +1,47 @@
+"""`wavesym advise`."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+import click
+
+from wavesym.cli.parameters import SCENE, put
+from wavesym.cli.progress import progress
+from wavesym.errors import CostError
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+
+@click.command()
+@click.argument("scene", type=SCENE)
+@click.option(
+    "--tolerance",
+    type=float,
+    default=0.01,
+    show_default=True,
+    metavar="T",
+    help="What histories may differ by, in parts of the largest value of each output.",
+)
+@click.option(
+    "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
+)
+def advise(scene: Scene, tolerance: float, format: str) -> None:
+    """Say which model is enough: masses on springs, rods with consistent mass, or waves.
+
+    All three are computed over the scene's own horizon, and their outputs compared.
+
+    \b
+    Example:
+      wavesym advise drive_m1
+    """
+    from wavesym import compiler
+
+    with progress(f"advise {scene.name}"):
+        text = compiler.advise(scene, tolerance, format)
+    with suppress(CostError):  # when contacts open may be dear to know
+        for warning in compiler.warnings(scene):
+            click.echo(f"{scene.name}: {warning}", err=True)
+    put(text)

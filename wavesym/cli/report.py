@@ -1,0 +1,39 @@
+"""`wavesym report`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from wavesym.cli.parameters import PATH, SCENE, refuse_scene, refuse_unwritable, scene_text
+from wavesym.cli.progress import progress
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+
+@click.command()
+@click.argument("scene", type=SCENE)
+@click.option("-o", "out", type=PATH, metavar="FILE.html", required=True, help="The page.")
+def report(scene: Scene, out: Path) -> None:
+    """Write one page of HTML about a scene: the structure, histories, extremes, and how well all of it is known.
+
+    It needs no network, and is complete without script.
+
+    \b
+    Example:
+      wavesym report building_m2 -o building.html
+    """
+    if out.suffix.lower() not in (".html", ".htm"):
+        raise click.UsageError(f"-o: {out} given, a name that ends in .html expected", click.get_current_context())
+    refuse_unwritable(out)
+    refuse_scene(out)
+    with progress(f"report {scene.name}"):
+        from wavesym import compiler
+
+        warnings = compiler.warnings(scene)
+        compiler.report(scene, out, scene_text())
+    for line in warnings:
+        click.echo(f"{scene.name}: {line}", err=True)

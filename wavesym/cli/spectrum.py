@@ -1,0 +1,48 @@
+"""`wavesym spectrum`."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from wavesym.cli.parameters import PATH, SCENE, put, refuse_scene, refuse_unwritable
+from wavesym.cli.progress import progress
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+
+@click.command()
+@click.argument("scene", type=SCENE)
+@click.option(
+    "--damping",
+    type=click.FloatRange(0, 1, max_open=True),
+    default=0.05,
+    show_default=True,
+    help="Ratio of the oscillators' damping, below 1.",
+)
+@click.option("-o", "out", type=PATH, metavar="FILE", help="A picture, too: .svg, .png or .pdf.")
+def spectrum(scene: Scene, damping: float, out: Path | None) -> None:
+    """Print the response spectra of the outputs of quantity acceleration, as CSV: pseudo-accelerations over the period.
+
+    \b
+    Example:
+      wavesym spectrum lab.toml --damping 0.02 -o floors.svg
+    """
+    if out is not None:
+        if not find_spec("matplotlib"):
+            raise click.UsageError(
+                "matplotlib is not installed: pip install 'wavesym[plot]'", click.get_current_context()
+            )
+        refuse_unwritable(out)
+        refuse_scene(out)
+    with progress(f"spectrum {scene.name}"):
+        from wavesym import compiler
+
+        lines, said = compiler.spectrum(scene, damping, out)
+    for line in said:
+        click.echo(f"{scene.name}: {line}", err=True)
+    put(lines)

@@ -1,0 +1,39 @@
+"""`wavesym summary`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from wavesym.cli.parameters import SCENE, put
+from wavesym.cli.progress import progress
+
+if TYPE_CHECKING:
+    from wavesym.scene import Scene
+
+
+@click.command()
+@click.argument("scene", type=SCENE)
+@click.option(
+    "--at-samples",
+    is_flag=True,
+    help="Of the values at the samples of a record, or at 1001 equally spaced tau, not of those between.",
+)
+@click.option(
+    "--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="How it is written."
+)
+def summary(scene: Scene, at_samples: bool, format: str) -> None:
+    """Tell of each output the least and the greatest value and when it has them, and when it first moves.
+
+    \b
+    Example:
+      wavesym summary building_m2
+    """
+    from wavesym import compiler
+
+    with progress(f"summary {scene.name}"):
+        text, lines = compiler.summary_text(scene, at_samples, format)
+    for line in lines:
+        click.echo(f"{scene.name}: {line}", err=True)
+    put(text)

@@ -1,0 +1,323 @@
+"""The least and the greatest value of an output, and when: true ones, proved, wherever they lie.
+
+Between two breakpoints an output is one polynomial in balls, here in t on [-1, 1]. Its greatest value is at an end of
+such a piece or inside it, and is found in two steps:
+
+- In doubles, all pieces at once. With values at points that lie d apart, and m >= |f''|, no value of a piece is more
+  than m d^2 / 8 above the largest of them. Rounding, (terms + 40) units of 2^-52 of |c_0| + |c_1| + ..., and the radii
+  of the balls are added. Pieces that cannot hold the greatest value are left out.
+- In balls, those that are left. A part of a piece, its middle moved to 0, is left out where c_0 + |c_1| + |c_2| + ...
+  is too small. Else it certainly rises or falls, or is convex (an end is greatest), or is concave (Newton's method
+  leads to t, and no value is more than 2 |f'(t)| above f(t)), or it is halved.
+
+An output may come up to a value, jump, and never take it: its greatest value is that limit then, at the instant of the
+jump. Values that differ by less than 2^-60 of the largest count as equal, and the first instant is told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from flint import arb, arb_poly, ctx, fmpq
+from numpy.typing import NDArray
+
+from wavesym.errors import CostError, UnservedError
+from wavesym.exact.ball import Segment
+from wavesym.exact.motion import Motion, is_zero
+from wavesym.exact.silence import silent
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
+from wavesym.numbers.balls import precise
+from wavesym.numbers.doubles import middle, midpoint, nearest, not_below, rational
+
+Numbers = NDArray[np.float64]
+
+# of the largest value: what counts as equal, as constant, how well it must be known, and what is left out of series
+_EQUAL, _FLAT, _KNOWN, _NEGLIGIBLE = arb(2) ** -60, arb(2) ** -64, arb(2) ** -70, arb(2) ** -90
+# points of a piece in doubles: of all pieces, then of those that are left
+_POINTS = (33, 513)
+_ROUNDING = 2.0**-52
+_NEWTON = 200  # steps at most; a dozen do
+# measured: seconds for a piece of an output or wave, times its terms to the power of 3/2
+_COMPOSED, _MOST_SECONDS = 4e-7, 5
+# times the bits that there are to begin with: what needs more is not told from 0
+_MORE_BITS = 8
+_ZERO, _ONE = fmpq(0), fmpq(1)
+
+
+@dataclass(frozen=True)
+class TrueExtreme:
+    """A `value`, right to 2^-52 of the output's largest, and the first `tau` at which it is taken.
+
+    Where it is not `reached` the output comes up to it from the left, and jumps at tau.
+    """
+
+    value: float
+    tau: float
+    reached: bool = True
+
+
+Range = tuple[TrueExtreme, TrueExtreme]
+NOTHING: Range = (TrueExtreme(0.0, 0.0), TrueExtreme(0.0, 0.0))
+
+
+def extremes(model: Model) -> list[Range]:
+    """The least and the greatest value of each output on the horizon of doubles.
+
+    CostError where that would take minutes, or where contacts open and close and more is needed than is known of them;
+    UnservedError where modes are damped.
+    """
+    if model.damping is not None:
+        raise UnservedError("system.damping: given, none expected (modes serve it)")
+    motion = Motion(model, rational(model.horizon()))
+    pieces = motion.stretches + sum(len(motion.starts(probe)) for probe in motion.probes)
+    if (seconds := pieces * (motion.first_bits // 4) ** 1.5 * _COMPOSED) > _MOST_SECONDS:
+        raise CostError(
+            f"output.until: true extremes of {len(motion.probes)} outputs, with their waves {pieces} polynomials in "
+            f"{motion.first_bits} bits, would take about {seconds:.0f} s, at most {_MOST_SECONDS} expected (a shorter "
+            "horizon or fewer outputs help)"
+        )
+    zero = silent(model, motion.until)
+    return [
+        NOTHING if nothing else _range(motion, probe, bool(model.network.contacts))
+        for probe, nothing in zip(motion.probes, zero, strict=True)
+    ]
+
+
+def _range(motion: Motion, probe: Probe, vague: bool) -> Range:
+    """Where it is `vague` when contacts open and close, no more is known of what lies between two doubles."""
+
+    def attempt(bits: int) -> Range | None:
+        segments = motion.segments(probe, bits)
+        if is_zero(segments):
+            return NOTHING
+        ends = [*(segment.start for segment in segments[1:]), motion.until]
+        stretches = list(zip(segments, ends, strict=True))
+        at_ends = (abs(segment.at(u)).lower() for segment, end in stretches for u in (_ZERO, end - segment.start))
+        negligible = max(at_ends) * _NEGLIGIBLE
+        pieces = [
+            _Piece.of(segment, end, segment is segments[-1], negligible)
+            for segment, end in stretches
+            if not vague or segment.start == end or not_below(segment.start) < not_below(end)
+        ]
+        sizes = [piece.largest for piece in pieces]
+        if motion.vanishes(sizes):
+            return NOTHING
+        return _found(pieces, max(sizes))
+
+    try:
+        return precise(attempt, motion.first_bits, _MORE_BITS * motion.first_bits)
+    except ArithmeticError as error:
+        raise CostError(f"output.until: for extremes of {probe.name}, {error} (a shorter horizon helps)") from None
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """An output from tau = `start` to `end`: a polynomial in t on [-1, 1], its coefficients exact, within `radius`.
+
+    Whether it is exactly 0 at its start, and has a value at its end as the `last` one has.
+    """
+
+    start: fmpq
+    end: fmpq
+    coefficients: tuple[arb, ...]
+    radius: arb
+    from_zero: bool
+    last: bool
+
+    @classmethod
+    def of(cls, segment: Segment, end: fmpq, last: bool, negligible: arb) -> _Piece:
+        (polynomial,) = segment.families.values()
+        half = arb((end - segment.start) / 2)
+        middles, radius = _split(_shortened(polynomial, 2 * half, negligible)(arb_poly([half, half])))
+        return cls(segment.start, end, middles, radius, segment.from_zero, last)
+
+    @property
+    def largest(self) -> arb:
+        """An upper bound of its absolute values."""
+        return (sum(map(abs, self.coefficients), arb(0)) + self.radius).upper()
+
+    def at(self, t: fmpq, value: arb) -> _Candidate:
+        """A value at t, where it is certain that it is one."""
+        tau = self.start + (self.end - self.start) * (1 + t) / 2
+        exact = arb(0) if self.from_zero and t == -1 else value
+        # as a double that lies in the piece, or at the jump after it
+        return _Candidate(
+            exact, tau, max(nearest(tau), not_below(self.start)) if t < 1 else not_below(tau), t < 1 or self.last
+        )
+
+
+def _shortened(polynomial: arb_poly, length: arb, negligible: arb) -> arb_poly:
+    """Without the highest powers, as far as they are negligible on [0, length]; they are in the ball of the first."""
+    powers, rest = polynomial.coeffs(), arb(0)
+    while powers and (more := (rest + abs(powers[-1]) * length ** (len(powers) - 1)).upper()) <= negligible:
+        rest = more
+        powers.pop()
+    return arb_poly([powers[0] + arb(0, rest), *powers[1:]]) if powers else arb_poly()
+
+
+def _split(polynomial: arb_poly) -> tuple[tuple[arb, ...], arb]:
+    """The middles of the coefficients, and the sum of the radii."""
+    coefficients = polynomial.coeffs() or [arb(0)]
+    return tuple(c.mid() for c in coefficients), sum((c.rad() for c in coefficients), arb(0)).upper()
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    """A value that an output takes, or comes up to, at tau."""
+
+    value: arb
+    tau: fmpq
+    double: float
+    reached: bool
+
+    @property
+    def order(self) -> tuple[float, bool, fmpq]:
+        return self.double, not self.reached, self.tau
+
+
+def _found(pieces: Sequence[_Piece], size: arb) -> Range | None:
+    """The least and the greatest value; None where the balls are too large to tell. No value is beyond `size`."""
+    screen = _Screen(pieces, size)
+    scale = screen.scale
+    if not scale > 0 or not max(piece.radius for piece in pieces) < scale * _KNOWN:
+        return None
+    greatest = _first(screen.left(1), 1, screen.greatest, scale)
+    least = _first(screen.left(-1), -1, -screen.least, scale)
+    return _told(least, -1), _told(greatest, 1)
+
+
+def _told(found: _Candidate, sign: int) -> TrueExtreme:
+    return TrueExtreme(midpoint(sign * found.value) + 0.0, found.double, found.reached)  # no -0.0
+
+
+class _Screen:
+    """All pieces in doubles, divided by a power of 2 that makes them moderate."""
+
+    def __init__(self, pieces: Sequence[_Piece], size: arb) -> None:
+        self._pieces = pieces
+        mantissa, exponent = (int(part) for part in size.man_exp())
+        self._unit = arb(2) ** (mantissa.bit_length() + exponent)
+        widest = max(len(piece.coefficients) for piece in pieces)
+        self._powers = np.zeros((len(pieces), widest))
+        for row, piece in zip(self._powers, pieces, strict=True):
+            row[: len(piece.coefficients)] = [float(c / self._unit) for c in piece.coefficients]
+        radii = np.array([float((piece.radius / self._unit).upper()) for piece in pieces])
+        self._slack = radii * (1 + 2 * _ROUNDING) + (widest + 40) * _ROUNDING * np.abs(self._powers).sum(axis=1)
+        self._slack += 2.0**-1000  # what may underflow
+        k = np.arange(widest)
+        self._bend = np.abs(self._powers) @ (k * (k - 1.0))
+        self._low, self._high = self._values(np.arange(len(pieces)), _POINTS[0])
+
+    def _values(self, chosen: NDArray[np.intp], points: int) -> tuple[Numbers, Numbers]:
+        """The least and the greatest value of pieces at so many points."""
+        t = np.linspace(-1.0, 1.0, points)
+        values = self._powers[chosen] @ np.vander(t, self._powers.shape[1], increasing=True).T
+        return values.min(axis=1), values.max(axis=1)
+
+    @property
+    def greatest(self) -> arb:
+        """A lower bound of the greatest value."""
+        return arb(float((self._high - self._slack).max())) * self._unit
+
+    @property
+    def least(self) -> arb:
+        """An upper bound of the least value."""
+        return arb(float((self._low + self._slack).min())) * self._unit
+
+    @property
+    def scale(self) -> arb:
+        """A lower bound of the largest absolute value."""
+        return self.greatest.max(-self.least)
+
+    def left(self, sign: int) -> list[_Piece]:
+        """The pieces, in order, that may hold the greatest (`sign` 1) or the least (-1) value."""
+        chosen = np.arange(len(self._pieces))
+        for points in _POINTS:
+            low, high = self._values(chosen, points)
+            top = high if sign > 0 else -low
+            slack = self._slack[chosen]
+            beyond = self._bend[chosen] * ((2.0 / (points - 1)) ** 2 / 8 * (1 + 8 * _ROUNDING))
+            chosen = chosen[top + slack + beyond >= (top - slack).max()]
+        return [self._pieces[k] for k in chosen.tolist()]
+
+
+def _first(pieces: Sequence[_Piece], sign: int, low: arb, scale: arb) -> _Candidate:
+    """The greatest value of pieces (of their negatives: `sign` -1), at least `low`, where it first is taken."""
+    found: list[_Candidate] = []
+    for piece in pieces:
+        for value, t in _tops([sign * c for c in piece.coefficients], piece.radius, low, scale * _FLAT):
+            found.append(piece.at(t, value))
+            low = low.max(found[-1].value.lower())
+    equal = low - scale * _EQUAL
+    return min((each for each in found if each.value.upper() >= equal), key=lambda each: each.order)
+
+
+def _tops(coefficients: Sequence[arb], radius: arb, low: arb, flat: arb) -> Iterator[tuple[arb, fmpq]]:
+    """What may be the greatest value of a polynomial on [-1, 1], and where: both ends, and tops that reach `low`.
+
+    Coefficients are exact; the output is within `radius` of it.
+    """
+    whole = arb_poly(list(coefficients))
+    for t in (-_ONE, _ONE):
+        value = whole(arb(t)) + arb(0, radius)
+        yield value, t
+        low = low.max(value.lower())
+    parts = [(whole, radius, _ZERO, _ONE)]
+    while parts:
+        polynomial, radius, centre, half = parts.pop()
+        c = polynomial.coeffs() or [arb(0)]
+        rest = sum(map(abs, c[1:]), arb(0))
+        if not (c[0] + rest + radius).upper() >= low:
+            continue
+        if rest <= flat:
+            value = c[0] + arb(0, (rest + radius).upper())
+            yield value, centre - half
+            low = low.max(value.lower())
+        elif len(c) > 2 and _sure(c, 2) and c[2] < 0:
+            value, t = _top(polynomial)
+            yield value + arb(0, radius), centre + half * t
+            low = low.max((value - radius).lower())
+        elif not _sure(c, 1) and not (len(c) > 2 and _sure(c, 2)):
+            for side in (1, -1):
+                middles, more = _split(polynomial(arb_poly([arb(side) / 2, arb(1) / 2])))
+                parts.append((arb_poly(list(middles)), (radius + more).upper(), centre + half * side / 2, half / 2))
+        elif half < 1:  # an end is greatest, where another part may meet it
+            for t in (-_ONE, _ONE):
+                yield polynomial(arb(t)) + arb(0, radius), centre + half * t
+
+
+def _sure(c: Sequence[arb], order: int) -> bool:
+    """Whether the first or second derivative has one sign on [-1, 1]: its first coefficient outweighs the others."""
+    factors = (k if order == 1 else k * (k - 1) for k in range(order + 1, len(c)))
+    others = sum((factor * abs(each) for factor, each in zip(factors, c[order + 1 :], strict=True)), arb(0))
+    return bool(order * abs(c[order]) > others)
+
+
+def _top(polynomial: arb_poly) -> tuple[arb, fmpq]:
+    """The greatest value of a concave polynomial on [-1, 1], and where: a tangent is above all of it."""
+    slope = polynomial.derivative()
+    for end, rises in ((-_ONE, 1), (_ONE, -1)):
+        if not (inward := rises * slope(arb(end))) > 0:
+            return _above(polynomial, end, inward.max(arb(0))), end
+    bend = slope.derivative()
+    low, high, t, near = arb(-1), arb(1), arb(0), arb(2) ** (8 - ctx.prec)
+    for _ in range(_NEWTON):
+        at = slope(t)
+        low, high = (t, high) if at > 0 else (low, t)
+        step = (t - at / bend(t)).mid()
+        if not low < step < high:
+            step = ((low + high) / 2).mid()
+        t, before = step, t
+        if abs(t - before) < near:
+            break
+    place = middle(t)
+    return _above(polynomial, place, abs(slope(arb(place)))), place
+
+
+def _above(polynomial: arb_poly, place: fmpq, slope: arb) -> arb:
+    """From the value there to what a line with this slope comes to on [-1, 1]."""
+    value = polynomial(arb(place))
+    return value.union(value + 2 * slope.upper())

@@ -1,0 +1,73 @@
+"""A record through a damped frame of ten storeys: modes, and finite elements with modes of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+
+import numpy as np
+from flint import fmpq
+from numpy.typing import NDArray
+
+from wavesym.lab.timing import medians
+from wavesym.model.model import Model
+from wavesym.programs.making import make
+from wavesym.programs.request import Request
+from wavesym.rivals import modal_elements
+from wavesym.rivals.lumped import DiscreteModel
+from wavesym.rivals.mass import Elements
+from wavesym.rivals.sums import summing
+from wavesym.scene import Scene, lower
+
+SAMPLES, SPACING = 1560, fmpq(4995, 1000)
+_ELEMENTS = (1, 2, 4, 8)  # of a rod
+_STOREYS = range(1, 11)
+_FREQUENCIES = (0.4, 0.9, 1.1, 1.7, 2.3, 3.1, 4.7, 7.3)  # Hz
+
+Values = NDArray[np.float64]
+
+
+def frame() -> Scene:
+    """Ten storeys that weigh as a steel frame's do, at 5 %, on ground that shakes about as in an earthquake."""
+    seconds = np.arange(SAMPLES) / 50
+    shaking = sum(np.sin(2 * np.pi * f * seconds + f**2) for f in _FREQUENCIES)
+    shaking *= seconds * np.exp(-seconds / 4)
+    return Scene(
+        name="frame",
+        system={"type": "building", "m": 10, "kappa": ["31/1000"] * 11, "base": "ground", "damping": "1/20"},
+        load=[{"spacing": str(SPACING), "samples": [f"{value:.4f}" for value in shaking.tolist()]}],
+        output={
+            "until": str(SPACING * (SAMPLES - 1)),
+            "tolerance": "1e-6",
+            "acceleration": list(_STOREYS),
+            "force": [0],
+            "drift": list(_STOREYS),
+            "relative": list(_STOREYS),
+        },
+    )
+
+
+def rows() -> Iterator[Sequence[str]]:
+    """What, the seconds that it takes from the scene's model to all outputs at all samples, its largest error."""
+    model = lower(frame())
+    taus = np.array([float(k * SPACING) for k in range(SAMPLES)])
+    ways: dict[str, Callable[[], Values]] = {"modes": partial(modes, model, taus)}
+    for count in _ELEMENTS:
+        ways[f"finite elements, modal, {count} a rod"] = partial(elements, model, count)
+    right = make(model.tolerating(model.tolerance / 30), Request(evaluator="modes")).evaluate(taus)
+    sizes = np.max(np.abs(right), axis=1, keepdims=True)
+    for (name, way), seconds in zip(ways.items(), medians(list(ways.values()), rounds=3), strict=True):
+        yield name, f"{seconds:.3f}", f"{np.max(np.abs(way() - right) / sizes):.1e}"
+
+
+def modes(model: Model, taus: Values) -> Values:
+    """The outputs at tau by modes of waves."""
+    return make(model, Request(evaluator="modes")).evaluate(taus)
+
+
+def elements(model: Model, count: int) -> Values:
+    """The outputs at the samples, `count` elements to a rod."""
+    stated = summing(modal_elements.RIVAL).states(model)
+    cells = np.full(len(stated.problem.ends), count)
+    taus, values = DiscreteModel(Elements(stated.problem, cells)).history(float(SPACING))
+    return stated.added(values, taus)

@@ -1,0 +1,185 @@
+"""What happens along a chain: its motion, and its strain or drift, at many places through the whole horizon.
+
+The scene is asked for other outputs than its own, so that places, units and programs are those of any scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import rational
+from wavesym.report.histories import Histories, Points, histories
+from wavesym.report.reduction import columns_of, extremes_between
+from wavesym.scene import Scene, lower
+from wavesym.scene.outputs import QUANTITIES
+from wavesym.systems.place import Place, position_of
+from wavesym.systems.station import Station
+
+_PLACES, _FINEST = 64, 8  # of all rods together; parts of a rod
+_CLIPPED = 0.995  # of all cells, those whose colours tell them apart
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A place as it is written in a scene, `x` along its line; what is watched there stands for [low, high]."""
+
+    written: str
+    x: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Band:
+    """A quantity along one line: `values[place, instant]`, NaN where they are the formal continuation of a contact."""
+
+    line: str
+    spots: tuple[Spot, ...]
+    values: Points
+
+    def numbered(self, most: int, first: int = 1) -> list[tuple[float, str]]:
+        """Its places with their numbers, at most so many."""
+        return [(spot.x, str(k)) for k, spot in enumerate(self.spots, first)][:: -(-len(self.spots) // most)]
+
+
+@dataclass(frozen=True)
+class Along:
+    """A quantity along all lines of a chain, at `taus`."""
+
+    quantity: str
+    unit: str
+    taus: Points
+    bands: tuple[Band, ...]
+
+    @property
+    def storeys(self) -> bool:
+        """Whether there is one value for each rod, not a curve along it."""
+        return self.quantity == "drift"
+
+
+def along(scene: Scene) -> tuple[Along, ...]:
+    """Motion, then strain or drift, of all of a scene's chain. CostError, ToleranceError as for such outputs."""
+    asked = {quantity: _asked(scene, quantity) for quantity in _quantities(scene)}
+    written = {quantity: [spot.written for _, spots in lines for spot in spots] for quantity, lines in asked.items()}
+    made = histories(_watching(scene, {quantity: written.get(quantity, []) for quantity in QUANTITIES}))
+    return tuple(_of(made, quantity, lines) for quantity, lines in asked.items())
+
+
+def _watching(scene: Scene, places: Mapping[str, Sequence[str]]) -> Model:
+    """The scene with other outputs, whose places are those of its chain without units."""
+    model = lower(scene.dimensionless().with_({f"output.{quantity}": each for quantity, each in places.items()}))
+    scale = scene.scale
+    if scale is None:
+        return model
+    probes = (
+        replace(p, factor=rational(scale.factor(p.quantity, p.rod)), unit=scale.unit(p.quantity)) for p in model.probes
+    )
+    return replace(model.watching(probes), clock=scale.clock)
+
+
+def _quantities(scene: Scene) -> tuple[str, str]:
+    """What tells most of a system: of a building floors and storeys, of what its own start moves velocities."""
+    system = scene.system
+    if system.type == "building":
+        return "relative" if system.choices["base"] == "ground" else "displacement", "drift"
+    return "displacement" if scene.load else "velocity", "strain"
+
+
+def _asked(scene: Scene, quantity: str) -> list[tuple[str, tuple[Spot, ...]]]:
+    """The places of each line."""
+    lines = {name: stations for name, stations in scene.system.lines.items() if stations[-1].x}
+    rods = sum(1 for stations in lines.values() for _ in pairwise(stations))
+    parts = 1 if scene.system.type == "building" else max(1, min(_FINEST, _PLACES // rods))
+    make = {"drift": _drifts, "strain": _strains}.get(quantity, _motions)
+    return [(name, _distinct(scene, quantity, make(name, stations, parts))) for name, stations in lines.items()]
+
+
+def _distinct(scene: Scene, quantity: str, spots: Iterable[Spot]) -> tuple[Spot, ...]:
+    """Of two sides of a place that are the same the first, which stands for what both do."""
+    found: list[Spot] = []
+    last: Place | None = None
+    for spot in spots:
+        place = scene.system.located(position_of(spot.written), quantity, scene.load)
+        if place == last:
+            found[-1] = replace(found[-1], high=spot.high)
+        else:
+            found.append(spot)
+        last = place
+    return tuple(found)
+
+
+def _drifts(line: str, stations: tuple[Station, ...], _: int) -> Iterator[Spot]:
+    """Of each rod."""
+    for k, (one, other) in enumerate(pairwise(stations), 1):
+        low, high = float(one.x), float(other.x)
+        yield Spot(_place(line, k), (low + high) / 2, low, high)
+
+
+def _strains(line: str, stations: tuple[Station, ...], parts: int) -> Iterator[Spot]:
+    """In each rod from end to end."""
+    for one, other in pairwise(stations):
+        step = (other.x - one.x) / parts
+        for k in range(parts + 1):
+            x, side = one.x + k * step, {0: "+", parts: "-"}.get(k, "")
+            yield Spot(
+                _place(line, x, side), float(x), float(max(one.x, x - step / 2)), float(min(other.x, x + step / 2))
+            )
+
+
+def _motions(line: str, stations: tuple[Station, ...], parts: int) -> Iterator[Spot]:
+    """At each station, on both sides of what may part there, and between."""
+    places = [(stations[0].x, "+" if len(stations[0].points) > 1 else "")]
+    for one, other in pairwise(stations):
+        step = (other.x - one.x) / parts
+        places += [(one.x + k * step, "") for k in range(1, parts)]
+        places += [(other.x, side) for side in (("-", "+") if len(other.points) > 1 else ("",))]
+    xs = [float(x) for x, _ in places]
+    for k, (x, side) in enumerate(places):
+        low, high = xs[max(k - 1, 0)], xs[min(k + 1, len(xs) - 1)]
+        yield Spot(_place(line, x, side), xs[k], (low + xs[k]) / 2, (xs[k] + high) / 2)
+
+
+def _place(line: str, x: Fraction | int, side: str = "") -> str:
+    return f"{line}{line and ':'}{x}{side}"
+
+
+def _of(made: Histories, quantity: str, lines: list[tuple[str, tuple[Spot, ...]]]) -> Along:
+    own = [history for history in made.outputs if history.output.quantity == quantity]
+    taus = own[0].points[:, 0]
+    rows = np.array([np.where(taus <= history.formal, history.points[:, 1], np.nan) for history in own])
+    cuts = np.cumsum([len(spots) for _, spots in lines])[:-1]
+    bands = (Band(*line, values) for line, values in zip(lines, np.split(rows, cuts), strict=True))
+    return Along(quantity, own[0].output.unit, taus, tuple(bands))
+
+
+def cells(along: Along, band: Band, columns: int) -> Points:
+    """The value of the largest size in each of so many columns of time, (places, columns); NaN where it is formal."""
+    until = float(along.taus[-1])
+    column = np.minimum(columns_of(along.taus, until, columns), columns - 1)
+    starts = np.flatnonzero(np.diff(column, prepend=-1))
+    ends = np.append(starts[1:], len(column))
+    found = np.full((len(band.spots), columns), np.nan)
+    for row, values in zip(found, band.values, strict=True):
+        known = np.nan_to_num(values)
+        low, high = (known[place] for place in extremes_between(known, starts, ends))
+        row[column[starts]] = np.where(np.isnan(values[starts]), np.nan, np.where(high >= -low, high, low))
+    return _filled(found)
+
+
+def _filled(found: Points) -> Points:
+    """Columns without an instant are as the one before."""
+    there = ~np.isnan(found).all(axis=0)
+    last = np.maximum.accumulate(np.where(there, np.arange(found.shape[1]), 0))
+    return found[:, last]
+
+
+def limit(parts: list[Points]) -> float:
+    """The value of the strongest colour: what all but the largest few cells stay within."""
+    sizes = np.abs(np.concatenate([part[~np.isnan(part)] for part in parts]))
+    return float(np.quantile(sizes, _CLIPPED)) or float(np.max(sizes)) or 1.0

@@ -1,0 +1,166 @@
+"""A scene as one page of HTML: all that a template needs, computed once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from wavesym import __version__
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import nearest
+from wavesym.programs.program import Program
+from wavesym.rendering import render
+from wavesym.report.along import along
+from wavesym.report.groups import load_panel, notes, panels
+from wavesym.report.histories import Histories, History, histories
+from wavesym.report.loads import load_histories
+from wavesym.report.page.crossings import crossings
+from wavesym.report.page.plots import Shown, along_pictures, maps, panel, picture
+from wavesym.report.page.said import SaidTable, advice_told, extremes_told
+from wavesym.report.page.structure import structure
+from wavesym.report.timescale import Timescale, timescale
+from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import drifts
+
+_OUTPUTS = 48  # that are drawn
+_VERTICES = 80_000  # of all curves together: what keeps the page small
+_COLUMNS = (300, 1200)  # of a picture of histories, at least and at most
+_LOADS = 8
+
+
+@dataclass(frozen=True)
+class Report:
+    """What the template shows."""
+
+    name: str
+    facts: tuple[tuple[str, str], ...]
+    structure: Shown
+    histories: tuple[Shown, ...]
+    notes: tuple[str, ...]
+    until: str
+    per_tau: str
+    time: str
+    columns: int
+    extremes: SaidTable
+    advice: SaidTable
+    maps: tuple[Shown, ...]
+    along: tuple[Shown, ...]
+    scene: str
+    command: str
+    version: str
+    sha256: str
+
+
+@dataclass(frozen=True)
+class _Context:
+    report: Report
+
+
+def page(scene: Scene, text: str) -> str:
+    """The page of a scene, with the `text` it was read from. CostError, ToleranceError as for its histories."""
+    return render("html/report.html.j2", _Context(_report(scene, text)))
+
+
+def _report(scene: Scene, text: str) -> Report:
+    model = lower(scene)
+    scale, until = timescale(model), nearest(model.until)
+    drawn = model.watching(_fair(model))
+    columns = min(max(_VERTICES // (3 * len(drawn.probes)), _COLUMNS[0]), _COLUMNS[1])
+    made = histories(drawn, columns)
+    loads = load_histories(model, scene.scale)[:_LOADS]
+    stack = [load_panel(loads, 1.0)] if loads else []
+    stack += [each for each in panels(made) if each.histories]
+    lines = scene.system.lines
+    found = along(scene)
+    structured = structure(model, lines)
+    title = f"The structure of {model.name}"
+    return Report(
+        name=model.name,
+        facts=tuple(_facts(model, made, loads, scale)),
+        structure=Shown(
+            title, picture("structure", title, structured.told, structured.height, structured.drawn, class_="plot")
+        ),
+        histories=tuple(
+            panel(f"history-{k}", each, columns, until, scale, last=k == len(stack) - 1) for k, each in enumerate(stack)
+        ),
+        notes=(*_left_out(model, drawn), *notes(made)),
+        until=repr(until * scale.per_tau),
+        per_tau=repr(scale.per_tau),
+        time=scale.unit,
+        columns=columns,
+        extremes=extremes_told(model, drifts(scene), scale),
+        advice=advice_told(model),
+        maps=tuple(crossings(model, lines, scale) or maps(model, found, scale)),
+        along=tuple(along_pictures(model, found, scale)),
+        scene=text,
+        command=f"wavesym report {model.name}.toml -o {model.name}.html",
+        version=__version__,
+        sha256=model.labels.sha256,
+    )
+
+
+def _fair(model: Model) -> list[Probe]:
+    """The outputs that are drawn: as many of each quantity, or all of them."""
+    groups = [list(group) for _, group in groupby(model.probes, key=lambda probe: probe.quantity)]
+    each = max(1, _OUTPUTS // len(groups))
+    return [probe for group in groups for probe in group[:each]]
+
+
+def _left_out(model: Model, drawn: Model) -> list[str]:
+    missing = len(model.probes) - len(drawn.probes)
+    return (
+        [f"{missing} of {len(model.probes)} outputs are not drawn; their extremes are in the table"] if missing else []
+    )
+
+
+def _facts(model: Model, made: Histories, loads: Sequence[History], scale: Timescale) -> Iterator[tuple[str, str]]:
+    """What there is to know at first sight, each under a word."""
+    network, program = model.network, made.program
+    assert program is not None  # histories have one
+    yield "System", ", ".join([model.labels.system["type"], *_chosen(model)])
+    rods, bodies = len(network.bars), len([point for point in network.points if point.mass])
+    yield "Modelled", f"{_count(rods, 'elastic rod')}, {_count(bodies, 'rigid body', 'rigid bodies')}"
+    if told := _loads(model, loads):
+        yield "Loads", told
+    yield "Horizon", scale.told(nearest(model.until))
+    if model.clock is not None:
+        yield "One tau", f"{nearest(model.clock.seconds):.6g} s: the time that a wave takes to cross a rod of length 1"
+    yield "Computed by", program.provenance.reason.rpartition("; ")[2]
+    yield "Bound", _bound(program)
+    for end in made.contacts:
+        yield (
+            "Contact",
+            f"that at x = {end.x} opens at {scale.told(end.double)}; what that reaches is drawn as if it stayed closed",
+        )
+    for place, own in groupby(sorted(program.provenance.events or (), key=lambda e: e.x), key=lambda e: e.x):
+        yield "Contact", f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.told(each.double)}" for each in own)
+
+
+def _loads(model: Model, loads: Sequence[History]) -> str:
+    """As the scene says them; with units, whose exact numbers nobody can read, by their sizes."""
+    if model.clock is None:
+        return "; ".join(model.labels.loads)
+    values = ((load, load.points[:, 1]) for load in loads)
+    return "; ".join(f"{load.name}, from {min(v):.4g} to {max(v):.4g} {load.output.unit}" for load, v in values)
+
+
+def _chosen(model: Model) -> list[str]:
+    return [f"{key} = {value}" for key, value in model.labels.system.items() if key in ("base", "contacts")]
+
+
+def _count(number: int, one: str, many: str = "") -> str:
+    return f"{number} {one if number == 1 else many or one + 's'}"
+
+
+def _bound(program: Program) -> str:
+    if not program.proved:
+        return (
+            f"{program.error_bound:.2g}, an estimate that is not proved: so far from the exact solution of this model, "
+            "in parts of its own largest value, a curve of this page may be."
+        )
+    return (
+        f"{program.error_bound:.2g}, proved: at no time is a curve of this page farther from the exact solution of "
+        "this model than this part of its own largest value. Whether the model is the structure is another question."
+    )

@@ -1,0 +1,61 @@
+"""Extremes of outputs that are known only by values: the largest of many samples, then ever finer ones around it.
+
+A sample that is above both its neighbours has a top between them. The tops that may be the highest are looked at with
+_FINER samples at a time, in a part that shrinks to the two steps around the largest one. Nothing here is proved: a top
+that is narrower than a step is not seen. Every value is one that the output takes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+Numbers = NDArray[np.float64]
+Evaluate = Callable[[Numbers], Numbers]
+
+_FINER = 9
+_ROUNDS = 5  # each makes a part a quarter as wide
+_TOPS = 3  # of an output and a side that are looked at
+_EQUAL = 1e-14  # of the largest value: rounding makes no later instant of a plateau higher
+
+
+def sampled_extremes(taus: Numbers, values: Numbers, evaluate: Evaluate | None = None) -> tuple[Numbers, Numbers]:
+    """Values and tau, each (outputs, 2), of the least and the greatest value; the first of equal ones.
+
+    `values` (outputs, taus) are those at `taus`, which are in order. What lies between is looked at where there is an
+    `evaluate`, which gives them for other tau.
+    """
+    both = np.stack([-values, values], axis=1)  # (outputs, sides, taus): greatest values are looked for in each
+    equal = _EQUAL * np.abs(values).max(axis=1)[:, None]
+    at = (both >= both.max(axis=2, keepdims=True) - equal[:, :, None]).argmax(axis=2)
+    best, when = np.take_along_axis(both, at[:, :, None], axis=2)[:, :, 0], taus[at]
+    if evaluate is not None and taus.size > 2:
+        for found, tau in _refined(evaluate, taus, _tops(both)):
+            better = found > best + equal
+            best[better], when[better] = found[better], tau[better]
+    return best * [-1.0, 1.0] + 0.0, when
+
+
+def _tops(both: Numbers) -> NDArray[np.intp]:
+    """The highest samples that no neighbour is above, of each output and side: (outputs, sides, tops)."""
+    inner = both[:, :, 1:-1]
+    top = np.where((inner >= both[:, :, :-2]) & (inner > both[:, :, 2:]), inner, -np.inf)
+    kept = min(_TOPS, inner.shape[2])
+    return np.asarray(np.argpartition(top, -kept, axis=2)[:, :, -kept:]) + 1
+
+
+def _refined(evaluate: Evaluate, taus: Numbers, tops: NDArray[np.intp]) -> Iterator[tuple[Numbers, Numbers]]:
+    """Of ever finer samples around the `tops` the highest values, top by top, (outputs, sides), and their tau."""
+    low, high = taus[tops - 1], taus[tops + 1]
+    rows = np.arange(len(tops))[:, None, None, None]
+    for _ in range(_ROUNDS):
+        finer = np.linspace(low, high, _FINER, axis=3)  # (outputs, sides, tops, finer)
+        flat, back = np.unique(finer, return_inverse=True)
+        values = evaluate(flat)[rows, back.reshape(finer.shape)] * np.array([-1.0, 1.0])[:, None, None]
+        place = values.argmax(axis=3)[:, :, :, None]
+        found, tau = (np.take_along_axis(each, place, axis=3)[:, :, :, 0] for each in (values, finer))
+        yield from ((found[:, :, k], tau[:, :, k]) for k in range(tops.shape[2]))
+        step = (high - low) / (_FINER - 1)
+        low, high = np.maximum(tau - step, low), np.minimum(tau + step, high)

@@ -1,0 +1,56 @@
+"""How far samples of outputs may be apart, and where outputs may jump between them."""
+
+from __future__ import annotations
+
+from math import ceil, nextafter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.errors import CostError
+from wavesym.exact.knots import Knots
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import nearest, not_below, rational
+from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.modes.panels import Panels
+from wavesym.programs.program import Program
+
+Numbers = NDArray[np.float64]
+
+_PER_STEP, _PER_CROSSING = 16, 4
+_MOST_JUMPS = 20_000  # stretches of all joints: where there are more, jumps lie closer than most samples
+
+
+def spacing(model: Model) -> float:
+    """How far samples are to be apart: 16 in a step of samples and 4 in the crossing of a rod; else 16 in that."""
+    crossing = nearest(min(bar.delay for bar in model.network.bars))
+    if model.spacing is None:
+        return crossing / _PER_STEP
+    return min(nearest(model.spacing) / _PER_STEP, crossing / _PER_CROSSING)
+
+
+def sampled(model: Model, program: Program, step: float) -> tuple[Numbers, Numbers]:
+    """Instants no more than `step` apart, in order, with both sides of jumps, and the values of a program there."""
+    if program.kind == "modes" and program.real is DOUBLE:
+        return Panels.of(program).sampled(step)
+    count = ceil(program.tau_max / step)
+    fronts = jumps(model)
+    taus = np.unique([*np.linspace(0.0, program.tau_max, count + 1), *fronts, *map(just_before, fronts)])
+    return taus, program.evaluate(taus)
+
+
+def jumps(model: Model) -> list[float]:
+    """Where in (0, until] an output may jump, as doubles at or above, in order; none where there are too many."""
+    knots = Knots(model, rational(model.horizon()))
+    try:
+        if knots.stretches > _MOST_JUMPS:
+            return []
+        exact = {time for probe in model.probes for time in knots.breakpoints(model.sums[probe])}
+    except CostError:
+        return []
+    return sorted({not_below(time) for time in exact if time > 0})
+
+
+def just_before(tau: float) -> float:
+    """The last double before it."""
+    return nextafter(tau, 0.0)

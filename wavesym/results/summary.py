@@ -1,0 +1,204 @@
+"""What a user asks of outputs first: the least and the greatest value of each, when, and when it begins to move."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from flint import fmpq
+from numpy.typing import NDArray
+
+from wavesym.errors import CostError, WavesymError
+from wavesym.exact.arrival import first_arrivals, light_arrivals
+from wavesym.exact.extremes import NOTHING, Range, TrueExtreme, extremes
+from wavesym.model.model import Model
+from wavesym.model.probe import Probe
+from wavesym.numbers.doubles import nearest, not_below, rational
+from wavesym.programs.making import make
+from wavesym.results.response import Response
+from wavesym.results.sampled import sampled_extremes
+from wavesym.results.stepping import sampled, spacing
+
+Numbers = NDArray[np.float64]
+
+# two roundings to double, and what exact/extremes.py takes for equal
+_EXACT = 1.2e-16
+_MOST_SAMPLES = 8_000_000
+_MOST_DRIFTS = 50  # rods in which the largest is looked for, though nobody asked for them
+
+
+class When(NamedTuple):
+    """`tau`, and the `time` in the scene's unit; None where it has none."""
+
+    tau: float
+    time: float | None
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A `value` in the output's unit, and the first instant `at` which it is taken.
+
+    Where it is not `reached` the output comes up to it and jumps at that instant.
+    """
+
+    value: float
+    at: When
+    reached: bool = True
+
+
+@dataclass(frozen=True)
+class OutputSummary:
+    """An output, its least and its greatest value, and when it first differs from 0 (None: not on the horizon)."""
+
+    name: str
+    unit: str
+    min: Peak
+    max: Peak
+    arrival: When | None
+
+    @property
+    def largest(self) -> Peak:
+        """The one of `min` and `max` with the larger absolute value, and of equal ones the first."""
+        return min(self.min, self.max, key=lambda peak: (-abs(peak.value), peak.at.tau))
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The extremes of a scene's outputs; `wavesym.summary` makes it.
+
+    `bound` is that of the error of values, relative to each output's largest. Where it is `proved` that no value lies
+    beyond an extreme it holds for the extremes, else only for what outputs are at these instants. `how` says how they
+    were found. `largest_drift` is that of the rod, of all in the main line, whose drift is the largest; None where it
+    was not asked for, cannot be had, or no rod changes. `time_unit` is None for a scene without units.
+    """
+
+    name: str
+    outputs: tuple[OutputSummary, ...]
+    bound: float
+    proved: bool
+    how: str
+    time_unit: str | None
+    largest_drift: OutputSummary | None = None
+
+    @property
+    def certain(self) -> str:
+        """What is known of the values, in a few words."""
+        if self.proved:
+            return f"right to {self.bound:g} of each output's largest, proved"
+        return f"an estimate (values are right to {self.bound:g} of each output's largest; higher tops may be missed)"
+
+
+def summarised(model: Model, samples: Sequence[float] | None = None, drifts: Sequence[Probe] = ()) -> Summary:
+    """The extremes of a model's outputs: true ones, or of the values at the tau of `samples`; the largest of `drifts`.
+
+    True ones are proved where `run` gives values right to the last bit; else they are those of the program that `auto`
+    takes, found by samples. ToleranceError, CostError where there is no such program either.
+    """
+    found = _found(model, samples)
+    summary = Summary(
+        model.name,
+        _outputs(model, found),
+        found.bound,
+        found.proved,
+        found.how,
+        model.clock.unit if model.clock else None,
+    )
+    return replace(summary, largest_drift=_largest(model, samples, summary.outputs, drifts))
+
+
+class _Found(NamedTuple):
+    ranges: list[Range]
+    bound: float
+    proved: bool
+    how: str
+    modal: bool = False
+
+
+def _found(model: Model, samples: Sequence[float] | None) -> _Found:
+    if samples is not None:
+        return _at(model, np.asarray(samples))
+    try:
+        return _Found(extremes(model), _EXACT, True, "true extremes")
+    except CostError:
+        return _searched(model)
+
+
+def _outputs(model: Model, found: _Found) -> tuple[OutputSummary, ...]:
+    arrivals = light_arrivals(model) if found.modal else first_arrivals(model)
+    return tuple(
+        OutputSummary(
+            probe.name,
+            probe.unit,
+            _peak(model, least),
+            _peak(model, greatest),
+            None if first is None or (least, greatest) == NOTHING else instant(model, not_below(first), first),
+        )
+        for probe, (least, greatest), first in zip(model.probes, found.ranges, arrivals, strict=True)
+    )
+
+
+def _largest(
+    model: Model, samples: Sequence[float] | None, outputs: Sequence[OutputSummary], drifts: Sequence[Probe]
+) -> OutputSummary | None:
+    """The largest drift: those that are outputs are known, those that are not cost nothing but themselves."""
+    if len(drifts) > _MOST_DRIFTS:
+        return None
+    asked = {
+        probe.rod: output for probe, output in zip(model.probes, outputs, strict=True) if probe.quantity == "drift"
+    }
+    others = model.watching(probe for probe in drifts if probe.rod not in asked)
+    known = [asked[probe.rod] for probe in drifts if probe.rod in asked]
+    if others.probes:
+        try:
+            known += _outputs(others, _found(others, samples))
+        except WavesymError:
+            return None
+    largest = min(known, key=lambda output: (-abs(output.largest.value), output.largest.at.tau), default=None)
+    return largest if largest is not None and largest.largest.value else None
+
+
+def _peak(model: Model, found: TrueExtreme) -> Peak:
+    return Peak(found.value, instant(model, found.tau), found.reached)
+
+
+def instant(model: Model, tau: float, exact: fmpq | None = None) -> When:
+    """A tau, and the scene's time then."""
+    if model.clock is None:
+        return When(tau, None)
+    return When(tau, nearest((rational(tau) if exact is None else exact) * model.clock.per_tau))
+
+
+def _at(model: Model, taus: Numbers) -> _Found:
+    """The extremes of values at these tau, as `run` has them."""
+    response = Response(model)
+    ranges = _ranges(*sampled_extremes(taus, response(taus)))
+    made = response.program
+    how = f"the values{f' of {made.evaluator}' if made else ''} at {taus.size} samples"
+    modal = made is not None and made.kind == "modes"
+    return _Found(ranges, response.error_bound, made is None or made.proved, how, modal)
+
+
+def _searched(model: Model) -> _Found:
+    """The extremes of the program that `auto` takes, looked for between many samples."""
+    program = make(model)
+    step = spacing(model)
+    if (count := nearest(model.until) / step) * len(model.probes) > _MOST_SAMPLES:
+        raise CostError(
+            f"output.until: extremes of {len(model.probes)} outputs would be looked for at {count:.1e} samples each, "
+            f"at most {_MOST_SAMPLES // len(model.probes):.1e} expected (a shorter horizon or fewer outputs help)"
+        )
+    taus, values = sampled(model, program, step)
+    ranges = _ranges(*sampled_extremes(taus, values, program.evaluate))
+    how = f"{program.evaluator} at {taus.size} samples, {step:g} tau apart, then refined"
+    return _Found(ranges, program.error_bound, False, how, program.kind == "modes")
+
+
+def _ranges(values: Numbers, taus: Numbers) -> list[Range]:
+    """As of pieces; all of these are values that are taken."""
+    least, greatest = (
+        [TrueExtreme(*each) for each in zip(values[:, side].tolist(), taus[:, side].tolist(), strict=True)]
+        for side in (0, 1)
+    )
+    return list(zip(least, greatest, strict=True))

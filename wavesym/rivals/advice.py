@@ -1,0 +1,94 @@
+"""Which model of a scene is enough: masses on springs, rods with consistent mass, or waves, over its own horizon."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from flint import fmpq
+
+from wavesym.documents.advice import Advice, Candidate, Discrepancy
+from wavesym.errors import UnservedError
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import rational
+from wavesym.programs.choice import attempt, choose
+from wavesym.programs.making import program
+from wavesym.programs.program import Program
+from wavesym.rivals.lumped import DiscreteModel
+from wavesym.rivals.mass import Elements
+from wavesym.rivals.modal_elements import RIVAL
+from wavesym.rivals.problem import Array
+from wavesym.rivals.sums import summing
+
+WEIGHTS: Mapping[str, float] = {"massless": 0.0, "consistent": 1.0}
+"""The models in place of waves, from cheap to dear, and what of their mass the rods have."""
+
+# while a wave crosses the shortest rod, and in all
+_INSTANTS, _MOST_INSTANTS = 8, 20_000
+# of what is told apart, what the waves themselves may be wrong by
+_EXACT = fmpq(1, 100)
+
+
+def advise(model: Model, tolerance: float) -> Advice:
+    """What `tolerance`, in parts of the largest value of each output, asks for.
+
+    ToleranceError, CostError where there is no program of the waves either.
+    """
+    histories: dict[str, Array] = {}
+    refused: dict[str, str] = {}
+    for name, weight in WEIGHTS.items():
+        try:
+            taus, histories[name] = springs(model, weight)
+        except UnservedError as error:
+            refused[name] = str(error)
+    if not histories:
+        return Advice(model.name, tolerance, tuple(Candidate(name, refused=why) for name, why in refused.items()))
+    soonest = _soonest(model.tolerating(max(model.tolerance, rational(tolerance) * _EXACT)))
+    waves = soonest.evaluate(taus)
+    return Advice(
+        model.name,
+        tolerance,
+        tuple(
+            Candidate(name, refused=refused[name])
+            if name in refused
+            else Candidate(name, tuple(_differences(histories[name], waves)))
+            for name in WEIGHTS
+        ),
+        tuple(
+            (probe.name, probe.unit, float(np.max(np.abs(row)))) for probe, row in zip(model.probes, waves, strict=True)
+        ),
+        f"{soonest.evaluator}, bound {soonest.error_bound:.1e}",
+        len(taus),
+    )
+
+
+def _soonest(model: Model) -> Program:
+    """A program of the waves: not the quickest one, but the one that is made soonest."""
+    tried = (attempt(model, kind) for kind in ("modes", "march"))
+    form = next((one.form for one in tried if one.form and not one.refusal), None)
+    return program(model, form or choose(model).evaluator)
+
+
+def springs(model: Model, weight: float, step: float | None = None) -> tuple[Array, Array]:
+    """Instants, and the outputs there (outputs, instants), where each rod is one spring with `weight` of its mass.
+
+    Instants are `step` apart at most, or as close as it takes to see a wave in the shortest rod.
+    UnservedError for contacts that open and close, for what nothing holds where rods weigh nothing, and for damping of
+    modes that there are not.
+    """
+    stated = summing(RIVAL).states(model)
+    problem = stated.problem
+    one = np.ones(len(problem.ends), dtype=int)
+    close = max(float(np.min(problem.delay)) / _INSTANTS, problem.until / _MOST_INSTANTS)
+    taus, values = DiscreteModel(Elements(problem, one, weight)).history(step or close)
+    return taus, stated.added(values, taus)
+
+
+def _differences(ours: Array, waves: Array) -> Iterator[Discrepancy]:
+    for one, other in zip(ours, waves, strict=True):
+        largest, size = float(np.max(np.abs(other))), float(np.max(np.abs(one)))
+        scale = largest or (np.inf if size == 0 else 0.0)
+        with np.errstate(divide="ignore"):
+            yield Discrepancy(
+                *(float(np.divide(gap, scale)) for gap in (np.max(np.abs(one - other)), abs(size - largest)))
+            )
