@@ -12,7 +12,7 @@ from scipy.linalg import eigh
 from scipy.signal import lsim
 
 from tests.support.drawn import systems
-from tests.support.modal import building, chain, samples
+from tests.support.modal import building, by_elements, chain, samples
 from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.model.damping import Damping
@@ -23,8 +23,6 @@ from wavesym.programs.modes.rounding import rounded
 from wavesym.programs.modes.system import modal_system
 from wavesym.programs.modes.tables import scheme_tables
 from wavesym.programs.schemes.modes import ModesScheme
-from wavesym.rivals.elements import Elements
-from wavesym.rivals.network import network_problem
 from wavesym.scene import Scene, lower
 
 PULSE = {"times": [0, "7/3", "5/2"], "a": [0, 0, 0], "b": [1, -3, 2]}
@@ -183,10 +181,9 @@ def test_damped_outputs_are_those_of_finite_elements(name):
     ground = np.interp(times, spacing * np.arange(len(load["samples"])), load["samples"])
     by_resolution = []
     for resolution in (12, 24):
-        elements = Elements(network_problem(replace(model, damping=None)), 1 / resolution)
-        mass, _, stiffness = (matrix if matrix is None else matrix.toarray()[1:] for matrix in elements.assembled())
-        squares, shapes = eigh(stiffness[:, 1:], mass[:, 1:])
-        pulled = mass.sum(axis=1)  # by the ground, whose motion all else shares
+        whole, mass, stiffness = by_elements(replace(model, damping=None), resolution)
+        squares, shapes = eigh(stiffness, mass)
+        pulled = whole.sum(axis=1)  # by the ground, whose motion all else shares
         w = np.sqrt(squares)
         if damping.modes:
             i, j = (w[n - 1] for n in damping.modes)
