@@ -80,8 +80,8 @@ def report(folder: Path) -> Iterator[str]:
     yield ""
     yield "## A record"
     yield ""
-    yield f"Ten storeys, damped, 31 outputs at all {recorded.SAMPLES} samples, from the model on. The error"
-    yield "is the largest of an output, of its largest value, against modes to a thirtieth of the tolerance (1e-6)."
+    yield f"Ten storeys, damped, 31 outputs at all {recorded.SAMPLES} samples, from the model of the scene on. Errors"
+    yield "are those of the worst output, of its largest value, against modes to a thirtieth of the tolerance (1e-6)."
     yield ""
     yield from _table(("way", "s", "error"), recorded.rows())
     yield ""
