@@ -283,8 +283,8 @@ def _coarse(model: Model, what: str) -> str:
 CHECKS = (
     Check("Generated code, against its proved bound:", generated),
     Check(
-        "Damped modes: generated NumPy against finite elements, N, 2N and 4N in the shortest rod, extrapolated. Allowed:\n"
-        "the difference from what N and 2N extrapolate to, and the proved bound:",
+        "Damped modes: generated NumPy against finite elements, N, 2N and 4N in the shortest rod, extrapolated.\n"
+        "Allowed: the difference from what N and 2N extrapolate to, and the proved bound:",
         damped,
     ),
     Check(
