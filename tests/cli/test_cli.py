@@ -88,6 +88,9 @@ class Compiler(SimpleNamespace):
             raise ValueError("--m: 0 given, at least 1 expected")
         return f"{system} {m}"
 
+    def report(self, scene: object, path: Path, text: str) -> None:
+        self.asked.append(path)
+
     def plot(self, scene: object, path: Path, kind: str) -> list[str]:
         self.asked.append(path)
         return ["1 of 2 outputs is drawn"]

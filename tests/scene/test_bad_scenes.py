@@ -67,7 +67,7 @@ MISTAKES = [
         'name = "good"\ncolour = 1',
         "colour: unknown key, name, units, system, load or output expected",
     ),
-    (DRIVE, "kappa =", "kapa =", "system.kapa: unknown key, type, m, kappa or inertia expected"),
+    (DRIVE, "kappa =", "kapa =", "system.kapa: unknown key, type, m, kappa, inertia or damping expected"),
     (DRIVE, "steps", '"st\\neps"', 'load[0]."st\\neps": unknown key, times, body, steps or ramps expected'),
     (DRIVE, "until", "untl", "output.untl: unknown key"),
     (DRIVE, 'name = "good"', "", "name: missing"),

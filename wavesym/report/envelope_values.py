@@ -13,7 +13,7 @@ from wavesym.report.timescale import Timescale
 
 
 @dataclass(frozen=True)
-class Extreme:
+class BandExtreme:
     """The least or greatest value of a band: where and when; `place` is how one says it."""
 
     place: str
@@ -28,7 +28,7 @@ class Extreme:
         return f"{value} {self.place}, {scale.told(self.tau)}"
 
 
-def extremes(found: Along, band: Band) -> Iterator[Extreme]:
+def extremes(found: Along, band: Band) -> Iterator[BandExtreme]:
     """The greatest and the least value."""
     for place, instant in (
         np.unravel_index(find(band.values), band.values.shape) for find in (np.nanargmax, np.nanargmin)
@@ -36,7 +36,7 @@ def extremes(found: Along, band: Band) -> Iterator[Extreme]:
         spot = band.spots[place]
         where = f"in storey {place + 1}" if found.storeys else f"at x = {spot.written}"
         tau, value = float(found.taus[instant]), float(band.values[place, instant])
-        yield Extreme(where, found.unit, spot.x, tau, value)
+        yield BandExtreme(where, found.unit, spot.x, tau, value)
 
 
 def envelope(band: Band) -> tuple[Points, Points]:

@@ -50,11 +50,11 @@ def draw(model: Model, found: Sequence[Along], loads: Sequence[History]) -> Figu
             shown = [(band, cells(quantity, band, _COLUMNS)) for band in quantity.bands]
             largest = limit([values for _, values in shown])
             norm, colours = Normalize(-largest, largest), colormaps["RdBu_r"].resampled(_SHADES)
-            colours.set_bad(_BEYOND)
             mine = []
             for band, values in shown:
                 mine.append(axes := next(panels))
                 edges = np.linspace(0, until, _COLUMNS + 1), [*(spot.low for spot in band.spots), band.spots[-1].high]
+                axes.set_facecolor(_BEYOND)
                 axes.pcolormesh(*edges, values, norm=norm, cmap=colours, rasterized=True)
                 _frame(axes, quantity, band)
             bar = figure.colorbar(ScalarMappable(norm, colours), ax=mine, extend="both", fraction=0.05, pad=0.01)

@@ -11,17 +11,20 @@ from wavesym.report.histories import Points
 def reduced(points: Points, until: float, columns: int) -> Points:
     """The vertices that show in so many columns of [0, until]: in each the first, the least and the greatest of them.
 
-    What a column ends with is told by the first of the next one; the very last vertex stays. `points` (n, 2) has
-    increasing first numbers. What has few vertices stays as it is.
+    One that a column ends with goes where the next one goes on in its direction; the very last vertex stays. `points`
+    (n, 2) has increasing first numbers. What has few vertices stays as it is.
     """
     if len(points) <= 3 * columns:
         return points
     column = columns_of(points[:, 0], until, columns)
     starts = np.flatnonzero(np.diff(column, prepend=-1))
     ends = np.append(starts[1:], len(points))
-    low, high = extremes_between(points[:, 1], starts, ends)
-    kept = np.unique(np.concatenate([starts, np.setdiff1d([*low, *high], ends - 1), ends[-1:] - 1]))
-    result: Points = points[kept.astype(np.intp)]
+    values = points[:, 1]
+    low, high = extremes_between(values, starts, ends)
+    after = values[np.minimum(ends, len(points) - 1)]
+    low = low[(low < ends - 1) | (after > values[low])]
+    high = high[(high < ends - 1) | (after < values[high])]
+    result: Points = points[np.unique(np.concatenate([starts, low, high, ends[-1:] - 1]))]
     return result
 
 

@@ -18,10 +18,11 @@ from wavesym.report.histories import Histories, History, histories
 from wavesym.report.loads import load_histories
 from wavesym.report.page.crossings import crossings
 from wavesym.report.page.plots import Shown, along_pictures, maps, panel, picture
-from wavesym.report.page.said import Told, advice_told, extremes_told
+from wavesym.report.page.said import SaidTable, advice_told, extremes_told
 from wavesym.report.page.structure import structure
 from wavesym.report.timescale import Timescale, timescale
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import drifts
 
 _OUTPUTS = 48  # that are drawn
 _VERTICES = 80_000  # of all curves together: what keeps the page small
@@ -42,8 +43,8 @@ class Report:
     per_tau: str
     time: str
     columns: int
-    extremes: Told
-    advice: Told
+    extremes: SaidTable
+    advice: SaidTable
     maps: tuple[Shown, ...]
     along: tuple[Shown, ...]
     scene: str
@@ -89,7 +90,7 @@ def _report(scene: Scene, text: str) -> Report:
         per_tau=repr(scale.per_tau),
         time=scale.unit,
         columns=columns,
-        extremes=extremes_told(model, scale),
+        extremes=extremes_told(model, drifts(scene), scale),
         advice=advice_told(model),
         maps=tuple(crossings(model, lines, scale) or maps(model, found, scale)),
         along=tuple(along_pictures(model, found, scale)),

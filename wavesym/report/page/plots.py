@@ -9,7 +9,7 @@ import numpy as np
 
 from wavesym.model.model import Model
 from wavesym.report.along import Along, Band, cells, limit
-from wavesym.report.envelope_values import Extreme, envelope, extremes
+from wavesym.report.envelope_values import BandExtreme, envelope, extremes
 from wavesym.report.groups import PlotPanel, axis_title
 from wavesym.report.histories import History, Points
 from wavesym.report.page.curves import HEIGHT, Grid, drawn
@@ -190,7 +190,7 @@ def _along_line(model: Model, quantity: Along, band: Band, scale: Timescale) -> 
     return together(*parts), TOP + _ALONG + BELOW
 
 
-def _named(x: float, y: float, extreme: Extreme, scale: Timescale) -> Svg:
+def _named(x: float, y: float, extreme: BandExtreme, scale: Timescale) -> Svg:
     """A spot and what it is, written towards the middle."""
     right = x < (LEFT + WIDTH - RIGHT) / 2
     return together(

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from wavesym.documents.advice import WAVES, Advice, Candidate
 from wavesym.errors import WavesymError
 from wavesym.model.model import Model
+from wavesym.model.probe import Probe
 from wavesym.report.timescale import Timescale
-from wavesym.results.summary import Peak, When, summarised
+from wavesym.results.summary import OutputSummary, Peak, When, summarised
 from wavesym.rivals.advice import advise
 
 _TOLERANCE = 0.01  # of the largest value: what an engineer would not see
@@ -20,7 +22,7 @@ _CALLED = {
 
 
 @dataclass(frozen=True)
-class Told:
+class SaidTable:
     """A table, and what to know of it; no rows where there is only something to say."""
 
     head: tuple[str, ...]
@@ -28,12 +30,12 @@ class Told:
     notes: tuple[str, ...]
 
 
-def extremes_told(model: Model, scale: Timescale) -> Told:
-    """Of each output the least and the greatest value, when, and when it first moves."""
+def extremes_told(model: Model, drifts: Sequence[Probe], scale: Timescale) -> SaidTable:
+    """Of each output the least and the greatest value, when, and when it first moves; the largest of `drifts`."""
     try:
-        found = summarised(model)
+        found = summarised(model, drifts=drifts)
     except WavesymError as error:
-        return Told((), (), (f"Not found: {error}",))
+        return SaidTable((), (), (f"Not found: {error}",))
     when = f"{scale.symbol} in {scale.unit}" if scale.unit else scale.symbol
     head = ("Output", "Least", f"at {when}", "Greatest", f"at {when}", f"First moves at {when}")
     rows = (
@@ -47,10 +49,18 @@ def extremes_told(model: Model, scale: Timescale) -> Told:
     )
     short = any(not peak.reached for each in found.outputs for peak in (each.min, each.max))
     notes = [
+        _drift(found.largest_drift, scale),
         "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
         f"How: {found.how}; {found.certain}",
     ]
-    return Told(head, tuple(rows), tuple(filter(None, notes)))
+    return SaidTable(head, tuple(rows), tuple(filter(None, notes)))
+
+
+def _drift(found: OutputSummary | None, scale: Timescale) -> str:
+    if found is None:
+        return ""
+    value = f"{found.largest.value:.6g} {found.unit}".rstrip()
+    return f"Largest drift of a rod: {found.name}, {value} at {scale.told(found.largest.at.tau)}"
 
 
 def _peak(peak: Peak, scale: Timescale) -> tuple[str, str]:
@@ -61,23 +71,23 @@ def _when(at: When, scale: Timescale) -> str:
     return f"{at.tau * scale.per_tau:.6g}"
 
 
-def advice_told(model: Model) -> Told:
+def advice_told(model: Model) -> SaidTable:
     """Which of three models is enough for each output, over the horizon of the scene."""
     try:
         found = advise(model, _TOLERANCE)
     except WavesymError as error:
-        return Told((), (), (f"Not compared: {error}",))
+        return SaidTable((), (), (f"Not compared: {error}",))
     kept = [each for each in found.candidates if not each.refused]
     notes = [*_verdict(found), *(f"{_CALLED[each.name]}: {each.refused}" for each in found.candidates if each.refused)]
     if not found.outputs:
-        return Told((), (), tuple(notes))
+        return SaidTable((), (), tuple(notes))
     head = ("Output", *(f"{_CALLED[each.name]}, {what}" for each in kept for what in ("history", "peak")))
     rows = ((name, *_differences(kept, k)) for k, (name, *_) in enumerate(found.outputs))
     notes.append(
         f"Each number is the largest difference from waves at {found.instants} instants, in parts of the output's "
         "largest value: of the history at any time, and of the peak"
     )
-    return Told(head, tuple(rows), tuple(notes))
+    return SaidTable(head, tuple(rows), tuple(notes))
 
 
 def _verdict(found: Advice) -> list[str]:
