@@ -106,3 +106,21 @@ def test_elements_come_to_what_damped_modes_are():
     light = replace(model, damping=Damping((fmpq(1, 21),)))
     wrong = make(light, Request(evaluator="modes")).evaluate(taus)
     assert np.max(np.abs(wrong - right) / sizes) > 1e-3
+
+
+@pytest.mark.parametrize(("end", "gone"), [("fixed", 0.0), ("absorbing", 0.5)])
+def test_what_has_no_mass_follows_at_once(end, gone):
+    """Springs of stiffness 1 and 2 in a row, pushed by 1: against a wall, or a dashpot of 2."""
+    parts = [{"joint": True, "name": "a"}, {"rod": 1}, {"rod": 1, "impedance": 2}, end]
+    output = {"until": 6, "strain": ["1-", "1+"], "velocity": ["2"], "displacement": ["a", "3/2"]}
+    load = [{"at": "a", "times": [0], "steps": [1]}]
+    scene = Scene(name="scene", system={"type": "chain", "parts": parts}, load=load, output=output)
+    taus, (left, right, velocity, first, inside) = springs(lower(scene), 0.0)
+    for found, true in (
+        (left, -1),
+        (right, -1 / 2),
+        (velocity, gone),
+        (first, 3 / 2 + gone * taus),
+        (inside, 1 / 4 + gone * taus),
+    ):
+        np.testing.assert_allclose(found, np.broadcast_to(true, taus.shape), rtol=0, atol=1e-12)
