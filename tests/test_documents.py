@@ -35,7 +35,7 @@ from wavesym.scene import Scene
 
 ROOT = Path(wavesym.__file__).parents[1]
 PAGES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.md"))
-DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, "examples/chains/README.md")
+DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, "examples/chains/README.md", "examples/frames/README.md")
 READ_ELSEWHERE = {"order", "exceptions", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
 LONG = re.compile(r"wavesym (chart|stability|plot --published|verify --published)\b")  # half a minute and more

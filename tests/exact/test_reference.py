@@ -78,13 +78,13 @@ def test_breakpoints_are_the_first_doubles_that_feel_them(route):
 def test_windows_are_asked_only_for_the_segments_that_are_needed(monkeypatch):
     monkeypatch.setattr(reference, "_MODERATE", 0)
     composed = []
-    value = motion._value
+    values = motion._values
 
-    def counted(waves, probe, start):
+    def counted(waves, terms, start):
         composed.append(start)
-        return value(waves, probe, start)
+        return values(waves, terms, start)
 
-    monkeypatch.setattr(motion, "_value", counted)
+    monkeypatch.setattr(motion, "_values", counted)
     Reference(lower(scene(strain=["1/2"]))).values([1.0, 1.001, 3.9])
     assert len(composed) == 2
 

@@ -22,6 +22,7 @@ from wavesym.programs.making import make
 from wavesym.programs.modes import making
 from wavesym.programs.modes.making import modes
 from wavesym.programs.request import Request
+from wavesym.results.response import Response
 from wavesym.running.compiled import imported
 from wavesym.running.native import library
 from wavesym.scene import lower
@@ -169,7 +170,7 @@ def test_one_light_storey_has_the_published_peak(period, published, between):
     assert values.max() == pytest.approx(between, abs=2e-4)
 
 
-LONG = scene(until=200, tolerance="1e-2").with_(
+LONG = scene(until=200, tolerance="1e-2", strain=[], acceleration=[], force=[]).with_(
     {"load[0].spacing": "5/397", "load[0].samples": [k % 7 for k in range(1500)]}
 )
 
@@ -184,8 +185,13 @@ def test_what_auto_takes():
     assert chosen.reason.endswith(chosen.evaluator.summary)
     with pytest.raises(UnservedError, match=r"jumps by 1 at tau = 0"):
         choose(lower(scene(until=5).with_({"load[0].samples[0]": 1})), "modes")
+    assert choose(replace(model, damping=Damping((fmpq(1, 20),)))).name == "modes"
     jump = lower(scene(until=5).with_({"load[0].samples[0]": 1}))
     assert "modes" not in choose(jump).reason
+    damped = replace(jump, damping=Damping((fmpq(1, 20),)))
+    for ask in (choose, lambda model: Response(model)([1.0])):
+        with pytest.raises(UnservedError, match=r"^load: a jumps by 1 at tau = 0"):
+            ask(damped)
     assert [one.kind for one in attempts(jump)][:2] == ["closed", "pieces"]
 
 

@@ -73,15 +73,15 @@ def test_mass_that_is_shared_out_wrongly_is_seen(monkeypatch):
 @pytest.mark.parametrize("part", ["massless", "consistent"])
 def test_waves_are_what_is_compared_with(monkeypatch, part):
     """A program that is wrong by a tenth makes nothing enough."""
-    make = advice.make
+    program = advice.program
 
     class Wrong:
-        kind, error_bound = "wrong", 0.0
+        evaluator, error_bound = "wrong", 0.0
 
         def __init__(self, *asked):
-            self.evaluate = lambda taus: 1.1 * make(*asked).evaluate(taus)
+            self.evaluate = lambda taus: 1.1 * program(*asked).evaluate(taus)
 
-    monkeypatch.setattr(advice, "make", Wrong)
+    monkeypatch.setattr(advice, "program", Wrong)
     found = {candidate.name: candidate for candidate in advise(lower(tower(1e-3)), 0.01).candidates}
     assert found[part].worst == pytest.approx(0.1 / 1.1, rel=0.05)
 
@@ -143,6 +143,8 @@ def test_the_command(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["advise", "drive_m1", "--format", "json"]) == 0
     assert json.loads(capsys.readouterr().out)["enough"] == "waves"
+    assert main(["advise", "collision_m4"]) == 0
+    assert "computed as if it stayed closed" in capsys.readouterr().err
     assert main(["advise", "drive_m1", "--tolerance", "0.6"]) == 0
     assert "every output: massless" in capsys.readouterr().out
     for wrong in ("0", "1", "nan", "much"):

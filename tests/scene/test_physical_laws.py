@@ -7,14 +7,21 @@ At a node with mass m, m v' is what the rods on both sides push.
 from __future__ import annotations
 
 from cmath import cos, sin
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from math import exp, pi, sqrt
 from typing import Any
 
 import pytest
 
+from wavesym.model.clock import Clock
 from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
+from wavesym.scene.physical.building import Columns
+from wavesym.scene.physical.drive import PhysicalDrive
+from wavesym.scene.physical.elastic import Rods
+from wavesym.scene.physical.rewritten import LoadUnit
+from wavesym.scene.physical.scale import Scale
 
 CLOSE = 1e-13
 
@@ -321,3 +328,38 @@ def test_shear_and_twist_of_other_rods() -> None:
         assert found["velocity@3 m"] == pytest.approx(12 / z, rel=CLOSE)
         assert found["velocity@5 m"] == 0
         assert found["force@3 m"] == pytest.approx(-12, rel=CLOSE)
+
+
+def softer(self: Columns, height: Any) -> Any:
+    """Columns whose heads may turn."""
+    return 3 * self.n * self.E * self.I / height**3
+
+
+def lighter(self: Rods, number: int) -> Any:
+    """Impedances without the ratio of delays."""
+    return self.all[number].mass / self.first.mass
+
+
+def unsigned(self: PhysicalDrive, load: Mapping[str, Any], unit: Any) -> LoadUnit:
+    """The last moment with the sign of the others."""
+    return LoadUnit("moment", "moment rate", unit, {"body": "at"}, {"at": load["body"] - 1})
+
+
+@pytest.mark.parametrize(
+    ("home", "name", "wrong", "law"),
+    [
+        (Columns, "stiffness", softer, test_columns_and_walls_are_as_stiff_and_heavy_as_books_say),
+        (Rods, "impedance", lighter, partial(test_storeys_on_ground_that_moves, True)),
+        (Rods, "impedance", lighter, partial(test_bodies_collide, rod("0.9 m", "4 cm^2"), "closed")),
+        (PhysicalDrive, "_on_node", unsigned, partial(test_a_drive_turns, "0.9 m", 3)),
+        (Scale, "factor", lambda self, quantity, rod: 1, partial(test_a_foundation_that_pushes, 1)),
+        (Clock, "tau", lambda self, time, until: time, test_torsion_counts_angles_and_moments),
+    ],
+)
+def test_what_breaks_a_law_is_seen(
+    home: type, name: str, wrong: Any, law: Callable[[], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    law()
+    monkeypatch.setattr(home, name, wrong)
+    with pytest.raises(AssertionError):
+        law()

@@ -384,6 +384,7 @@ REFUSED = [
     ),
     ("building", "load.0", {"record": "nowhere.at2"}, "load[0].record", "nowhere.at2"),
     ("building", "output.until", "3 m", "output.until", "(a length), a time"),
+    ("building", "output.until", "1e12 s", "output.until", "2.49735e+14 of tau, at most 1000000000 of tau"),
     ("building", "output.until", "0 s", "output.until", "a positive time"),
     ("building", "output.velocity", ["2 m"], "output.velocity[0]", "a number expected"),
     ("building", "output.velocity", [3], "output.velocity[0]", "a position from 0 to 2 expected"),
@@ -437,6 +438,49 @@ def test_wrong_scenes_are_refused_where_they_are_wrong(
     error = refused(changed(ALL[name], path, value))
     assert error.path == where
     assert what in error.what
+
+
+def paths(value: Any, path: str = "") -> list[str]:
+    """Of all keys and items in a scene."""
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    found = [(f"{path}.{key}".lstrip("."), each) for key, each in inner]
+    return [at for here, each in found for at in (here, *paths(each, here))]
+
+
+RUBBISH = [
+    None,
+    True,
+    -1,
+    0,
+    "x",
+    "",
+    [],
+    {},
+    "1 m",
+    "-1 m",
+    ["1 m"],
+    {"a": 1},
+    float("nan"),
+    "1e400 m",
+    "fixed",
+    "9" * 200,
+]
+RUBBISH += [{"rod": "1 m"}, {"mass": "1 kg"}, {"motion": "velocity"}, [[]], "1 m+", "a:1 m", "\ud800", "1 s", [1, 2, 3]]
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.data())
+def test_rubbish_is_refused_in_a_line(data: st.DataObject) -> None:
+    scene = ALL[data.draw(st.sampled_from(list(ALL)))]
+    rubbish = changed(scene, data.draw(st.sampled_from(paths(scene))), data.draw(st.sampled_from(RUBBISH)))
+    try:
+        lower(Scene(**rubbish))
+    except SceneError as error:
+        line = str(error)
+    else:
+        return
+    assert line.isascii()
+    assert line.isprintable()
 
 
 def test_a_refusal_names_the_file_and_nothing_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -501,7 +545,9 @@ def test_programs_keep_tau_and_say_what_it_is(tmp_path: Path) -> None:
     assert namespace["SECONDS_PER_TAU"] == seconds
     assert namespace["UNITS"] == ("m/s", "N", "m")
     taus = [0.5, 3.0, 7.7]
-    expected = wavesym.evaluator(scene)(taus)
+    response = wavesym.evaluator(scene)
+    assert (response.units, response.seconds_per_tau) == (namespace["UNITS"], seconds)
+    expected = response(taus)
     assert abs(namespace["evaluate"](taus) - expected).max() <= 1e-9 * abs(expected).max()
 
 

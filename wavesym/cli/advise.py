@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import click
 
 from wavesym.cli.parameters import SCENE, put
 from wavesym.cli.progress import progress
+from wavesym.errors import CostError
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -39,4 +41,7 @@ def advise(scene: Scene, tolerance: float, format: str) -> None:
 
     with progress(f"advise {scene.name}"):
         text = compiler.advise(scene, tolerance, format)
+    with suppress(CostError):  # when contacts open may be dear to know
+        for warning in compiler.warnings(scene):
+            click.echo(f"{scene.name}: {warning}", err=True)
     put(text)

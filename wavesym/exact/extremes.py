@@ -40,7 +40,7 @@ _EQUAL, _FLAT, _KNOWN, _NEGLIGIBLE = arb(2) ** -60, arb(2) ** -64, arb(2) ** -70
 _POINTS = (33, 513)
 _ROUNDING = 2.0**-52
 _NEWTON = 200  # steps at most; a dozen do
-# measured: seconds for a piece, times its terms to the power of 3/2
+# measured: seconds for a piece of an output or wave, times its terms to the power of 3/2
 _COMPOSED, _MOST_SECONDS = 4e-7, 5
 # times the bits that there are to begin with: what needs more is not told from 0
 _MORE_BITS = 8
@@ -48,7 +48,7 @@ _ZERO, _ONE = fmpq(0), fmpq(1)
 
 
 @dataclass(frozen=True)
-class Extreme:
+class TrueExtreme:
     """A `value`, right to 2^-52 of the output's largest, and the first `tau` at which it is taken.
 
     Where it is not `reached` the output comes up to it from the left, and jumps at tau.
@@ -59,8 +59,8 @@ class Extreme:
     reached: bool = True
 
 
-Range = tuple[Extreme, Extreme]
-NOTHING: Range = (Extreme(0.0, 0.0), Extreme(0.0, 0.0))
+Range = tuple[TrueExtreme, TrueExtreme]
+NOTHING: Range = (TrueExtreme(0.0, 0.0), TrueExtreme(0.0, 0.0))
 
 
 def extremes(model: Model) -> list[Range]:
@@ -72,12 +72,12 @@ def extremes(model: Model) -> list[Range]:
     if model.damping is not None:
         raise UnservedError("system.damping: given, none expected (modes serve it)")
     motion = Motion(model, rational(model.horizon()))
-    pieces = sum(len(motion.starts(probe)) for probe in motion.probes)
+    pieces = motion.stretches + sum(len(motion.starts(probe)) for probe in motion.probes)
     if (seconds := pieces * (motion.first_bits // 4) ** 1.5 * _COMPOSED) > _MOST_SECONDS:
         raise CostError(
-            f"output.until: true extremes of {len(motion.probes)} outputs, {pieces} polynomials in {motion.first_bits} "
-            f"bits, would take about {seconds:.0f} s, at most {_MOST_SECONDS} expected (a shorter horizon or fewer "
-            "outputs help)"
+            f"output.until: true extremes of {len(motion.probes)} outputs, with their waves {pieces} polynomials in "
+            f"{motion.first_bits} bits, would take about {seconds:.0f} s, at most {_MOST_SECONDS} expected (a shorter "
+            "horizon or fewer outputs help)"
         )
     zero = silent(model, motion.until)
     return [
@@ -174,8 +174,8 @@ class _Candidate:
     reached: bool
 
     @property
-    def order(self) -> tuple[fmpq, bool]:
-        return self.tau, not self.reached
+    def order(self) -> tuple[float, bool, fmpq]:
+        return self.double, not self.reached, self.tau
 
 
 def _found(pieces: Sequence[_Piece], size: arb) -> Range | None:
@@ -189,8 +189,8 @@ def _found(pieces: Sequence[_Piece], size: arb) -> Range | None:
     return _told(least, -1), _told(greatest, 1)
 
 
-def _told(found: _Candidate, sign: int) -> Extreme:
-    return Extreme(midpoint(sign * found.value) + 0.0, found.double, found.reached)  # no -0.0
+def _told(found: _Candidate, sign: int) -> TrueExtreme:
+    return TrueExtreme(midpoint(sign * found.value) + 0.0, found.double, found.reached)  # no -0.0
 
 
 class _Screen:

@@ -108,6 +108,11 @@ class Motion:
                 f"{seconds:.0f} s, at most {MOST_SECONDS} expected (fewer outputs, samples or load times help)"
             )
 
+    @property
+    def stretches(self) -> int:
+        """How many stretches of all joints waves are made of."""
+        return self._knots.stretches
+
     def starts(self, probe: Probe) -> Sequence[fmpq]:
         """Where its segments start: where it may jump or bend, and 0."""
         return self._knots.breakpoints(self._model.sums[probe])

@@ -114,10 +114,11 @@ def choose(
 def attempts(model: Model, precision: str = "double", optimize: str | None = None) -> tuple[Tried, ...]:
     """All kinds of programs tried for a model; modes, and then a march, only where no other kind does.
 
-    (A single value of these takes as long as all steps or windows before it, and so does trying one.)
+    (A single value of these takes as long as all steps or windows before it, and so does trying one.) With damping
+    there are only modes.
     """
     tried: list[Tried] = []
-    for kind in MAKERS:
+    for kind in ("modes",) if model.damping else MAKERS:
         if kind in _LAST and any(not one.refusal for one in tried):
             break
         tried.append(attempt(model, kind, precision, optimize=optimize))
@@ -151,9 +152,12 @@ def attempt(
 def best(model: Model, tried: Sequence[Tried], optimize: str | None = None) -> Choice:
     """The best of what was tried and meets the tolerance, and why. ToleranceError where nothing does."""
     found = [(one.kind, one.form) for one in tried if one.form and not one.refusal]
-    # where modes are for something else altogether that is no news
-    refused = [one.why for one in tried if one.refusal and not (one.kind == "modes" and _unserved(one) and tried[1:])]
+    # where modes are for something else altogether that is no news, but of a record that nothing serves
+    silent = found or not model.spacing
+    refused = [one.why for one in tried if one.refusal and not (silent and one.kind == "modes" and _unserved(one))]
     if not found:
+        if len(tried) == 1 and tried[0].error:
+            raise tried[0].error
         raise unmet(model.tolerance, "; ".join(refused))
     small = optimize == "size"
     name, chosen = min(found, key=lambda one: one[1].bytes if small else one[1].work)

@@ -8,8 +8,8 @@ from wavesym.results.spectrum import Spectra
 
 
 def _plain(period: float, _: float) -> str:
-    """A number of ticks as people write it; 7 and 9 of a decade stand too close."""
-    return f"{period:g}" if f"{period:e}"[0] in "123468" else ""
+    """Ticks at 1, 2 and 5 of a decade, as people write them."""
+    return f"{period:g}" if f"{period:e}"[0] in "125" else ""
 
 
 def draw(found: Spectra) -> Figure:

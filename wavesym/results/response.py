@@ -14,6 +14,7 @@ from wavesym.exact.events import events
 from wavesym.exact.reference import Reference
 from wavesym.model.event import ContactEvent
 from wavesym.model.model import Model
+from wavesym.numbers.doubles import nearest
 from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import attempts, best
 from wavesym.programs.program import Program, Provenance
@@ -27,7 +28,8 @@ class Response:
     """A scene's outputs as one function: the exact tables in ball arithmetic, each value rounded once.
 
     Where these would cost too much, or nothing but modes serves the scene, it is the program that `generate` takes.
-    `outputs` are their names, `tau_max` the end of the horizon; `error_bound` is relative to an output's largest value.
+    `outputs` are their names, `units` what they are told in (empty without [units]), `seconds_per_tau` what one tau is
+    (None without), `tau_max` the end of the horizon; `error_bound` is relative to an output's largest value.
     `events` are what contacts do that open and close, in order of time.
     `wavesym.evaluator` makes it.
     """
@@ -42,6 +44,14 @@ class Response:
     @property
     def outputs(self) -> tuple[str, ...]:
         return tuple(probe.name for probe in self.model.probes)
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        return tuple(probe.unit for probe in self.model.probes)
+
+    @property
+    def seconds_per_tau(self) -> float | None:
+        return nearest(self.model.clock.seconds) if self.model.clock else None
 
     @property
     def tau_max(self) -> float:
@@ -90,7 +100,8 @@ def _program(model: Model, error: CostError) -> Program:
     Of samples and records it is told what each program would need.
     """
     tried = attempts(model)
-    if not model.spacing and not any(one.form or isinstance(one.error, ToleranceError) for one in tried):
+    served = any(one.form or isinstance(one.error, ToleranceError) for one in tried)
+    if not served and not model.spacing and not model.damping:
         raise error
     choice = best(model, tried)
     return assemble(choice.evaluator, Provenance(model, choice.reason))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.arrival import first_arrivals, light_arrivals
-from wavesym.exact.extremes import NOTHING, Extreme, Range, extremes
+from wavesym.exact.extremes import NOTHING, Range, TrueExtreme, extremes
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below, rational
@@ -159,7 +159,7 @@ def _largest(
     return largest if largest is not None and largest.largest.value else None
 
 
-def _peak(model: Model, found: Extreme) -> Peak:
+def _peak(model: Model, found: TrueExtreme) -> Peak:
     return Peak(found.value, instant(model, found.tau), found.reached)
 
 
@@ -198,7 +198,7 @@ def _searched(model: Model) -> _Found:
 def _ranges(values: Numbers, taus: Numbers) -> list[Range]:
     """As of pieces; all of these are values that are taken."""
     least, greatest = (
-        [Extreme(*each) for each in zip(values[:, side].tolist(), taus[:, side].tolist(), strict=True)]
+        [TrueExtreme(*each) for each in zip(values[:, side].tolist(), taus[:, side].tolist(), strict=True)]
         for side in (0, 1)
     )
     return list(zip(least, greatest, strict=True))

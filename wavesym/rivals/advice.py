@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 
 import numpy as np
 from flint import fmpq
 
 from wavesym.documents.advice import Advice, Candidate, Discrepancy
-from wavesym.errors import CostError, ToleranceError, UnservedError
+from wavesym.errors import UnservedError
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import rational
-from wavesym.programs.making import make
+from wavesym.programs.choice import attempt, choose
+from wavesym.programs.making import program
 from wavesym.programs.program import Program
-from wavesym.programs.request import Request
 from wavesym.rivals.lumped import DiscreteModel
 from wavesym.rivals.mass import Elements
 from wavesym.rivals.modal_elements import RIVAL
@@ -25,7 +24,7 @@ WEIGHTS: Mapping[str, float] = {"massless": 0.0, "consistent": 1.0}
 """The models in place of waves, from cheap to dear, and what of their mass the rods have."""
 
 # while a wave crosses the shortest rod, and in all
-_INSTANTS, _MOST_INSTANTS = 8, 40_000
+_INSTANTS, _MOST_INSTANTS = 8, 20_000
 # of what is told apart, what the waves themselves may be wrong by
 _EXACT = fmpq(1, 100)
 
@@ -44,8 +43,8 @@ def advise(model: Model, tolerance: float) -> Advice:
             refused[name] = str(error)
     if not histories:
         return Advice(model.name, tolerance, tuple(Candidate(name, refused=why) for name, why in refused.items()))
-    program = _soonest(model.tolerating(max(model.tolerance, rational(tolerance) * _EXACT)))
-    waves = program.evaluate(taus)
+    soonest = _soonest(model.tolerating(max(model.tolerance, rational(tolerance) * _EXACT)))
+    waves = soonest.evaluate(taus)
     return Advice(
         model.name,
         tolerance,
@@ -58,17 +57,16 @@ def advise(model: Model, tolerance: float) -> Advice:
         tuple(
             (probe.name, probe.unit, float(np.max(np.abs(row)))) for probe, row in zip(model.probes, waves, strict=True)
         ),
-        f"{program.kind}, bound {program.error_bound:.1e}",
+        f"{soonest.evaluator}, bound {soonest.error_bound:.1e}",
         len(taus),
     )
 
 
 def _soonest(model: Model) -> Program:
     """A program of the waves: not the quickest one, but the one that is made soonest."""
-    for kind in ("modes", "march"):
-        with suppress(CostError, ToleranceError):
-            return make(model, Request(evaluator=kind))
-    return make(model)
+    tried = (attempt(model, kind) for kind in ("modes", "march"))
+    form = next((one.form for one in tried if one.form and not one.refusal), None)
+    return program(model, form or choose(model).evaluator)
 
 
 def springs(model: Model, weight: float, step: float | None = None) -> tuple[Array, Array]:

@@ -62,20 +62,23 @@ class DiscreteModel:
     def _parts(self) -> list[Batch]:
         elements, size = self.elements, self.elements.size
         mass, damping, stiffness = (dense(e, size) for e in (elements.mass, elements.damping, elements.stiffness))
-        told = {node: d for d, node in enumerate(self._driven) if node in elements.problem.told}
+        told = elements.problem.told
         free = np.setdiff1d(np.arange(size), elements.problem.told)
         acting, at_once = np.zeros((2, size, len(self._driven), KEPT))
+        dragged = np.zeros((size, len(self._driven)))
         for d, node in enumerate(self._driven):
             if node in told:
-                acting[:, d, :3] = -np.stack([stiffness[:, node], damping[:, node], mass[:, node]], axis=1)
-                at_once[node, d, 0] = 1.0
+                # unknowns count from what is dragged along: the ground may go far, and drifts are small
+                shape = dragged[:, d] = elements.dragged(node)
+                acting[:, d, :3] = -np.stack([elements.pulling(shape), damping @ shape, mass @ shape], axis=1)
             else:
                 acting[node, d, 1] = 1.0
         inner = np.ix_(free, free)
         left = condensed(mass[inner], damping[inner], stiffness[inner], acting[free])
         at_once[free] = left.at_once
-        # what a told velocity gains at once is a blow to what has a share in its mass
-        momentum = -self._changes[:, list(told.values()), 1] @ mass[list(told)][:, free]
+        at_once[..., 0] += dragged
+        # what a told velocity gains at once is a blow to what is dragged along
+        momentum = -self._changes[:, :, 1] @ (mass @ dragged).T[:, free]
         momentum[0] += elements.momentum[free]
         own = left.oscillators(self._changes, momentum[:, left.heavy], self._ratios)
         places = np.zeros((size, *own.places.shape[1:]))

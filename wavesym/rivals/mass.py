@@ -96,6 +96,34 @@ class Elements:
                 np.add.at(shares, unknowns[ends], self._heavy(bar) * moving / 2 * factors[ends])
         return shares
 
+    def dragged(self, point: int) -> Array:
+        """How all moves with a point that moves by 1 where no rod is strained, as far as no other told one: (size,).
+
+        What no rod ties to it stays.
+        """
+        shape, coming = np.zeros(self.size), [point]
+        shape[point] = 1.0
+        while coming:
+            here = coming.pop()
+            for bar, side, at, ratio, _ in self.problem.at_ends():
+                if at == here:
+                    far, speed = self.problem.ends[bar][1 - side], ratio * shape[here]
+                    shape[self.firsts[bar] : self.firsts[bar + 1]] = speed
+                    if shape[far] == 0 and far not in self.problem.told:
+                        shape[far] = speed / self.problem.ratios[bar, 1 - side]
+                        coming.append(far)
+        return shape
+
+    def pulling(self, shape: Array) -> Array:
+        """The forces that displacements (size,) ask for: exactly 0 for what strains no rod."""
+        forces = np.zeros(self.size)
+        forces[: self.problem.points] = self.problem.stiffness @ shape[: self.problem.points]
+        for bar in range(len(self.cells)):
+            unknowns, factors = self.along(bar)
+            pull = self.problem.impedance[bar] / self.length(bar) * np.diff(factors * shape[unknowns])
+            np.add.at(forces, unknowns, factors * (np.append(0.0, pull) - np.append(pull, 0.0)))
+        return forces
+
     def _heavy(self, bar: int) -> float:
         """The mass of one element."""
         return float(self.weight * self.problem.impedance[bar] * self.length(bar))

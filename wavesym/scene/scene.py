@@ -38,9 +38,10 @@ from wavesym.systems import SYSTEMS, ExplicitChain, Preset, SystemTable
 class Scene(SceneTable):
     """A chain, its loads, and what to watch of it: `Scene(name=..., system={...}, load=[...], output={...})`.
 
-    The fields are those of a scene file. Everything is dimensionless: x in rod lengths, tau = c t / l. Numbers may be
-    int, Fraction, Decimal, float (the shortest decimal that reads back to it) or text such as "1/3". The path of a
-    record counts from the current folder. Raises SceneError for the first thing that is wrong.
+    The fields are those of a scene file. Without `units` all is dimensionless: x in rod lengths, tau = c t / l; with
+    them (`units={}`) quantities are text such as "3.5 m", and `system`, `load`, `output` are the scene without.
+    Numbers may be int, Fraction, Decimal, float (the shortest decimal that reads back to it) or text such as "1/3". The
+    path of a record counts from the current folder. Raises SceneError for the first thing that is wrong.
 
     >>> import wavesym
     >>> scene = wavesym.Scene(

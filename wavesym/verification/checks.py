@@ -19,6 +19,7 @@ from wavesym.running.compiled import compiled, imported
 from wavesym.targets.files import files
 from wavesym.verification.characteristics import COARSEST, Integrated, integrate
 from wavesym.verification.contacts import fronts, happening
+from wavesym.verification.damped import damped
 from wavesym.verification.graph import Struck, graph
 from wavesym.verification.graph_balance import Balancing
 from wavesym.verification.graph_characteristics import doubles_of, integrate_graph
@@ -281,6 +282,11 @@ def _coarse(model: Model, what: str) -> str:
 
 CHECKS = (
     Check("Generated code, against its proved bound:", generated),
+    Check(
+        "Damped modes: generated NumPy against finite elements, N, 2N and 4N in the shortest rod, extrapolated.\n"
+        "Allowed: the difference from what N and 2N extrapolate to, and the proved bound:",
+        damped,
+    ),
     Check(
         "Records that modes take, against the march of one hat load, added up at all samples. Allowed: what is proved\n"
         "of both:",

@@ -71,6 +71,11 @@ def known(model: Model) -> Known:
     return Known(model, exact.model, exact.tau_max, taus, tuple(outputs))
 
 
+def unknown(model: Model) -> Known:
+    """A model whose modes are damped, which balls know nothing of."""
+    return Known(model, model, model.horizon(), (), ())
+
+
 def _taus(exact: Reference) -> Iterator[float]:
     until = exact.tau_max
     yield from (0.0, until)

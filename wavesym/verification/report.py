@@ -8,7 +8,8 @@ from wavesym.model.model import Model
 from wavesym.running.toolchain import compiler
 from wavesym.verification.checks import CHECKS
 from wavesym.verification.columns import Row, table
-from wavesym.verification.reference import known
+from wavesym.verification.damped import damped
+from wavesym.verification.reference import known, unknown
 
 _LEGEND = "Errors are against ball arithmetic rounded once, relative to the output's largest value."
 
@@ -23,10 +24,10 @@ def verify(models: Iterable[Model]) -> tuple[str, bool]:
     notes: list[str] = []
     passed = True
     for model in models:
-        truth = known(model)
+        truth = known(model) if model.damping is None else unknown(model)
         notes += truth.notes
         for check, rows in zip(CHECKS, tables, strict=True):
-            for outcome in check.run(truth):
+            for outcome in check.run(truth) if truth.outputs or check.run is damped else ():
                 verdict = "PASS" if outcome.passed else "FAIL"
                 rows.append({"scene": model.name, "of": outcome.subject, **outcome.cells, "verdict": verdict})
                 notes += [outcome.note] if outcome.note else []

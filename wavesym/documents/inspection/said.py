@@ -12,6 +12,8 @@ from wavesym.scene import Scene
 def said(scene: Scene) -> Iterator[Section]:
     """The tables of a scene, under its own keys."""
     fields = scene.model_dump(mode="json")
+    if fields.get("units"):
+        yield Facts("units", "How it counts", fields["units"])
     yield Facts("system", "The chain, as it was said", fields["system"])
     loads = fields["load"]
     names = tuple(dict.fromkeys(name for load in loads for name in load))

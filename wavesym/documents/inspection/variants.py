@@ -22,6 +22,7 @@ _NOT_TRIED = {
     "modes": "not tried: another program meets the tolerance",
     "march": "not tried: another program meets the tolerance, and trying a march takes as long as a run of all windows",
 }
+_DAMPED = "not tried: only modes serve damping"
 
 
 def variants(model: Model, tried: Sequence[Tried]) -> Listing:
@@ -38,7 +39,7 @@ def _rows(model: Model, tried: Sequence[Tried]) -> Iterator[dict[str, Plain]]:
     done = {one.kind: one for one in tried}
     for kind in MAKERS:
         if kind not in done:
-            yield _row(Tried(kind, None, _NOT_TRIED[kind]), "double", "speed")
+            yield _row(Tried(kind, None, _DAMPED if model.damping else _NOT_TRIED[kind]), "double", "speed")
             continue
         yield _row(first := done[kind], "double", "speed")
         if first.form is None:

@@ -9,15 +9,15 @@ from flint import arb, ctx, fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut, cut
-from wavesym.exact.modes.shape import Mode, Trial, rigid, trial, yielding
-from wavesym.exact.modes.stiffness import Law, Stiffness, Vector
+from wavesym.exact.modes.shape import Mode, Trial, rigid, trial
+from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, Vector
 from wavesym.model.network import Network
 
 _BITS = 192
-_BITS_A_ROW = 8  # of which determinants in balls take about 4
+_BITS_A_ROW = 6  # of which determinants in balls take about 4
 _BISECTIONS = 64
 _NEWTON = 6
-_OFF = arb(2) ** -44  # a frequency itself tells less of its mode than one near it
+_OFF = 2.0**-36  # a frequency itself tells less of its mode than one near it
 _SHARP = arb(2) ** -60  # shapes
 
 
@@ -48,7 +48,7 @@ def frequencies(network: Network, count: int) -> tuple[arb, ...]:
     >>> from wavesym import Scene
     >>> from wavesym.scene import lower
     >>> [float(w) for w in frequencies(lower(Scene.from_toml("drive_m1")).network, 2)]
-    [0.0, 1.5336592127]
+    [0.0, 1.1362489714714046]
     """
     return tuple(mode.frequency for mode in Spectrum(network).first(count))
 
@@ -87,17 +87,19 @@ class Spectrum:
 def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
     """Those after the first `known` ones."""
     free = rigid(stiffness.network)
-    ways: list[tuple[int, Law]] = []
+    ways: list[tuple[int, HarmonicLaw]] = []
     for times in (1, 4):
         bits = times * (_BITS + _BITS_A_ROW * len(stiffness.points))
         with ctx.workprec(bits):
             ways.append((bits, stiffness.law(arb)))
-    for n, guess in enumerate(searched(stiffness, count).tolist()[known:], known + 1):
+    guesses = searched(stiffness, count)[known:]
+    roots = stiffness.yielding(guesses * (1 - _OFF)).tolist()
+    for n, (guess, root) in enumerate(zip(guesses.tolist(), roots, strict=True), known + 1):
         if n == 1 and free:
             with ctx.workprec(_BITS):
                 yield _still(stiffness, free)
             continue
-        mode = next((made for bits, law in ways if (made := _proved(stiffness, law, n, guess, bits))), None)
+        mode = next((made for bits, law in ways if (made := _proved(stiffness, law, n, guess, root, bits))), None)
         if mode is None:
             raise CoincidenceError(f"two frequencies meet near {guess:.6g}")
         yield mode
@@ -116,10 +118,9 @@ def searched(stiffness: Stiffness, count: int) -> Vector:
     return np.asarray(high, np.float64)
 
 
-def _proved(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -> Mode | None:
-    """The n-th mode; None where it cannot be told from others."""
+def _proved(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> Mode | None:
+    """The n-th mode, in which row `root` moves much; None where it cannot be told from others."""
     with ctx.workprec(bits):
-        root = yielding(stiffness, law, arb(guess) * (1 - _OFF))
         w = _polished(stiffness, law, n, guess, root, bits) or _bisected(stiffness, law, n, guess, bits)
         if w is None:
             return None
@@ -127,9 +128,10 @@ def _proved(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -> 
     return Mode(stiffness, w, points) if all(q.rad() < _SHARP for q in points) else None
 
 
-def _polished(stiffness: Stiffness, law: Law, n: int, guess: float, root: int, bits: int) -> arb | None:
+def _polished(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> arb | None:
     """The n-th frequency by Newton's method, from one near it."""
-    near, small = arb(2) ** -42, arb(2) ** (-bits // 3)
+    small = arb(2) ** (-bits // 3)
+    near = small.sqrt()
     w = arb(guess)
     for _ in range(_NEWTON):
         better = trial(stiffness, law, w, root).better(w)
@@ -142,12 +144,12 @@ def _polished(stiffness: Stiffness, law: Law, n: int, guess: float, root: int, b
     return None
 
 
-def _is(stiffness: Stiffness, law: Law, n: int, w: arb) -> bool:
+def _is(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> bool:
     """Whether the n-th frequency, and no other, is in a ball."""
     return stiffness.proved(law, w.lower()) == n - 1 and stiffness.proved(law, w.upper()) == n
 
 
-def _bisected(stiffness: Stiffness, law: Law, n: int, guess: float, bits: int) -> arb | None:
+def _bisected(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, bits: int) -> arb | None:
     """The same by counting alone, where another frequency is too near for Newton's method."""
     low, high = arb(guess), arb(guess)
     reach = arb(2) ** -40

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from flint import arb, fmpq
 
-from wavesym.exact.modes.stiffness import Law, Stiffness, circular
+from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, circular
 from wavesym.model.network import End, Network
 
 
@@ -80,20 +80,7 @@ class Trial(NamedTuple):
         return (w * w + self.rest * self.rows[self.root] / self.mass).sqrt().mid()
 
 
-def yielding(stiffness: Stiffness, law: Law, w: arb) -> int:
-    """The row on which a force moves most, near a frequency one that moves much in its mode."""
-    diagonal, up = law.matrix(w, *circular(law, w))
-    pivots = stiffness.pivots(diagonal, up)
-    # what is left of a row once all others are eliminated
-    left = list(pivots)
-    for row in reversed(range(len(left))):
-        parent = stiffness.parents[row]
-        if parent is not None:
-            left[row] = pivots[row] * left[parent] / (left[parent] + up[row] * up[row] / pivots[row])
-    return min(range(len(left)), key=lambda row: abs(left[row].mid()))
-
-
-def trial(stiffness: Stiffness, law: Law, w: arb, root: int) -> Trial:
+def trial(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> Trial:
     """How the chain moves at a frequency where only row `root` is held. Where nothing acts on it that is a mode.
 
     Determinants of branches instead of pivots: a part of the chain may have the same frequency as the whole.
@@ -116,22 +103,28 @@ def trial(stiffness: Stiffness, law: Law, w: arb, root: int) -> Trial:
             if other != row:
                 scale[row] *= whole[other]
     rows = [a * b for a, b in zip(scale, inner, strict=True)]
-    return Trial(rows, root, whole[root], _mass(law, w, rows, cot, csc))
+    return Trial(rows, root, whole[root], _mass(law, w, rows, stiffness.parents, cot, csc))
 
 
-def _mass(law: Law, w: arb, found: Sequence[arb], cot: Sequence[arb], csc: Sequence[arb]) -> arb:
+def _mass(
+    law: HarmonicLaw,
+    w: arb,
+    found: Sequence[arb],
+    parents: Sequence[int | None],
+    cot: Sequence[arb],
+    csc: Sequence[arb],
+) -> arb:
     """The sum of M q^2, and of the integrals of Z u^2 over the delays of the bars."""
-    total = sum((mass * q * q for mass, q in zip(law.mass, found, strict=True) if mass != 0), arb(0))
     # u = (left sin w(T - s) + right sin w s)/sin w T, so that its square has the integral
     # (left^2 + right^2) same + 2 left right other
     same = [(t * s * s - c / w) / 2 for t, c, s in zip(law.delays, cot, csc, strict=True)]
-    other = [(s / w - t * c * s) / 2 for t, c, s in zip(law.delays, cot, csc, strict=True)]
-    for bar in law.bars:
-        left, right = (None if row is None else found[row] for row in (bar.left, bar.right))
-        if left is not None:
-            total += bar.at_left * left * left * same[bar.delay]
-        if right is not None:
-            total += bar.at_right * right * right * same[bar.delay]
-            if left is not None:
-                total += 2 * bar.across * left * right * other[bar.delay]
+    other = [s / w - t * c * s for t, c, s in zip(law.delays, cot, csc, strict=True)]
+    total = arb(0)
+    for q, mass, weights in zip(found, law.mass, law.ends, strict=True):
+        for delay, weight in weights:
+            mass = mass + weight * same[delay]
+        total += mass * q * q
+    for q, parent, weights in zip(found, parents, law.bars, strict=True):
+        for delay, weight in weights:
+            total += weight * other[delay] * q * found[parent or 0]
     return total

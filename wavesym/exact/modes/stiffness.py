@@ -28,43 +28,38 @@ Quantity = Any
 Vector = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Elastic:
-    """A bar between rows of K (None for an end that does not move): which of the delays it has, and its weights."""
-
-    delay: int
-    left: int | None
-    right: int | None
-    at_left: Quantity
-    at_right: Quantity
-    across: Quantity
+Weights = list[tuple[int, Quantity]]
+"""Impedances of bars (with the gear ratios of their ends), those of one delay together, each with its number."""
 
 
 @dataclass(frozen=True)
-class Law:
-    """The numbers of K in one arithmetic; rows run from the tips to the root. `over` is what springs add to `up`."""
+class HarmonicLaw:
+    """The numbers of K in one arithmetic; rows run from the tips to the root.
+
+    Of each row its mass, the springs that hold it, the bars that end there; of its coupling to its parent the springs
+    and the bars. `counts` are the numbers of bars of each of the `delays`.
+    """
 
     mass: list[Quantity]
     held: list[Quantity]
-    over: list[Quantity]
-    bars: list[Elastic]
+    ends: list[Weights]
+    across: list[Quantity]
+    bars: list[Weights]
     delays: list[Quantity]
+    counts: list[int]
 
     def matrix(self, w: Quantity, cot: Sequence[Quantity], csc: Sequence[Quantity]) -> tuple[list[Any], list[Any]]:
         """The diagonal of K, and what couples each row to its parent, from cot and 1/sin of w times each delay."""
         square = w * w
+        pulled, shared = [w * value for value in cot], [-w * value for value in csc]
         diagonal = [k - square * mass for k, mass in zip(self.held, self.mass, strict=True)]
-        up = list(self.over)
-        at = [w * value for value in cot]
-        across = [w * value for value in csc]
-        for bar in self.bars:
-            if bar.left is not None:
-                diagonal[bar.left] = diagonal[bar.left] + bar.at_left * at[bar.delay]
-            if bar.right is not None:
-                diagonal[bar.right] = diagonal[bar.right] + bar.at_right * at[bar.delay]
-                if bar.left is not None:
-                    child = min(bar.left, bar.right)
-                    up[child] = up[child] - bar.across * across[bar.delay]
+        for row, weights in enumerate(self.ends):
+            for delay, weight in weights:
+                diagonal[row] = diagonal[row] + weight * pulled[delay]
+        up = list(self.across)
+        for row, weights in enumerate(self.bars):
+            for delay, weight in weights:
+                up[row] = up[row] + weight * shared[delay]
         return diagonal, up
 
 
@@ -118,11 +113,13 @@ class Stiffness:
                         )
         return list(found.items())
 
-    def law(self, number: Callable[[fmpq], Quantity]) -> Law:
+    def law(self, number: Callable[[fmpq], Quantity]) -> HarmonicLaw:
         """Its numbers in one arithmetic."""
         network, rows = self.network, self.rows
         free = [network.points[point] for point in self.points]
-        held, over = [point.stiffness for point in free], [fmpq(0)] * len(free)
+        delays = sorted({bar.delay for bar in network.bars})
+        held, across = [point.stiffness for point in free], [fmpq(0)] * len(free)
+        ends, bars = [dict[int, fmpq]() for _ in free], [dict[int, fmpq]() for _ in free]
         for link in network.links:
             left, right = rows.get(link.left), rows.get(link.right)
             if left is not None:
@@ -130,25 +127,23 @@ class Stiffness:
             if right is not None:
                 held[right] += link.stiffness
                 if left is not None:
-                    over[min(left, right)] -= link.ratio * link.stiffness
-        delays = sorted({bar.delay for bar in network.bars})
-        bars = [
-            Elastic(
-                delays.index(bar.delay),
-                rows.get(bar.left),
-                rows.get(bar.right),
-                number(bar.impedance * bar.ratios[0] ** 2),
-                number(bar.impedance * bar.ratios[1] ** 2),
-                number(bar.impedance * bar.ratios[0] * bar.ratios[1]),
-            )
-            for bar in network.bars
-        ]
-        return Law(
+                    across[min(left, right)] -= link.ratio * link.stiffness
+        for bar in network.bars:
+            delay, pair = delays.index(bar.delay), (rows.get(bar.left), rows.get(bar.right))
+            for row, ratio in zip(pair, bar.ratios, strict=True):
+                if row is not None:
+                    ends[row][delay] = ends[row].get(delay, fmpq(0)) + bar.impedance * ratio**2
+            if None not in pair:
+                row = min(row for row in pair if row is not None)
+                bars[row][delay] = bars[row].get(delay, fmpq(0)) + bar.impedance * bar.ratios[0] * bar.ratios[1]
+        return HarmonicLaw(
             [number(point.mass) for point in free],
             [*map(number, held)],
-            [*map(number, over)],
-            bars,
+            [[(delay, number(weight)) for delay, weight in each.items()] for each in ends],
+            [*map(number, across)],
+            [[(delay, number(weight)) for delay, weight in each.items()] for each in bars],
             [*map(number, delays)],
+            [sum(bar.delay == delay for bar in network.bars) for delay in delays],
         )
 
     def orders(self, root: int) -> list[tuple[int, int, int]]:
@@ -178,7 +173,7 @@ class Stiffness:
         return diagonal
 
     @cached_property
-    def _doubles(self) -> Law:
+    def _doubles(self) -> HarmonicLaw:
         return self.law(nearest)
 
     @cached_property
@@ -188,23 +183,44 @@ class Stiffness:
 
     def counted(self, w: Vector) -> NDArray[np.int64]:
         """How many frequencies lie below each w > 0, in doubles: right but for rounding."""
-        law = self._doubles
-        angles = [w * delay for delay in law.delays]
+        angles = [w * delay for delay in self._doubles.delays]
         sines = [np.sin(angle) for angle in angles]
         turns = [_turns(angle, sine) for angle, sine in zip(angles, sines, strict=True)]
         with np.errstate(all="ignore"):
-            csc = [1 / sine for sine in sines]
-            cot = [np.cos(angle) / sine for angle, sine in zip(angles, sines, strict=True)]
-            diagonal, up = law.matrix(w, cot, csc)
-            negative = [pivot < 0 for pivot in self.pivots(diagonal, up)]
-        return np.asarray(sum(turns[bar.delay] for bar in law.bars) + sum(negative, np.zeros(w.shape, np.int64)))
+            pivots, _ = self._eliminated(w, angles, sines)
+            negative = [pivot < 0 for pivot in pivots]
+        clamped = [count * turn for count, turn in zip(self._doubles.counts, turns, strict=True)]
+        return np.asarray(sum(clamped, np.zeros(w.shape, np.int64)) + sum(negative, np.zeros(w.shape, np.int64)))
 
-    def proved(self, law: Law, w: arb) -> int | None:
+    def yielding(self, w: Vector) -> NDArray[np.int64]:
+        """The row on which a force moves most at each w, in doubles: one that moves much in the mode that is near."""
+        angles = [w * delay for delay in self._doubles.delays]
+        with np.errstate(all="ignore"):
+            pivots, up = self._eliminated(w, angles, [np.sin(angle) for angle in angles])
+            # what is left of a row once all others are eliminated
+            left = list(pivots)
+            for row in reversed(range(len(left))):
+                parent = self.parents[row]
+                if parent is not None:
+                    left[row] = pivots[row] * left[parent] / (left[parent] + up[row] * up[row] / pivots[row])
+        return np.asarray(np.argmin(np.nan_to_num(np.abs(left), nan=np.inf), axis=0))
+
+    def _eliminated(
+        self, w: Vector, angles: Sequence[Vector], sines: Sequence[Vector]
+    ) -> tuple[list[Vector], list[Any]]:
+        csc = [1 / sine for sine in sines]
+        cot = [np.cos(angle) / sine for angle, sine in zip(angles, sines, strict=True)]
+        diagonal, up = self._doubles.matrix(w, cot, csc)
+        return self.pivots(diagonal, up), up
+
+    def proved(self, law: HarmonicLaw, w: arb) -> int | None:
         """How many frequencies lie below w, proved; None where so many bits do not tell. `law` is in balls."""
-        turns = [(w * delay / arb.pi()).floor().unique_fmpz() for delay in law.delays]
-        if any(turn is None for turn in turns):
-            return None
-        count = sum(int(turns[bar.delay]) for bar in law.bars)
+        count = 0
+        for delay, bars in zip(law.delays, law.counts, strict=True):
+            turns = (w * delay / arb.pi()).floor().unique_fmpz()
+            if turns is None:
+                return None
+            count += bars * int(turns)
         for pivot in self.pivots(*law.matrix(w, *circular(law, w))):
             if not (pivot > 0 or pivot < 0):
                 return None
@@ -218,7 +234,7 @@ def _turns(angle: Vector, sine: Vector) -> NDArray[np.int64]:
     return nearest_turn - (np.where(nearest_turn % 2, -sine, sine) < 0)
 
 
-def circular(law: Law, w: arb) -> tuple[list[arb], list[arb]]:
+def circular(law: HarmonicLaw, w: arb) -> tuple[list[arb], list[arb]]:
     """cot and 1/sin of w times each delay."""
     pairs = [(w * delay).sin_cos() for delay in law.delays]
     return [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs]

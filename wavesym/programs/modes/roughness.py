@@ -43,6 +43,14 @@ class Roughness:
         dense[np.array(self.steps) - first] = self.kinks
         return float(min(plain, _partial(dense) * _MORE))
 
+    def swing(self, rate: float) -> float:
+        """The largest |sum_{k <= n} kinks_k exp((i w - r) (tau - times_k))| for any n and w, and any r >= rate."""
+        fading = self.fading(rate)
+        worth_it = fading > 2 * float(
+            np.max(np.abs(self.kinks), initial=0.0)
+        )  # a sum in step is half of a kink at least
+        return min(fading, 2 * self.in_step) if worth_it else fading
+
     def fading(self, rate: float) -> float:
         """The largest sum_{k <= n} |kinks_k| exp(-rate (times_n - times_k)) for any n."""
         largest = total = 0.0

@@ -14,8 +14,9 @@ from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.statics import Shape, Statics
 from wavesym.model.network import End, Network
+from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.modal import Numbers
-from wavesym.programs.modes.watched import Driven, Seen
+from wavesym.programs.modes.watched import Driver, Seen
 
 _BITS = 256
 _ULPS = 16 * 2.0**-53  # of a sum of squares, each of which is rounded a few times
@@ -65,7 +66,7 @@ def _spare(w: Numbers, rows: Numbers, powers: Numbers, totals: Numbers) -> Numbe
     return made
 
 
-def shares(found: Sequence[Mode], pieces: Cut, seen: Sequence[Seen], drivers: Sequence[Driven]) -> Shares:
+def shares(found: Sequence[Mode], pieces: Cut, seen: Sequence[Seen], drivers: Sequence[Driver]) -> Shares:
     """Those of the modes of a network that is cut."""
     network = pieces.network
     with ctx.workprec(_BITS):
@@ -78,7 +79,7 @@ def shares(found: Sequence[Mode], pieces: Cut, seen: Sequence[Seen], drivers: Se
         gains = [driver.gain for driver in drivers]
         return Shares(
             w=np.array([float(mode.frequency) for mode in found]),
-            seen=_array([[each.of(mode) for mode in found] for each in seen], len(found)),
+            seen=np.array([_column(each, found) for each in seen]).reshape(len(seen), len(found)),
             shares=_array([[_share(network, each, mode) for mode in found] for each in drivers], len(found)),
             imposed=_array(
                 [
@@ -95,7 +96,15 @@ def shares(found: Sequence[Mode], pieces: Cut, seen: Sequence[Seen], drivers: Se
         )
 
 
-def _shapes(statics: Statics, driver: Driven) -> tuple[Shape | None, Shape]:
+def _column(output: Seen, found: Sequence[Mode]) -> list[float]:
+    if len(output.points) == 1:  # so are most, of many modes
+        ((point, weight),) = output.points.items()
+        factor = nearest(weight)
+        return [factor * float(mode.points[point]) for mode in found]
+    return [float(output.of(mode)) for mode in found]
+
+
+def _shapes(statics: Statics, driver: Driver) -> tuple[Shape | None, Shape]:
     """What a load imposes, and the shape under it when it does not change, both but for its gain."""
     if statics.stiffness.network.points[driver.point].motion is None:
         return None, statics.under({driver.point: fmpq(1)})
@@ -103,7 +112,7 @@ def _shapes(statics: Statics, driver: Driven) -> tuple[Shape | None, Shape]:
     return imposed, statics.accelerated(imposed)
 
 
-def _share(network: Network, driver: Driven, mode: Mode) -> arb:
+def _share(network: Network, driver: Driver, mode: Mode) -> arb:
     """The share of a mode of mass 1 in a load."""
     if network.points[driver.point].motion is None:
         return mode.points[driver.point] * driver.gain

@@ -10,10 +10,10 @@ from wavesym.model.model import Model
 from wavesym.model.network import End
 from wavesym.model.probe import Probe
 from wavesym.programs.modes.loads import LinearLoads
-from wavesym.programs.modes.watched import Driven, ground
+from wavesym.programs.modes.watched import Driver, ground
 
 
-def silent(model: Model, drivers: Sequence[Driven], loads: LinearLoads) -> tuple[bool, ...]:
+def silent(model: Model, drivers: Sequence[Driver], loads: LinearLoads) -> tuple[bool, ...]:
     """Whether each output is: at a free end, or where no load has come to before the end of the horizon."""
     begun = [(each.point, _begin(loads, j)) for j, each in enumerate(drivers)]
     acting = [(point, time) for point, time in begun if time is not None]

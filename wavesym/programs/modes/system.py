@@ -21,13 +21,13 @@ from wavesym.programs.modes.rounding import rounded
 from wavesym.programs.modes.shares import Shares, shares
 from wavesym.programs.modes.silent import silent
 from wavesym.programs.modes.tables import scheme_tables
-from wavesym.programs.modes.tail import Tail
-from wavesym.programs.modes.watched import Driven, Seen, driven, places, seen
+from wavesym.programs.modes.tail import LeftOut
+from wavesym.programs.modes.watched import Driver, Seen, driven, places, seen
 from wavesym.programs.schemes.modes import ModesScheme
 
 _FIRST = 6  # modes for a bar, for a start
 _MOST = 4000  # modes, and
-_MOST_WORK = 60_000  # modes times bars
+_MOST_WORK = 100_000  # modes times bars
 _REASONABLE = 0.1  # error relative to what a bound of the largest value may be read from
 
 
@@ -125,7 +125,7 @@ class _Chain:
     model: Model
 
     @cached_property
-    def drivers(self) -> tuple[Driven, ...]:
+    def drivers(self) -> tuple[Driver, ...]:
         """The loads that act."""
         acting = {load.source for load in self.model.acting(self.model.until)}
         return tuple(each for each in driven(self.model.network) if {each.step, each.ramp} & acting)
@@ -188,10 +188,10 @@ class _Chain:
         """The damping of all modes."""
         return damped(self.model.damping, known.w[known.w > 0].tolist())
 
-    def tail(self, known: Shares, count: int) -> Tail:
+    def tail(self, known: Shares, count: int) -> LeftOut:
         """The modes after the first `count`."""
         taken = known.w[:count]
-        return Tail(self.rule(known), float(np.nextafter(taken[-1], 0.0)), int(np.count_nonzero(taken)))
+        return LeftOut(self.rule(known), float(np.nextafter(taken[-1], 0.0)), int(np.count_nonzero(taken)))
 
     def errors(self, known: Shares, count: int) -> Numbers:
         """What the modes after the first `count` can add to each output."""

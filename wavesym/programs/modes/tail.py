@@ -36,7 +36,7 @@ class Decline(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Tail:
+class LeftOut:
     """The modes after the first `count` with strain, none of which has a frequency below w."""
 
     damped: Damped
@@ -53,9 +53,7 @@ class Tail:
         most = self.damped.most(self.count)
         swing = inf
         if most < 1:
-            swing = load.in_step
-            if most > 0:
-                swing = min(2 * swing, load.fading(least * self.w)) / sqrt(1 - most * most)
+            swing = (load.swing(least * self.w) if most else load.in_step) / sqrt(1 - most * most)
         crept = steep / least if least else inf
         return (
             Decline(min(swing + 2 * most * steep, max(2 * crept, 2 * most * steep)), 3),

@@ -50,7 +50,7 @@ class Seen:
 
 
 @dataclass(frozen=True)
-class Driven:
+class Driver:
     """A load: `gain` times a force on a point, or times the acceleration of one that moves as it is told."""
 
     point: int
@@ -59,20 +59,20 @@ class Driven:
     ramp: str
 
 
-def driven(network: Network) -> list[Driven]:
+def driven(network: Network) -> list[Driver]:
     """All loads that a network can have: pairs of a step and a ramp. UnservedError for a velocity that is told."""
-    found: list[Driven] = []
+    found: list[Driver] = []
     for number, point in enumerate(network.points):
         if point.motion == "fixed":
             continue
         for unit in point.loads:
             first, second, *_ = *_felt(point, unit.coefficients), fmpq(0), fmpq(0)
             if first != 0:
-                found.append(Driven(number, first, unit.source, ""))
+                found.append(Driver(number, first, unit.source, ""))
             elif found and found[-1].point == number and not found[-1].ramp and found[-1].gain == second:
-                found[-1] = Driven(number, second, found[-1].step, unit.source)
+                found[-1] = Driver(number, second, found[-1].step, unit.source)
             else:
-                found.append(Driven(number, second, "", unit.source))
+                found.append(Driver(number, second, "", unit.source))
     return found
 
 

@@ -120,14 +120,14 @@ class PhysicalBuilding(SceneTable):
     damping: Any = None
 
     def rewritten(self) -> Rewritten:
-        """As a building without units, or where storeys differ, or there is one alone, as a chain."""
+        """As a building without units, or where storeys differ as a chain."""
         rods, floors = self._storeys()
         foundation = self._foundation()
         scaled = Rods.of(rods)
         first = scaled.first
         unit = first.length / scaled.seconds**2
         kappa = tuple(rod.mass / floor for rod, floor in zip(rods, floors, strict=True))
-        if scaled.alike and len(rods) > 1:
+        if scaled.alike:
             base = kappa[0] if foundation is None else first.mass / foundation
             numbers = [base, *kappa]
             table: dict[str, object] = {"type": "building", "m": len(rods), "kappa": numbers, "base": self.base}

@@ -21,6 +21,7 @@ from wavesym.scene.physical.measured import measured, placed
 from wavesym.scene.physical.places import PlaceInMetres, place
 from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
 from wavesym.scene.physical.scale import Kind
+from wavesym.systems.parts import PartName
 
 _Keys = tuple[str | int, ...]
 _Read = tuple[_Keys, object]
@@ -53,8 +54,8 @@ _ROTATION = {
 class PhysicalBranch(SceneTable):
     """Parts that start at a named node."""
 
-    from_: Any = Field(alias="from", description="the name of a node")
-    name: Any = Field(description="a name")
+    from_: PartName = Field(alias="from", description="the name of a node")
+    name: PartName = Field(description="a name")
     ratio: Any = 1
     parts: Any = Field(description="a list of parts")
 

@@ -17,6 +17,7 @@ from wavesym.scene.physical.elastic import ElasticRod
 from wavesym.scene.physical.measured import measured, missing, one_of, placed
 from wavesym.scene.physical.rounding import polar_moment
 from wavesym.scene.physical.scale import Kind
+from wavesym.systems.parts import PartName
 
 
 class RodKeys(SceneTable):
@@ -32,7 +33,7 @@ class RodKeys(SceneTable):
     strain: Any = None
     spring: Any = None
     dashpot: Any = None
-    name: Any = None
+    name: PartName | None = None
 
     def elastic(self, dashpot: str) -> ElasticRod:
         """As waves see it; `dashpot` is the dimension of impedances. Raises the error of `table.wrong`."""
@@ -153,7 +154,7 @@ class MassKeys(SceneTable):
     velocity: Any = None
     dashpot: Any = None
     spring: Any = None
-    name: Any = None
+    name: PartName | None = None
 
 
 class JointKeys(SceneTable):
@@ -165,7 +166,7 @@ class JointKeys(SceneTable):
     velocity: Any = None
     dashpot: Any = None
     spring: Any = None
-    name: Any = None
+    name: PartName | None = None
 
 
 class MotionKeys(SceneTable):
@@ -175,7 +176,7 @@ class MotionKeys(SceneTable):
 
     motion: Any = Field(description='"velocity" or "acceleration"')
     velocity: Any = None
-    name: Any = None
+    name: PartName | None = None
 
 
 class ContactKeys(SceneTable):

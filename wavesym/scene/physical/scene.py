@@ -11,12 +11,13 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.fields.numbers import exact
 from wavesym.fields.table import shown, wrong
+from wavesym.scene.outputs import LONGEST_HORIZON
 from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.collision import PhysicalCollision
 from wavesym.scene.physical.drive import PhysicalDrive
 from wavesym.scene.physical.loads import dimensionless, read
-from wavesym.scene.physical.measured import measured, placed, plain
+from wavesym.scene.physical.measured import measured, placed, plain, tidy
 from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
 from wavesym.scene.physical.said import words
@@ -130,7 +131,11 @@ def _until(value: object, seconds: Fraction) -> object:
     try:
         return exact(value)
     except PydanticCustomError:
-        return measured(value, "time", 1) / seconds
+        tau = measured(value, "time", 1) / seconds
+    if tau > LONGEST_HORIZON:
+        most = f"at most {LONGEST_HORIZON} of tau, {tidy(LONGEST_HORIZON * seconds)} s, expected"
+        raise wrong(f"{shown(value)} given, {tidy(tau)} of tau, {most}")
+    return tau
 
 
 def _position(at: object, found: Rewritten, quantity: str, k: int) -> object:

@@ -1,0 +1,124 @@
+"""El Centro through frames of 10 and 40 storeys: the command line, many records at once, and the stream in C."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter
+
+import numpy as np
+
+from wavesym.lab.harness import PLAIN, chosen_compiler, compilers
+from wavesym.lab.timing import medians
+from wavesym.programs.choice import choose
+from wavesym.programs.making import program
+from wavesym.programs.modes.evaluator import ModesEvaluator
+from wavesym.programs.modes.records import hat_response
+from wavesym.programs.program import Program
+from wavesym.running.native import FAST, address, library
+from wavesym.scene import Scene, lower
+from wavesym.targets.files import sources
+
+RECORDS, AT_ONCE = 1000, 50
+_SAMPLES = 1560  # of the record, the 0 before its first one included
+_STEPS = """
+void steps(const double *samples, size_t count, size_t loads, double *out)
+{
+    static NAME_state state;
+    NAME_init(&state);
+    for (size_t k = 0; k < count; ++k) {
+        NAME_step(&state, PREFIX_SPACING, samples + k * loads, out);
+    }
+}
+"""
+
+
+def frame(record: Path, storeys: int) -> str:
+    """A scene: a steel frame at 5 % on ground that shakes as the record says; all floors, and the base shear."""
+    floors = list(range(1, storeys + 1))
+    return f"""
+name = "frame"
+[units]
+[system]
+type = "building"
+base = "ground"
+damping = 0.05
+[[system.storey]]
+count = {storeys}
+height = "3.5 m"
+stiffness = "678 MN/m"
+column_mass = "10.871 t"
+floor_mass = "350 t"
+[[load]]
+record = "{record.resolve().as_posix()}"
+start = "0.02 s"
+[output]
+until = "31.18 s"
+tolerance = 1e-5
+acceleration = {floors}
+force = [0]
+drift = {floors}
+relative = {floors}
+"""
+
+
+def rows(records: Path) -> Iterator[Sequence[str]]:
+    """What, its time, its peak memory in MB, and how many modes."""
+    record = records / "elcentro_1940_ns_peknold.at2"
+    for storeys in (10, 40):
+        yield f"`wavesym run`, {storeys} storeys, {3 * storeys + 1} outputs", *_run(frame(record, storeys))
+    with TemporaryDirectory() as directory:
+        path = Path(directory, "frame.toml")
+        path.write_text(frame(record, 10), encoding="utf-8")
+        model = lower(Scene.from_toml(path))
+    made = choose(model, "modes").evaluator
+    assert isinstance(made, ModesEvaluator)
+    count = str(len(made.system.frequency))
+    yield f"{RECORDS} records of {_SAMPLES} samples through 10 storeys", f"{_many(made):.2f} s", "", count
+    for compiler in compilers():
+        for flags in (FAST, PLAIN):
+            with chosen_compiler(compiler.name):
+                seconds = _stepping(program(model, made), flags)
+            yield f"a sample of the stream, {compiler.name} `{' '.join(flags)}`", f"{1e6 * seconds:.2f} us", "", count
+
+
+def _run(text: str) -> tuple[str, str, str]:
+    """Of `wavesym run` at all samples."""
+    with TemporaryDirectory() as directory:
+        path = Path(directory, "frame.toml")
+        path.write_text(text, encoding="utf-8")
+        out = str(Path(directory, "frame.csv"))
+        command = [sys.executable, "-m", "wavesym", "run", str(path), "--samples", str(_SAMPLES), "-o", out]
+        start = perf_counter()
+        process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+        _, status, usage = os.wait4(process.pid, 0)
+        seconds = perf_counter() - start
+    return f"{seconds:.2f} s" if status == 0 else "refused", f"{usage.ru_maxrss / 1000:.0f}", ""
+
+
+def _many(made: ModesEvaluator) -> float:
+    """Seconds for the peaks of all outputs under many records."""
+    samples = np.random.default_rng(1).standard_normal((AT_ONCE, _SAMPLES))
+    start = perf_counter()
+    response = hat_response(made.system, made.spacing, _SAMPLES)
+    for _ in range(RECORDS // AT_ONCE):
+        np.abs(response.respond(samples)).max(axis=2)
+    return perf_counter() - start
+
+
+def _stepping(made: Program, flags: tuple[str, ...]) -> float:
+    """Seconds for a sample in C."""
+    name, loads = made.provenance.model.name, int(made.constants["loads"])
+    text = sources(made, "c")
+    harness = _STEPS.replace("NAME", name).replace("PREFIX", name.upper())
+    steps = library(text[f"{name}.c"] + harness, flags, (f"{name}.h", text[f"{name}.h"])).steps
+    steps.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p]
+    samples, out = np.random.default_rng(1).standard_normal((_SAMPLES, loads)), np.empty(len(made.outputs))
+    call: Callable[[], object] = lambda: steps(address(samples), _SAMPLES, loads, address(out))  # noqa: E731
+    (seconds,) = medians([call])
+    return seconds / _SAMPLES

@@ -1,0 +1,83 @@
+"""Chains whose modes are damped: programs against finite elements of consistent mass, damped by the same ratios.
+
+Elements know nothing of waves or of their modes. Their error is a series in the square of their length.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavesym.errors import ToleranceError
+from wavesym.model.model import Model
+from wavesym.programs.making import make
+from wavesym.rivals import modal_elements
+from wavesym.rivals.lumped import DiscreteModel
+from wavesym.rivals.mass import Elements
+from wavesym.rivals.problem import Array
+from wavesym.rivals.sums import summing
+from wavesym.running.compiled import compiled, imported
+from wavesym.targets.files import files
+from wavesym.verification.outcome import FINE, Outcome
+from wavesym.verification.reference import Known
+from wavesym.verification.refinement import Refinement, Solutions
+
+_COARSEST = 2  # elements of the shortest rod
+_MOST = 400  # unknowns
+_INSTANTS = 400  # besides those at which loads change
+
+
+def damped(known: Known) -> list[Outcome]:
+    """Generated NumPy against elements with N, 2N and 4N to the shortest rod, and the self-test of generated C."""
+    model = known.whole
+    if model.damping is None:
+        return []
+    try:
+        program = make(model, tested=True)
+    except ToleranceError as error:
+        return [Outcome(probe.name, {"N": "refused"}, True, str(error)) for probe in model.probes]
+    made = files(program, "all")
+    with compiled(made, len(model.probes)) as built:
+        sound = built.selftest() == 0
+    note = "" if sound else f"{model.name}: the self-test of the generated C fails"
+    evaluate = imported(made[f"{model.name}.py"], model.name).evaluate
+    first = _COARSEST
+    solved = [solution(model, first * finer) for finer in (1, 2, 4)]
+    taus = solved[0][0]
+    ours = evaluate(np.minimum(taus, program.tau_max))
+    errors = [output.bound * output.largest for output in program.outputs]
+
+    def refined() -> list[Refinement]:
+        found = []
+        for k, error in enumerate(errors):
+            coarse, half, quarter = (values[k] for _, values in solved)
+            scale = float(np.max(np.abs(ours[k]))) or 1.0
+            found.append(Solutions((coarse, half, quarter), ours[k], error, scale).extrapolated())
+        return found
+
+    while any(not each.between <= FINE for each in refined()) and _size(model, 8 * first) <= _MOST:
+        first *= 2
+        solved = [*solved[1:], solution(model, 4 * first)]
+    return [
+        Outcome(output.name, each.cells(first), sound and each.right, note)
+        for output, each in zip(program.outputs, refined(), strict=True)
+    ]
+
+
+def solution(model: Model, count: int) -> tuple[Array, Array]:
+    """Instants, and outputs there (outputs, instants), with so many elements in the shortest rod."""
+    stated = summing(modal_elements.RIVAL).states(model)
+    model_of = DiscreteModel(Elements(stated.problem, _cells(stated.problem.delay, count)))
+    taus, values = model_of.history(stated.problem.until / _INSTANTS)
+    return taus, stated.added(values, taus)
+
+
+def _cells(delay: Array, count: int) -> NDArray[np.int_]:
+    """How many elements each rod has: twice as many where `count` is twice as large."""
+    first = np.maximum(np.rint(_COARSEST * delay / np.min(delay)), 1).astype(int)
+    return np.asarray(first * count // _COARSEST)
+
+
+def _size(model: Model, count: int) -> int:
+    delay = np.array([float(bar.delay.p) / float(bar.delay.q) for bar in model.network.bars])
+    return int(np.sum(_cells(delay, count)))
