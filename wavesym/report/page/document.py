@@ -92,7 +92,7 @@ def _report(scene: Scene, text: str) -> Report:
         columns=columns,
         extremes=extremes_told(model, drifts(scene), scale),
         advice=advice_told(model),
-        maps=tuple(crossings(model, lines, scale) or maps(model, found, scale)),
+        maps=tuple(crossings(model, lines, scene.scale) or maps(model, found, scale)),
         along=tuple(along_pictures(model, found, scale)),
         scene=text,
         command=f"wavesym report {model.name}.toml -o {model.name}.html",
@@ -134,8 +134,13 @@ def _facts(model: Model, made: Histories, loads: Sequence[History], scale: Times
             "Contact",
             f"that at x = {end.x} opens at {scale.told(end.double)}; what that reaches is drawn as if it stayed closed",
         )
-    for place, own in groupby(sorted(program.provenance.events or (), key=lambda e: e.x), key=lambda e: e.x):
-        yield "Contact", f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.told(each.double)}" for each in own)
+    for number in network.contacts:
+        place = network.links[number].place
+        if own := [each for each in program.provenance.events or () if each.x == place]:
+            yield (
+                "Contact",
+                f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.told(each.double)}" for each in own),
+            )
 
 
 def _loads(model: Model, loads: Sequence[History]) -> str:

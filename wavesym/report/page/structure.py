@@ -79,6 +79,11 @@ def _called(k: int, m: int) -> str:
     return {0: ", foundation", m: ", roof"}.get(k, "")
 
 
+def _parallel(link: Link, bar: Bar) -> bool:
+    """Whether a spring or a dashpot stands beside a rod, between its two ends."""
+    return {link.left, link.right} == {bar.left, bar.right} and not link.contact
+
+
 @dataclass
 class _Pen:
     """Draws the lines of a chain, and knows where things are for what comes after."""
@@ -91,7 +96,7 @@ class _Pen:
 
     def chain(self, model: Model) -> Picture:
         scale = self._scale()
-        y = 70.0
+        y = 70.0 + self.above
         for name, stations in self.lines.items():
             self._line(name, stations, y, scale)
             y += _ROW
@@ -106,6 +111,11 @@ class _Pen:
         ]
         told = f"A chain of {len(self.network.bars)} rods and {bodies} rigid bodies"
         return Picture(together(*self.parts), y - _ROW + 90, f"{', with '.join([told, *filter(None, more)])}.")
+
+    @property
+    def above(self) -> float:
+        """How much higher names stand where something is parallel to a rod."""
+        return 26.0 * any(_parallel(link, bar) for link in self.network.links for bar in self.network.bars)
 
     def _widths(self, station: Station) -> list[tuple[Point | Link, float]]:
         """What stands there and is not drawn yet, from left to right."""
@@ -144,7 +154,7 @@ class _Pen:
                 for point in new:
                     if what is self.network.points[point]:
                         self.at[point] = x + width * shrink / 2, y
-                        self._over(x + width * shrink / 2, y - 36, what.name, names)
+                        self._over(x + width * shrink / 2, y - 36 - self.above, what.name, names)
                 x += width * shrink
             self.at.update({point: ((begun + x) / 2, y) for point in new if point not in self.at})
             held = any(self.network.points[point].damping or self.network.points[point].stiffness for point in new)
@@ -189,11 +199,13 @@ class _Pen:
     def _beside(self, bar: Bar, x: float, length: float, y: float) -> None:
         """What is parallel to a rod, its name, and how it moves at first."""
         for each in self.network.links:
-            if {each.left, each.right} == {bar.left, bar.right} and not each.contact:
-                sign = symbols.link(x, y - 26, length, elastic=bool(each.stiffness), damped=bool(each.damping))
-                self.parts.append(sign)
-        if bar.velocity and length > 40:
-            self.parts.append(text(x + length / 2, y + 30, f"v = {bar.velocity}", class_="act"))
+            if _parallel(each, bar):
+                sign = symbols.link(x, y - 38, length, elastic=bool(each.stiffness), damped=bool(each.damping))
+                legs = (line(at, y - 38, at, y - symbols.HALF, "wire") for at in (x, x + length))
+                self.parts += [sign, *legs]
+        moving = f"v = {bar.velocity}"
+        if bar.velocity and length > _LETTER * len(moving):
+            self.parts.append(text(x + length / 2, y + 4, moving, class_="act"))
         if bar.name and length > _LETTER * len(bar.name):
             self.parts.append(text(x + length / 2, y - 18, bar.name, class_="name"))
 
@@ -209,7 +221,7 @@ class _Pen:
                     symbols.wall(x, y, side) if point.motion == "fixed" else line(x, y - 20, x, y + 20, "face")
                 )
             if point.motion and point.motion != "fixed":
-                self.parts.append(symbols.moved(edge, y - 28, ""))
+                self.parts.append(symbols.moved(edge, y - 26, ""))
             if point.stiffness or point.damping:
                 below = y + 62
                 self.parts.append(line(x, y + 6, x, below, "thin"))
