@@ -25,7 +25,7 @@ from wavesym.scene.physical.scale import Scale
 from wavesym.systems.station import Lines, Station
 
 _MOST = 60  # crossings of the shortest rod that can be told apart
-_ROWS, _COLUMNS = 260, 320  # cells
+_ROWS, _COLUMNS = 240, 280  # cells
 _OFF = 0.4142  # of a cell: where in it the value is taken, so that no front lies there
 _TALL = 380.0
 _QUANTITIES = {"velocity": 0, "force": 1}

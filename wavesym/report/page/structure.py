@@ -22,7 +22,8 @@ _MASS, _LINK, _CONTACT, _END, _BARE = 18.0, 44.0, 10.0, 6.0, 2.0
 _LEAST = 14.0  # of a rod, long
 _THICK, _THIN = 24.0, 6.0  # of a rod
 _ASIDE = 30.0  # from its node a branch hangs
-_LETTER = 6.6  # of a name, wide
+_LETTER = 7.4  # of a name, wide
+_NAMES = 3  # rows of names over one another
 _STOREY, _TALLEST, _FLOOR = 46.0, 520.0, 190.0
 
 
@@ -256,9 +257,9 @@ class _Pen:
             self.parts.append(text(x, y, words))
 
     def _over(self, x: float, y: float, words: str, rows: list[float]) -> None:
-        """A name, in the lowest row where it does not lie over another."""
-        if words:
-            half = _LETTER * len(words) / 2
-            row = next((k for k, end in enumerate(rows) if end + 4 < x - half), len(rows))
+        """A name, in the lowest row where it does not lie over another; none where all rows are taken."""
+        half = _LETTER * len(words) / 2
+        row = next((k for k, end in enumerate(rows) if end + 4 < x - half), len(rows))
+        if words and row < _NAMES:
             rows[row : row + 1] = [x + half]
             self.parts.append(text(x, y - 14 * row, words, class_="name"))
