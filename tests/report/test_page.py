@@ -1,6 +1,6 @@
 """The page of a scene: it is whole, says what is so, can be used by all, and its cursor reads what curves are."""
 
-from __future__ import annotations
+from __future__ import json
 
 import re
 from collections import Counter
@@ -17,7 +17,7 @@ from wavesym.cli import main
 from wavesym.report.page.curves import HEIGHT, Grid
 from wavesym.report.page.document import page
 from wavesym.report.page.structure import structure
-from wavesym.scene import Scene, lower, toml_text
+from wavesym.scene import Scene, builtin_text, lower
 
 PAYLOAD = '# </pre><script>alert("in")</script> & "quoted"\n'
 VOID = {"meta", "input", "br", "link", "img"}
@@ -75,9 +75,15 @@ def faults(text: str) -> list[str]:
     return found
 
 
+def payloaded(folder: Path, name: str) -> Scene:
+    """A built-in scene in a file, with a payload in front."""
+    (folder / "mine.toml").write_text(PAYLOAD + builtin_text(name), encoding="utf-8")
+    return Scene.from_toml(folder / "mine.toml")
+
+
 @pytest.fixture(scope="module")
-def building() -> str:
-    return page(Scene.from_toml("building_m2"), PAYLOAD + toml_text("building_m2")[1])
+def building(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return page(payloaded(tmp_path_factory.mktemp("page"), "building_m2"))
 
 
 def test_the_page_is_whole_and_needs_nothing_from_outside(building: str) -> None:
@@ -98,8 +104,15 @@ def test_text_stays_text(building: str) -> None:
     assert 'alert("in")' not in building
 
 
-def test_same_scene_same_page(building: str) -> None:
-    assert page(Scene.from_toml("building_m2"), PAYLOAD + toml_text("building_m2")[1]) == building
+def test_same_scene_same_page(building: str, tmp_path: Path) -> None:
+    assert page(payloaded(tmp_path, "building_m2")) == building
+
+
+def test_what_was_made_in_python_is_shown_as_its_fields() -> None:
+    given = Scene.from_toml("drive_m1")
+    made = Scene(**given.model_dump())
+    assert given.text == builtin_text("drive_m1")
+    assert Scene(**json.loads(made.text)).system == given.system
 
 
 def test_every_output_has_a_curve_extremes_and_a_verdict(building: str) -> None:
@@ -200,7 +213,7 @@ def test_axe_finds_what_is_wrong(building: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["collision_m4", "drive_m1"])
 def test_other_systems_have_pages(name: str) -> None:
-    text = page(Scene.from_toml(name), toml_text(name)[1])
+    text = page(Scene.from_toml(name))
     assert faults(text) == []
     assert strays(text, Scene.from_toml(name)) == []
 
@@ -242,7 +255,7 @@ def test_report_is_a_command(
     assert main(["report", "drive_m1", "-o", "drive.txt"]) == 2
     assert capsys.readouterr().err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
-    Path("mine.toml").write_text(PAYLOAD + toml_text("drive_m1")[1], encoding="utf-8")
+    payloaded(tmp_path, "drive_m1")
     assert main(["report", "mine.toml", "-o", "drive.html"]) == 0
     text = Path("drive.html").read_text(encoding="utf-8")
     assert "&lt;script&gt;" in text

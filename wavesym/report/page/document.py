@@ -60,12 +60,12 @@ class _Context:
     report: Report
 
 
-def page(scene: Scene, text: str) -> str:
-    """The page of a scene, with the `text` it was read from. CostError, ToleranceError as for its histories."""
-    return render("html/report.html.j2", _Context(_report(scene, text)))
+def page(scene: Scene) -> str:
+    """The page of a scene, with the text it was read from. CostError, ToleranceError as for its histories."""
+    return render("html/report.html.j2", _Context(_report(scene)))
 
 
-def _report(scene: Scene, text: str) -> Report:
+def _report(scene: Scene) -> Report:
     model = lower(scene)
     scale, until = timescale(model), nearest(model.until)
     drawn = model.watching(_fair(model))
@@ -97,7 +97,7 @@ def _report(scene: Scene, text: str) -> Report:
         maps=tuple(crossings(model, lines, scene.scale) or maps(model, found, scale)),
         along=tuple(along_pictures(model, found, scale)),
         refused=refused,
-        scene=text,
+        scene=scene.text,
         command=f"wavesym report {model.name}.toml -o {model.name}.html",
         version=__version__,
         sha256=model.labels.sha256,
