@@ -124,6 +124,20 @@ def test_what_computes_waves_refuses_it(tmp_path):
     assert "system.damping: given, none expected" in wavesym.compiler.inspect(damped, "table")
 
 
+def test_inspect_states_the_ratios_of_all_modes():
+    """Rayleigh's pair has what was asked for, the others what the two make of them."""
+    said = json.loads(wavesym.compiler.inspect(scene({"modes": [1, 3], "ratio": "0.05"}), "model", "json"))
+    rows = said["modes"]
+    w, ratios = ([row[name] for row in rows] for name in ("frequency", "damping"))
+    assert ratios[0] == pytest.approx(0.05)
+    assert ratios[2] == pytest.approx(0.05)
+    a, b = 0.1 * w[0] * w[2] / (w[0] + w[2]), 0.1 / (w[0] + w[2])
+    assert ratios == pytest.approx([a / (2 * each) + b * each / 2 for each in w])
+    listed = wavesym.compiler.inspect(scene(["0.05", "0.02"]), "model")
+    assert "all higher ones have 0.02" in listed
+    assert "modes" not in json.loads(wavesym.compiler.inspect(scene(None), "model", "json"))
+
+
 def test_a_building_may_have_one_storey():
     """What it does is what the chain does that it is: a bar under a mass."""
     load = samples(5)
