@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from wavesym import __version__
+from wavesym.errors import WavesymError
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.rendering import render
-from wavesym.report.along import along
+from wavesym.report.along import Along, along
 from wavesym.report.groups import load_panel, notes, panels
 from wavesym.report.histories import Histories, History, histories
 from wavesym.report.loads import load_histories
@@ -25,7 +26,7 @@ from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import drifts
 
 _OUTPUTS = 48  # that are drawn
-_VERTICES = 80_000  # of all curves together: what keeps the page small
+_VERTICES = 60_000  # of all curves together: what keeps the page small
 _COLUMNS = (300, 1200)  # of a picture of histories, at least and at most
 _LOADS = 8
 
@@ -47,6 +48,7 @@ class Report:
     advice: SaidTable
     maps: tuple[Shown, ...]
     along: tuple[Shown, ...]
+    refused: str
     scene: str
     command: str
     version: str
@@ -73,7 +75,7 @@ def _report(scene: Scene, text: str) -> Report:
     stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
     lines = scene.system.lines
-    found = along(scene)
+    found, refused = _along(scene)
     structured = structure(model, lines)
     title = f"The structure of {model.name}"
     return Report(
@@ -92,13 +94,22 @@ def _report(scene: Scene, text: str) -> Report:
         columns=columns,
         extremes=extremes_told(model, drifts(scene), scale),
         advice=advice_told(model),
-        maps=tuple(crossings(model, lines, scale) or maps(model, found, scale)),
+        maps=tuple(crossings(model, lines, scene.scale) or maps(model, found, scale)),
         along=tuple(along_pictures(model, found, scale)),
+        refused=refused,
         scene=text,
         command=f"wavesym report {model.name}.toml -o {model.name}.html",
         version=__version__,
         sha256=model.labels.sha256,
     )
+
+
+def _along(scene: Scene) -> tuple[tuple[Along, ...], str]:
+    """What happens along the chain, or why that is not known."""
+    try:
+        return along(scene), ""
+    except WavesymError as error:
+        return (), f"Not drawn: {error}"
 
 
 def _fair(model: Model) -> list[Probe]:
@@ -134,8 +145,13 @@ def _facts(model: Model, made: Histories, loads: Sequence[History], scale: Times
             "Contact",
             f"that at x = {end.x} opens at {scale.told(end.double)}; what that reaches is drawn as if it stayed closed",
         )
-    for place, own in groupby(sorted(program.provenance.events or (), key=lambda e: e.x), key=lambda e: e.x):
-        yield "Contact", f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.told(each.double)}" for each in own)
+    for number in network.contacts:
+        place = network.links[number].place
+        if own := [each for each in program.provenance.events or () if each.x == place]:
+            yield (
+                "Contact",
+                f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.told(each.double)}" for each in own),
+            )
 
 
 def _loads(model: Model, loads: Sequence[History]) -> str:

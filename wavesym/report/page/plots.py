@@ -170,7 +170,10 @@ def _over_height(model: Model, quantity: Along, band: Band, scale: Timescale) ->
         parts.append(polyline([*((a, at) for at, a, _ in ends), *((b, at) for at, _, b in ends[::-1])], "between"))
         parts.append(polyline([(a, at) for at, a, _ in ends], "least"))
         parts.append(polyline([(b, at) for at, _, b in ends], "greatest"))
-    parts += [_named(x.at(each.value), y.at(each.x), each, scale) for each in extremes(quantity, band)]
+    parts += [
+        _named(x.at(each.value), y.at(each.x), each, scale, below=k > 0)
+        for k, each in enumerate(extremes(quantity, band))
+    ]
     return together(*parts), TOP + tall + BELOW
 
 
@@ -186,16 +189,19 @@ def _along_line(model: Model, quantity: Along, band: Band, scale: Timescale) -> 
         polyline([(at, a) for at, a, _ in ends], "least"),
         polyline([(at, b) for at, _, b in ends], "greatest"),
     ]
-    parts += [_named(x.at(each.x), y.at(each.value), each, scale) for each in extremes(quantity, band)]
+    parts += [
+        _named(x.at(each.x), y.at(each.value), each, scale, below=k > 0)
+        for k, each in enumerate(extremes(quantity, band))
+    ]
     return together(*parts), TOP + _ALONG + BELOW
 
 
-def _named(x: float, y: float, extreme: BandExtreme, scale: Timescale) -> Svg:
-    """A spot and what it is, written towards the middle."""
-    right = x < (LEFT + WIDTH - RIGHT) / 2
+def _named(x: float, y: float, extreme: BandExtreme, scale: Timescale, *, below: bool) -> Svg:
+    """A spot and what it is, written towards the middle, above or below it."""
+    right, down = x < (LEFT + WIDTH - RIGHT) / 2, 15 if below else -7
     return together(
         _spot(x, y),
-        text(x + (8 if right else -8), y - 7, extreme.told(scale), "start" if right else "end", class_="halo"),
+        text(x + (8 if right else -8), y + down, extreme.told(scale), "start" if right else "end", class_="halo"),
     )
 
 
