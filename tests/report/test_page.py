@@ -261,7 +261,8 @@ def rooms(module: str, seen: set[str]) -> set[str]:
     """A module of `wavesym.report` and all others that it imports there, with what else they import."""
     if module not in seen:
         seen.add(module)
-        path = Path(wavesym.__file__).parent.joinpath(*module.split(".")[1:]).with_suffix(".py")
+        place = Path(wavesym.__file__).parent.joinpath(*module.split(".")[1:])
+        path = place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
         if module.startswith("wavesym.report."):
             for other in re.findall(r"^ *(?:from|import) ([\w.]+)", path.read_text(encoding="utf-8"), re.MULTILINE):
                 rooms(other, seen)

@@ -173,6 +173,7 @@ def _over_height(model: Model, quantity: Along, band: Band, scale: Timescale) ->
     parts += [
         _named(x.at(each.value), y.at(each.x), each, scale, below=k > 0)
         for k, each in enumerate(extremes(quantity, band))
+        if each.value
     ]
     return together(*parts), TOP + tall + BELOW
 
@@ -192,6 +193,7 @@ def _along_line(model: Model, quantity: Along, band: Band, scale: Timescale) -> 
     parts += [
         _named(x.at(each.x), y.at(each.value), each, scale, below=k > 0)
         for k, each in enumerate(extremes(quantity, band))
+        if each.value
     ]
     return together(*parts), TOP + _ALONG + BELOW
 
