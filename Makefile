@@ -79,11 +79,12 @@ generated: install
 	done
 	$(BIN)/wavesym verify --published --format markdown > generated/errata.md
 
-# the pictures of examples/chains, drawn anew
+# the pictures of examples/chains and examples/frames, drawn anew
 examples: install
 	@set -e; for scene in examples/chains/*.toml; do \
 		$(TOLD) $(BIN)/wavesym plot $$scene --kind xt -o $${scene%.toml}.png; \
-	done
+	done; \
+	for scene in examples/frames/*.toml; do $(TOLD) $(BIN)/wavesym plot $$scene -o $${scene%.toml}.png; done
 
 check-all: lint .venv/.test
 	$(BIN)/python -m pytest $(CORES) --run-slow

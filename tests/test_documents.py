@@ -157,8 +157,13 @@ class Reader:
 
 
 def reader(name: str, folder: Path, patience: bool) -> Reader:
-    """Of a document of the project."""
-    return Reader(folder, patience, (ROOT / name).parent if name.startswith("examples/") else None)
+    """Of a document of the project; examples are read in a folder with records beside it, as they lie."""
+    if not name.startswith("examples/"):
+        return Reader(folder, patience)
+    shutil.copytree(ROOT / "examples" / "records", folder / "records")
+    beside = (ROOT / name).parent
+    (folder / beside.name).mkdir(exist_ok=True)
+    return Reader(folder / beside.name, patience, beside)
 
 
 def assert_made(targets: list[str]) -> None:

@@ -427,7 +427,7 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
     if kind == "xt":
         from wavesym.report import xt
 
-        save(xt.draw(lower(scene), scene.system.lines, scene.scale), path)
+        save(xt.draw(lower(scene), scene.system.lines, scene.physical), path)
         return []
     if kind in ("envelope", "map"):
         from wavesym.report import envelope, heatmap

@@ -83,6 +83,10 @@ class Compiler(SimpleNamespace):
         self.asked.append(options)
         return ["period\n"], ["damping"]
 
+    def advise(self, scene: object, *options: object) -> str:
+        self.asked.append(options)
+        return "waves"
+
     def derive(self, system: str, m: int | None, format: str) -> str:
         if m == 0:
             raise ValueError("--m: 0 given, at least 1 expected")

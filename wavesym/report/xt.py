@@ -16,6 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from wavesym.exact.contact import contact_ends
@@ -25,7 +26,7 @@ from wavesym.numbers.doubles import nearest, rational
 from wavesym.report.stations import open_times
 from wavesym.report.timescale import timescale
 from wavesym.report.xt_nodes import draw_nodes, legend
-from wavesym.scene.physical.scale import Scale
+from wavesym.scene.physical.scene import PhysicalScene
 from wavesym.systems.station import Lines, Station
 
 Array = NDArray[np.float64]
@@ -35,15 +36,17 @@ _ROWS, _COLUMNS = 900, 700  # cells of all lines together
 _OFF = 0.4142  # of a cell: where in it the value is taken
 _SHADES = 101  # an odd number, so that 0 is white; few, so that files are small
 _NARROWEST = 0.12  # of all lines together: where names and numbers still fit
-_NAMED = {"velocity": "velocity", "force": "force (impedance times strain), pull red, push blue"}
+_SENSE = {"velocity": "", "force": ", pull red, push blue"}
+_NAMED = {"velocity": "velocity", "force": f"force (impedance times strain){_SENSE['force']}"}
 
 
-def draw(model: Model, lines: Lines, units: Scale | None = None) -> Figure:
-    """Velocity and force of all rods over the horizon, in a picture of each line, of a physical scene in its `units`.
+def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> Figure:
+    """Velocity and force of all rods over the horizon, in a picture of each line. CostError as for their outputs.
 
-    CostError as for their outputs.
+    A `physical` scene has its units at the axes.
     """
     field, scale = Field(model), timescale(model)
+    units = physical.scale if physical else None
     shown = {name: stations for name, stations in lines.items() if stations[-1].x}
     until = nearest(model.until) * scale.per_tau
     opened = {
@@ -79,14 +82,29 @@ def draw(model: Model, lines: Lines, units: Scale | None = None) -> Figure:
             for x, tau, values in rods:
                 axes.pcolormesh(x, tau, values, cmap=colours, norm=norm, rasterized=True)
             _frame(axes, name, stations, until, upward if column == 0 else "")
+            if physical and physical.length:
+                unit = physical.scale.results.texts["length"]
+                _lengths(axes, f"{name}:x in {unit}".removeprefix(":"), physical.length)
             draw_nodes(axes, model.network, stations, opened, until)
             if not name:
                 _formal(axes, model, float(stations[-1].x))
         place = figure.add_subplot(grid[1, first : first + len(shown)])
         bar = figure.colorbar(ScalarMappable(norm, colours), cax=place, orientation="horizontal")
         bar.ax.tick_params(labelsize=_FONT - 1)
-        bar.set_label(f"{quantity} in {units.unit(quantity)}" if units else _NAMED[quantity], fontsize=_FONT)
+        bar.set_label(
+            _NAMED[quantity] if units is None else f"{quantity} in {units.unit(quantity)}{_SENSE[quantity]}",
+            fontsize=_FONT,
+        )
     return figure
+
+
+def _lengths(axes: Axes, label: str, length: float) -> None:
+    """Places that are lengths, one of x being so long; named systems go on counting rods."""
+    low, high = axes.get_xlim()
+    places = [x for x in MaxNLocator(len(axes.get_xticks())).tick_values(0, high * length) if x <= high * length]
+    axes.set_xticks([place / length for place in places], [f"{place:g}" for place in places])
+    axes.set_xlim(low, high)
+    axes.set_xlabel(label, fontsize=_FONT)
 
 
 def _formal(axes: Axes, model: Model, long: float) -> None:
