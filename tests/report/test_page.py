@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from html.parser import HTMLParser
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 
 import numpy as np
@@ -260,3 +261,27 @@ def test_report_is_a_command(
     text = Path("drive.html").read_text(encoding="utf-8")
     assert "&lt;script&gt;" in text
     assert str(tmp_path) not in text
+
+
+def test_a_scene_from_standard_input_is_on_its_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    given = (PAYLOAD + toml_text("drive_m1")[1]).encode()
+    monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(given)))
+    assert main(["report", "-", "-o", str(tmp_path / "drive.html")]) == 0
+    assert "&lt;script&gt;" in (tmp_path / "drive.html").read_text(encoding="utf-8")
+
+
+def rooms(module: str, seen: set[str]) -> set[str]:
+    """A module of `wavesym.report` and all others that it imports there, with what else they import."""
+    if module not in seen:
+        seen.add(module)
+        place = Path(wavesym.__file__).parent.joinpath(*module.split(".")[1:])
+        path = place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
+        if module.startswith("wavesym.report."):
+            for other in re.findall(r"^ *(?:from|import) ([\w.]+)", path.read_text(encoding="utf-8"), re.MULTILINE):
+                rooms(other, seen)
+    return seen
+
+
+def test_pages_need_no_matplotlib() -> None:
+    assert not any(module.startswith("matplotlib") for module in rooms("wavesym.report.page.document", set()))
+    assert any(module.startswith("matplotlib") for module in rooms("wavesym.report.panels", set()))

@@ -16,7 +16,8 @@ from wavesym.numbers.doubles import nearest, rational
 from wavesym.report.along import limit
 from wavesym.report.histories import Points
 from wavesym.report.page.frame import Frame, PlotAxis
-from wavesym.report.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, Shown, colour_bar, picture
+from wavesym.report.page.places import colour_bar
+from wavesym.report.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, Shown, picture
 from wavesym.report.page.png import address, shaded
 from wavesym.report.page.svg import Svg, box, element, line, together
 from wavesym.report.stations import Opened, open_times, standing

@@ -18,7 +18,8 @@ from wavesym.report.groups import load_panel, notes, panels
 from wavesym.report.histories import Histories, History, histories
 from wavesym.report.loads import load_histories
 from wavesym.report.page.crossings import crossings
-from wavesym.report.page.plots import Shown, along_pictures, maps, panel, picture
+from wavesym.report.page.places import along_pictures, maps
+from wavesym.report.page.plots import Shown, panel, picture
 from wavesym.report.page.said import SaidTable, advice_told, extremes_told
 from wavesym.report.page.structure import structure
 from wavesym.report.timescale import Timescale, timescale
@@ -41,7 +42,6 @@ class Report:
     histories: tuple[Shown, ...]
     notes: tuple[str, ...]
     until: str
-    per_tau: str
     time: str
     columns: int
     extremes: SaidTable
@@ -89,7 +89,6 @@ def _report(scene: Scene) -> Report:
         ),
         notes=(*_left_out(model, drawn), *notes(made)),
         until=repr(until * scale.per_tau),
-        per_tau=repr(scale.per_tau),
         time=scale.unit,
         columns=columns,
         extremes=extremes_told(model, drifts(scene), scale),
