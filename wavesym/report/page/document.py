@@ -132,6 +132,8 @@ def _facts(model: Model, made: Histories, loads: Sequence[History], scale: Times
     yield "System", ", ".join([model.labels.system["type"], *_chosen(model)])
     rods, bodies = len(network.bars), len([point for point in network.points if point.mass])
     yield "Modelled", f"{_count(rods, 'elastic rod')}, {_count(bodies, 'rigid body', 'rigid bodies')}"
+    if model.damping is not None:
+        yield "Damping", f"of modes: {model.damping.told}"
     if told := _loads(model, loads):
         yield "Loads", told
     yield "Horizon", scale.told(nearest(model.until))
