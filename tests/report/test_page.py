@@ -1,7 +1,8 @@
 """The page of a scene: it is whole, says what is so, can be used by all, and its cursor reads what curves are."""
 
-from __future__ import json
+from __future__ import annotations
 
+import json
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -264,7 +265,7 @@ def test_report_is_a_command(
 
 
 def test_a_scene_from_standard_input_is_on_its_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    given = (PAYLOAD + toml_text("drive_m1")[1]).encode()
+    given = (PAYLOAD + builtin_text("drive_m1")).encode()
     monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(given)))
     assert main(["report", "-", "-o", str(tmp_path / "drive.html")]) == 0
     assert "&lt;script&gt;" in (tmp_path / "drive.html").read_text(encoding="utf-8")
