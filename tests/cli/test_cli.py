@@ -92,7 +92,7 @@ class Compiler(SimpleNamespace):
             raise ValueError("--m: 0 given, at least 1 expected")
         return f"{system} {m}"
 
-    def report(self, scene: object, path: Path, text: str) -> None:
+    def report(self, scene: object, path: Path) -> None:
         self.asked.append(path)
 
     def plot(self, scene: object, path: Path, kind: str) -> list[str]:
