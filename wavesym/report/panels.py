@@ -159,6 +159,7 @@ def _strip(axes: Axes, panel: PlotPanel) -> None:
     size = high - low
     axes.set_ylim(low - 0.1 * size, high + 0.5 * size)
     axes.yaxis.set_major_locator(MaxNLocator(3))
+    axes.yaxis.set_major_formatter("{x:g}")  # no room for a power of ten beside it
     axes.text(0.004, 0.95, panel.told, transform=axes.transAxes, va="top", path_effects=_HALO)
 
 
