@@ -427,7 +427,7 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
     if kind == "xt":
         from wavesym.report import xt
 
-        save(xt.draw(lower(scene), scene.system.lines, scene.scale), path)
+        save(xt.draw(lower(scene), scene.system.lines, scene.physical), path)
         return []
     if kind in ("envelope", "map"):
         from wavesym.report import envelope, heatmap
@@ -453,14 +453,14 @@ def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
     return notes(made)
 
 
-def report(scene: Scene, path: Path, text: str) -> None:
-    """Write a scene, and what happens in it, as one page of HTML; `text` is what the scene was read from.
+def report(scene: Scene, path: Path) -> None:
+    """Write a scene, and what happens in it, as one page of HTML.
 
     ToleranceError, CostError where nothing could be generated either.
     """
     from wavesym.report.page.document import page
 
-    write_whole({path: page(scene, text)})
+    write_whole({path: page(scene)})
 
 
 def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[list[str], list[str]]:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from functools import lru_cache
 from os import PathLike
-from typing import BinaryIO
 
 from wavesym.errors import SceneError
 
@@ -50,10 +48,4 @@ def _limited(path: str) -> bytes:
             return stream.read(LARGEST_FILE + 1)
     if sys.stdin is None:
         raise OSError(None, "No standard input")
-    return _once(sys.stdin.buffer)
-
-
-@lru_cache(maxsize=1)
-def _once(stream: BinaryIO) -> bytes:
-    """What a stream gives, for all who ask: it can be read only once."""
-    return stream.read(LARGEST_FILE + 1)
+    return sys.stdin.buffer.read(LARGEST_FILE + 1)

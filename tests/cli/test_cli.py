@@ -83,12 +83,16 @@ class Compiler(SimpleNamespace):
         self.asked.append(options)
         return ["period\n"], ["damping"]
 
+    def advise(self, scene: object, *options: object) -> str:
+        self.asked.append(options)
+        return "waves"
+
     def derive(self, system: str, m: int | None, format: str) -> str:
         if m == 0:
             raise ValueError("--m: 0 given, at least 1 expected")
         return f"{system} {m}"
 
-    def report(self, scene: object, path: Path, text: str) -> None:
+    def report(self, scene: object, path: Path) -> None:
         self.asked.append(path)
 
     def plot(self, scene: object, path: Path, kind: str) -> list[str]:

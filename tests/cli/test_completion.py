@@ -36,7 +36,7 @@ def test_commands_and_options() -> None:
     assert plain("") == list(COMMANDS)
     assert plain("st") == ["stability"]
     assert plain("run", "--s") == ["--samples"]
-    assert plain("generate", "--evaluator", "") == ["auto", "closed", "pieces", "march"]
+    assert plain("generate", "--evaluator", "") == ["auto", "closed", "pieces", "march", "modes"]
     assert completed("plot", "mine.toml", "-o", "out") == {"out": "file"}
 
 

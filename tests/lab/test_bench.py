@@ -6,7 +6,7 @@ from flint import fmpq
 
 from wavesym.exact.events import events
 from wavesym.exact.knots import Knots
-from wavesym.lab import bench, equal_degree
+from wavesym.lab import bench, equal_degree, recorded
 from wavesym.lab.equal_degree import Fitted, at_degree, fitted, ratios
 from wavesym.numbers.doubles import rational
 from wavesym.running.native import FAST
@@ -53,3 +53,13 @@ def test_a_scene_takes_as_long_as_itself():
     """Nothing is asserted of the time itself."""
     one = fitted(CHAINS["S"], fmpq(1, 10**6))
     assert all(0 < ratio < 100 for ratio in ratios(one, one, FAST))
+
+
+def test_a_record_has_rows_of_modes_and_elements(monkeypatch):
+    monkeypatch.setattr(recorded, "SAMPLES", 120)
+    monkeypatch.setattr(recorded, "medians", lambda ways, **_: [1.0] * len(ways))
+    assert len(recorded.frame().outputs) == 31
+    (_, _, error), *elements = recorded.rows()
+    assert float(error) < 1e-6
+    errors = [float(error) for _, _, error in elements]
+    assert errors[0] > 2 * errors[-1] > 0

@@ -6,11 +6,14 @@ from math import inf
 import numpy as np
 import pytest
 from flint import fmpq
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.linalg import eigh
 from scipy.signal import lsim
 
-from tests.support.modal import building, chain, samples
-from wavesym.errors import ToleranceError, UnservedError
+from tests.support.drawn import systems
+from tests.support.modal import building, by_elements, chain, samples
+from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.model.damping import Damping
 from wavesym.numbers.reals import DOUBLE
@@ -20,8 +23,7 @@ from wavesym.programs.modes.rounding import rounded
 from wavesym.programs.modes.system import modal_system
 from wavesym.programs.modes.tables import scheme_tables
 from wavesym.programs.schemes.modes import ModesScheme
-from wavesym.rivals.elements import Elements
-from wavesym.rivals.network import network_problem
+from wavesym.scene import Scene, lower
 
 PULSE = {"times": [0, "7/3", "5/2"], "a": [0, 0, 0], "b": [1, -3, 2]}
 PUSH = {"at": "n", "times": [0, "7/3", "5/2"], "ramps": [1, -3, 2]}
@@ -105,6 +107,30 @@ def test_outputs_are_those_of_waves_but_for_what_is_left_out(name):
         assert np.all(error <= few.errors + rounding(model, few))
 
 
+@pytest.mark.slow
+@settings(max_examples=40)
+@given(st.data())
+def test_drawn_chains_under_drawn_loads_are_within_the_bound(data):
+    """Equal and nearly equal parameters, a storey to three, loads that are linear between drawn instants."""
+    table = data.draw(systems(("drive", "building"), largest=3))
+    times = sorted(data.draw(st.lists(st.fractions(0, 4, max_denominator=7), min_size=1, max_size=4, unique=True)))
+    slopes = st.integers(-5, 5).filter(bool)
+    ramps = data.draw(st.lists(slopes, min_size=len(times), max_size=len(times)))
+    load = {"times": times, "ramps": ramps, "body": 1}
+    if table["type"] == "building":
+        load = {"times": times, "b": ramps}
+    place = st.fractions(0, table["m"], max_denominator=5)
+    output = {name: [data.draw(place)] for name in ("velocity", "displacement")}
+    output["strain"] = [data.draw(place.filter(lambda x: x.denominator > 1 or x in (0, table["m"])))]
+    model = lower(Scene(name="a", system=table, load=[load], output={"until": 5, **output}))
+    taus = np.linspace(0, 5, 41)
+    exact = np.array(Reference(model).values(taus.tolist()))
+    for count in (5 * table["m"], 60):
+        made = with_modes(model, count)
+        error = np.abs(values(model, made, taus) - exact).max(axis=1)
+        assert np.all(error <= made.errors + (rounding(model, made) if made.sources else 0))
+
+
 def test_a_bound_can_fail():
     """It is no more than 40 times what is wrong, and a mode less is more wrong than the bound."""
     model = building(["1", "1/4", "3/5"], [samples(9)], strain=["0"])
@@ -155,10 +181,9 @@ def test_damped_outputs_are_those_of_finite_elements(name):
     ground = np.interp(times, spacing * np.arange(len(load["samples"])), load["samples"])
     by_resolution = []
     for resolution in (12, 24):
-        elements = Elements(network_problem(replace(model, damping=None)), 1 / resolution)
-        mass, _, stiffness = (matrix if matrix is None else matrix.toarray()[1:] for matrix in elements.assembled())
-        squares, shapes = eigh(stiffness[:, 1:], mass[:, 1:])
-        pulled = mass.sum(axis=1)  # by the ground, whose motion all else shares
+        whole, mass, stiffness = by_elements(replace(model, damping=None), resolution)
+        squares, shapes = eigh(stiffness, mass)
+        pulled = whole.sum(axis=1)  # by the ground, whose motion all else shares
         w = np.sqrt(squares)
         if damping.modes:
             i, j = (w[n - 1] for n in damping.modes)
@@ -202,10 +227,18 @@ def test_what_modes_do_not_serve_is_refused():
         modal_system(building(["1", "1"], [samples(9)], tolerance="1e-13", velocity=["1/2"]))
 
 
+def test_many_rods_are_refused_at_once():
+    with pytest.raises(CostError, match=r"^system.m: 400 rods in modes, at most 129 expected"):
+        modal_system(building(["1"] * 401, [samples(3)]))
+
+
 def test_no_load_is_no_motion():
-    made = modal_system(building(["1", "1"]))
-    assert made.errors.tolist() == [0]
-    assert not made.system.moved.any()
+    """Outputs are exactly 0; of a building the system is ready for its load."""
+    for model in (building(["1", "1"]), chain(["free", {"rod": 1}, {"mass": 1}, {"rod": 1}, "fixed"])):
+        made = modal_system(model)
+        assert made.errors.tolist() == made.bounds.tolist() == [0]
+        assert not values(model, made, np.linspace(0, 10, 5)).any()
+    assert modal_system(building(["1", "1"])).sources == (("a", "b"),)
 
 
 @pytest.mark.parametrize("count", [5, 60, 700])
@@ -218,6 +251,14 @@ def test_kinks_in_step_are_not_underestimated(count):
     sums = np.abs(np.cumsum(kinks * np.exp(-1j * np.outer(w, rough.times)), axis=1)).max(axis=1)
     assert sums.max() <= rough.in_step <= 2 * sums.max()
     assert rough.in_step <= np.abs(kinks).sum() * (1 + 1e-6)
+    some = 0.3
+    total = max(
+        sum(abs(kinks[k]) * np.exp(-some * (rough.times[n] - rough.times[k])) for k in range(n + 1))
+        for n in range(min(count, 60))
+    )
+    assert total <= rough.fading(some)
+    if count <= 60:
+        assert rough.fading(some) == pytest.approx(total)
     assert rough.fading(1.0) <= np.abs(kinks).sum() * (1 + 1e-6)
     assert rough.fading(1e9) == pytest.approx(np.abs(kinks).max())
     assert Roughness(rough.times, kinks, None, inf).in_step == pytest.approx(np.abs(kinks).sum())

@@ -211,23 +211,85 @@ def test_a_tolerance_that_takes_too_many_modes_is_refused_with_all_that_was_trie
         wavesym.evaluator(LONG)([1.0])
 
 
+def streamed(program, made, samples):
+    """The outputs after each sample, by the stream in C."""
+    stream = library(made["shaken.c"], header=("shaken.h", made["shaken.h"]))
+    state = (ctypes.c_double * (2 * int(program.constants["modes"]) + 3))()
+    stream.shaken_init(state)
+    stream.shaken_step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p]
+    out = np.empty((len(samples), len(program.outputs)))
+    for sample, row in zip(samples, out, strict=True):
+        load = (ctypes.c_double * 1)(sample)
+        assert stream.shaken_step(state, program.constants["spacing"], load, row.ctypes.data) == 0
+    return out.T
+
+
 def test_c_takes_the_samples_of_the_scene_and_numpy_has_them(tmp_path):
     program = make(lower(scene()), Request(evaluator="modes"), tested=True)
     made = files(program, "all")
     assert "--evaluator modes" in made["shaken.h"]
     module = imported(made["shaken.py"], "shaken")
-    stream = library(made["shaken.c"], header=("shaken.h", made["shaken.h"]))
-    state = (ctypes.c_double * (2 * int(program.constants["modes"]) + 3))()
-    stream.shaken_init(state)
-    stream.shaken_step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p]
     taus = np.linspace(-1, 13, 80)
     np.testing.assert_array_equal(module.evaluate(taus), program.evaluate(taus))
-    out = np.empty(len(module.OUTPUTS))
-    spacing = float(Fraction(5, 7))
-    for k, sample in enumerate(SAMPLES[1:17], 1):
-        assert stream.shaken_step(state, spacing, (ctypes.c_double * 1)(sample), out.ctypes.data) == 0
-        allowed = [output.bound * output.largest for output in program.outputs]
-        assert np.all(np.abs(out - module.evaluate(k * 5 / 7)) <= np.array(allowed) + 1e-12)
+    right = module.evaluate(np.arange(17) * 5 / 7)
+    values = streamed(program, made, SAMPLES[:17])
+    np.testing.assert_allclose(values, right, rtol=0, atol=1e-11 * np.abs(right).max())
+
+
+PHYSICAL = {
+    "building": (
+        {
+            "units": {"acceleration": "ft/s^2", "length": "inch"},
+            "system": {
+                "type": "building",
+                "base": "ground",
+                "damping": "1/20",
+                "storey": [
+                    {
+                        "count": 2,
+                        "height": "3.5 m",
+                        "stiffness": "678 MN/m",
+                        "column_mass": "10 t",
+                        "floor_mass": "30 t",
+                    }
+                ],
+            },
+            "load": [{"spacing": "0.02 s", "unit": "g", "samples": SAMPLES}],
+            "output": {"until": "0.5 s", "tolerance": "1e-3", "relative": [2], "acceleration": [1]},
+        },
+        "a [ft/s^2]",
+        9.80665 / 0.3048,
+    ),
+    "drive, at the last body": (
+        {
+            "units": {"moment": "kN*m"},
+            "system": {
+                "type": "drive",
+                "shaft": [{"length": "2 m", "J": "1e-4 m^4", "G": "80 GPa", "rho": "7850 kg/m^3"}] * 2,
+                "disc": [{"inertia": "10 kg*m^2"}, {"inertia": "20 kg*m^2"}, {"inertia": "5 kg*m^2"}],
+            },
+            "load": [{"body": 3, "spacing": "0.01 s", "unit": "N*m", "samples": SAMPLES}],
+            "output": {"until": "0.2 s", "tolerance": "1e-3", "displacement": [0, 2]},
+        },
+        "M3 [kN*m]",
+        1e-3,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", PHYSICAL)
+def test_a_stream_takes_loads_in_units_of_results(name):
+    """What a scene says in one unit, in another."""
+    fields, told, size = PHYSICAL[name]
+    program = make(lower(wavesym.Scene(name="shaken", **fields)), Request(evaluator="modes"))
+    made = files(program, "all")
+    assert program.sources == (told,)
+    assert told in made["shaken.h"]
+    values = streamed(program, made, [size * sample for sample in SAMPLES])
+    taus = program.constants["spacing"] * np.arange(len(SAMPLES))
+    inside = taus <= program.tau_max
+    right = imported(made["shaken.py"], "shaken").evaluate(taus[inside])
+    np.testing.assert_allclose(values[:, inside], right, rtol=0, atol=1e-11 * np.abs(right).max())
 
 
 RUN = """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from math import inf, nextafter
@@ -16,6 +17,7 @@ from wavesym.compiler import evaluator
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.increments import start
 from wavesym.exact.reference import Reference
+from wavesym.model.clock import Clock
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below, rational
@@ -266,3 +268,55 @@ def test_a_name_over_another_is_seen(figure: Figure) -> None:
     first = next(text for text in figure.axes[0].texts if text.get_text())
     figure.axes[0].text(*first.get_position(), "over it", ha="center", va="center")
     assert not texts_keep_clear(figure)
+
+
+def swinging(count: int, outputs: int) -> Histories:
+    """Sines of so many periods, of which one is larger than the others."""
+    tau = np.linspace(0.0, 7.0, 40 * count + 1)
+    made = [
+        History(
+            Probe(f"drift@{k}", "drift", 1, fmpq(k), unit="mm"),
+            (np.column_stack([tau, (1 + (k == 1)) * np.sin(2 * np.pi * count / 7 * tau)]),),
+        )
+        for k in range(outputs)
+    ]
+    return Histories(lower(THIRDS), tuple(made), (), dense=True)
+
+
+def test_many_curves_that_turn_often_have_strips_on_one_axis() -> None:
+    made = swinging(50, 30)
+    strips = panels.panels(made)
+    assert [strip.histories[0].name for strip in strips] == [f"drift@{k}" for k in range(24)]
+    assert "drift: the first 24 of 30 outputs that move are drawn" in notes(made)
+    assert {strip.limits for strip in strips} == {(-2.0, 2.0)}
+    assert strips[1].told == "drift@1: 2 mm at 0.035, -2 mm at 0.105"
+    figure = draw(made)
+    assert len({axes.get_ylim() for axes in figure.axes}) == 1
+    assert texts_keep_clear(figure)
+
+
+def test_few_turns_and_ripples_need_no_strips() -> None:
+    assert len(panels.panels(swinging(10, 8))) == 1
+    slow = swinging(10, 8).outputs[0].points
+    rippled = History(Probe("a", "drift", 1, fmpq(0)), (slow + (0, 1) * np.sin(300 * slow[:, :1]) / 60,))
+    assert not panels.restless(rippled)
+    assert panels.restless(swinging(50, 1).outputs[0])
+
+
+def test_pictures_speak_the_units_of_a_scene(tmp_path: Path) -> None:
+    clock = Clock(fmpq(1, 250), fmpq(4), "ms")
+    model = replace(lower(THIRDS), clock=clock)
+    outputs = [replace(history, output=replace(history.output, unit="mm")) for history in swinging(3, 2).outputs]
+    figure = draw(Histories(model, tuple(outputs), (), dense=True))
+    (axes,) = figure.axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("t in ms", "drift\nin mm")
+    assert max(line.get_xdata()[-1] for line in axes.lines if len(line.get_xdata()) > 20) == 28
+    assert any(text.get_text() == "2 mm at 2.333 ms" for text in axes.texts)
+
+
+@pytest.mark.parametrize(("horizon", "kind"), [(7, "march"), (3000, "march")])
+def test_a_picture_takes_what_is_made_quickly(horizon: int, kind: str) -> None:
+    """Of what nothing serves to 1e-6 it shows what 1e-4 does: that much no eye sees."""
+    made = made_of.drawable(lower(Scene.from_toml("drive_m1").with_({"output.until": horizon})))
+    assert made.evaluator == kind
+    assert made.error_bound < 1e-4

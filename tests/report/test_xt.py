@@ -102,10 +102,11 @@ def test_units_are_on_the_axes_and_in_the_colours():
         system={"type": "chain", "parts": [{"mass": "1 kg*m^2", "velocity": "100 rpm"}, shaft, "fixed"]},
         output={"until": "2 ms", "velocity": ["1.5 m"], "force": ["1.5 m"]},
     )
-    figure = xt.draw(lower(scene), scene.system.lines, scene.scale)
+    figure = xt.draw(lower(scene), scene.system.lines, scene.physical)
     until = float(lower(scene).until)
     for quantity, axes in zip((0, 1), figure.axes[::2], strict=False):
-        assert axes.get_xlim() == (0, 2)
+        ends = [(x, label.get_text()) for x, label in zip(axes.get_xticks(), axes.get_xticklabels(), strict=True)]
+        assert (ends[0], ends[-1]) == ((0, "0"), (1, "2"))
         assert axes.get_ylim() == pytest.approx((0, 2))
         assert (axes.get_xlabel(), axes.get_ylabel()) == ("x in m", "t in ms")
         cells = axes.collections[0].get_array()

@@ -583,6 +583,32 @@ def test_remarks_are_made_of_what_is_odd() -> None:
     assert not list(remarks(physical(BUILDING)))
 
 
+def test_places_of_pictures_have_units() -> None:
+    pytest.importorskip("matplotlib")
+    from matplotlib.figure import Figure
+
+    from wavesym.report.xt import _lengths
+
+    axes = Figure().add_subplot()
+    axes.set_xlim(0, 2.5)
+    _lengths(axes, "arm:x in mm", 1200)
+    assert axes.get_xlabel() == "arm:x in mm"
+    for x, label in zip(axes.get_xticks(), axes.get_xticklabels(), strict=True):
+        assert float(label.get_text()) == pytest.approx(x * 1200, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_colours_of_pictures_have_units() -> None:
+    pytest.importorskip("matplotlib")
+    from wavesym.report import xt
+
+    scene = Scene(**CHAIN)
+    figure = xt.draw(lower(scene), scene.system.lines, scene.physical)
+    labels = {each.get_xlabel() for each in figure.axes}
+    assert labels >= {"arm:x in m", "x in m", "velocity in m/s", "force in N, pull red, push blue"}
+    assert figure.get_suptitle() == "good: chain, t upward to 0.002 s"
+
+
 def test_scenes_without_units_do_not_wait_for_pint() -> None:
     code = "import sys, wavesym; wavesym.tables(wavesym.Scene.from_toml('drive_m1')); assert 'pint' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=FRAMES.parents[1])

@@ -4,6 +4,8 @@ from fractions import Fraction
 
 import numpy as np
 
+from wavesym.rivals.mass import Elements, dense
+from wavesym.rivals.network import network_problem
 from wavesym.scene import Scene, lower
 
 
@@ -18,6 +20,19 @@ def chain(parts, load=(), branch=(), system=(), **output):
     table = {"type": "chain", "parts": list(parts), "branch": list(branch), **dict(system)}
     output = {"until": 10, **(output or {"velocity": ["0"]})}
     return lower(Scene(name="c", system=table, load=list(load), output=output))
+
+
+def by_elements(model, resolution):
+    """Consistent mass and stiffness of linear elements, about so many to a unit of delay: of all, then of what is free.
+
+    The points come first.
+    """
+    problem = network_problem(model)
+    cells = np.maximum(np.rint(problem.delay * resolution), 4).astype(int)
+    elements = Elements(problem, cells)
+    free = np.setdiff1d(np.arange(elements.size), problem.told)
+    mass, stiffness = (dense(entries, elements.size) for entries in (elements.mass, elements.stiffness))
+    return mass[free], mass[np.ix_(free, free)], stiffness[np.ix_(free, free)]
 
 
 def samples(count, seed=0, spacing="7/10"):

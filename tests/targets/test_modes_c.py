@@ -1,8 +1,11 @@
 """A stream in C: it takes samples one by one, gives what NumPy gives, and its self-test sees what is broken."""
 
 import ctypes
+import json
+import os
 import re
 import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -165,6 +168,31 @@ def test_a_stream_says_what_it_is(tmp_path):
     assert "from 0 to the first sample" in header
     assert f"{NAME.upper()}_LOAD_LOAD0 = 0 /* load0 [N] */" in header
     assert "Proved: largest error" in header
+    manifest = json.loads((tmp_path / f"{NAME}.json").read_text())
+    assert (manifest["evaluator"], manifest["spacing"], manifest["loads"]) == ("modes", 0.25, ["load0 [N]"])
+    assert "proved" not in manifest
     written(replace(made, proved=False), tmp_path)
     for file in (f"{NAME}.h", f"{NAME}.py"):
         assert "proved" not in (tmp_path / file).read_text().lower()
+    assert json.loads((tmp_path / f"{NAME}.json").read_text())["proved"] is False
+
+
+SHAKEN = """
+name = "shaken"
+system = { type = "building", m = 3, kappa = ["1/4", "1/5", "1/6", 1], base = "ground", damping = [0.05, 1.2] }
+load = [{ spacing = "7/3", samples = [0, 1, -2, 0.5] }]
+output = { until = 30, tolerance = 1e-4, strain = [0], acceleration = [3] }
+"""
+OTHER = {"PYTHONHASHSEED": "2", "NPY_DISABLE_CPU_FEATURES": "AVX512F AVX512_SKX", "OPENBLAS_CORETYPE": "Haswell"}
+
+
+@pytest.mark.slow
+def test_a_stream_has_the_same_bytes_on_other_processors(tmp_path):
+    (tmp_path / "shaken.toml").write_text(SHAKEN)
+    for folder, others in (("one", {"PYTHONHASHSEED": "1"}), ("other", OTHER)):
+        command = [sys.executable, "-m", "wavesym", "generate", "shaken.toml", "-o", folder, "--language", "all"]
+        subprocess.run(command, cwd=tmp_path, env=os.environ | others, check=True, capture_output=True)
+    made = sorted((tmp_path / "one").iterdir())
+    assert len(made) == 5
+    for file in made:
+        assert file.read_bytes() == (tmp_path / "other" / file.name).read_bytes(), file.name

@@ -31,7 +31,7 @@ from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE
 from wavesym.verification.powers import steps
 
-BY_NAME = {system.name: system for preset in presets().values() for system in preset.variants}
+BY_NAME = {system.name: system for preset in presets().values() for system in (*preset.variants, *preset.beside)}
 FAMILIES = [
     pytest.param(BY_NAME[name], family, id=f"{name}-{family.rate}")
     for name, families in POWERS.items()

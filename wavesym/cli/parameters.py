@@ -72,13 +72,6 @@ def scene_argument() -> str:
     return str(click.get_current_context().meta[_ARGUMENT])
 
 
-def scene_text() -> str:
-    """The text of the scene of the present command."""
-    from wavesym.scene import toml_text
-
-    return toml_text(scene_argument())[1]
-
-
 def refuse_scene(out: Path) -> None:
     """UsageError where what is to be written would take the place of the scene that it is made from."""
     scene = Path(scene_argument())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, refuse_scene, refuse_unwritable, scene_text
+from wavesym.cli.parameters import PATH, SCENE, refuse_scene, refuse_unwritable
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -34,6 +34,6 @@ def report(scene: Scene, out: Path) -> None:
         from wavesym import compiler
 
         warnings = compiler.warnings(scene)
-        compiler.report(scene, out, scene_text())
+        compiler.report(scene, out)
     for line in warnings:
         click.echo(f"{scene.name}: {line}", err=True)

@@ -26,7 +26,7 @@ _LARGEST_ERROR = 1.0
 _SIZE = (13.0, 12.5)  # inches
 _FONT = 8.0
 
-_OURS = {"closed": "s", "pieces": "o", "march": "D", "ball reference": "*"}
+_OURS = {"closed": "s", "pieces": "o", "modes": "8", "march": "D", "ball reference": "*"}
 _DASHES = {("C", "double"): "-", ("NumPy", "double"): "--", ("C", "single"): "-.", ("NumPy", "single"): ":"}
 _RIVALS = (
     ("^", "--"),

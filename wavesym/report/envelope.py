@@ -47,6 +47,8 @@ def draw(model: Model, found: Sequence[Along]) -> Figure:
             title = axis_title(model, quantity.quantity, quantity.unit)
             (panel.set_xlabel if upright else panel.set_ylabel)(title)
             for extreme, above in zip(extremes(quantity, band), (True, False), strict=True):
+                if not extreme.value:
+                    continue
                 point = (extreme.value, extreme.x) if upright else (extreme.x, extreme.value)
                 _mark(panel, point, extreme.told(scale), above)
     return figure

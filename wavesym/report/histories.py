@@ -16,14 +16,14 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import WavesymError
+from wavesym.errors import ToleranceError, WavesymError
 from wavesym.exact.contact import ContactEnd, contact_ends
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
-from wavesym.programs.request import KINDS, Request
+from wavesym.programs.request import Request
 
 Points = NDArray[np.float64]
 
@@ -32,7 +32,8 @@ _VISIBLE = 1e-5  # smaller jumps, relative to the largest value, are no jumps
 _LEAST, _PER_UNIT, _MOST = 1200, 32, 200_000  # instants
 _VALUES = 400_000  # of all outputs together
 # what a picture can show, of an output's largest value: modes take the more of them the less that is
-_QUICK = {kind: least for kind, least in (("march", _TOLERANCE), ("modes", fmpq(1, 10**4))) if kind in KINDS}
+_SEEN = fmpq(1, 10**4)
+_QUICK = {"march": _TOLERANCE, "modes": _SEEN}
 MOST_FRONTS = 50_000  # more of them lie far closer than the dots of a picture
 
 
@@ -108,7 +109,12 @@ def drawable(model: Model) -> Program:
     for kind, least in _QUICK.items():
         with suppress(WavesymError):
             return make(model.tolerating(max(model.tolerance, least)), Request(kind))
-    return make(model.tolerating(max(model.tolerance, _TOLERANCE)))
+    try:
+        return make(model.tolerating(max(model.tolerance, _TOLERANCE)))
+    except ToleranceError:
+        with suppress(WavesymError):  # rounding adds up over long horizons
+            return make(model.tolerating(_SEEN), Request("march"))
+        raise
 
 
 def arrivals(model: Model, probe: Probe) -> list[float]:

@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import FuncFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 
 from wavesym.numbers.doubles import nearest
 from wavesym.report.groups import PlotPanel, load_panel, notes, panels, restless
@@ -160,7 +160,7 @@ def _strip(axes: Axes, panel: PlotPanel) -> None:
     axes.set_ylim(low - 0.1 * size, high + 0.5 * size)
     inside = (low - 0.1 * size, high + 0.1 * size)  # above are the words, and another strip
     axes.set_yticks([tick for tick in MaxNLocator(3).tick_values(low, high) if inside[0] <= tick <= inside[1]])
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value + 0.0:g}".replace("-", "\u2212")))
+    axes.yaxis.set_major_formatter("{x:g}")  # no room for a power of ten beside it
     axes.text(0.004, 0.95, panel.told, transform=axes.transAxes, va="top", path_effects=_HALO)
 
 

@@ -75,27 +75,29 @@ class DiscreteModel:
                 acting[node, d, 1] = 1.0
         inner = np.ix_(free, free)
         left = condensed(mass[inner], damping[inner], stiffness[inner], acting[free])
-        at_once[free] = left.at_once
-        at_once[..., 0] += dragged
+        at_once[..., 0] = dragged
         # what a told velocity gains at once is a blow to what is dragged along
         momentum = -self._changes[:, :, 1] @ (mass @ dragged).T[:, free]
         momentum[0] += elements.momentum[free]
         own = left.oscillators(self._changes, momentum[:, left.heavy], self._ratios)
-        places = np.zeros((size, *own.places.shape[1:]))
-        places[free] = np.tensordot(left.follows, own.places, 1)
+        at_once[free] += left.at_once + np.tensordot(left.follows, own.at_once, 1)
+        places, resisted = np.zeros((2, size, *own.places.shape[1:]))
+        places[free], resisted[free] = (np.tensordot(left.follows, each, 1) for each in (own.places, own.resisted))
         loads = np.broadcast_to(DERIVED, (len(self._driven), KEPT, KEPT))
         return [
-            Batch(own.matrix, own.jumps, self._shown(own.matrix, places)),
-            Batch(loads, self._changes, self._shown(loads, at_once)),
+            Batch(own.matrix, own.jumps, self._shown(_derived(own.matrix, places), resisted)),
+            Batch(loads, self._changes, self._shown(_derived(loads, at_once))),
         ]
 
-    def _shown(self, matrix: Array, places: Array) -> Array:
-        """What outputs are of x (outputs, batch, size), from what the unknowns are (unknowns, batch, size)."""
-        total = np.zeros((len(self._weights[0]), *places.shape[1:]))
-        for weights in self._weights:  # of displacement, velocity, acceleration
-            total += np.tensordot(weights, places, 1)
-            places = np.einsum("ubs,bst->ubt", places, matrix)
-        return total
+    def _shown(self, motion: list[Array], resisted: Array | None = None) -> Array:
+        """What outputs are of x (outputs, batch, size).
+
+        `motion` is what displacements, velocities and accelerations of the unknowns are of x, each (unknowns, batch,
+        size), and `resisted` what strains rods that have mass, where that is more than accelerations.
+        """
+        fields = [*motion, motion[-1] if resisted is None else resisted]
+        shown = [np.tensordot(weights, each, 1) for weights, each in zip(self._weights, fields, strict=True)]
+        return np.asarray(np.sum(shown, axis=0))
 
     def _ratios(self, w: Array) -> Array:
         """How modes of frequencies w are damped."""
@@ -108,12 +110,14 @@ class DiscreteModel:
 
     @cached_property
     def _weights(self) -> Array:
-        """What displacements, velocities and accelerations of the unknowns count in outputs: (3, outputs, unknowns)."""
+        """What the unknowns count in outputs, (4, outputs, unknowns): displacements, velocities, accelerations, and
+        what strains rods that have mass.
+        """
         return np.stack([self._read(probe) for probe in self.elements.problem.probes], axis=1)
 
     def _read(self, probe: Probe) -> Array:
-        """The same for one output: (3, unknowns)."""
-        weights = np.zeros((3, self.elements.size))
+        """The same for one output: (4, unknowns)."""
+        weights = np.zeros((4, self.elements.size))
         derivative = {"velocity": 1, "acceleration": 2}.get(probe.quantity, 0)
         if probe.point is not None:
             weights[derivative, probe.point] = 1.0
@@ -128,7 +132,15 @@ class DiscreteModel:
             # as a spring, and what balances the element's mass, whose acceleration is a line between its ends
             balance = np.array([part - 1 / 3 - part**2 / 2, part**2 / 2 - 1 / 6])
             np.add.at(weights[0], unknowns, factors * (-1, 1) / (length * speed))
-            np.add.at(weights[2], unknowns, self.elements.weight * factors * balance * (length / speed))
+            np.add.at(weights[3], unknowns, self.elements.weight * factors * balance * (length / speed))
         else:
             np.add.at(weights[derivative], unknowns, factors * (1 - part, part))
         return weights
+
+
+def _derived(matrix: Array, places: Array) -> list[Array]:
+    """Sums of x (..., batch, size), and their first and second derivatives."""
+    found = [places]
+    for _ in range(2):
+        found.append(np.einsum("ubs,bst->ubt", found[-1], matrix))
+    return found

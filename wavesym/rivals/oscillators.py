@@ -32,12 +32,16 @@ Ratios = Callable[[Array], Array]
 class Stepping:
     """x' = matrix x (batch, size, size), and the coordinates as sums of x: `places` (coordinates, batch, size).
 
-    At event e x gains jumps[e], of shape (events, batch, size).
+    At event e x gains jumps[e], of shape (events, batch, size). Coordinates are `at_once` (coordinates, loads, KEPT)
+    times what is kept of the loads besides. `resisted` (as `places`) is the acceleration of the sums of x, with what
+    damps their modes in units of it: both are what strains a rod that has mass.
     """
 
     matrix: Array
     jumps: Array
     places: Array
+    at_once: Array
+    resisted: Array
 
 
 @dataclass(frozen=True)
@@ -66,7 +70,9 @@ class Condensed:
         return self._tied(changes, momentum) if tied else self._modal(changes, momentum, ratios)
 
     def _modal(self, changes: Array, momentum: Array, ratios: Ratios) -> Stepping:
-        """x is the displacement of a mode, its velocity over `speed`, and its load and three derivatives."""
+        """x is the displacement of a mode beside what all springs do as they follow what is told, its velocity over
+        `speed`, and its load and three derivatives.
+        """
         root = np.linalg.cholesky(self.mass)
         whitened = np.linalg.solve(root, np.linalg.solve(root, self.stiffness).T)
         squares, shapes = np.linalg.eigh((whitened + whitened.T) / 2)
@@ -84,15 +90,19 @@ class Condensed:
         )
         matrix[:, 2:, 2:] = DERIVED
         felt = np.einsum("qn,qdk->ndk", shapes, self.acting)
-        # what is damped is the motion beside that in which all springs follow what is told
-        felt[..., 1] += (damping / np.where(strained, squares, 1.0))[:, np.newaxis] * felt[..., 0]
+        following = np.where(strained[:, np.newaxis], felt[..., 0] / np.where(strained, squares, 1.0)[:, np.newaxis], 0)
+        felt[strained, :, 0] = 0.0
+        felt[..., 2] -= following
+        at_once = np.zeros_like(self.acting)
+        at_once[..., 0] = shapes @ following
         jumps = np.empty((len(changes), len(frequency), 2 + KEPT))
-        jumps[..., 0], jumps[..., 1] = 0.0, momentum @ shapes / speed
+        jumps[..., 0], jumps[..., 1] = 0.0, (momentum @ shapes - changes[..., 1] @ following.T) / speed
         for k in range(KEPT):
             jumps[..., 2 + k] = np.einsum("edj,ndj->en", changes[..., k:], felt[..., : KEPT - k])
-        places = np.zeros((len(shapes), *matrix.shape[:2]))
+        places, resisted = np.zeros((2, len(shapes), *matrix.shape[:2]))
         places[..., 0] = shapes
-        return Stepping(matrix, jumps, places)
+        resisted[..., 0], resisted[..., 2] = -squares * shapes, shapes
+        return Stepping(matrix, jumps, places, at_once, resisted)
 
     def _tied(self, changes: Array, momentum: Array) -> Stepping:
         """x is the coordinates, the velocities of masses, and what is kept of the loads."""
@@ -107,7 +117,14 @@ class Condensed:
         jumps = np.zeros((len(changes), 1, len(matrix)))
         jumps[:, 0, count : count + heavy] = np.linalg.solve(self.mass, momentum.T).T
         jumps[:, 0, count + heavy :] = changes.reshape(len(changes), -1)
-        return Stepping(matrix[np.newaxis], jumps, np.eye(count, len(matrix))[:, np.newaxis])
+        accelerated = (matrix @ matrix)[:count, np.newaxis]
+        return Stepping(
+            matrix[np.newaxis],
+            jumps,
+            np.eye(count, len(matrix))[:, np.newaxis],
+            np.zeros_like(self.acting),
+            accelerated,
+        )
 
 
 def condensed(mass: Array, damping: Array, stiffness: Array, acting: Array) -> Condensed:

@@ -3,7 +3,7 @@
 from wavesym.errors import SceneError
 from wavesym.scene.lowering import lower
 from wavesym.scene.outputs import Observable, Output
-from wavesym.scene.reading import builtin_names, builtin_text, first_text, toml_text
+from wavesym.scene.reading import builtin_names, builtin_text, first_text
 from wavesym.scene.scene import Scene
 
 __all__ = [
@@ -15,5 +15,4 @@ __all__ = [
     "builtin_text",
     "first_text",
     "lower",
-    "toml_text",
 ]

@@ -31,13 +31,13 @@ def first_text(system: str) -> str:
     return (_FIRST / f"{system}.toml").read_bytes().decode()
 
 
-def read_toml(source: str | PathLike[str]) -> tuple[str, dict[str, Any]]:
-    """The name a source goes by in messages, and the table in it.
+def read_toml(source: str | PathLike[str]) -> tuple[str, str, dict[str, Any]]:
+    """The name a source goes by in messages, its text, and the table in it.
 
     `source` is a path, `-` for standard input, or the name of a built-in scene. Raises SceneError.
     """
     file, text = toml_text(source)
-    return file, _beside(os.path.dirname(os.fspath(source)), _parsed(file, text))
+    return file, text, _beside(os.path.dirname(os.fspath(source)), _parsed(file, text))
 
 
 def toml_text(source: str | PathLike[str]) -> tuple[str, str]:

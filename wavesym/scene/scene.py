@@ -61,6 +61,7 @@ class Scene(SceneTable):
     output: Output = Field(description="a table")
 
     _physical: PhysicalScene | None = PrivateAttr(default=None)
+    _text: str | None = PrivateAttr(default=None)
 
     def __init__(self, /, **fields: Any) -> None:
         try:
@@ -82,11 +83,18 @@ class Scene(SceneTable):
         >>> wavesym.Scene.from_toml("drive_m1").name
         'drive_m1'
         """
-        file, fields = read_toml(source)
+        file, text, fields = read_toml(source)
         try:
-            return cls(**fields)
+            scene = cls(**fields)
         except SceneError as error:
             raise SceneError(error.what, error.path, file) from None
+        scene._text = text
+        return scene
+
+    @property
+    def text(self) -> str:
+        """What it was read from; of one that was made in Python its fields as JSON."""
+        return self._text if self._text is not None else self.model_dump_json(indent=2)
 
     def with_(self, changes: Mapping[str, object]) -> Self:
         """The same scene with other values: `scene.with_({"system.kappa[1]": "1/3", "output.until": 40})`.

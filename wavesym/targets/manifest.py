@@ -38,6 +38,7 @@ def manifest(description: Description, program: Program) -> str:
         **_clock(program),
         "outputs": [_output(output, program) for output in program.outputs],
         **_driven(program),
+        **_streamed(program),
         "contact_end": {contact.position: contact.digits for contact in description.contacts},
         **_events(description),
     }
@@ -63,6 +64,14 @@ def _events(description: Description) -> dict[str, object]:
     if not description.event_count:
         return {}
     return {"events": [{"x": event.x, "kind": event.kind, "tau": event.digits} for event in description.events]}
+
+
+def _streamed(program: Program) -> dict[str, object]:
+    """The time between samples of a stream, and its loads with the units of their samples."""
+    if program.kind != "modes":
+        return {}
+    told = {} if program.proved else {"proved": False}
+    return {"spacing": program.constants["spacing"], "loads": list(program.sources), **told}
 
 
 def _driven(program: Program) -> dict[str, object]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from wavesym.documents.inspection.damped import damped_modes
 from wavesym.documents.inspection.networked import counted, graph_cone, parts
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
 from wavesym.model.chain import Chain
@@ -36,6 +37,7 @@ def modelled(model: Model) -> Iterator[Section]:
         [{"source": load.source, "time": str(load.time), "weight": str(load.weight)} for load in model.loads],
     )
     yield probes(model)
+    yield from damped_modes(model)
 
 
 def _named_parts(chain: Chain) -> Iterator[Section]:

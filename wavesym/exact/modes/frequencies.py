@@ -87,6 +87,8 @@ class Spectrum:
 
 def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
     """Those after the first `known` ones."""
+    if not stiffness.points:
+        raise CoincidenceError("no point moves")
     free = rigid(stiffness.network)
     ways: list[tuple[int, HarmonicLaw]] = []
     for times in (1, 4):

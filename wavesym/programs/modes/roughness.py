@@ -53,12 +53,12 @@ class Roughness:
 
     def fading(self, rate: float) -> float:
         """The largest sum_{k <= n} |kinks_k| exp(-rate (times_n - times_k)) for any n."""
-        largest = total = 0.0
-        before = self.times[0] if len(self.times) else 0.0
-        for time, kink in zip(self.times.tolist(), np.abs(self.kinks).tolist(), strict=True):
-            total = total * float(np.exp(-rate * (time - before))) + kink
-            largest, before = max(largest, total), time
-        return float(largest * _MORE)
+        total, step = np.abs(self.kinks), 1
+        while step < len(total):  # so many kinks are summed up
+            earlier = total[:-step] * np.exp(-rate * (self.times[step:] - self.times[:-step]))
+            total = np.append(total[:step], total[step:] + earlier)
+            step *= 2
+        return float(np.max(total, initial=0.0) * _MORE)
 
 
 def _partial(terms: Numbers) -> float:

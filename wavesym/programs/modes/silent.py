@@ -14,7 +14,10 @@ from wavesym.programs.modes.watched import Driver, ground
 
 
 def silent(model: Model, drivers: Sequence[Driver], loads: LinearLoads) -> tuple[bool, ...]:
-    """Whether each output is: at a free end, or where no load has come to before the end of the horizon."""
+    """Whether each output is: at a free end, or where no load has come to before the end of the horizon.
+
+    Without any load outputs are 0 of themselves.
+    """
     begun = [(each.point, _begin(loads, j)) for j, each in enumerate(drivers)]
     acting = [(point, time) for point, time in begun if time is not None]
     return tuple(_silent(model, probe, acting) for probe in model.probes)
@@ -32,7 +35,7 @@ def _silent(model: Model, probe: Probe, acting: Sequence[tuple[int, fmpq]]) -> b
     if probe.quantity == "relative":
         points.append(ground(network))
     away = network.distances(places, points)
-    return not any(time + away[network.joint_of[point]] < model.until for point, time in acting)
+    return bool(acting) and not any(time + away[network.joint_of[point]] < model.until for point, time in acting)
 
 
 def _begin(loads: LinearLoads, j: int) -> fmpq | None:

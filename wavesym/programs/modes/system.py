@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, inf, log
+from math import ceil, inf, isqrt, log
 
 import numpy as np
+from flint import fmpq
 
-from wavesym.errors import ToleranceError, UnservedError
+from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.model.model import Model
 from wavesym.numbers.doubles import nearest
@@ -126,9 +127,13 @@ class _Chain:
 
     @cached_property
     def drivers(self) -> tuple[Driver, ...]:
-        """The loads that act."""
+        """The loads that act; one that is 0 where there are none."""
+        network = self.model.network
         acting = {load.source for load in self.model.acting(self.model.until)}
-        return tuple(each for each in driven(self.model.network) if {each.step, each.ramp} & acting)
+        every = driven(network)
+        found = tuple(each for each in every if {each.step, each.ramp} & acting)
+        still = next((number for number, point in enumerate(network.points) if point.motion != "fixed"), 0)
+        return found or (every[0] if every else Driver(still, fmpq(1), "", ""),)
 
     @cached_property
     def sources(self) -> tuple[tuple[str, str], ...]:
@@ -177,8 +182,17 @@ class _Chain:
         if not self.drivers:
             raise UnservedError("load: none that acts by output.until given, one expected in modes (all is at rest)")
         _ = self.loads  # refused before the work
+        self._refuse_many(len(network.bars))
         found = self.spectrum.first(count)
         return shares(found, self.spectrum.cut, self.seen, self.drivers)
+
+    def _refuse_many(self, rods: int) -> None:
+        most = isqrt(_MOST_WORK // _FIRST)
+        if rods <= most:
+            return
+        if self.model.chain is None:
+            raise CostError(f"system.parts: {rods} rods in modes, at most {most} expected (fewer rods or march helps)")
+        raise CostError(f"system.m: {rods} rods in modes, at most {most} expected (fewer rods or march helps)")
 
     @property
     def seen(self) -> list[Seen]:
@@ -236,8 +250,6 @@ class _Chain:
 
     def reached(self, known: Shares, count: int) -> Numbers:
         """What each output reaches at least, in spite of what is left out."""
-        if not self.drivers:
-            return np.zeros(len(self.model.probes))
         system, until = self.system(known, count), self.model.horizon()
         scheme = ModesScheme(scheme_tables(system, self.loads, DOUBLE), {"loads": len(self.drivers)}, until, np.float64)
         values = rounded(system, self.loads, scheme, until, DOUBLE).largest

@@ -8,28 +8,31 @@ from itertools import pairwise
 import numpy as np
 
 from wavesym.errors import WavesymError
+from wavesym.exact.contact import ContactEnd, contact_ends
 from wavesym.exact.field import Field
 from wavesym.model.model import Model
 from wavesym.model.network import Link
-from wavesym.numbers.doubles import nearest
+from wavesym.numbers.doubles import nearest, rational
 from wavesym.report.along import limit
 from wavesym.report.histories import Points
 from wavesym.report.page.frame import Frame, PlotAxis
-from wavesym.report.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, Shown, colour_bar, picture
+from wavesym.report.page.places import colour_bar
+from wavesym.report.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, Shown, picture
 from wavesym.report.page.png import address, shaded
 from wavesym.report.page.svg import Svg, box, element, line, together
 from wavesym.report.stations import Opened, open_times, standing
-from wavesym.report.timescale import Timescale
+from wavesym.report.timescale import timescale
+from wavesym.scene.physical.scale import Scale
 from wavesym.systems.station import Lines, Station
 
 _MOST = 60  # crossings of the shortest rod that can be told apart
-_ROWS, _COLUMNS = 260, 320  # cells
+_ROWS, _COLUMNS = 240, 280  # cells
 _OFF = 0.4142  # of a cell: where in it the value is taken, so that no front lies there
 _TALL = 380.0
 _QUANTITIES = {"velocity": 0, "force": 1}
 
 
-def crossings(model: Model, lines: Lines, scale: Timescale) -> list[Shown]:
+def crossings(model: Model, lines: Lines, units: Scale | None) -> list[Shown]:
     """Velocity and force of the main line; nothing where waves cross too often, or it would cost too much."""
     shortest = min(bar.delay for bar in model.network.bars)
     if model.until > _MOST * shortest:
@@ -38,13 +41,14 @@ def crossings(model: Model, lines: Lines, scale: Timescale) -> list[Shown]:
         field = Field(model)
     except WavesymError:
         return []
-    return [_drawn(model, lines, field, name, scale) for name in _QUANTITIES]
+    return [_drawn(model, lines, field, name, units) for name in _QUANTITIES]
 
 
-def _drawn(model: Model, lines: Lines, field: Field, name: str, scale: Timescale) -> Shown:
-    stations = lines[""]
+def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | None) -> Shown:
+    stations, scale = lines[""], timescale(model)
     until, long = nearest(model.until), float(stations[-1].x)
-    values = _cells(field, stations, until, _QUANTITIES[name])
+    factor = nearest(rational(units.factor(name, 1))) if units else 1.0
+    values = factor * _cells(field, stations, until, _QUANTITIES[name])
     largest = limit([values])
     x, y = PlotAxis(0.0, long, LEFT, WIDTH - RIGHT), PlotAxis(0.0, until * scale.per_tau, TOP + _TALL, TOP)
     cells = element(
@@ -57,8 +61,11 @@ def _drawn(model: Model, lines: Lines, field: Field, name: str, scale: Timescale
         preserveAspectRatio="none",
         class_="cells",
     )
+    formal = together(*(_formal(end, x, y, until, long, scale.per_tau) for end in contact_ends(model)))
     nodes = together(*_nodes(model, stations, open_times(model, field.events), x, scale.per_tau, y))
-    bar = colour_bar(f"{name} (dimensionless)", largest, TOP + _TALL + BELOW)
+    bar = colour_bar(
+        f"{name} in {units.unit(name)}" if units else f"{name} (dimensionless)", largest, TOP + _TALL + BELOW
+    )
     told = (
         f"Colours show the {name} of every rod of the main line, place to the right and time upward to "
         f"{scale.told(until)}; waves are bands that slope by one rod in one crossing."
@@ -66,7 +73,17 @@ def _drawn(model: Model, lines: Lines, field: Field, name: str, scale: Timescale
     title = f"{name}: place to the right, time upward".capitalize()
     height = TOP + _TALL + BELOW + 34
     frame = Frame(x, y, "x", scale.title).drawn()
-    return Shown(title, picture(f"xt-{name}", title, told, height, frame, cells, nodes, bar, class_="plot"))
+    return Shown(title, picture(f"xt-{name}", title, told, height, frame, cells, formal, nodes, bar, class_="plot"))
+
+
+def _formal(end: ContactEnd, x: PlotAxis, y: PlotAxis, until: float, long: float, per_tau: float) -> Svg:
+    """What the opening of a contact reaches, one rod in one tau: the formal continuation, hatched."""
+    reach = until - end.double
+    low, high = max(0.0, end.x - reach), min(long, end.x + reach)
+    corners = [(end.x, end.double), (low, end.double + end.x - low), (low, until), (high, until)]
+    corners.append((high, end.double + high - end.x))
+    points = " ".join(f"{x.at(at):.1f},{y.at(tau * per_tau):.1f}" for at, tau in corners)
+    return element("polygon", points=points, class_="hatched")
 
 
 def _cells(field: Field, stations: tuple[Station, ...], until: float, quantity: int) -> Points:

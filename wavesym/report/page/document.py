@@ -7,17 +7,19 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from wavesym import __version__
+from wavesym.errors import WavesymError
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.rendering import render
-from wavesym.report.along import along
+from wavesym.report.along import Along, along
 from wavesym.report.groups import load_panel, notes, panels
 from wavesym.report.histories import Histories, History, histories
 from wavesym.report.loads import load_histories
 from wavesym.report.page.crossings import crossings
-from wavesym.report.page.plots import Shown, along_pictures, maps, panel, picture
+from wavesym.report.page.places import along_pictures, maps
+from wavesym.report.page.plots import Shown, panel, picture
 from wavesym.report.page.said import SaidTable, advice_told, extremes_told
 from wavesym.report.page.structure import structure
 from wavesym.report.timescale import Timescale, timescale
@@ -25,7 +27,7 @@ from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import drifts
 
 _OUTPUTS = 48  # that are drawn
-_VERTICES = 80_000  # of all curves together: what keeps the page small
+_VERTICES = 60_000  # of all curves together: what keeps the page small
 _COLUMNS = (300, 1200)  # of a picture of histories, at least and at most
 _LOADS = 8
 
@@ -40,13 +42,13 @@ class Report:
     histories: tuple[Shown, ...]
     notes: tuple[str, ...]
     until: str
-    per_tau: str
     time: str
     columns: int
     extremes: SaidTable
     advice: SaidTable
     maps: tuple[Shown, ...]
     along: tuple[Shown, ...]
+    refused: str
     scene: str
     command: str
     version: str
@@ -58,12 +60,12 @@ class _Context:
     report: Report
 
 
-def page(scene: Scene, text: str) -> str:
-    """The page of a scene, with the `text` it was read from. CostError, ToleranceError as for its histories."""
-    return render("html/report.html.j2", _Context(_report(scene, text)))
+def page(scene: Scene) -> str:
+    """The page of a scene, with the text it was read from. CostError, ToleranceError as for its histories."""
+    return render("html/report.html.j2", _Context(_report(scene)))
 
 
-def _report(scene: Scene, text: str) -> Report:
+def _report(scene: Scene) -> Report:
     model = lower(scene)
     scale, until = timescale(model), nearest(model.until)
     drawn = model.watching(_fair(model))
@@ -73,7 +75,7 @@ def _report(scene: Scene, text: str) -> Report:
     stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
     lines = scene.system.lines
-    found = along(scene)
+    found, refused = _along(scene)
     structured = structure(model, lines)
     title = f"The structure of {model.name}"
     return Report(
@@ -87,18 +89,26 @@ def _report(scene: Scene, text: str) -> Report:
         ),
         notes=(*_left_out(model, drawn), *notes(made)),
         until=repr(until * scale.per_tau),
-        per_tau=repr(scale.per_tau),
         time=scale.unit,
         columns=columns,
         extremes=extremes_told(model, drifts(scene), scale),
         advice=advice_told(model),
-        maps=tuple(crossings(model, lines, scale) or maps(model, found, scale)),
+        maps=tuple(crossings(model, lines, scene.scale) or maps(model, found, scale)),
         along=tuple(along_pictures(model, found, scale)),
-        scene=text,
+        refused=refused,
+        scene=scene.text,
         command=f"wavesym report {model.name}.toml -o {model.name}.html",
         version=__version__,
         sha256=model.labels.sha256,
     )
+
+
+def _along(scene: Scene) -> tuple[tuple[Along, ...], str]:
+    """What happens along the chain, or why that is not known."""
+    try:
+        return along(scene), ""
+    except WavesymError as error:
+        return (), f"Not drawn: {error}"
 
 
 def _fair(model: Model) -> list[Probe]:
@@ -122,6 +132,8 @@ def _facts(model: Model, made: Histories, loads: Sequence[History], scale: Times
     yield "System", ", ".join([model.labels.system["type"], *_chosen(model)])
     rods, bodies = len(network.bars), len([point for point in network.points if point.mass])
     yield "Modelled", f"{_count(rods, 'elastic rod')}, {_count(bodies, 'rigid body', 'rigid bodies')}"
+    if model.damping is not None:
+        yield "Damping", f"of modes: {model.damping.told}"
     if told := _loads(model, loads):
         yield "Loads", told
     yield "Horizon", scale.told(nearest(model.until))
@@ -134,8 +146,13 @@ def _facts(model: Model, made: Histories, loads: Sequence[History], scale: Times
             "Contact",
             f"that at x = {end.x} opens at {scale.told(end.double)}; what that reaches is drawn as if it stayed closed",
         )
-    for place, own in groupby(sorted(program.provenance.events or (), key=lambda e: e.x), key=lambda e: e.x):
-        yield "Contact", f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.told(each.double)}" for each in own)
+    for number in network.contacts:
+        place = network.links[number].place
+        if own := [each for each in program.provenance.events or () if each.x == place]:
+            yield (
+                "Contact",
+                f"at x = {place}: " + ", ".join(f"{each.kind} at {scale.told(each.double)}" for each in own),
+            )
 
 
 def _loads(model: Model, loads: Sequence[History]) -> str:

@@ -1,28 +1,21 @@
-"""The pictures of a page: load, histories, envelope, map. Each is an SVG with a title and a description."""
+"""Pictures of a page over time: loads and histories. Each is an SVG with a title and a description."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from wavesym.model.model import Model
-from wavesym.report.along import Along, Band, cells, limit
-from wavesym.report.envelope_values import BandExtreme, envelope, extremes
-from wavesym.report.groups import PlotPanel, axis_title
-from wavesym.report.histories import History, Points
+from wavesym.report.groups import PlotPanel
+from wavesym.report.histories import History
 from wavesym.report.page.curves import HEIGHT, Grid, drawn
 from wavesym.report.page.frame import Frame, PlotAxis, spread
-from wavesym.report.page.png import address, colours, shaded
-from wavesym.report.page.svg import Svg, box, element, line, polyline, text, together
+from wavesym.report.page.svg import Svg, element, line, text
 from wavesym.report.timescale import Timescale
 
 WIDTH, LEFT, RIGHT, TOP, BELOW = 900.0, 84.0, 12.0, 10.0, 44.0
-_LOAD, _STRIP, _PANEL, _ALONG = 90.0, 66.0, 190.0, 230.0  # pixels high
+_LOAD, _STRIP, _PANEL = 90.0, 66.0, 190.0  # pixels high
 LETTER = 6.6  # wide
-_COLUMNS = 600  # of a map
-_NUMBERED = 12  # storeys with a number
 
 
 @dataclass(frozen=True)
@@ -63,7 +56,7 @@ def panel(number: str, given: PlotPanel, columns: int, until: float, scale: Time
         transform=f"translate({LEFT:g} {TOP:g}) scale({(x.end - x.start) / columns:.6g} {height / HEIGHT:.6g})",
     )
     spots = sorted((value, x.at(tau * scale.per_tau), mark.text) for mark in given.marks for tau, value in mark.points)
-    marks = [_spot(at, y.at(value)) for value, at, _ in spots]
+    marks = [spot(at, y.at(value)) for value, at, _ in spots]
     if given.limits:
         marks.append(text(LEFT + 4, TOP + 11, given.told, "start", class_="halo"))
     else:
@@ -127,140 +120,5 @@ def _beside(x: float, y: float, words: str, above: bool) -> Svg:
     return text(min(max(x, LEFT + half), WIDTH - RIGHT - half), y - 7 if above else y + 16, words, class_="halo")
 
 
-def _spot(x: float, y: float) -> Svg:
+def spot(x: float, y: float) -> Svg:
     return element("circle", class_="spot", cx=x, cy=y, r=3)
-
-
-def along_pictures(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[Shown]:
-    """The least and the greatest of each quantity along each line."""
-    upright = model.labels.system["type"] == "building"
-    for k, quantity in enumerate(found):
-        for j, band in enumerate(quantity.bands):
-            name = f"{quantity.quantity}{band.line and ' of branch '}{band.line}"
-            where = "height" if upright else "chain"
-            title = f"Least and greatest {name} along the {where}"
-            told = " ".join(
-                f"{word}: {each.told(scale)}."
-                for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
-            )
-            make = _over_height if upright else _along_line
-            content, height = make(model, quantity, band, scale)
-            yield Shown(title, picture(f"along-{k}-{j}", title, told, height, content, class_="plot"))
-
-
-def _over_height(model: Model, quantity: Along, band: Band, scale: Timescale) -> tuple[Svg, float]:
-    least, greatest = envelope(band)
-    low, high = spread(min(0.0, float(np.min(least))), max(0.0, float(np.max(greatest))), 0.1)
-    tall = max(160.0, min(30.0 * len(band.spots), 420.0))
-    x, y = (
-        PlotAxis(low, high, LEFT, WIDTH - RIGHT),
-        PlotAxis(band.spots[0].low - 0.3, band.spots[-1].high + 0.3, TOP + tall, TOP),
-    )
-    places = band.numbered(_NUMBERED, first=1 if quantity.storeys else 0)
-    title = axis_title(model, quantity.quantity, quantity.unit).replace("\n", " ")
-    frame = Frame(x, y, title, "storey" if quantity.storeys else "floor", places)
-    parts = [frame.drawn(), line(x.at(0), y.start, x.at(0), y.end, "zero")]
-    ends = [(y.at(spot.x), x.at(a), x.at(b)) for spot, a, b in zip(band.spots, least, greatest, strict=True)]
-    if quantity.storeys:
-        half = 0.38 * (y.start - y.end) / (y.high - y.low)
-        for at, a, b in ends:
-            parts += [box(a, at - half, b - a, 2 * half, "between")]
-            parts += [line(a, at - half, a, at + half, "least"), line(b, at - half, b, at + half, "greatest")]
-    else:
-        parts.append(polyline([*((a, at) for at, a, _ in ends), *((b, at) for at, _, b in ends[::-1])], "between"))
-        parts.append(polyline([(a, at) for at, a, _ in ends], "least"))
-        parts.append(polyline([(b, at) for at, _, b in ends], "greatest"))
-    parts += [_named(x.at(each.value), y.at(each.x), each, scale) for each in extremes(quantity, band)]
-    return together(*parts), TOP + tall + BELOW
-
-
-def _along_line(model: Model, quantity: Along, band: Band, scale: Timescale) -> tuple[Svg, float]:
-    least, greatest = envelope(band)
-    low, high = spread(min(0.0, float(np.min(least))), max(0.0, float(np.max(greatest))), 0.14)
-    x, y = PlotAxis(band.spots[0].low, band.spots[-1].high, LEFT, WIDTH - RIGHT), PlotAxis(low, high, TOP + _ALONG, TOP)
-    frame = Frame(x, y, f"{band.line}:x" if band.line else "x", axis_title(model, quantity.quantity, quantity.unit))
-    ends = [(x.at(spot.x), y.at(a), y.at(b)) for spot, a, b in zip(band.spots, least, greatest, strict=True)]
-    parts = [
-        frame.drawn(),
-        polyline([*((at, a) for at, a, _ in ends), *((at, b) for at, _, b in ends[::-1])], "between"),
-        polyline([(at, a) for at, a, _ in ends], "least"),
-        polyline([(at, b) for at, _, b in ends], "greatest"),
-    ]
-    parts += [_named(x.at(each.x), y.at(each.value), each, scale) for each in extremes(quantity, band)]
-    return together(*parts), TOP + _ALONG + BELOW
-
-
-def _named(x: float, y: float, extreme: BandExtreme, scale: Timescale) -> Svg:
-    """A spot and what it is, written towards the middle."""
-    right = x < (LEFT + WIDTH - RIGHT) / 2
-    return together(
-        _spot(x, y),
-        text(x + (8 if right else -8), y - 7, extreme.told(scale), "start" if right else "end", class_="halo"),
-    )
-
-
-def maps(model: Model, found: Sequence[Along], scale: Timescale) -> Iterator[Shown]:
-    """Place x time as colours."""
-    for k, quantity in enumerate(found):
-        values = [cells(quantity, band, _COLUMNS) for band in quantity.bands]
-        largest = limit(values)
-        for j, (band, own) in enumerate(zip(quantity.bands, values, strict=True)):
-            name = f"{quantity.quantity}{band.line and ' of branch '}{band.line}"
-            title = f"{name} over place and time".capitalize()
-            told = " ".join(
-                f"{word}: {each.told(scale)}."
-                for word, each in zip(("Greatest", "Least"), extremes(quantity, band), strict=True)
-            )
-            content, height = _map(model, quantity, band, own, largest, scale)
-            yield Shown(title, picture(f"map-{k}-{j}", title, told, height, content, class_="plot"))
-
-
-def _map(
-    model: Model, quantity: Along, band: Band, values: Points, largest: float, scale: Timescale
-) -> tuple[Svg, float]:
-    """Rows of equal height are asked for: places are spread evenly along a rod."""
-    tall = max(120.0, min(16.0 * len(band.spots), 260.0))
-    x = PlotAxis(0.0, float(quantity.taus[-1]) * scale.per_tau, LEFT, WIDTH - RIGHT)
-    y = PlotAxis(band.spots[0].low, band.spots[-1].high, TOP + tall, TOP)
-    places = band.numbered(_NUMBERED) if quantity.storeys else None
-    upward = "storey" if quantity.storeys else f"{band.line}:x" if band.line else "x"
-    rows = _evenly(band, values)
-    image = element(
-        "image",
-        href=address(shaded(rows[::-1], largest)),
-        x=x.start,
-        y=y.end,
-        width=x.end - x.start,
-        height=tall,
-        preserveAspectRatio="none",
-        class_="cells",
-    )
-    frame = Frame(x, y, scale.title, upward, places)
-    bar = colour_bar(axis_title(model, quantity.quantity, quantity.unit), largest, TOP + tall + BELOW)
-    return together(frame.drawn(), image, bar), TOP + tall + BELOW + 34
-
-
-def _evenly(band: Band, values: Points) -> Points:
-    """Rows of equal height, each that of the place whose stretch it lies in."""
-    low, high = band.spots[0].low, band.spots[-1].high
-    smallest = min(spot.high - spot.low for spot in band.spots)
-    rows = min(400, max(1, round((high - low) / smallest)))
-    middles = low + (np.arange(rows) + 0.5) * (high - low) / rows
-    edges = np.array([spot.low for spot in band.spots])
-    return np.asarray(values[np.searchsorted(edges, middles, side="right") - 1])
-
-
-def colour_bar(title: str, largest: float, top: float) -> Svg:
-    """From the least to the greatest colour, and what they mean."""
-    shades = colours()[:-1]
-    wide = 20.0
-    left = (WIDTH - wide * len(shades)) / 2
-    cells = (
-        element("rect", fill="#{:02x}{:02x}{:02x}".format(*colour), x=left + k * wide, y=top, width=wide, height=12)
-        for k, colour in enumerate(shades)
-    )
-    ends = (
-        text(left - 6, top + 10, f"\u2264 {-largest:.3g}", "end"),
-        text(left + wide * len(shades) + 6, top + 10, f"\u2265 {largest:.3g}", "start"),
-    )
-    return together(*cells, *ends, text(WIDTH / 2, top + 27, title.replace("\n", " ")))

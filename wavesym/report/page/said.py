@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from wavesym.documents.advice import WAVES, Advice, Candidate
 from wavesym.errors import WavesymError
+from wavesym.exact.contact import contact_ends
 from wavesym.model.model import Model
 from wavesym.model.probe import Probe
 from wavesym.report.timescale import Timescale
@@ -49,6 +50,8 @@ def extremes_told(model: Model, drifts: Sequence[Probe], scale: Timescale) -> Sa
     )
     short = any(not peak.reached for each in found.outputs for peak in (each.min, each.max))
     notes = [
+        "After a contact has opened they are those of the formal continuation, as if it stayed closed"
+        * bool(contact_ends(model)),
         _drift(found.largest_drift, scale),
         "\u2212 behind a time: the output comes up to this value, and jumps then" * short,
         f"How: {found.how}; {found.certain}",

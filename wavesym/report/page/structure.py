@@ -22,7 +22,8 @@ _MASS, _LINK, _CONTACT, _END, _BARE = 18.0, 44.0, 10.0, 6.0, 2.0
 _LEAST = 14.0  # of a rod, long
 _THICK, _THIN = 24.0, 6.0  # of a rod
 _ASIDE = 30.0  # from its node a branch hangs
-_LETTER = 6.6  # of a name, wide
+_LETTER = 7.4  # of a name, wide
+_NAMES = 3  # rows of names over one another
 _STOREY, _TALLEST, _FLOOR = 46.0, 520.0, 190.0
 
 
@@ -79,6 +80,11 @@ def _called(k: int, m: int) -> str:
     return {0: ", foundation", m: ", roof"}.get(k, "")
 
 
+def _parallel(link: Link, bar: Bar) -> bool:
+    """Whether a spring or a dashpot stands beside a rod, between its two ends."""
+    return {link.left, link.right} == {bar.left, bar.right} and not link.contact
+
+
 @dataclass
 class _Pen:
     """Draws the lines of a chain, and knows where things are for what comes after."""
@@ -91,7 +97,7 @@ class _Pen:
 
     def chain(self, model: Model) -> Picture:
         scale = self._scale()
-        y = 70.0
+        y = 70.0 + self.above
         for name, stations in self.lines.items():
             self._line(name, stations, y, scale)
             y += _ROW
@@ -106,6 +112,11 @@ class _Pen:
         ]
         told = f"A chain of {len(self.network.bars)} rods and {bodies} rigid bodies"
         return Picture(together(*self.parts), y - _ROW + 90, f"{', with '.join([told, *filter(None, more)])}.")
+
+    @property
+    def above(self) -> float:
+        """How much higher names stand where something is parallel to a rod."""
+        return 26.0 * any(_parallel(link, bar) for link in self.network.links for bar in self.network.bars)
 
     def _widths(self, station: Station) -> list[tuple[Point | Link, float]]:
         """What stands there and is not drawn yet, from left to right."""
@@ -144,7 +155,7 @@ class _Pen:
                 for point in new:
                     if what is self.network.points[point]:
                         self.at[point] = x + width * shrink / 2, y
-                        self._over(x + width * shrink / 2, y - 36, what.name, names)
+                        self._over(x + width * shrink / 2, y - 36 - self.above, what.name, names)
                 x += width * shrink
             self.at.update({point: ((begun + x) / 2, y) for point in new if point not in self.at})
             held = any(self.network.points[point].damping or self.network.points[point].stiffness for point in new)
@@ -189,11 +200,13 @@ class _Pen:
     def _beside(self, bar: Bar, x: float, length: float, y: float) -> None:
         """What is parallel to a rod, its name, and how it moves at first."""
         for each in self.network.links:
-            if {each.left, each.right} == {bar.left, bar.right} and not each.contact:
-                sign = symbols.link(x, y - 26, length, elastic=bool(each.stiffness), damped=bool(each.damping))
-                self.parts.append(sign)
-        if bar.velocity and length > 40:
-            self.parts.append(text(x + length / 2, y + 30, f"v = {bar.velocity}", class_="act"))
+            if _parallel(each, bar):
+                sign = symbols.link(x, y - 38, length, elastic=bool(each.stiffness), damped=bool(each.damping))
+                legs = (line(at, y - 38, at, y - symbols.HALF, "wire") for at in (x, x + length))
+                self.parts += [sign, *legs]
+        moving = f"v = {bar.velocity}"
+        if bar.velocity and length > _LETTER * len(moving):
+            self.parts.append(text(x + length / 2, y + 4, moving, class_="act"))
         if bar.name and length > _LETTER * len(bar.name):
             self.parts.append(text(x + length / 2, y - 18, bar.name, class_="name"))
 
@@ -209,7 +222,7 @@ class _Pen:
                     symbols.wall(x, y, side) if point.motion == "fixed" else line(x, y - 20, x, y + 20, "face")
                 )
             if point.motion and point.motion != "fixed":
-                self.parts.append(symbols.moved(edge, y - 28, ""))
+                self.parts.append(symbols.moved(edge, y - 26, ""))
             if point.stiffness or point.damping:
                 below = y + 62
                 self.parts.append(line(x, y + 6, x, below, "thin"))
@@ -244,9 +257,9 @@ class _Pen:
             self.parts.append(text(x, y, words))
 
     def _over(self, x: float, y: float, words: str, rows: list[float]) -> None:
-        """A name, in the lowest row where it does not lie over another."""
-        if words:
-            half = _LETTER * len(words) / 2
-            row = next((k for k, end in enumerate(rows) if end + 4 < x - half), len(rows))
+        """A name, in the lowest row where it does not lie over another; none where all rows are taken."""
+        half = _LETTER * len(words) / 2
+        row = next((k for k, end in enumerate(rows) if end + 4 < x - half), len(rows))
+        if words and row < _NAMES:
             rows[row : row + 1] = [x + half]
             self.parts.append(text(x, y - 14 * row, words, class_="name"))

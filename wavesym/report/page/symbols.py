@@ -6,6 +6,7 @@ from wavesym.report.page.svg import Svg, box, element, line, polyline, text, tog
 
 HALF = 16.0  # of the height of a mass
 _COIL, _TEETH = 5.0, 6
+_LONGEST = 52.0  # of a spring or a dashpot
 
 
 def mass(x: float, y: float, width: float, half: float) -> Svg:
@@ -29,7 +30,11 @@ def dashpot(x: float, y: float, width: float) -> Svg:
 
 
 def link(x: float, y: float, width: float, *, elastic: bool, damped: bool) -> Svg:
-    """A spring, a dashpot, or both side by side between two upright lines."""
+    """A spring, a dashpot, or both side by side between two upright lines; with long leads where there is room."""
+    if width > _LONGEST:
+        lead = (width - _LONGEST) / 2
+        inner = link(x + lead, y, _LONGEST, elastic=elastic, damped=damped)
+        return together(line(x, y, x + lead, y, "wire"), inner, line(x + width - lead, y, x + width, y, "wire"))
     if elastic and damped:
         ends = together(line(x, y - 10, x, y + 10, "wire"), line(x + width, y - 10, x + width, y + 10, "wire"))
         return together(spring(x, y - 10, width), dashpot(x, y + 10, width), ends)

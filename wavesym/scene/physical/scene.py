@@ -47,6 +47,13 @@ class PhysicalScene:
     inputs: tuple[tuple[Fraction, str], ...] = ()
 
     @property
+    def length(self) -> float | None:
+        """How long one of x is in results; None where places count rods."""
+        if self.said["system"]["type"] != "chain":
+            return None
+        return float(self.scale.lengths[0] / self.scale.results.sizes["length"])
+
+    @property
     def system(self) -> dict[str, str]:
         """What it is made of, by key."""
         return {key: words(value) for key, value in self.said["system"].items() if key != "type"}
