@@ -28,11 +28,11 @@ def family(progress: Progress, spacings: Sequence[Fraction] = SPACINGS, digits: 
             points += _points(known, number, f"samples {float(spacing):g} apart", digits)
     return CurveFamily(
         "modes",
-        "Error against the number of modes: it falls as the square for forces and accelerations, faster for motion",
+        "Error against the number of modes: forces and accelerations need many, motion few",
         Axis("modes"),
         "largest error / largest value",
         tuple(points),
-        "against tables in balls; as many modes as a tolerance of 1, 1/10, 1/100, ... takes",
+        "from tables in balls; as many modes as a tolerance of 1, 1/10, 1/100, ... takes",
     )
 
 

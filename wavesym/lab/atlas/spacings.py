@@ -59,7 +59,7 @@ def family(progress: Progress, counts: Sequence[int] = PARTS) -> CurveFamily:
             points.append(AtlasPoint("", name, parts, error, found.bound, refused))
     return CurveFamily(
         "spacings",
-        "Samples 5 - 1/q apart: a march has too many panels from q = 17 on, modes and the march of one hat have not",
+        "Samples 5 - 1/q apart: a march goes to q = 16, that of one hat far on, modes anywhere",
         Axis("q"),
         "largest error at the samples / largest value",
         tuple(points),
