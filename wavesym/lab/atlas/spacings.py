@@ -51,8 +51,8 @@ def family(progress: Progress, counts: Sequence[int] = PARTS) -> CurveFamily:
             progress(f"samples 5 - 1/{parts} apart, {name}")
             try:
                 found = way(reference.model, taus, sizes)
-            except WavesymError as error:
-                points.append(AtlasPoint("", name, parts, float("nan"), refused=str(error)))
+            except WavesymError as why:
+                points.append(AtlasPoint("", name, parts, float("nan"), refused=str(why)))
                 continue
             error = shaken.worst(found.values, right, sizes)
             refused = f"{name}: a bound of {found.bound:.1e} in all" if found.bound > TOLERANCE else ""
