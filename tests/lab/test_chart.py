@@ -110,7 +110,7 @@ def by_modes():
 
 def test_what_waves_do_not_serve_is_measured_from_modes(shaken, by_modes):
     """Everything keeps its bound, with what the modes that it is measured from may be wrong by."""
-    assert 0 < shaken.known.bound < 1e-8
+    assert 0 < shaken.known.bound < 1e-10
     for one in by_modes:
         away, fronts = shaken.errors(one)
         assert away <= one.bound + 2 * shaken.known.bound

@@ -1,4 +1,4 @@
-"""What errors of a chart are measured from: values right to the last bit, or modes that prove more than others."""
+"""What errors of a chart are measured from: values right to the last bit, or the modes that prove most."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from wavesym.programs.making import make
 from wavesym.programs.program import Program
 from wavesym.programs.request import Request
 
-_TIGHTEST = tuple(Fraction(1, 10**digits) for digits in range(9, 0, -1))
+_TIGHTEST = tuple(Fraction(1, 10**digits) for digits in range(12, 0, -1))
 
 
 @dataclass(frozen=True)
