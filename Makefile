@@ -89,9 +89,10 @@ check-all: lint .venv/.test
 	$(BIN)/python -m pytest $(CORES) --run-slow
 
 # speed, as ratios within one run, and the charts of the same scenes
+bench: export OMP_NUM_THREADS := 1
 bench: install
 	$(BIN)/python -m wavesym.lab.bench bench
-	@set -e; for scene in b d c l; do \
+	@set -e; for scene in b d c l r; do \
 		$(BIN)/wavesym chart bench/$$scene.toml -o bench/$$scene.svg --csv bench/$$scene.csv; \
 	done
 

@@ -49,6 +49,20 @@ def test_only_the_command_that_is_called_is_imported() -> None:
     assert commands == {"wavesym.cli.scenes"}
 
 
+def test_what_runs_a_record_waits_for_nothing_that_it_does_not_need() -> None:
+    loaded = run_python("import wavesym.compiler, wavesym.programs.modes.making\nimport sys; print(*sys.modules)")
+    assert not {"sympy", "scipy", "matplotlib", "xarray", "pint"} & set(loaded.split())
+
+
+@pytest.mark.parametrize(("told", "threads"), [(None, "1"), ("3", "3")])
+def test_commands_keep_numpy_to_one_thread(monkeypatch: pytest.MonkeyPatch, told: str | None, threads: str) -> None:
+    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+    if told:
+        monkeypatch.setenv("OMP_NUM_THREADS", told)
+    seen = run_python("import wavesym.cli, os, sys; print(os.environ['OMP_NUM_THREADS'], 'numpy' in sys.modules)")
+    assert seen == f"{threads} False\n"
+
+
 @pytest.mark.parametrize("first", ["wavesym.evaluator", "__import__('wavesym.exact.table')", "wavesym.tables"])
 def test_tables_is_the_function_whatever_was_imported_before(first: str) -> None:
     assert run_python(f"import wavesym\n{first}\nprint(callable(wavesym.tables))") == "True\n"

@@ -15,9 +15,10 @@ from wavesym.compiler import evaluator
 from wavesym.lab import subjects as listed
 from wavesym.lab.floor import floor
 from wavesym.lab.measure import ChartRow, Measured, _Judge, measure, to_csv
-from wavesym.lab.subjects import Subject, spacing, subjects, taus
+from wavesym.lab.subjects import Subject, opponent, spacing, subjects, taus
 from wavesym.lab.timing import medians
 from wavesym.rivals.every import RIVALS
+from wavesym.rivals.sums import summing
 from wavesym.scene import Scene, lower
 
 SCENE = Scene(
@@ -35,7 +36,7 @@ def subject(wrong=lambda tau: 0.0):
     def values(where):
         return response(where) + wrong(np.asarray(where))
 
-    return Subject("x", "rival", "C", "double", "", 0.1, None, 301, lambda: values(at), values)
+    return Subject("x", "rival", "C", "double", "", 0.1, None, at, lambda: values(at), values)
 
 
 def test_the_reference_has_no_error():
@@ -83,8 +84,57 @@ def test_samples_are_those_that_are_judged_where_the_horizon_is_no_double():
     scene = SCENE.with_({"output.until": "29/10"})
     assert lower(scene).horizon() != float(scene.output.until)
     one = next(subject for subject in subjects(scene, 301) if subject.language == "NumPy")
-    judged = taus(_Judge(scene).until, 301, "double")
+    judged = taus(_Judge(scene).known.until, 301, "double")
     np.testing.assert_array_equal(one.sample(), one.at(judged))
+
+
+SHAKEN = Scene(
+    name="shaken",
+    system={"type": "building", "m": 2, "kappa": ["1/10"] * 3, "base": "ground", "damping": "1/20"},
+    load=[{"spacing": "1.3", "samples": [0, 1, "-1/2", "1/4", 2, 0]}],
+    output={"until": 12, "tolerance": "1e-3", "drift": [1], "relative": [2]},
+)
+
+
+@pytest.fixture(scope="module")
+def shaken():
+    return _Judge(SHAKEN)
+
+
+@pytest.fixture(scope="module")
+def by_modes():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(listed, "TOLERANCES", listed.TOLERANCES[:1])
+        return list(subjects(SHAKEN, 301))
+
+
+def test_what_waves_do_not_serve_is_measured_from_modes(shaken, by_modes):
+    """Everything keeps its bound, with what the modes that it is measured from may be wrong by."""
+    assert 0 < shaken.known.bound < 1e-10
+    for one in by_modes:
+        away, fronts = shaken.errors(one)
+        assert away <= one.bound + 2 * shaken.known.bound
+        assert np.isnan(fronts)
+    assert {("modes", "C", "double"), ("modes", "NumPy", "double")} <= {one.curve for one in by_modes}
+
+
+def test_what_modes_are_measured_from_is_the_limit_of_finite_elements(shaken):
+    """Their error falls as the square of an element."""
+    rival = next(summing(rival) for rival in RIVALS if rival.name == "finite elements, modal")
+    at, stated = taus(12.0, 301, "double"), rival.states(lower(SHAKEN))
+    coarse, fine = (shaken.errors(opponent(rival, n, stated, at))[0] for n in (5, 20))
+    assert fine < coarse / 12 < 1e-2
+
+
+def test_a_stream_is_judged_at_its_samples(shaken, by_modes):
+    """After the record has ended, too."""
+    one = next(one for one in by_modes if one.curve == ("modes", "C", "double"))
+    np.testing.assert_allclose(one.instants, 1.3 * np.arange(1, 10), rtol=1e-15)
+    assert shaken.errors(replace(one, instants=one.instants - 0.1))[0] > 1e-2
+
+
+def test_an_undamped_record_is_measured_right_to_the_last_bit():
+    assert _Judge(SHAKEN.with_({"system.damping": 0})).known.bound == 0
 
 
 def test_medians_interleave():
@@ -171,6 +221,26 @@ def test_no_label_covers_another_or_leaves_its_panel(drawn):
             assert inside.x0 <= box.x0 < box.x1 <= inside.x1
             assert inside.y0 <= box.y0 < box.y1 <= inside.y1
             assert not any(box.overlaps(other) for other in boxes[:k])
+
+
+def test_where_nothing_jumps_there_is_one_panel():
+    pytest.importorskip("matplotlib")
+    from wavesym.lab.chart import draw
+
+    smooth = [replace(row, error_at_fronts=np.nan) for row in MEASURED.rows]
+    figure = draw(SCENE, replace(MEASURED, rows=tuple(smooth), known=3e-9))
+    assert len(figure.axes) == 2
+    assert "3e-09" in figure._suptitle.get_text()
+    assert "nan" not in to_csv(replace(MEASURED, rows=tuple(smooth)))
+
+
+def test_a_curve_that_says_nothing_at_fronts_is_left_out_there():
+    pytest.importorskip("matplotlib")
+    from wavesym.lab.chart import draw
+
+    stream = row("modes", 1, "wavesym", error_at_fronts=np.nan)
+    away, fronts, _ = draw(SCENE, replace(MEASURED, rows=(*MEASURED.rows, stream))).axes
+    assert ["modes, C" in [text.get_text() for text in axes.texts] for axes in (away, fronts)] == [True, False]
 
 
 def test_curves_differ_without_their_colour():

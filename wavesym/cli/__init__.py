@@ -35,6 +35,11 @@ COMMANDS = (
     "stability",
 )
 
+# matrices are small here: threads that share one wait for each other, and a command takes twice as long; and what a
+# chart compares has one thread each. NumPy reads this when it is first imported
+for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ.setdefault(_threads, "1")
+
 DONE, FAILED, WRONG_REQUEST, INTERRUPTED = 0, 1, 2, 130
 
 

@@ -95,7 +95,7 @@ def report(folder: Path) -> Iterator[str]:
     yield ""
     yield "Time a sample against largest error, rivals included, by `wavesym chart`; the numbers are in the CSVs."
     yield ""
-    yield from (f"![{label}]({label}.svg)" for label in "bdcl")
+    yield from (f"![{label}]({label}.svg)" for label in "bdclr")
     yield ""
     yield "## Growth"
     yield ""

@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from io import StringIO
+from math import isnan, nan
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.exact.reference import Reference
 from wavesym.lab.floor import floor
-from wavesym.lab.subjects import Subject, opponents, reference, subjects, taus
+from wavesym.lab.standard import standard
+from wavesym.lab.subjects import Subject, opponents, reference, subjects
 from wavesym.lab.timing import medians
-from wavesym.numbers.doubles import midpoint
 from wavesym.scene import Scene, lower
 
 NEAR = 0.02
@@ -34,7 +34,10 @@ _ROUNDED = {False: 1e-9, True: 1e-5}  # by whether it is in single precision
 
 @dataclass(frozen=True)
 class ChartRow:
-    """A point of the chart. Errors are relative to each output's largest value, and of the outputs the largest."""
+    """A point of the chart. Errors are relative to each output's largest value, and of the outputs the largest.
+
+    NaN where there is no such place: where nothing jumps, at fronts.
+    """
 
     name: str
     kind: str
@@ -50,18 +53,22 @@ class ChartRow:
 
 @dataclass(frozen=True)
 class Measured:
-    """A scene's chart in numbers: its points, and the nanoseconds that writing a double takes."""
+    """A scene's chart in numbers: its points, and the nanoseconds that writing a double takes.
+
+    All errors have `known` in them, what the values that they are measured from may be wrong by.
+    """
 
     rows: tuple[ChartRow, ...]
     floor: float
     samples: int
+    known: float = 0.0
 
 
 def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None] = lambda _: None) -> Measured:
-    """All evaluators and rivals of a scene. CompilerError where there is no C compiler."""
+    """All evaluators and rivals of a scene. CompilerError where there is no C compiler, CostError."""
     judge = _Judge(scene)
     found: list[tuple[Subject, tuple[float, float]]] = []
-    for source in (subjects, opponents, _only(reference)):
+    for source in (subjects, opponents) if judge.known.bound else (subjects, opponents, _only(reference)):
         for subject in source(scene, samples):
             progress(" ".join((*subject.curve, subject.resolution)))
             found.append((subject, judge.errors(subject)))
@@ -75,7 +82,7 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
             language=subject.language,
             precision=subject.precision,
             resolution=subject.resolution,
-            ns_per_value=seconds / (subject.samples * outputs) * 1e9,
+            ns_per_value=seconds / (len(subject.instants) * outputs) * 1e9,
             setup_seconds=subject.setup,
             error_away=away,
             error_at_fronts=fronts,
@@ -83,7 +90,7 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
         )
         for (subject, (away, fronts)), seconds in zip(found, times, strict=True)
     )
-    return Measured(tuple(rows), line / (samples * outputs) * 1e9, samples)
+    return Measured(tuple(rows), line / (samples * outputs) * 1e9, samples, judge.known.bound)
 
 
 def to_csv(measured: Measured) -> str:
@@ -94,8 +101,14 @@ def to_csv(measured: Measured) -> str:
     line = {"name": "straight line", "kind": "floor", "language": "C", "precision": "double"}
     writer.writerow(line | {"ns_per_value": f"{measured.floor:.3g}"})
     for row in measured.rows:
-        writer.writerow({name: f"{v:.3g}" if isinstance(v, float) else v for name, v in asdict(row).items()})
+        writer.writerow({name: _told(value) for name, value in asdict(row).items()})
     return text.getvalue()
+
+
+def _told(value: object) -> object:
+    if not isinstance(value, float):
+        return value
+    return "" if isnan(value) else f"{value:.3g}"
 
 
 def _only(make: Callable[[Scene, int], Subject]) -> Callable[[Scene, int], Iterator[Subject]]:
@@ -106,42 +119,41 @@ class _Judge:
     """The truth at some of the uniform samples and round the arrivals, and how far subjects are from it."""
 
     def __init__(self, scene: Scene) -> None:
-        self.reference = Reference(lower(scene))
-        self.until = self.reference.tau_max
-        self.arrivals = np.array(self.reference.breakpoints())
-        # an output that is 0 throughout has no relative errors
-        self.sizes = [midpoint(size) or 1.0 for size in self.reference.largest()]
-        self._known: dict[bytes, NDArray[np.float64]] = {}
+        self.known = standard(lower(scene))
+        self.arrivals = self.known.arrivals
+        self._values: dict[bytes, NDArray[np.float64]] = {}
 
     def errors(self, subject: Subject) -> tuple[float, float]:
         """The largest errors away from fronts and at them."""
         single = subject.precision == "single"
-        every = max(1, (subject.samples - 1) // _CHECKED)
-        uniform = taus(self.until, subject.samples, subject.precision)[::every]
-        fronts = np.unique(self._fronts.astype(uniform.dtype))
-        fronts = fronts[fronts <= self.until]
-        values = np.hstack([np.asarray(subject.sample())[:, ::every], subject.at(fronts)]).astype(np.float64)
-        where = np.concatenate([uniform, fronts]).astype(np.float64)
-        relative = np.abs(values - self._truth(where)) / np.array(self.sizes)[:, np.newaxis]
+        every = max(1, (len(subject.instants) - 1) // _CHECKED)
+        where, values = subject.instants[::every], np.asarray(subject.sample())[:, ::every]
+        if subject.at is not None and len(self.arrivals):
+            fronts = np.unique(self._fronts.astype(where.dtype))
+            fronts = fronts[fronts <= self.known.until]
+            where, values = np.concatenate([where, fronts]), np.hstack([values, subject.at(fronts)])
+        where = where.astype(np.float64)
+        relative = np.abs(values.astype(np.float64) - self._truth(where)) / self.known.sizes[:, np.newaxis]
         after = where[:, np.newaxis] - self.arrivals
         meant = ~np.any((after < 0) & (after > -_ROUNDED[single]), axis=1)
         near = np.any(np.abs(after) <= NEAR, axis=1)
-        return _largest(relative[:, meant & ~near]), _largest(relative[:, meant & near])
+        away, at = (_largest(relative[:, meant & here]) + self.known.bound for here in (~near, near))
+        return away, at
 
     @cached_property
     def _fronts(self) -> NDArray[np.float64]:
         """Round arrivals, and exactly at them."""
         chosen = self.arrivals[:: max(1, -(-len(self.arrivals) // _FRONTS))]
         places = np.unique(np.add.outer(chosen, _OFFSETS))
-        return np.asarray(places[(places >= 0) & (places <= self.until)])
+        return np.asarray(places[(places >= 0) & (places <= self.known.until)])
 
     def _truth(self, where: NDArray[np.float64]) -> NDArray[np.float64]:
         key = where.tobytes()
-        if key not in self._known:
-            self._known[key] = np.array(self.reference.values(where.tolist()))
-        return self._known[key]
+        if key not in self._values:
+            self._values[key] = np.array(self.known.values(where.tolist()))
+        return self._values[key]
 
 
 def _largest(errors: NDArray[np.float64]) -> float:
-    """The largest error; infinite where a value is no number."""
-    return float(np.max(np.where(np.isfinite(errors), errors, np.inf), initial=0.0))
+    """The largest error; infinite where a value is no number, NaN of none."""
+    return float(np.max(np.where(np.isfinite(errors), errors, np.inf))) if errors.size else nan

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from wavesym.lab.atlas import (
     contacts,
+    damping,
     dashpots,
     endurance,
     extremes,
@@ -15,8 +16,10 @@ from wavesym.lab.atlas import (
     gaps,
     lengths,
     limits,
+    mode_counts,
     reflections,
     refusals,
+    spacings,
     stiffness,
 )
 from wavesym.lab.atlas.drawing import draw
@@ -35,6 +38,9 @@ FAMILIES: Mapping[str, Callable[[Progress], CurveFamily]] = {
     "dashpots": dashpots.family,
     "contacts": contacts.family,
     "refusals": refusals.family,
+    "modes": mode_counts.family,
+    "damping": damping.family,
+    "spacings": spacings.family,
     "march": endurance.family,
 }
 """By name, the one that takes longest last."""

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
@@ -14,28 +13,19 @@ from time import perf_counter
 import numpy as np
 
 from wavesym.lab.harness import PLAIN, chosen_compiler, compilers
+from wavesym.lab.stream import stream
 from wavesym.lab.timing import medians
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.modes.records import hat_response
 from wavesym.programs.program import Program
-from wavesym.running.native import FAST, address, library
+from wavesym.running.native import FAST
 from wavesym.scene import Scene, lower
 from wavesym.targets.files import sources
 
 RECORDS, AT_ONCE = 1000, 50
 _SAMPLES = 1560  # of the record, the 0 before its first one included
-_STEPS = """
-void steps(const double *samples, size_t count, size_t loads, double *out)
-{
-    static NAME_state state;
-    NAME_init(&state);
-    for (size_t k = 0; k < count; ++k) {
-        NAME_step(&state, PREFIX_SPACING, samples + k * loads, out);
-    }
-}
-"""
 
 
 def frame(record: Path, storeys: int) -> str:
@@ -113,12 +103,7 @@ def _many(made: ModesEvaluator) -> float:
 
 def _stepping(made: Program, flags: tuple[str, ...]) -> float:
     """Seconds for a sample in C."""
-    name, loads = made.provenance.model.name, int(made.constants["loads"])
-    text = sources(made, "c")
-    harness = _STEPS.replace("NAME", name).replace("PREFIX", name.upper())
-    steps = library(text[f"{name}.c"] + harness, flags, (f"{name}.h", text[f"{name}.h"])).steps
-    steps.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p]
-    samples, out = np.random.default_rng(1).standard_normal((_SAMPLES, loads)), np.empty(len(made.outputs))
-    call: Callable[[], object] = lambda: steps(address(samples), _SAMPLES, loads, address(out))  # noqa: E731
+    samples = np.random.default_rng(1).standard_normal((_SAMPLES, int(made.constants["loads"])))
+    call = stream(made.provenance.model.name, sources(made, "c"), samples, len(made.outputs), flags)
     (seconds,) = medians([call])
     return seconds / _SAMPLES

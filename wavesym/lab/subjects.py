@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError, WavesymError
+from wavesym.lab.stream import own_samples, stream
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import REALS
-from wavesym.programs.choice import MAKERS
-from wavesym.programs.making import make
+from wavesym.programs.choice import MAKERS, Made, choose
+from wavesym.programs.making import program
+from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.program import Program
-from wavesym.programs.request import Request
 from wavesym.results.response import Response
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.problem import P, Rival
@@ -42,9 +43,9 @@ _PATIENCE = 1.5
 class Subject:
     """Something that computes the outputs of a scene.
 
-    `sample` makes `samples` values an output, at tau_k = k * (until / (samples - 1)), each operation rounded to the
-    subject's precision; `at` makes them at any ascending tau. Both give (outputs, n). `setup` is what a new parameter
-    set costs, in seconds; `bound` the proved error relative to an output's largest value, if any.
+    `sample` makes the values at `instants`; `at` makes them at any ascending tau, where that can be asked for. Both
+    give (outputs, n). `setup` is what a new parameter set costs, in seconds; `bound` the proved error relative to an
+    output's largest value, if any.
     """
 
     name: str
@@ -54,9 +55,9 @@ class Subject:
     resolution: str
     setup: float
     bound: float | None
-    samples: int
+    instants: Values
     sample: Callable[[], Values]
-    at: Callable[[Values], Values]
+    at: Callable[[Values], Values] | None
 
     @property
     def curve(self) -> tuple[str, str, str]:
@@ -91,10 +92,9 @@ def subjects(scene: Scene, samples: int) -> Iterator[Subject]:
                     continue
                 seen.add(made.c[f"{scene.name}.c"])
                 seconds = perf_counter() - start
-                streamed = evaluator == "modes"  # their C goes from sample to sample of a load
-                for language, load in (("NumPy", _numpy),) if streamed else (("C", _c), ("NumPy", _numpy)):
+                for language, load in (("C", _stream if evaluator == "modes" else _c), ("NumPy", _numpy)):
                     start = perf_counter()
-                    sample, at = load(scene, made, samples, precision)
+                    instants, sample, at = load(scene, made, samples, precision)
                     yield Subject(
                         name=evaluator,
                         kind="wavesym",
@@ -103,7 +103,7 @@ def subjects(scene: Scene, samples: int) -> Iterator[Subject]:
                         resolution=f"tolerance {float(tolerance):.0e}",
                         setup=seconds + perf_counter() - start,
                         bound=made.program.error_bound,
-                        samples=samples,
+                        instants=instants,
                         sample=sample,
                         at=at,
                     )
@@ -115,9 +115,8 @@ def reference(scene: Scene, samples: int) -> Subject:
     response = Response(lower(scene))
     response(0.0)  # derives its tables
     setup = perf_counter() - start
-    few = min(samples, _BALL_SAMPLES)
-    sample = partial(response, taus(response.tau_max, few, "double"))
-    bound = response.error_bound
+    few = taus(response.tau_max, min(samples, _BALL_SAMPLES), "double")
+    bound, sample = response.error_bound, partial(response, few)
     return Subject("ball reference", "wavesym", "Python", "exact", "", setup, bound, few, sample, response)
 
 
@@ -164,13 +163,14 @@ def opponent(rival: Rival[P], resolution: float, stated: P, at: Values) -> Subje
         resolution=f"{resolution:g} {rival.unit}",
         setup=setup,
         bound=None,
-        samples=len(at),
+        instants=at,
         sample=partial(evaluate, at),
         at=evaluate,
     )
 
 
 class _Made(NamedTuple):
+    form: Made
     program: Program
     c: dict[str, str]
 
@@ -179,13 +179,14 @@ def _made(scene: Scene, evaluator: str, precision: str, tolerance: Fraction) -> 
     """A program and its C by file name, None where it cannot meet the tolerance or would cost too much."""
     asked = lower(scene).tolerating(rational(tolerance))
     try:
-        program = make(asked, Request(evaluator=evaluator, precision=precision))
+        form = choose(asked, evaluator, precision).evaluator
     except WavesymError:
         return None
-    return _Made(program, sources(program, "c"))
+    made = program(asked, form)
+    return _Made(form, made, sources(made, "c"))
 
 
-Loaded = tuple[Callable[[], Values], Callable[[Values], Values]]
+Loaded = tuple[Values, Callable[[], Values], Callable[[Values], Values] | None]
 
 
 def _c(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
@@ -195,7 +196,8 @@ def _c(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
     call, evaluate = getattr(compiled, f"{name}_sample"), getattr(compiled, f"{name}_eval")
     call.argtypes = [number, number, ctypes.c_size_t, ctypes.c_void_p]
     evaluate.argtypes = [number, ctypes.c_void_p]
-    apart = spacing(lower(scene).horizon(), samples, precision)
+    until = lower(scene).horizon()
+    apart = spacing(until, samples, precision)
     out = np.empty((outputs, samples), dtype=dtype)
     where = address(out)
 
@@ -209,9 +211,17 @@ def _c(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
             evaluate(tau, address(column))
         return np.asarray(columns.T)
 
-    return sample, at
+    return taus(until, samples, precision), sample, at
+
+
+def _stream(scene: Scene, made: _Made, *_: object) -> Loaded:
+    """It goes from sample to sample of the scene's loads, and says nothing of what is between."""
+    assert isinstance(made.form, ModesEvaluator)
+    instants, given = own_samples(made.form)
+    return instants, stream(scene.name, made.c, given, len(scene.outputs)), None
 
 
 def _numpy(scene: Scene, made: _Made, samples: int, precision: str) -> Loaded:
     evaluate = made.program.evaluate
-    return partial(evaluate, taus(lower(scene).horizon(), samples, precision)), evaluate
+    instants = taus(lower(scene).horizon(), samples, precision)
+    return instants, partial(evaluate, instants), evaluate

@@ -30,7 +30,7 @@ class DiscreteModel:
         UnservedError where something without mass is held by no spring, and for the damping of modes that it has not.
         """
         problem = self.elements.problem
-        taus, values = stepped(self._parts, self._events, problem.until, step)
+        taus, values = stepped(self.parts, self._events, problem.until, step)
         strained = [problem.strain[p.rod - 1] if p.quantity == "strain" else 0.0 for p in problem.probes]
         return taus, values + np.array(strained)[:, np.newaxis]
 
@@ -59,7 +59,8 @@ class DiscreteModel:
         return gained
 
     @cached_property
-    def _parts(self) -> list[Batch]:
+    def parts(self) -> list[Batch]:
+        """What is stepped: the modes, then what follows the loads at once."""
         elements, size = self.elements, self.elements.size
         mass, damping, stiffness = (dense(e, size) for e in (elements.mass, elements.damping, elements.stiffness))
         told = elements.problem.told

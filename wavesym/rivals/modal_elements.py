@@ -17,7 +17,9 @@ from wavesym.rivals.problem import Array, Evaluate, Rival
 
 def _prepare(problem: NetworkProblem, resolution: float) -> Evaluate:
     cells = np.maximum(np.rint(problem.delay * resolution), 1).astype(int)
-    return partial(_read, DiscreteModel(Elements(problem, cells)), 1 / resolution)
+    model = DiscreteModel(Elements(problem, cells))
+    _ = model.parts  # found once
+    return partial(_read, model, 1 / resolution)
 
 
 def _read(model: DiscreteModel, step: float, taus: Array) -> Array:

@@ -1,0 +1,143 @@
+"""The curves of the atlas for modes: promises kept against tables in balls, finite elements, and the march."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from wavesym.exact.reference import Reference
+from wavesym.lab.atlas import damping, mode_counts, shaken, spacings
+from wavesym.lab.atlas.attempts import ROUNDED
+from wavesym.lab.stability import FAMILIES
+from wavesym.scene import lower
+
+
+def quietly(_):
+    pass
+
+
+def broken_promises(family):
+    return [point for point in family.points if point.error > point.bound + ROUNDED]
+
+
+def slope(points):
+    """How fast what is proved falls, from the middle of a curve to its end, as a power of the number of modes."""
+    middle, last = points[len(points) // 2], points[-1]
+    return math.log(last.bound / middle.bound) / math.log(last.x / middle.x)
+
+
+# against the number of modes
+
+
+def check_counts(family, within):
+    """Strains fall as 1/n^2 at least, motion as 1/n^3 or faster."""
+    assert not broken_promises(family)
+    for panel in family.panels:
+        slopes = [slope(family.curve(panel, name)) for name in ("acceleration@2", "force@0", "drift@1", "relative@2")]
+        assert slopes[:2] == pytest.approx([-2, -2], abs=within)
+        assert max(slopes[2:]) < -3
+
+
+def test_the_number_of_modes():
+    check_counts(mode_counts.family(quietly, spacings=[Fraction(5, 2)], digits=(1, 3, 4, 5)), within=0.1)
+
+
+@pytest.mark.slow
+def test_the_number_of_modes_as_drawn():
+    check_counts(mode_counts.family(quietly), within=0.1)
+
+
+def test_a_bound_that_is_too_small_is_seen(monkeypatch):
+    honest = shaken.of_modes
+
+    def boasting(model, taus):
+        form, values = honest(model, taus)
+        return replace(form, outputs=tuple(replace(one, bound=one.bound / 10**4) for one in form.outputs)), values
+
+    monkeypatch.setattr(shaken, "of_modes", boasting)
+    family = mode_counts.family(quietly, spacings=[Fraction(5, 2)], digits=(1, 3))
+    assert broken_promises(family) == list(family.points)
+
+
+# against damping
+
+SOME = (Fraction(0), Fraction(1, 20), Fraction(1), 1 + Fraction(1, 10**9), Fraction(5))
+
+
+def check_damping(family):
+    for panel in family.panels:
+        modes, elements, doubt = (
+            family.curve(panel, name) for name in (damping.MODES, damping.ELEMENTS, damping.DOUBT)
+        )
+        for ours, theirs, unsure in zip(modes, elements, doubt, strict=True):
+            assert ours.error <= ours.bound + unsure.error
+            assert unsure.error < theirs.error
+            assert unsure.error < 1e-8 or ours.x < 1 / 20
+
+
+def test_damping():
+    check_damping(damping.family(quietly, ratios=SOME))
+
+
+@pytest.mark.slow
+def test_damping_as_drawn():
+    check_damping(damping.family(quietly))
+
+
+def of_elements(ratio, panel=damping.ALL):
+    scene = shaken.scene(
+        damping.SPACING, damping.SAMPLES, damping.TOLERANCE, damping.damping(panel, ratio), drift=[1], relative=[2]
+    )
+    return lower(scene), damping.extrapolated(lower(scene))
+
+
+def test_what_is_extrapolated_is_right_within_its_own_curve():
+    """Without damping there are tables in balls to tell."""
+    model, found = of_elements(Fraction(0))
+    right = np.array(Reference(model).values(found.taus.tolist()))
+    sizes = np.abs(right).max(axis=1)
+    assert shaken.worst(found.limit, right, sizes) <= shaken.worst(found.coarser, found.limit, sizes)
+
+
+@pytest.mark.parametrize("panel", damping.PANELS)
+def test_a_ratio_that_is_off_is_seen(panel):
+    """By one part in 1000, far above what modes and elements differ by."""
+    _, found = of_elements(Fraction(1, 20), panel)
+    model, _ = of_elements(Fraction(1001, 20_000), panel)
+    form, values = shaken.of_modes(model, found.taus)
+    assert shaken.worst(values, found.limit, np.abs(found.limit).max(axis=1)) > 20 * form.error_bound
+
+
+# against the spacing of a record
+
+
+def check_spacings(family):
+    assert not broken_promises(family)
+    assert not any(point.refused for point in family.curve("", "modes"))
+    for march, hat in zip(family.curve("", "march"), family.curve("", "march of one hat"), strict=True):
+        assert bool(march.refused) == (march.x > 16)
+        assert bool(hat.refused) == (hat.x > 10**6)
+        assert not hat.error > 1e-13
+
+
+def test_spacings():
+    check_spacings(spacings.family(quietly, counts=(2, 32)))
+
+
+@pytest.mark.slow
+def test_spacings_as_drawn():
+    family = spacings.family(quietly)
+    check_spacings(family)
+    assert "fractional parts" in family.curve("", "march")[-1].refused
+
+
+def test_so_many_samples_are_a_whole_number_of_rods():
+    parts = [spacings.spacing(q) for q in spacings.PARTS]
+    assert [spacing.denominator for spacing in parts] == list(spacings.PARTS)
+    assert Fraction("4.995") in parts
+
+
+def test_the_command_draws_them():
+    assert {"modes", "damping", "spacings"} <= FAMILIES.keys()

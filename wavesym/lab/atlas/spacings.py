@@ -1,0 +1,84 @@
+"""Records whose samples are no whole number of rods apart: where the march ends, and what goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+
+from wavesym.errors import WavesymError
+from wavesym.exact.reference import Reference
+from wavesym.lab.atlas import shaken
+from wavesym.lab.atlas.attempts import Array
+from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import midpoint, nearest, rational
+from wavesym.programs.making import make
+from wavesym.programs.request import Request
+from wavesym.scene import lower
+from wavesym.verification.hat import at_samples
+
+PARTS = (1, 2, 4, 8, 16, 32, 200, 10**3, 10**6, 10**9, 10**12)
+SAMPLES = 18  # two more than a march has panels
+TOLERANCE = Fraction(1, 10**6)
+
+
+class _Found(NamedTuple):
+    """Values (outputs, samples), and how wrong the worst output may be at most, relative to its largest value."""
+
+    values: Array
+    bound: float
+
+
+def spacing(parts: int) -> Fraction:
+    """So many samples are a whole number of rods, and no fewer."""
+    return 5 - Fraction(1, parts)
+
+
+def family(progress: Progress, counts: Sequence[int] = PARTS) -> CurveFamily:
+    """Each program at the samples."""
+    points = []
+    for parts in counts:
+        scene = shaken.scene(spacing(parts), SAMPLES, TOLERANCE, force=[0], drift=[1], relative=[2])
+        reference = Reference(lower(scene))
+        times = (nearest(rational(k * spacing(parts))) for k in range(SAMPLES))
+        taus = np.array([min(time, reference.tau_max) for time in times])
+        sizes = np.array([midpoint(size) for size in reference.largest()])
+        right = np.array(reference.values(taus.tolist()))
+        for name, way in WAYS.items():
+            progress(f"samples 5 - 1/{parts} apart, {name}")
+            try:
+                found = way(reference.model, taus, sizes)
+            except WavesymError as why:
+                points.append(AtlasPoint("", name, parts, float("nan"), refused=str(why)))
+                continue
+            error = shaken.worst(found.values, right, sizes)
+            refused = f"{name}: a bound of {found.bound:.1e} in all" if found.bound > TOLERANCE else ""
+            points.append(AtlasPoint("", name, parts, error, found.bound, refused))
+    return CurveFamily(
+        "spacings",
+        "Samples 5 - 1/q apart: a march goes to q = 16, that of one hat far on, modes anywhere",
+        Axis("q"),
+        "largest error at the samples / largest value",
+        tuple(points),
+        "filled: proved to stay below 1e-6; hollow: not; cross: refused before the work (the table has each reason)",
+    )
+
+
+def _made(name: str, model: Model, taus: Array) -> _Found:
+    made = make(model, Request(evaluator=name))
+    return _Found(made.evaluate(taus), made.error_bound)
+
+
+def _hat(model: Model, taus: Array, sizes: Array) -> _Found:
+    found = at_samples(model)
+    return _Found(found.values, float(np.max(found.allowed / sizes)))
+
+
+WAYS: Mapping[str, Callable[[Model, Array, Array], _Found]] = {
+    "modes": lambda model, taus, _: _made("modes", model, taus),
+    "march": lambda model, taus, _: _made("march", model, taus),
+    "march of one hat": _hat,
+}
