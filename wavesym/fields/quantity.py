@@ -114,7 +114,7 @@ def _named(name: str) -> _Meaning | None:
     registry = _registry()
     try:
         one = registry.Quantity(Fraction(1), registry.UnitsContainer({name: 1})).to_root_units()
-    except (PintError, TypeError):  # of logarithmic units too
+    except (PintError, TypeError, KeyError, AssertionError):  # also of logarithmic units, and of names read in two ways
         return None
     powers = {base: Fraction(str(power)) for base, power in one.unit_items()}
     factor = one.magnitude

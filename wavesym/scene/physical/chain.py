@@ -176,9 +176,9 @@ class _Pen:
 
     def _strain(self, value: object) -> Fraction:
         """Of a rod at first: a number, in torsion an angle per length."""
-        if self.kind != "torsional":
-            return exact(value)
         with placed("strain"):
+            if self.kind != "torsional":
+                return exact(value)
             return measured(value, "rate of twist") * self.rods.first.length
 
     def _converted(self, part: SceneTable, *without: str) -> dict[str, object]:

@@ -24,6 +24,7 @@ _VALUES, _SLOPES = ("a", "steps"), ("b", "ramps")
 def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
     """A load's table. Raises the error of `table.wrong`."""
     table: dict[str, Any] = {}
+    said = {"unit", "samples"} | ({"record", "start", "column"} if "record" in load else set())  # converted below
     for key, value in load.items():
         new = acting.renamed.get(key, key)
         with placed(key):
@@ -35,7 +36,7 @@ def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) 
                 table[new] = _all(value, acting.slope, acting.size / seconds)
             elif key == "spacing":
                 table[new] = measured(value, "time", 1) / seconds
-            elif key not in ("unit", "samples", "record", "start", "column"):
+            elif key not in said:
                 table[new] = value
     if "record" in load:
         table |= _recorded(load, acting, seconds)
@@ -105,6 +106,8 @@ def read(load: object) -> object:
 def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
     """A record without units. What its file says may be said again, but not otherwise."""
     with placed("record"):
+        if not isinstance(load["record"], Mapping):
+            raise wrong(f"{shown(load['record'])} given, the path of a file expected")
         recording = Recording.model_validate(load["record"])
         clock = _clock(recording.clock)
         said = unit(recording.unit, acting.dimension) / acting.size if recording.unit else None
