@@ -29,6 +29,8 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
     first = rods.first
     periods, why = _periods(model, seconds)
     limit = 1 / (2 * seconds * float(max(rods.ratios)))
+    framed = physical.said["system"]["type"] == "building"
+    above = "above it a rod is not the columns that it stands for" if framed else "from it on rods swing by themselves"
     yield Facts(
         "units",
         "In units",
@@ -47,7 +49,7 @@ def in_units(physical: PhysicalScene, model: Model) -> Iterator[Section]:
                 {"tau": model.horizon(), "time": clock.time(model.until), "unit": clock.unit},
                 f"{model.horizon():.6g} tau, {clock.told(model.until)}",
             ),
-            "physics_up_to": Told(limit, f"{limit:.4g} Hz = c/(2 l): above it a rod is not what it stands for"),
+            "physics_up_to": Told(limit, f"{limit:.4g} Hz = c/(2 l): {above}"),
         },
     )
     if not rods.alike:
