@@ -61,7 +61,6 @@ class Scene(SceneTable):
     output: Output = Field(description="a table")
 
     _physical: PhysicalScene | None = PrivateAttr(default=None)
-    _text: str | None = PrivateAttr(default=None)
 
     def __init__(self, /, **fields: Any) -> None:
         try:
@@ -88,13 +87,13 @@ class Scene(SceneTable):
             scene = cls(**fields)
         except SceneError as error:
             raise SceneError(error.what, error.path, file) from None
-        scene._text = text
+        vars(scene)["text"] = text  # in place of what the property would say; scenes that differ in it are equal
         return scene
 
-    @property
+    @cached_property
     def text(self) -> str:
         """What it was read from; of one that was made in Python its fields as JSON."""
-        return self._text if self._text is not None else self.model_dump_json(indent=2)
+        return self.model_dump_json(indent=2)
 
     def with_(self, changes: Mapping[str, object]) -> Self:
         """The same scene with other values: `scene.with_({"system.kappa[1]": "1/3", "output.until": 40})`.
