@@ -106,7 +106,10 @@ class DiscreteModel:
     @cached_property
     def _weights(self) -> Array:
         """What displacements, velocities and accelerations of the unknowns count in outputs: (3, outputs, unknowns)."""
-        return np.stack([self._read(probe) for probe in self.elements.problem.probes], axis=1)
+        read = [self._read(probe) for probe in self.elements.problem.probes]
+        return (
+            np.stack(read, axis=1) if read else np.zeros((3, 0, self.elements.size))
+        )  # none where all are sure to be 0
 
     def _read(self, probe: Probe) -> Array:
         """The same for one output: (3, unknowns)."""

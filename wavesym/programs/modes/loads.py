@@ -61,8 +61,8 @@ def linear_loads(loads: Sequence[Applied], sources: Sequence[tuple[str, str]], u
             continue
         if load.source in steps:
             raise UnservedError(
-                f"load: {load.source} jumps by {nearest(load.weight):g} at tau = {nearest(load.time):g}, no jump expected "
-                "in modes (a record that starts a step later rises to its first sample)"
+                f"load: {load.source} jumps by {nearest(load.weight):g} at tau = {nearest(load.time):g}, no jump "
+                "expected in modes (a record that starts a step later rises to its first sample)"
             )
         slopes[place[load.source]][load.time] = load.weight
     times = sorted({fmpq(0), *(time for changes in slopes for time in changes)})
