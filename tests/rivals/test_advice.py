@@ -119,6 +119,13 @@ def test_what_no_wave_has_reached_has_no_size():
     assert said["models"]["waves"]["outputs"][1] == {"name": "velocity@3", "unit": "", "largest": 0.0}
 
 
+def test_the_foundation_is_at_rest_to_itself():
+    """No wave is asked for, and none is compared."""
+    scene = tower(0.01).with_({"output.strain": [], "output.velocity": [], "output.relative": [0]})
+    assert found(scene).enough == "massless"
+    assert worst(scene)[0] == 0
+
+
 def test_at_rest_anything_is_enough():
     still = tower(0.5, b=[0] * 13)
     assert found(still).enough == "massless"

@@ -108,6 +108,16 @@ SHAFT = {"length": "1.2 m", "diameter": "50 mm", "G": "80 GPa", "rho": "7850 kg/
 DISCS = [{"inertia": f"{j} kg*m^2"} for j in ("0.3", "0.7", "0.2")]
 
 
+def test_a_bore_of_nothing_is_none() -> None:
+    system = {"type": "drive", "shaft": [SHAFT], "disc": DISCS[:2]}
+    rod = {"rod": "1.2 m", **{key: SHAFT[key] for key in ("diameter", "G", "rho")}}
+    chain = {"type": "chain", "parts": [{"mass": "1 kg*m^2"}, rod]}
+    for each, units, path in ((system, {}, "shaft"), (chain, {"kind": "torsional"}, "parts")):
+        full = Scene(name="s", units=units, system=each, output={"until": 3, "strain": [0] if not units else ["0 m+"]})
+        at = f"system.{path}[{0 if path == 'shaft' else 1}].bore"
+        assert lower(full.with_({at: "0 mm"})).chain == lower(full).chain
+
+
 @pytest.mark.parametrize("length", ["1.2 m", "0.9 m"])
 @pytest.mark.parametrize("body", [1, 3])
 def test_a_drive_turns(length: str, body: int) -> None:

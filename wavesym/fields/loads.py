@@ -8,6 +8,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import ClassVar, Self
 
+from flint import fmpq
 from pydantic import Field, field_validator, model_validator
 
 from wavesym.fields.numbers import Numbers, Positive
@@ -132,8 +133,9 @@ def linear(
 ) -> Iterator[Applied]:
     """Straight lines through samples, constant after the last: a step to the first, then the changes of slope."""
     step, ramp = sources
-    yield Applied(step, rational(start), rational(samples[0]))
-    slope = Fraction(0)
-    for k, (left, right) in enumerate(pairwise((*samples, samples[-1]))):
-        before, slope = slope, (right - left) / spacing
-        yield Applied(ramp, rational(start + k * spacing), rational(slope - before))
+    time, each, values = rational(start), rational(spacing), [rational(sample) for sample in samples]
+    yield Applied(step, time, values[0])
+    slope = fmpq(0)
+    for k, (left, right) in enumerate(pairwise((*values, values[-1]))):
+        before, slope = slope, (right - left) / each
+        yield Applied(ramp, time + k * each, slope - before)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import groupby
 
 from flint import fmpq
 
@@ -22,10 +23,10 @@ class Applied:
 
 def merged(loads: Iterable[Applied]) -> tuple[Applied, ...]:
     """Loads of the same source and time as one, none of weight 0, sorted by time and then by source."""
-    weights: dict[tuple[str, fmpq], fmpq] = {}
-    for load in loads:
-        at = load.source, load.time
-        weights[at] = weights.get(at, fmpq(0)) + load.weight
-    # M2 comes before M10: a shorter name is a smaller number
-    ordered = sorted(weights, key=lambda at: (at[1], len(at[0]), at[0]))
-    return tuple(Applied(*at, weights[at]) for at in ordered if weights[at])
+    # M2 comes before M10: a shorter name is a smaller number; sorted, as an fmpq is slow to hash
+    ordered = sorted(loads, key=lambda load: (load.time, len(load.source), load.source))
+    summed = (
+        Applied(source, time, sum((load.weight for load in same), fmpq(0)))
+        for (time, source), same in groupby(ordered, key=lambda load: (load.time, load.source))
+    )
+    return tuple(load for load in summed if load.weight)

@@ -112,9 +112,10 @@ class DiscreteModel:
     @cached_property
     def _weights(self) -> Array:
         """What the unknowns count in outputs, (4, outputs, unknowns): displacements, velocities, accelerations, and
-        what strains rods that have mass.
+        what strains rods that have mass. There are no outputs where all are sure to be 0.
         """
-        return np.stack([self._read(probe) for probe in self.elements.problem.probes], axis=1)
+        read = [self._read(probe) for probe in self.elements.problem.probes]
+        return np.stack(read, axis=1) if read else np.zeros((4, 0, self.elements.size))
 
     def _read(self, probe: Probe) -> Array:
         """The same for one output: (4, unknowns)."""

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,7 +52,7 @@ def stepped(batches: Sequence[Batch], events: Sequence[Fraction], until: float, 
     firsts = np.append(0, np.cumsum(counts[kind]))
     values = np.zeros((len(batches[0].shown), firsts[-1] + 1))
     for batch in batches:
-        shown = batch.shown.reshape(len(batch.shown), -1)
+        shown = batch.shown.reshape(len(batch.shown), prod(batch.shown.shape[1:]))
         states, last = _at_events(batch, lengths, kind)
         values[:, -1] += shown @ last.ravel()
         for k, (length, count) in enumerate(zip(lengths, counts, strict=True)):

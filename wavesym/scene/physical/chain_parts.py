@@ -49,12 +49,12 @@ class RodKeys(SceneTable):
         impedance, speed = self._said("impedance", dashpot), self._said("speed", "velocity")
         return ElasticRod(length, impedance / speed * length, impedance * speed / length)
 
-    def _said(self, key: str, dimension: str) -> Fraction:
+    def _said(self, key: str, dimension: str, least: int = 1) -> Fraction:
         value = getattr(self, key)
         if value is None:
             raise missing(dimension, key)
         with placed(key):
-            return measured(value, dimension, 1)
+            return measured(value, dimension, least)
 
     def _measured(self) -> dict[str, Fraction]:
         return {key: self._said(key, dimension) for key, dimension in self.needed.items()}
@@ -130,7 +130,7 @@ class TorsionalRod(RodKeys):
                 raise wrong("given beside J, one of them expected", "bore")
             return self._said("J", "second moment of area")
         diameter = self._said("diameter", "length")
-        bore = self._said("bore", "length") if self.bore is not None else Fraction(0)
+        bore = self._said("bore", "length", 0) if self.bore is not None else Fraction(0)
         if bore >= diameter:
             raise wrong(f"{shown(self.bore)} given, less than the diameter expected", "bore")
         return polar_moment(diameter, bore)

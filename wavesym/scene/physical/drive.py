@@ -15,7 +15,7 @@ from pydantic import BeforeValidator, FailFast, Field
 
 from wavesym.fields.table import SceneTable, listed, shown, wrong
 from wavesym.scene.physical.elastic import ElasticRod, Rods
-from wavesym.scene.physical.measured import Density, Inertia, Length, Modulus, SecondMoment, one_of, placed
+from wavesym.scene.physical.measured import Bore, Density, Inertia, Length, Modulus, SecondMoment, one_of, placed
 from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
 from wavesym.scene.physical.rounding import polar_moment
 
@@ -26,7 +26,7 @@ class Round(SceneTable):
     length: Length = Field(description='a length such as "1.2 m"')
     J: SecondMoment | None = None
     diameter: Length | None = None
-    bore: Length | None = None
+    bore: Bore | None = None
     G: Modulus = Field(description='a modulus such as "80 GPa"')
     rho: Density = Field(description='a density such as "7850 kg/m^3"')
 

@@ -48,6 +48,7 @@ def _positive(dimension: str) -> Callable[[object], Fraction]:
 
 
 Length = Annotated[Fraction, PlainValidator(_positive("length"))]
+Bore = Annotated[Fraction, PlainValidator(lambda value: measured(value, "length", 0))]  # 0: a full shaft
 Mass = Annotated[Fraction, PlainValidator(_positive("mass"))]
 Area = Annotated[Fraction, PlainValidator(_positive("area"))]
 Modulus = Annotated[Fraction, PlainValidator(_positive("modulus"))]
