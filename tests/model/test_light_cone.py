@@ -1,9 +1,12 @@
 """The light cone is as wide as waves run, to the node."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from flint import fmpq
 
+from wavesym.model.damping import Damping
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 
@@ -31,3 +34,13 @@ def tower(places, until="1"):
 )
 def test_the_cone(outputs, until, first, last):
     assert tower(outputs).light_cone(rational(until)) == range(first, last + 1)
+
+
+@pytest.mark.parametrize(
+    ("damping", "nodes"), [(None, 4), (Damping((fmpq(0),)), 4), (Damping((fmpq(0), fmpq(1, 20))), 101)]
+)
+def test_damped_modes_have_no_cone(damping, nodes):
+    """Each is damped as a whole: all of the chain acts on an output, and is told with it."""
+    model = replace(tower(["1-"], until=2), damping=damping)
+    assert len(model.light_cone(model.until)) == len(model.reached(model.until)) == nodes
+    assert len(model.felt["kappa"]) == (3 if nodes == 4 else 101)

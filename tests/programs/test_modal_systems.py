@@ -212,6 +212,36 @@ def test_outputs_that_are_0_are_exactly_0():
     assert not values(model, made, np.linspace(0, 1.5, 9))[[0, 3]].any()
 
 
+@pytest.mark.parametrize("name", ["a ratio", "a list", "Rayleigh"])
+def test_damped_modes_move_before_a_wave_arrives(name):
+    """A horizon that ends when the first wave arrives has the values of one that ends later."""
+    watched = {"displacement": [1, 2], "drift": [2], "relative": [2]}
+    short, long = (
+        replace(building(["1", "1", "1"], [samples(9)], until=until, **watched), damping=DAMPED[name])
+        for until in (2, 5)
+    )
+    taus = np.linspace(0, 2, 21)
+    made, later = modal_system(short), modal_system(long)
+    found, expected = values(short, made, taus), values(long, later, taus)
+    assert np.all(np.abs(found[1:]).max(axis=1) > 1e-3)
+    assert np.all(np.abs(found - expected).max(axis=1) <= made.errors + later.errors + 1e-12)
+    still = replace(short, damping=Damping((fmpq(0),)))
+    assert not values(still, modal_system(still), taus)[2].any()  # displacement@2
+
+
+def test_motion_that_is_told_has_a_largest_value():
+    """No mode has a part in it, and it is known to the last digits, also where it is all that is asked for."""
+    model = building(["1", "1"], [PULSE], until=3, velocity=[0], displacement=[0])
+    made = modal_system(model)
+    assert np.all(made.errors == 0)
+    assert np.all(made.bounds == 0)
+    # each ramp of the acceleration, integrated twice and thrice
+    ramps = ((0.0, 1.0), (7 / 3, -3.0), (5 / 2, 2.0))
+    expected = [sum(b * (3 - t) ** n / (2, 6)[n - 2] for t, b in ramps) for n in (2, 3)]
+    np.testing.assert_allclose(np.abs(values(model, made, [3.0])[:, 0]), np.abs(expected), rtol=1e-12)
+    assert np.all(made.largest > 0.999 * np.abs(expected))
+
+
 def test_what_modes_do_not_serve_is_refused():
     step = {"times": [0], "a": [1], "b": [0]}
     with pytest.raises(UnservedError, match="jumps"):

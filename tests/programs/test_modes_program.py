@@ -236,6 +236,17 @@ def test_c_takes_the_samples_of_the_scene_and_numpy_has_them(tmp_path):
     np.testing.assert_allclose(values, right, rtol=0, atol=1e-11 * np.abs(right).max())
 
 
+def test_c_without_a_load_takes_one_that_moves_nothing():
+    parts = ["fixed", {"rod": 1}, {"mass": 1, "name": "n"}]
+    of = wavesym.Scene(
+        name="shaken",
+        system={"type": "chain", "parts": parts, "damping": "1/20"},
+        output={"until": 3, "tolerance": "1e-3", "displacement": ["n"]},
+    )
+    program = make(lower(of), Request(), tested=True)
+    assert not streamed(program, files(program, "all"), SAMPLES).any()
+
+
 PHYSICAL = {
     "building": (
         {

@@ -18,6 +18,11 @@ class Damping:
     modes: tuple[int, int] | None = None
 
     @property
+    def acts(self) -> bool:
+        """Whether any mode is damped: then all of the chain acts on all of it at once, and there is no light cone."""
+        return any(self.ratios)
+
+    @property
     def told(self) -> str:
         """In a line."""
         ratios = ", ".join(map(str, self.ratios))

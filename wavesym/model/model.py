@@ -85,6 +85,11 @@ class Model:
         if self.damping is not None:
             raise UnservedError("system.damping: given, none expected (only modes serve it)")
 
+    @property
+    def damped(self) -> bool:
+        """Whether a mode is damped, so that the whole chain can influence an output from the first instant on."""
+        return self.damping is not None and self.damping.acts
+
     def horizon(self, real: Real = DOUBLE) -> float:
         """The last tau in `real` numbers: the smallest of them that is not below `until`."""
         return real.not_below(self.until)
@@ -95,7 +100,7 @@ class Model:
 
     def light_cone(self, until: fmpq) -> range:
         """The numbers of the nodes that can influence an output by then."""
-        return light_cone(self.named, self.watched, until)
+        return range(self.named.m + 1) if self.damped else light_cone(self.named, self.watched, until)
 
     def reached(self, until: fmpq) -> dict[int, fmpq]:
         """The joints of the network that can influence an output by then, and until when each can.
@@ -121,7 +126,7 @@ class Model:
         return {
             joint: max(until - distance, fmpq(0))
             for joint, distance in sorted(distances.items())
-            if distance <= until or joint in beside
+            if self.damped or distance <= until or joint in beside
         }
 
     @cached_property
@@ -129,7 +134,8 @@ class Model:
         """The parameters that can matter to an output within the horizon, by name and index."""
         if self.chain is None:
             return {}
-        return felt(self.chain, self.watched, self.until)
+        crossing = self.chain.m + 1 if self.damped else 0
+        return felt(self.chain, self.watched, self.until + crossing)
 
     def shortened(self, until: fmpq) -> Model:
         """The same with an earlier end."""

@@ -16,7 +16,7 @@ from wavesym.programs.modes.watched import Driver, ground
 def silent(model: Model, drivers: Sequence[Driver], loads: LinearLoads) -> tuple[bool, ...]:
     """Whether each output is: at a free end, or where no load has come to before the end of the horizon.
 
-    Without any load outputs are 0 of themselves.
+    Damped modes move the whole chain at once. Without any load outputs are 0 of themselves.
     """
     begun = [(each.point, _begin(loads, j)) for j, each in enumerate(drivers)]
     acting = [(point, time) for point, time in begun if time is not None]
@@ -34,6 +34,8 @@ def _silent(model: Model, probe: Probe, acting: Sequence[tuple[int, fmpq]]) -> b
         places = [(bar, fmpq(0)), (bar, fmpq(1))]
     if probe.quantity == "relative":
         points.append(ground(network))
+    if model.damped:
+        return False
     away = network.distances(places, points)
     return bool(acting) and not any(time + away[network.joint_of[point]] < model.until for point, time in acting)
 

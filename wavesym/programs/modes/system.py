@@ -73,7 +73,8 @@ def modal_system(model: Model) -> ModalModes:
     while True:
         known = chain.shares(count)
         errors = chain.errors(known, count)
-        if np.any(errors > _REASONABLE * largest):
+        # an output that no mode has a part in may have no error at all, and has a largest value
+        if np.any(errors > _REASONABLE * largest) or not largest.any():
             largest = np.maximum(largest, chain.reached(known, count))
         worst = _relative(errors, largest).max(initial=0.0)
         if worst <= tolerance:
@@ -127,13 +128,13 @@ class _Chain:
 
     @cached_property
     def drivers(self) -> tuple[Driver, ...]:
-        """The loads that act; one that is 0 where there are none."""
+        """The loads that act; one that moves nothing where there are none."""
         network = self.model.network
         acting = {load.source for load in self.model.acting(self.model.until)}
         every = driven(network)
         found = tuple(each for each in every if {each.step, each.ramp} & acting)
         still = next((number for number, point in enumerate(network.points) if point.motion != "fixed"), 0)
-        return found or (every[0] if every else Driver(still, fmpq(1), "", ""),)
+        return found or (every[0] if every else Driver(still, fmpq(0), "none:step", "none:ramp"),)
 
     @cached_property
     def sources(self) -> tuple[tuple[str, str], ...]:
