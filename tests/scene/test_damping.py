@@ -59,6 +59,7 @@ def test_no_damping_is_no_key_and_damping_of_0_is_none():
     ("damping", "message"),
     [
         (-0.05, "system.damping: -0.05 given, a ratio of at least 0 expected"),
+        ("1e160", 'system.damping: "1e160" given, a ratio of at most 1000000000 expected'),
         ([0.1, -1], "system.damping[1]: -1 given, a ratio of at least 0 expected"),
         ([], "system.damping: 0 ratios given, 1 to 1000 expected"),
         ("5 %", 'system.damping: "5 %" given, a number expected (an integer, a decimal or "p/q")'),

@@ -15,6 +15,7 @@ from wavesym.model.damping import Damping
 from wavesym.numbers.doubles import fraction, rational
 
 _MOST = 1000
+_LARGEST = 10**9  # in whose squares doubles keep their digits
 _KEYS = ("modes", "ratio")
 
 
@@ -22,6 +23,8 @@ def _ratio(value: object, *at: str | int) -> Fraction:
     number = exact(value)
     if number < 0:
         raise wrong(f"{shown(value)} given, a ratio of at least 0 expected", *at)
+    if number > _LARGEST:
+        raise wrong(f"{shown(value)} given, a ratio of at most {_LARGEST} expected", *at)
     return number
 
 

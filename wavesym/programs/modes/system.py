@@ -108,7 +108,11 @@ def modal_system(model: Model) -> ModalModes:
 def _unmet(model: Model, chain: _Chain, errors: Numbers, largest: Numbers, better: float) -> ToleranceError:
     bounds = _relative(errors, largest)
     worst = int(np.argmax(bounds))
-    what = f"leave a bound of about {2 * bounds[worst] / better:.2g} for {model.probes[worst].name}"
+    name = model.probes[worst].name
+    if bounds[worst] < inf:
+        what = f"leave a bound of about {2 * bounds[worst] / better:.2g} for {name}"
+    else:
+        what = f"do not tell the largest value of {name} from 0 (without it the others may do)"
     return ToleranceError(
         f"output.tolerance: {nearest(model.tolerance):g} cannot be met: modes: {chain.most} modes, the most that are "
         f"taken, {what}"
