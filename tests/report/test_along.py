@@ -44,6 +44,24 @@ def test_floors_and_storeys_are_those_of_outputs() -> None:
     assert not np.allclose(drift.bands[0].values[::-1, ::37], np.diff(floors, axis=0), rtol=0, atol=ALLOWED * size)
 
 
+def test_numbers_from_units_may_be_longer_than_text() -> None:
+    storey = {"height": "11.4829396 ft", "stiffness": "3871.6543217 kip/in", "floor_mass": "17163.2 slug"}
+    slope = "-12345678901234567/381381381381381 kip/slug/min"
+    shaken = {"times": ["0 s"], "a": ["0.3188212345678 g"], "b": [slope]}
+    scene = Scene(
+        name="us",
+        units={},
+        system={"type": "building", "base": "ground", "storey": [storey | {"column_mass": "733.29 slug"}] * 2},
+        load=[shaken],
+        output={"until": "50 ms", "strain": [0]},
+    )
+    assert len(str(scene.load[0].b[0])) > 100
+    _, drift = along(scene)
+    at = drift.taus[::37]
+    found = exact(scene, "drift", ["1", "2"], at)
+    assert np.allclose(drift.bands[0].values[:, ::37], found, rtol=0, atol=ALLOWED * np.max(np.abs(found)))
+
+
 def test_strains_run_from_end_to_end_of_each_rod() -> None:
     drive = Scene.from_toml("drive_m1")
     _, strain = along(drive)

@@ -17,7 +17,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.report.histories import Histories, Points, histories
 from wavesym.report.reduction import columns_of, extremes_between
 from wavesym.scene import Scene, lower
-from wavesym.scene.outputs import QUANTITIES
+from wavesym.scene.outputs import QUANTITIES, Output
 from wavesym.systems.place import Place, position_of
 from wavesym.systems.station import Station
 
@@ -73,7 +73,9 @@ def along(scene: Scene) -> tuple[Along, ...]:
 
 def _watching(scene: Scene, places: Mapping[str, Sequence[str]]) -> Model:
     """The scene with other outputs, whose places are those of its chain without units."""
-    model = lower(scene.dimensionless().with_({f"output.{quantity}": each for quantity, each in places.items()}))
+    # numbers stay as they are: written out, those that come from units may be longer than a scene's text may be
+    output = Output.model_validate({"until": scene.output.until, "tolerance": scene.output.tolerance, **places})
+    model = lower(scene.dimensionless().model_copy(update={"output": output}))
     scale = scene.scale
     if scale is None:
         return model
