@@ -41,7 +41,8 @@ DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, *EXAMPLES)
 READ_ELSEWHERE = {"order", "exceptions", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
 LONG = re.compile(r"wavesym (chart|stability|plot --published|verify --published)\b")  # half a minute and more
-SHELL = set("|<>;&$`*?~=")  # what a line is for a shell with
+SHELL = set("|<>;&$`*?~=")  # what a line is for a shell with, but for these two endings
+TELLING = ["||", "echo", "exit status $?"]
 
 BLOCK = re.compile(r"^```(.*)\n((?:.*\n)*?)^```$\n", re.MULTILINE)
 SPAN = re.compile(r"`([^`\n]+)`")
@@ -133,17 +134,27 @@ class Reader:
         if LONG.match(line) and not self.patience:
             assert_spelt(words)
             return None
+        told = words[-3:] == TELLING
+        words = words[:-3] if told else words
+        file = words.pop() if words[-2:-1] == [">"] else None
+        words = words[:-1] if file else words
         if words[0] == "wavesym" and not self.patience and not SHELL & set(" ".join(words)):
-            return self.here(words[1:])
+            return self.here(words[1:], file, told=told)
         return self.process(["bash", "-c", line])
 
-    def here(self, arguments: list[str]) -> str:
-        """What a command of wavesym puts out, without the second that a process takes to start."""
-        out = io.StringIO()
-        with chdir(self.folder), redirect_stdout(out), redirect_stderr(out):
+    def here(self, arguments: list[str], file: str | None, *, told: bool) -> str:
+        """What a command of wavesym puts out, without the second that a process takes to start.
+
+        Standard output goes into a `file`, where there is one; a status other than 0 is wrong where it is not `told`.
+        """
+        out, err = io.StringIO(), io.StringIO()
+        with chdir(self.folder), redirect_stdout(out), redirect_stderr(err if file else out):
             status = main(arguments)
-        assert status == 0, out.getvalue()
-        return out.getvalue()
+        assert status == 0 or told, out.getvalue() + err.getvalue()
+        if file:
+            (self.folder / file).write_text(out.getvalue(), encoding="utf-8")
+            out = err
+        return out.getvalue() + (f"exit status {status}\n" if status else "")
 
     def process(self, command: list[str]) -> str:
         done = subprocess.run(
