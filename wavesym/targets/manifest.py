@@ -10,7 +10,7 @@ from wavesym.targets.description import Description
 SCHEMA_VERSION = 2
 # What NAME.c compiles to besides its tables, with clang -Os for a Cortex-M4: no more than this; a test compiles it.
 SMALL_TARGET = "Cortex-M4, -Os"
-CODE_AT_MOST = {"closed": 1024, "pieces": 4096, "march": 8192, "rings": 8192, "modes": 4096}
+CODE_AT_MOST = {"closed": 1024, "pieces": 4096, "march": 8192, "rings": 8192, "modes": 4096, "runtime": 12288}
 
 
 def manifest(description: Description, program: Program) -> str:
@@ -34,11 +34,12 @@ def manifest(description: Description, program: Program) -> str:
         "precision": program.real.name,
         "size": {"target": SMALL_TARGET, "data": program.bytes, "code_at_most": CODE_AT_MOST[program.kind]},
         "tau_max": program.tau_max,
-        "error_bound": program.error_bound,
+        **({} if program.laws else {"error_bound": program.error_bound}),
         **_clock(program),
         "outputs": [_output(output, program) for output in program.outputs],
         **_driven(program),
         **_streamed(program),
+        **_runtime(program),
         "contact_end": {contact.position: contact.digits for contact in description.contacts},
         **_events(description),
     }
@@ -56,7 +57,19 @@ def _output(output: ProgramOutput, program: Program) -> dict[str, object]:
     model = program.provenance.model
     units = {probe.name: probe.unit for probe in model.probes}
     unit = {"unit": units[output.name]} if model.clock else {}
-    return {"name": output.name, "error_bound": output.bound, **unit}
+    bound = {} if program.laws else {"error_bound": output.bound}
+    return {"name": output.name, **bound, **unit}
+
+
+def _runtime(program: Program) -> dict[str, object]:
+    """The parameters that come at run time, with what they are in the scene, and the largest degree."""
+    if program.laws is None:
+        return {}
+    given = {
+        field.name: {label: str(value) for label, value in zip(field.labels, field.values, strict=True)}
+        for field in program.laws.fields
+    }
+    return {"runtime": given, "degree": program.constants["degree"]}
 
 
 def _events(description: Description) -> dict[str, object]:

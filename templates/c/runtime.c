@@ -1,0 +1,556 @@
+/* runtime.c: a march under parameters that come at run time, and its polynomials, one by one and in blocks.
+ * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
+ * the first empty line. */
+#include "runtime_tables.h"
+
+/* Loops over a block of samples are unrolled, so that its values stay in registers. */
+enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0, LOSS = 1, LEAK = 2, BLOCK = 16 };
+
+#if defined(__OPTIMIZE_SIZE__)
+#define UNROLLED
+#elif defined(__clang__)
+#define UNROLLED _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define UNROLLED _Pragma("GCC unroll 16")
+#else
+#define UNROLLED
+#endif
+
+static real magnitude(real x)
+{
+    return x < 0 ? -x : x;
+}
+
+/* False for what is no number. */
+static int finite_number(real x)
+{
+    return x >= -largest_number && x <= largest_number;
+}
+
+/* sum of c_k T_k(u) */
+static real series_at(const real *c, int degree, real u)
+{
+    const real twice = u + u;
+    real next = 0;
+    real after = 0;
+    for (int k = degree; k > 0; --k) {
+        const real now = (twice * next - after) + c[k];
+        after = next;
+        next = now;
+    }
+    return (u * next - after) + c[0];
+}
+
+/* c_k of the antiderivative of the series with the coefficients w, times 1 / half the length of the panel; k > 0 */
+static real integrated(const real *w, int degree, int k)
+{
+    const real lower = k == 1 ? 2 * w[0] : w[k - 1];
+    const real upper = k < degree ? w[k + 1] : (real)0;
+    return (lower - upper) / (real)(2 * k);
+}
+
+/* Its value; 0 at u = 0 up to a constant that drops out of differences. */
+static real integrated_at(const real *w, int degree, real u)
+{
+    const real twice = u + u;
+    real next = 0;
+    real after = 0;
+    for (int k = degree + 1; k > 0; --k) {
+        const real now = (twice * next - after) + integrated(w, degree, k);
+        after = next;
+        next = now;
+    }
+    return u * next - after;
+}
+
+static int laws_within_reach(const laws *law)
+{
+    int within = 1;
+    for (int node = 0; node < NAME_NODES; ++node) {
+        within &= finite_number(law->alpha[node]) && finite_number(law->beta[node]) && finite_number(law->rate[node]) &&
+                  finite_number(law->motion[node]);
+    }
+    for (int node = 0; node <= NAME_NODES; ++node) {
+        within &= finite_number(law->rod[node]);
+    }
+    for (int k = 0; k < STRENGTHS; ++k) {
+        within &= finite_number(law->strength[k]);
+    }
+    for (int k = 0; k < NAME_HEARD; ++k) {
+        within &= finite_number(law->gain[k]);
+    }
+    return within;
+}
+
+/* The tables of bodies for polynomials of a degree: the elimination of q_k + x_k (q_(k-1) - q_(k+1)) = x_k (p_(k-1) -
+ * p_(k+1)) from the highest k down. Bodies of equal rate on panels of equal length share them. */
+static void tabulate(model_of *m, const laws *law, int degree)
+{
+    for (int panel = 0; panel < NAME_PANELS; ++panel) {
+        for (int node = 0; node < NAME_NODES; ++node) {
+            const int here = panel * NAME_NODES + node;
+            const real step = law->rate[node] * (2 * half_length[panel]);
+            int row = -1;
+            for (int other = 0; other < here && row < 0; ++other) {
+                const real known = law->rate[other % NAME_NODES] * (2 * half_length[other / NAME_NODES]);
+                row = known <= step && known >= step ? other : -1;
+            }
+            m->row[here] = row < 0 ? here : row;
+            if (row >= 0 || !(law->rate[node] > 0)) {
+                continue;
+            }
+            real *const ratio = m->table[here][RATIO];
+            real *const first = m->table[here][FIRST];
+            real *const last = m->table[here][LAST];
+            ratio[degree + 1] = 0;
+            first[degree + 1] = 0;
+            last[degree + 1] = 0;
+            for (int k = degree; k > 0; --k) {
+                ratio[k] = step / ((real)(4 * k) + step * ratio[k + 1]);
+                first[k] = (real)(k % 2 ? -1 : 1) - ratio[k + 1] * first[k + 1];
+                last[k] = 1 - ratio[k + 1] * last[k + 1];
+            }
+            const real begun = 2 * ratio[1] * first[1];
+            m->edge[here][SLACK] = -begun / (1 - begun);
+            m->edge[here][LOSS] = 2 * ratio[1] * last[1];
+            m->edge[here][LEAK] = step / (real)(4 * (degree + 1));
+        }
+    }
+}
+
+/* At rest, or as bodies and rods move at first; no load yet. */
+static void start(model_of *m, const laws *law, int degree)
+{
+    for (int half = 0; half < 2; ++half) {
+        for (int panel = 0; panel < NAME_PANELS; ++panel) {
+            for (int node = 0; node < NAME_NODES + 2; ++node) {
+                for (int way = LEFT; way <= LOAD; ++way) {
+                    for (int k = 0; k <= degree; ++k) {
+                        m->waves[half][way][panel][node][k] = 0;
+                    }
+                }
+                if (node > 0) {
+                    m->waves[half][LEFT][panel][node][0] = law->rod[node - 1];
+                }
+                if (node <= NAME_NODES) {
+                    m->waves[half][RIGHT][panel][node][0] = law->rod[node];
+                }
+            }
+        }
+    }
+    for (int node = 0; node < NAME_NODES; ++node) {
+        m->velocity[0][node] = law->motion[node];
+    }
+    for (int k = 0; k < NAME_HEARD; ++k) {
+        m->total[k] = 0;
+    }
+    for (int f = 0; f <= NAME_FORCES; ++f) {
+        for (int power = 0; power < 3; ++power) {
+            m->load[f][power] = 0;
+        }
+        m->since[f][0] = 0;
+        m->since[f][1] = 0;
+    }
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        m->largest[output] = 0;
+    }
+}
+
+/* Series of higher degree: what they had not is 0. */
+static void lengthen(model_of *m, int degree, int higher)
+{
+    for (int half = 0; half < 2; ++half) {
+        for (int way = LEFT; way <= LOAD; ++way) {
+            for (int panel = 0; panel < NAME_PANELS; ++panel) {
+                for (int node = 0; node < NAME_NODES + 2; ++node) {
+                    for (int k = degree + 1; k <= higher; ++k) {
+                        m->waves[half][way][panel][node][k] = 0;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/* The loads on the panels of a window, as series; `event` counts their changes. */
+static void press(model_of *m, const laws *law, int window, int *event)
+{
+    for (int panel = 0; panel < NAME_PANELS; ++panel) {
+        while (*event < EVENTS && event_window[*event] == window && event_panel[*event] == panel) {
+            const int f = event_force[*event];
+            real *const c = m->load[f];
+            const real gone = (real)(window - m->since[f][0]) + since_panel[panel * NAME_PANELS + m->since[f][1]];
+            c[0] += gone * (c[1] + gone * c[2]);
+            c[1] += 2 * gone * c[2];
+            c[event_power[*event]] += law->load[event_load[*event]] * law->strength[event_strength[*event]];
+            m->since[f][0] = window;
+            m->since[f][1] = panel;
+            *event += 1;
+        }
+        const real half = half_length[panel];
+        for (int f = 0; f < NAME_FORCES; ++f) {
+            const real *const c = m->load[f];
+            const real middle =
+                ((real)(window - m->since[f][0]) + since_panel[panel * NAME_PANELS + m->since[f][1]]) + half;
+            m->force[panel][f][0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2];
+            m->force[panel][f][1] = half * (c[1] + 2 * middle * c[2]);
+            m->force[panel][f][2] = half * half / 2 * c[2];
+        }
+    }
+}
+
+/* The velocity q of a body on a panel; `velocity` goes from its start to its end. What the polynomial misses. */
+static real moved(const model_of *m, int row, int degree, const real *p, real *q, real *velocity)
+{
+    const real *const ratio = m->table[row][RATIO];
+    const real *const first = m->table[row][FIRST];
+    const real *const last = m->table[row][LAST];
+    real y = 0;
+    real begun = 0;
+    real ended = 0;
+    for (int k = degree; k > 0; --k) {
+        y = ratio[k] * (((k == 1 ? 2 * p[0] : p[k - 1]) - p[k + 1]) + y);
+        q[k] = y;
+        begun += first[k] * y;
+        ended += last[k] * y;
+    }
+    begun = *velocity - begun;
+    q[0] = begun - m->edge[row][SLACK] * begun;
+    *velocity = q[0] + (ended - m->edge[row][LOSS] * q[0]);
+    real before = 2 * q[0];
+    for (int k = 1; k <= degree; ++k) {
+        before = q[k] - ratio[k] * before;
+        q[k] = before;
+    }
+    return m->edge[row][LEAK] * magnitude(q[degree] - p[degree]);
+}
+
+static real larger(real one, real other)
+{
+    return magnitude(other) > one ? magnitude(other) : one;
+}
+
+/* One window at a degree, from the waves of the window before in the other half. What its polynomials miss; `size`
+ * grows to the largest velocity or mean of a wave. */
+static real march(model_of *m, const laws *law, int half, int degree, real *size)
+{
+    real missed = 0;
+    real p[NAME_DEGREE + 2];
+    real q[NAME_DEGREE + 1];
+    for (int node = 0; node < NAME_NODES; ++node) {
+        m->velocity[1][node] = m->velocity[0][node];
+    }
+    for (int panel = 0; panel < NAME_PANELS; ++panel) {
+        for (int f = 0; f < NAME_FORCES; ++f) {
+            for (int k = 0; k < 3; ++k) {
+                m->waves[half][LOAD][panel][f][k] = m->force[panel][f][k];
+            }
+        }
+        for (int node = 0; node < NAME_NODES; ++node) {
+            const real *const a = m->waves[!half][RIGHT][panel][node];
+            const real *const b = m->waves[!half][LEFT][panel][node + 2];
+            real *const left = m->waves[half][LEFT][panel][node + 1];
+            real *const right = m->waves[half][RIGHT][panel][node + 1];
+            const real alpha = law->alpha[node];
+            const real beta = law->beta[node];
+            for (int k = 0; k <= degree; ++k) {
+                p[k] = alpha * a[k] + beta * b[k];
+            }
+            p[degree + 1] = 0;
+            if (force_on[node] >= 0) {
+                for (int k = 0; k < 3; ++k) {
+                    p[k] += m->force[panel][force_on[node]][k];
+                }
+            }
+            const real *sent = p;
+            if (law->rate[node] > 0) {
+                missed += moved(m, m->row[panel * NAME_NODES + node], degree, p, q, &m->velocity[1][node]);
+                *size = larger(*size, m->velocity[1][node]);
+                sent = q;
+            }
+            for (int k = 0; k <= degree; ++k) {
+                left[k] = sent[k] - a[k];
+                right[k] = sent[k] - b[k];
+            }
+            *size = larger(larger(*size, left[0]), right[0]);
+        }
+    }
+    return missed;
+}
+
+/* The outputs on a window as series: sums of waves, and of integrals of waves from tau = 0 on. */
+static void listen(model_of *m, const laws *law, int window, int half, int degree)
+{
+    real *const all = m->series + m->place[window];
+    for (int s = 0; s < NAME_STRANDS; ++s) {
+        real *const c = all + (size_t)s * (size_t)(degree + 2);
+        for (int k = 0; k <= degree + 1; ++k) {
+            c[k] = 0;
+        }
+        for (int t = first_term[s]; t < first_term[s + 1]; ++t) {
+            const real *const w = m->waves[term_back[t] ? !half : half][term_way[t]][term_panel[t]][term_sender[t]];
+            const int heard = term_heard[t];
+            const real gain = law->gain[heard];
+            if (term_summed[t]) {
+                const real length = half_length[term_panel[t]];
+                const real low = length * integrated_at(w, degree, term_low[t]);
+                c[0] += gain * (m->total[heard] - low);
+                for (int k = 1; k <= degree + 1; ++k) {
+                    c[k] += gain * length * integrated(w, degree, k);
+                }
+                m->total[heard] += length * integrated_at(w, degree, term_high[t]) - low;
+            } else {
+                for (int k = 0; k <= degree; ++k) {
+                    c[k] += gain * w[k];
+                }
+            }
+        }
+    }
+    for (int section = 0; section < SECTIONS; ++section) {
+        for (int output = 0; output < NAME_OUTPUTS; ++output) {
+            const int at = section * NAME_OUTPUTS + output;
+            real mean = 0;
+            for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+                mean += all[(size_t)strand_at[k] * (size_t)(degree + 2)];
+            }
+            m->largest[output] = larger(m->largest[output], mean);
+        }
+    }
+}
+
+/* Of the largest value of an output, about what `missed`, as a velocity, makes of it, at worst. */
+static real estimated(const model_of *m, const laws *law, real missed)
+{
+    real worst = 0;
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        real weight = 0;
+        for (int k = 0; k < NAME_HEARD; ++k) {
+            weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
+        }
+        if (m->largest[output] > 0) {
+            worst = larger(worst, weight * missed / m->largest[output]);
+        }
+    }
+    return worst;
+}
+
+int name_build(name_model *model, const name_parameters *parameters)
+{
+    laws law;
+    real missed = 0;
+    real size = 0;
+    int degree = LEAST;
+    int event = 0;
+    size_t place = 0;
+    model->built = 0;
+    model->estimate = (real)NAN;
+    if (!good(parameters)) {
+        return 1;
+    }
+    laws_of(parameters, &law);
+    if (!laws_within_reach(&law)) {
+        return 1;
+    }
+    start(model, &law, degree);
+    tabulate(model, &law, degree);
+    for (int window = 0; window < NAME_WINDOWS; ++window) {
+        const int half = window % 2;
+        press(model, &law, window, &event);
+        for (;;) {
+            real seen = size;
+            const real leak = march(model, &law, half, degree, &seen);
+            if (leak <= share * seen) {
+                missed += leak;
+                size = seen;
+                break;
+            }
+            if (degree == NAME_DEGREE) {
+                return finite_number(leak) && finite_number(seen) ? 2 : 1;
+            }
+            const int higher = degree + degree / 4 < NAME_DEGREE ? degree + degree / 4 : NAME_DEGREE;
+            lengthen(model, degree, higher);
+            tabulate(model, &law, higher);
+            degree = higher;
+        }
+        for (int node = 0; node < NAME_NODES; ++node) {
+            model->velocity[0][node] = model->velocity[1][node];
+        }
+        model->degree[window] = degree;
+        model->place[window] = place;
+        place += (size_t)NAME_STRANDS * (size_t)(degree + 2);
+        listen(model, &law, window, half, degree);
+    }
+    missed = 4 * missed + unit * (real)(8 + NAME_WINDOWS) * size;
+    model->estimate = estimated(model, &law, missed);
+    model->built = finite_number(size) && finite_number(model->estimate);
+    return !model->built;
+}
+
+name_real name_error_estimate(const name_model *model)
+{
+    return model->estimate;
+}
+
+static int inside(const model_of *m, real tau)
+{
+    return m->built && tau >= 0 && tau <= NAME_TAU_MAX;
+}
+
+static int section_at(real t)
+{
+    int section = 0;
+    while (section + 1 < SECTIONS && t >= from[section + 1]) {
+        ++section;
+    }
+    return section;
+}
+
+/* An output on a section of a window, t after the start of that. */
+static real value(const model_of *m, int window, int section, int output, real t)
+{
+    const int at = section * NAME_OUTPUTS + output;
+    const int degree = m->degree[window];
+    real sum = 0;
+    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+        const int s = strand_at[k];
+        const real u = ((t - strand_start[s]) + strand_excess[s]) * strand_scale[s] - 1;
+        sum += series_at(m->series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u);
+    }
+    return sum;
+}
+
+int name_model_eval(const name_model *model, name_real tau, name_real *out)
+{
+    if (!inside(model, tau)) {
+        for (int output = 0; output < NAME_OUTPUTS; ++output) {
+            out[output] = (real)NAN;
+        }
+        return 1;
+    }
+    const int window = (int)tau;
+    const real t = tau - (real)window;
+    const int section = section_at(t);
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        out[output] = value(model, window, section, output, t);
+    }
+    return 0;
+}
+
+/* tau_k, both operations rounded. `one` is 1, which no compiler knows: so the product is rounded by itself, contracted
+ * into the next operation or not. */
+static real instant(real tau0, real dtau, real one, real k)
+{
+    const real step = k * dtau;
+    return step * one + tau0;
+}
+
+/* The samples that are asked for: `out` has `count` for each output. */
+typedef struct {
+    real tau0, dtau, one, per_tau;
+    size_t count;
+    real *out;
+} samples;
+
+static void block(const real *c, int degree, const real *u, real *out)
+{
+    real next[BLOCK], after[BLOCK];
+    UNROLLED
+    for (int j = 0; j < BLOCK; ++j) {
+        next[j] = c[degree];
+        after[j] = 0;
+    }
+    for (int k = degree - 1; k > 0; --k) {
+        const real add = c[k];
+        UNROLLED
+        for (int j = 0; j < BLOCK; ++j) {
+            const real now = ((u[j] + u[j]) * next[j] - after[j]) + add;
+            after[j] = next[j];
+            next[j] = now;
+        }
+    }
+    UNROLLED
+    for (int j = 0; j < BLOCK; ++j) {
+        out[j] += (u[j] * next[j] - after[j]) + c[0];
+    }
+}
+
+/* Samples k ... end - 1, all of them on one section of a window. */
+static void run(const model_of *m, int window, int section, const samples *s, size_t k, size_t end)
+{
+    const int degree = m->degree[window];
+    real t[BLOCK], u[BLOCK], sum[BLOCK];
+    for (; k < end; k += BLOCK) {
+        const size_t left = end - k;
+        const size_t many = left < BLOCK ? left : (size_t)BLOCK;
+        for (size_t j = 0; j < BLOCK; ++j) {
+            t[j] = instant(s->tau0, s->dtau, s->one, (real)(k + j)) - (real)window;
+        }
+        for (int output = 0; output < NAME_OUTPUTS; ++output) {
+            const int at = section * NAME_OUTPUTS + output;
+            UNROLLED
+            for (int j = 0; j < BLOCK; ++j) {
+                sum[j] = 0;
+            }
+            for (int strand = first_strand[at]; strand < first_strand[at + 1]; ++strand) {
+                const int of = strand_at[strand];
+                UNROLLED
+                for (int j = 0; j < BLOCK; ++j) {
+                    u[j] = ((t[j] - strand_start[of]) + strand_excess[of]) * strand_scale[of] - 1;
+                }
+                block(m->series + m->place[window] + (size_t)of * (size_t)(degree + 2), degree + 1, u, sum);
+            }
+            real *const row = s->out + (size_t)output * s->count + k;
+            for (size_t j = 0; j < many; ++j) {
+                row[j] = sum[j];
+            }
+        }
+    }
+}
+
+static int on_section(const model_of *m, int window, int section, const samples *s, size_t k)
+{
+    const real tau = instant(s->tau0, s->dtau, s->one, (real)k);
+    const real t = tau - (real)window;
+    return inside(m, tau) && t >= from[section] && t < from[section + 1];
+}
+
+/* The first sample after k that is not where sample k is, or count. */
+static size_t run_end(const model_of *m, int window, int section, const samples *s, size_t k)
+{
+    const real edge = (real)window + (s->dtau < 0 ? from[section] : from[section + 1]);
+    const real reach = (edge - s->tau0) * s->per_tau; /* about where the run ends */
+    size_t end = reach < (real)s->count ? (reach > (real)k ? (size_t)reach : k) + 1 : s->count;
+    end = end > s->count ? s->count : end;
+    while (end > k + 1 && !on_section(m, window, section, s, end - 1)) {
+        --end;
+    }
+    while (end < s->count && on_section(m, window, section, s, end)) {
+        ++end;
+    }
+    return end;
+}
+
+int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out)
+{
+    const volatile real unity = 1;
+    const samples s = {tau0, dtau, unity, dtau < 0 || dtau > 0 ? 1 / dtau : 0, count, out};
+    int outside = 0;
+    size_t k = 0;
+    while (k < count) {
+        const real tau = instant(tau0, dtau, s.one, (real)k);
+        if (inside(model, tau)) {
+            const int window = (int)tau;
+            const int section = section_at(tau - (real)window);
+            const size_t end = run_end(model, window, section, &s, k);
+            run(model, window, section, &s, k, end);
+            k = end;
+        } else {
+            for (size_t output = 0; output < NAME_OUTPUTS; ++output) {
+                out[output * count + k] = (real)NAN;
+            }
+            outside = 1;
+            ++k;
+        }
+    }
+    return outside;
+}
