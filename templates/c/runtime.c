@@ -380,7 +380,7 @@ int name_build(name_model *model, const name_parameters *parameters)
         place += (size_t)NAME_STRANDS * (size_t)(degree + 2);
         listen(model, &law, window, half, degree);
     }
-    missed = 4 * missed + unit * (real)(8 + NAME_WINDOWS) * size;
+    missed = 4 * missed + unit * (real)(degree + NAME_WINDOWS) * size;
     model->estimate = estimated(model, &law, missed);
     model->built = finite_number(size) && finite_number(model->estimate);
     return !model->built;

@@ -21,6 +21,7 @@ from wavesym.programs.runtime.plan import RuntimePlan
 
 STIFF = fmpq(100)
 LEAST = 8
+_MARGIN = 16  # outputs are often smaller than waves
 _HIGHEST = 1000
 _MOST_WORK = 3e8  # nodes * coefficients * windows, for each degree
 _LARGEST_MODEL = 1 << 28  # bytes
@@ -33,7 +34,7 @@ def raised(degree: int) -> int:
 
 def share(given: RuntimePlan, tolerance: fmpq) -> float:
     """What a window may miss, relative to the largest wave; no less than what rounding leaves."""
-    return max(nearest(tolerance / (4 * given.plan.windows)), 2 * nearest(DOUBLE.roundoff))
+    return max(nearest(tolerance / (_MARGIN * given.plan.windows)), 2 * nearest(DOUBLE.roundoff))
 
 
 def highest_degree(given: RuntimePlan, tolerance: fmpq) -> int:

@@ -170,7 +170,5 @@ def _with_reference(program: Program) -> Program:
     found = reference_values(program.provenance.model, checked)  # type: ignore[arg-type]
     assert isinstance(found, ReferenceValues)
     sizes = (max(map(abs, row)) for row in found.values)
-    outputs = tuple(
-        replace(output, largest=size) for output, size in zip(program.outputs, sizes, strict=True)
-    )
+    outputs = tuple(replace(output, largest=size) for output, size in zip(program.outputs, sizes, strict=True))
     return replace(program, outputs=outputs, reference=found)
