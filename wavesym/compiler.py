@@ -257,9 +257,9 @@ def generate(
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
 
     `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
-    "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters that the C takes when
-    it runs: "kappa", "inertia", "velocity", "load". Files that wavesym did not write are replaced
-    only by `force`; WavesymError else, and for a language, evaluator, precision or aim that there is not.
+    "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters that C takes when it
+    runs: "kappa", "inertia", "velocity", "load". Files that wavesym did not write are replaced only by
+    `force`; WavesymError else, and for a language, evaluator, precision or aim that there is not.
 
     >>> import wavesym
     >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):

@@ -1,4 +1,4 @@
-"""Parameters at run time in C: what a scene with these numbers gives, whatever they are, or a status that says why not."""
+"""Parameters at run time in C: what a scene with these numbers gives, whatever they are, or a status that says why."""
 
 import shutil
 import subprocess
