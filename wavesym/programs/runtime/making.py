@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate
 
 from flint import fmpq
@@ -15,6 +15,7 @@ from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.plan import LOAD
 from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
+from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.degree import LEAST, STIFF, highest_degree, share
 from wavesym.programs.runtime.laws import RuntimeLaws
@@ -150,24 +151,28 @@ def _firsts(counts: Iterable[int]) -> tuple[int, ...]:
 
 
 @dataclass(frozen=True)
-class _Checked:
-    """What reference values are asked for."""
+class _Built:
+    """What reference values are asked for: the program with the scene's own parameters."""
 
-    real: Real
-    outputs: tuple[ProgramOutput, ...]
-    check_points: list[float]
+    program: Program
+
+    @property
+    def real(self) -> Real:
+        return self.program.real
+
+    @property
+    def outputs(self) -> tuple[ProgramOutput, ...]:
+        return self.program.outputs
+
+    @property
+    def check_points(self) -> list[float]:
+        until = self.program.tau_max
+        return sorted({k / 8 for k in range(int(min(8 * until, 160)) + 1)} | {until})
 
 
 def _with_reference(program: Program) -> Program:
     """With values of the scene's own parameters, for a self-test, and the largest of each output."""
-    from dataclasses import replace
-
-    from wavesym.programs.reference_values import reference_values
-
-    steps = int(min(8 * program.tau_max, 160))
-    points = sorted({k / 8 for k in range(steps + 1)} | {program.tau_max})
-    checked = _Checked(program.real, program.outputs, points)
-    found = reference_values(program.provenance.model, checked)  # type: ignore[arg-type]
+    found = reference_values(program.provenance.model, _Built(program))
     assert isinstance(found, ReferenceValues)
     sizes = (max(map(abs, row)) for row in found.values)
     outputs = tuple(replace(output, largest=size) for output, size in zip(program.outputs, sizes, strict=True))
