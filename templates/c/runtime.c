@@ -4,14 +4,14 @@
 #include "runtime_tables.h"
 
 /* Loops over a block of samples are unrolled, so that its values stay in registers. */
-enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0, LOSS = 1, LEAK = 2, BLOCK = 16 };
+enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0, LOSS = 1, LEAK = 2, BLOCK = 32 };
 
 #if defined(__OPTIMIZE_SIZE__)
 #define UNROLLED
 #elif defined(__clang__)
 #define UNROLLED _Pragma("clang loop unroll(full)")
 #elif defined(__GNUC__)
-#define UNROLLED _Pragma("GCC unroll 16")
+#define UNROLLED _Pragma("GCC unroll 32")
 #else
 #define UNROLLED
 #endif
@@ -41,26 +41,32 @@ static real series_at(const real *c, int degree, real u)
     return (u * next - after) + c[0];
 }
 
-/* c_k of the antiderivative of the series with the coefficients w, times 1 / half the length of the panel; k > 0 */
-static real integrated(const real *w, int degree, int k)
+/* The antiderivative of a series, times 1 / half the length of the panel: all c_k but the first, which is 0. */
+static void integrate(const model_of *m, const real *w, int degree, real *c)
 {
-    const real lower = k == 1 ? 2 * w[0] : w[k - 1];
-    const real upper = k < degree ? w[k + 1] : (real)0;
-    return (lower - upper) / (real)(2 * k);
+    c[0] = 0;
+    c[1] = w[0] - (degree > 1 ? w[2] / 2 : (real)0);
+    for (int k = 2; k < degree; ++k) {
+        c[k] = (w[k - 1] - w[k + 1]) * m->inverse[k];
+    }
+    c[degree] = w[degree - 1] * m->inverse[degree];
+    c[degree + 1] = w[degree] * m->inverse[degree + 1];
 }
 
-/* Its value; 0 at u = 0 up to a constant that drops out of differences. */
-static real integrated_at(const real *w, int degree, real u)
+/* The same as series_at, sooner at both ends of a panel. */
+static real end_value(const real *c, int degree, real u)
 {
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = degree + 1; k > 0; --k) {
-        const real now = (twice * next - after) + integrated(w, degree, k);
-        after = next;
-        next = now;
+    real even = 0;
+    real odd = 0;
+    if (u > -1 && u < 1) {
+        return series_at(c, degree, u);
     }
-    return u * next - after;
+    for (int k = 0; k < degree; k += 2) {
+        even += c[k];
+        odd += c[k + 1];
+    }
+    even += degree % 2 ? (real)0 : c[degree];
+    return u < 0 ? even - odd : even + odd;
 }
 
 static int laws_within_reach(const laws *law)
@@ -86,6 +92,9 @@ static int laws_within_reach(const laws *law)
  * p_(k+1)) from the highest k down. Bodies of equal rate on panels of equal length share them. */
 static void tabulate(model_of *m, const laws *law, int degree)
 {
+    for (int k = 1; k <= degree + 1; ++k) {
+        m->inverse[k] = 1 / (real)(2 * k);
+    }
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         for (int node = 0; node < NAME_NODES; ++node) {
             const int here = panel * NAME_NODES + node;
@@ -209,7 +218,8 @@ static real moved(const model_of *m, int row, int degree, const real *p, real *q
     real begun = 0;
     real ended = 0;
     for (int k = degree; k > 0; --k) {
-        y = ratio[k] * (((k == 1 ? 2 * p[0] : p[k - 1]) - p[k + 1]) + y);
+        const real change = (k == 1 ? 2 * p[0] : p[k - 1]) - p[k + 1];
+        y = ratio[k] * change + ratio[k] * y;
         q[k] = y;
         begun += first[k] * y;
         ended += last[k] * y;
@@ -284,6 +294,7 @@ static void listen(model_of *m, const laws *law, int window, int half, int degre
     real *const all = m->series + m->place[window];
     for (int s = 0; s < NAME_STRANDS; ++s) {
         real *const c = all + (size_t)s * (size_t)(degree + 2);
+        real sum[NAME_DEGREE + 2];
         for (int k = 0; k <= degree + 1; ++k) {
             c[k] = 0;
         }
@@ -293,12 +304,13 @@ static void listen(model_of *m, const laws *law, int window, int half, int degre
             const real gain = law->gain[heard];
             if (term_summed[t]) {
                 const real length = half_length[term_panel[t]];
-                const real low = length * integrated_at(w, degree, term_low[t]);
+                integrate(m, w, degree, sum);
+                const real low = length * end_value(sum, degree + 1, term_low[t]);
                 c[0] += gain * (m->total[heard] - low);
                 for (int k = 1; k <= degree + 1; ++k) {
-                    c[k] += gain * length * integrated(w, degree, k);
+                    c[k] += gain * length * sum[k];
                 }
-                m->total[heard] += length * integrated_at(w, degree, term_high[t]) - low;
+                m->total[heard] += length * end_value(sum, degree + 1, term_high[t]) - low;
             } else {
                 for (int k = 0; k <= degree; ++k) {
                     c[k] += gain * w[k];
@@ -451,57 +463,77 @@ typedef struct {
     real *out;
 } samples;
 
-static void block(const real *c, int degree, const real *u, real *out)
+static const real offset[BLOCK] = {
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15,
+    16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31,
+};
+
+/* A block of values of a series, added to what is there where `more`. */
+static void block(const real *c, int degree, const real *u, int more, real *out)
 {
     real next[BLOCK], after[BLOCK];
+    const real highest = c[degree];
     UNROLLED
     for (int j = 0; j < BLOCK; ++j) {
-        next[j] = c[degree];
+        next[j] = highest;
         after[j] = 0;
     }
     for (int k = degree - 1; k > 0; --k) {
         const real add = c[k];
         UNROLLED
         for (int j = 0; j < BLOCK; ++j) {
-            const real now = ((u[j] + u[j]) * next[j] - after[j]) + add;
+            const real now = u[j] * (next[j] + next[j]) + (add - after[j]);
             after[j] = next[j];
             next[j] = now;
         }
     }
+    const real mean = c[0];
     UNROLLED
     for (int j = 0; j < BLOCK; ++j) {
-        out[j] += (u[j] * next[j] - after[j]) + c[0];
+        const real sum = u[j] * next[j] + (mean - after[j]);
+        out[j] = more ? out[j] + sum : sum;
     }
 }
 
-/* Samples k ... end - 1, all of them on one section of a window. */
-static void run(const model_of *m, int window, int section, const samples *s, size_t k, size_t end)
+/* A block of an output at t after the start of a window. */
+static void output_block(const model_of *m, int window, int at, const real *t, real *out)
 {
     const int degree = m->degree[window];
-    real t[BLOCK], u[BLOCK], sum[BLOCK];
-    for (; k < end; k += BLOCK) {
-        const size_t left = end - k;
-        const size_t many = left < BLOCK ? left : (size_t)BLOCK;
-        for (size_t j = 0; j < BLOCK; ++j) {
-            t[j] = instant(s->tau0, s->dtau, s->one, (real)(k + j)) - (real)window;
+    real u[BLOCK];
+    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+        const int s = strand_at[k];
+        const real begin = strand_start[s], excess = strand_excess[s], scale = strand_scale[s];
+        UNROLLED
+        for (int j = 0; j < BLOCK; ++j) {
+            u[j] = ((t[j] - begin) + excess) * scale - 1;
         }
+        block(m->series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u,
+              k > first_strand[at], out);
+    }
+    for (int j = 0; first_strand[at] == first_strand[at + 1] && j < BLOCK; ++j) {
+        out[j] = 0;
+    }
+}
+
+/* Samples k ... end - 1, all of them on one section of a window. Whole blocks are written: what is beyond the end is
+ * written anew by the runs that follow. */
+static void run(const model_of *m, int window, int section, const samples *s, size_t k, size_t end)
+{
+    const real begin = (real)window;
+    real t[BLOCK], rest[BLOCK];
+    for (; k < end; k += BLOCK) {
+        const real first = (real)k, tau0 = s->tau0, dtau = s->dtau, one = s->one;
+        UNROLLED
+        for (int j = 0; j < BLOCK; ++j) {
+            t[j] = instant(tau0, dtau, one, first + offset[j]) - begin;
+        }
+        const size_t left = s->count - k;
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
             const int at = section * NAME_OUTPUTS + output;
-            UNROLLED
-            for (int j = 0; j < BLOCK; ++j) {
-                sum[j] = 0;
-            }
-            for (int strand = first_strand[at]; strand < first_strand[at + 1]; ++strand) {
-                const int of = strand_at[strand];
-                UNROLLED
-                for (int j = 0; j < BLOCK; ++j) {
-                    u[j] = ((t[j] - strand_start[of]) + strand_excess[of]) * strand_scale[of] - 1;
-                }
-                block(m->series + m->place[window] + (size_t)of * (size_t)(degree + 2), degree + 1, u, sum);
-            }
             real *const row = s->out + (size_t)output * s->count + k;
-            for (size_t j = 0; j < many; ++j) {
-                row[j] = sum[j];
+            output_block(m, window, at, t, left < BLOCK ? rest : row);
+            for (size_t j = 0; left < BLOCK && j < left; ++j) {
+                row[j] = rest[j];
             }
         }
     }

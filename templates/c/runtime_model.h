@@ -14,6 +14,7 @@ typedef struct {
     name_real table[NAME_PANELS * NAME_NODES][3][NAME_DEGREE + 2];
     name_real edge[NAME_PANELS * NAME_NODES][3];
     int row[NAME_PANELS * NAME_NODES];
+    name_real inverse[NAME_DEGREE + 2];
     name_real total[NAME_HEARD + 1];
     name_real load[NAME_FORCES + 1][3];
     int since[NAME_FORCES + 1][2];

@@ -57,7 +57,6 @@ void laws_of(const name_parameters *p, laws *law);
 extern const real largest_number;
 extern const real share;
 extern const real unit;
-extern const real exact;
 
 extern const real half_length[];
 extern const real since_panel[];

@@ -37,11 +37,14 @@ def share(given: RuntimePlan, tolerance: fmpq) -> float:
     return max(nearest(tolerance / (_MARGIN * given.plan.windows)), 2 * nearest(DOUBLE.roundoff))
 
 
-def highest_degree(given: RuntimePlan, tolerance: fmpq) -> int:
-    """The degree that is enough. CostError where it would be beyond reason."""
+def degrees(given: RuntimePlan, tolerance: fmpq) -> tuple[int, int]:
+    """The degree to begin with, about that of the scene's own parameters, and the one that is enough.
+
+    CostError where that would be beyond reason.
+    """
     allowed = share(given, tolerance)
-    own = _numbers(given, fmpq(0))
-    degree = _enough(own, LEAST, allowed)
+    degree = _enough(_numbers(given, fmpq(0)), LEAST, allowed)
+    first = max(LEAST, 4 * degree // 5)
     if any(field.positive for field in given.fields):
         degree = _enough(_numbers(given, STIFF), degree, allowed)
     size = 8 * given.plan.windows * len(given.strands) * (degree + 2)
@@ -50,7 +53,7 @@ def highest_degree(given: RuntimePlan, tolerance: fmpq) -> int:
             f"output.until: a model of {size:.1e} bytes would be kept to tau = {given.plan.tau_max:g}, at most "
             f"{_LARGEST_MODEL:.1e} expected (a shorter horizon, or fewer outputs, helps)"
         )
-    return degree
+    return first, degree
 
 
 def _numbers(given: RuntimePlan, least: fmpq) -> Plan:

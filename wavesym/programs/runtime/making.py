@@ -17,7 +17,7 @@ from wavesym.programs.march.plan import LOAD
 from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
-from wavesym.programs.runtime.degree import LEAST, STIFF, highest_degree, share
+from wavesym.programs.runtime.degree import STIFF, degrees, share
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.plan import Function, Push, RuntimePlan, runtime_plan
 from wavesym.programs.runtime.request import fields
@@ -32,7 +32,7 @@ def runtime_program(
     """The program of a model whose parameters `request.runtime` are given at run time.
 
     `amplitudes` are those of its loads, each with what it is called. WavesymError, CostError as `fields`,
-    `runtime_plan` and `highest_degree` say, and where other options are given that say otherwise.
+    `runtime_plan` and `degrees` say, and where other options are given that say otherwise.
     """
     for option, value, usual in (
         ("--evaluator", request.evaluator, "auto"),
@@ -47,14 +47,14 @@ def runtime_program(
     loads = [load for _, load in amplitudes] if chosen else [load for load in model.loads if load.source != "impact"]
     made = runtime_plan(model, given, loads)
     tolerance = max(model.tolerance, FINEST)
-    degree = highest_degree(made, tolerance)
+    least, degree = degrees(made, tolerance)
     light = f" and for kappa up to {STIFF}" if any(field.positive for field in given) else ""
     reason = (
-        f"march with {', '.join(request.runtime)} at run time, degrees from {LEAST} to {degree}, enough for the "
+        f"march with {', '.join(request.runtime)} at run time, degrees from {least} to {degree}, enough for the "
         f"scene's own parameters{light}; errors are estimated"
     )
     tables = _tables(made)
-    constants = {**_constants(made), "degree": degree, "least": LEAST, "share": share(made, tolerance)}
+    constants = {**_constants(made), "degree": degree, "least": least, "share": share(made, tolerance)}
     program = Program(
         "runtime",
         DOUBLE,
