@@ -4,14 +4,14 @@
 #include "runtime_tables.h"
 
 /* Loops over a block of samples are unrolled, so that its values stay in registers. */
-enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0, LOSS = 1, LEAK = 2, BLOCK = 32 };
+enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0, LOSS = 1, LEAK = 2, BLOCK = 16 };
 
 #if defined(__OPTIMIZE_SIZE__)
 #define UNROLLED
 #elif defined(__clang__)
 #define UNROLLED _Pragma("clang loop unroll(full)")
 #elif defined(__GNUC__)
-#define UNROLLED _Pragma("GCC unroll 32")
+#define UNROLLED _Pragma("GCC unroll 16")
 #else
 #define UNROLLED
 #endif
@@ -465,7 +465,6 @@ typedef struct {
 
 static const real offset[BLOCK] = {
     0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15,
-    16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31,
 };
 
 /* A block of values of a series, added to what is there where `more`. */

@@ -1,5 +1,7 @@
 """Parameters at run time in C: what a scene with these numbers gives, whatever they are, or a status that says why."""
 
+import json
+import re
 import shutil
 import subprocess
 from fractions import Fraction
@@ -10,6 +12,7 @@ import pytest
 import wavesym
 from tests.support.builds import LANGUAGES, STRICT, needs_binutils
 from tests.support.built_model import BuiltModel, written
+from wavesym.cli import main
 from wavesym.errors import WavesymError
 from wavesym.running.toolchain import compiler
 
@@ -134,8 +137,11 @@ def test_a_mistake_is_seen(change, case, tmp_path):
     assert missed(made, scene_with(scene, given)) > 10 * made.estimate
 
 
+SANITIZED = ("-O1", "-fsanitize=undefined,float-cast-overflow", "-fno-sanitize-recover=all")
+
+
 def test_a_bad_number_is_refused(tmp_path):
-    made = BuiltModel(DRIVE, ["kappa", "inertia", "load"], tmp_path)
+    made = BuiltModel(DRIVE, ["kappa", "inertia", "load"], tmp_path, flags=SANITIZED)
     own = [1, 0.5, 1, 2, 1, 1, -1, 0.3]
     assert made.build(*own) == 0
     for place in range(8):
@@ -160,7 +166,7 @@ def test_a_degree_too_low_is_told(tmp_path):
 
 
 def test_out_of_range_is_nan(tmp_path):
-    made = BuiltModel(COLLISION, ["kappa"], tmp_path)
+    made = BuiltModel(COLLISION, ["kappa"], tmp_path, flags=SANITIZED)
     assert made.build(1, 2) == 0
     for tau in (-1e-300, np.nextafter(6.0, 7.0), np.nan, np.inf, -np.inf):
         status, out = made.at(tau)
@@ -175,6 +181,11 @@ def test_out_of_range_is_nan(tmp_path):
     # u comes from blocks here and there from single values
     assert np.allclose(forwards[1], backwards[:, 4:29][:, ::-1], rtol=0, atol=1e-14)
     assert made.sample(0.0, 1.0, 0)[0] == 0
+    # steps that double arithmetic has trouble with
+    for step in (0.0, 5e-324, -5e-324, 1e308, np.inf, np.nan):
+        status, out = made.sample(1.0, step, 40)
+        assert status == (not np.isfinite(step) or step > 1)
+        assert np.isnan(out[:, 1:]).all() == status
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -231,3 +242,32 @@ def test_what_is_not_served_is_refused(scene, runtime, message, tmp_path):
 def test_other_options_are_refused(more, tmp_path):
     with pytest.raises(WavesymError, match="with --runtime"):
         wavesym.generate(BUILDING, tmp_path / "none", runtime=["kappa"], **more)
+
+
+def test_the_command_says_what_a_fine_tolerance_is_taken_as(tmp_path, capsys):
+    path = tmp_path / "crash.toml"
+    path.write_text(TOML)
+    folder = tmp_path / "made"
+    asked = ["generate", str(path), "--runtime", "kappa,velocity", "-o", str(folder)]
+    assert main(asked) == 0
+    told = capsys.readouterr().err
+    assert "tolerance 1e-15 taken as 1e-13" in told
+    assert "errors are estimated" in told
+    header = (folder / "crash.h").read_text()
+    assert "--runtime kappa,velocity" in header
+    assert not re.search(r"ERROR_BOUND|crash_eval|crash_sample", header)
+    manifest = json.loads((folder / "crash.json").read_text())
+    assert manifest["runtime"] == {
+        "kappa": {"kappa_1": "1", "kappa_3": "2"},
+        "velocity": {"velocity_1": "1", "velocity_3": "-1"},
+    }
+    assert "error_bound" not in manifest
+    assert main([*asked, "--check"]) == 0
+    assert main([*asked[:2], "-o", str(folder), "--check"]) == 1
+
+
+TOML = """
+name = "crash"
+system = { type = "collision", m = 4, kappa = [1, 2], velocity = [1, -1] }
+output = { until = 3, tolerance = 1e-15, strain = ["1+"] }
+"""
