@@ -16,6 +16,8 @@ enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0,
 #define UNROLLED
 #endif
 
+typedef real wave_of[NAME_PANELS][NAME_NODES + 2][NAME_DEGREE + 1];
+
 static real magnitude(real x)
 {
     return x < 0 ? -x : x;
@@ -127,53 +129,52 @@ static void tabulate(model_of *m, const laws *law, int degree)
     }
 }
 
-/* At rest, or as bodies and rods move at first; no load yet. */
-static void start(model_of *m, const laws *law, int degree)
+/* At rest, or as rods move at first; `waves` of both windows. */
+static void start_waves(wave_of (*waves)[3], const laws *law, int degree)
 {
     for (int half = 0; half < 2; ++half) {
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
             for (int node = 0; node < NAME_NODES + 2; ++node) {
                 for (int way = LEFT; way <= LOAD; ++way) {
                     for (int k = 0; k <= degree; ++k) {
-                        m->waves[half][way][panel][node][k] = 0;
+                        waves[half][way][panel][node][k] = 0;
                     }
                 }
                 if (node > 0) {
-                    m->waves[half][LEFT][panel][node][0] = law->rod[node - 1];
+                    waves[half][LEFT][panel][node][0] = law->rod[node - 1];
                 }
                 if (node <= NAME_NODES) {
-                    m->waves[half][RIGHT][panel][node][0] = law->rod[node];
+                    waves[half][RIGHT][panel][node][0] = law->rod[node];
                 }
             }
         }
     }
-    for (int node = 0; node < NAME_NODES; ++node) {
-        m->velocity[0][node] = law->motion[node];
-    }
+}
+
+/* No load, and nothing gathered yet. */
+static void start_sums(real *total, real (*load)[3], int (*since)[2])
+{
     for (int k = 0; k < NAME_HEARD; ++k) {
-        m->total[k] = 0;
+        total[k] = 0;
     }
     for (int f = 0; f <= NAME_FORCES; ++f) {
         for (int power = 0; power < 3; ++power) {
-            m->load[f][power] = 0;
+            load[f][power] = 0;
         }
-        m->since[f][0] = 0;
-        m->since[f][1] = 0;
-    }
-    for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        m->largest[output] = 0;
+        since[f][0] = 0;
+        since[f][1] = 0;
     }
 }
 
 /* Series of higher degree: what they had not is 0. */
-static void lengthen(model_of *m, int degree, int higher)
+static void lengthen(wave_of (*waves)[3], int degree, int higher)
 {
     for (int half = 0; half < 2; ++half) {
         for (int way = LEFT; way <= LOAD; ++way) {
             for (int panel = 0; panel < NAME_PANELS; ++panel) {
                 for (int node = 0; node < NAME_NODES + 2; ++node) {
                     for (int k = degree + 1; k <= higher; ++k) {
-                        m->waves[half][way][panel][node][k] = 0;
+                        waves[half][way][panel][node][k] = 0;
                     }
                 }
             }
@@ -181,31 +182,33 @@ static void lengthen(model_of *m, int degree, int higher)
     }
 }
 
-/* The loads on the panels of a window, as series; `event` counts their changes. */
-static void press(model_of *m, const laws *law, int window, int *event)
+/* The loads on the panels of a window, as series, after their changes there, the first of which is `event`. The first
+ * one of the next window. */
+static int press(const real *change, real (*load)[3], int (*since)[2], real (*force)[NAME_FORCES + 1][3], int window,
+                 int event)
 {
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
-        while (*event < EVENTS && event_window[*event] == window && event_panel[*event] == panel) {
-            const int f = event_force[*event];
-            real *const c = m->load[f];
-            const real gone = (real)(window - m->since[f][0]) + since_panel[panel * NAME_PANELS + m->since[f][1]];
+        while (event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel) {
+            const int f = event_force[event];
+            real *const c = load[f];
+            const real gone = (real)(window - since[f][0]) + since_panel[panel * NAME_PANELS + since[f][1]];
             c[0] += gone * (c[1] + gone * c[2]);
             c[1] += 2 * gone * c[2];
-            c[event_power[*event]] += law->load[event_load[*event]] * law->strength[event_strength[*event]];
-            m->since[f][0] = window;
-            m->since[f][1] = panel;
-            *event += 1;
+            c[event_power[event]] += change[event];
+            since[f][0] = window;
+            since[f][1] = panel;
+            ++event;
         }
         const real half = half_length[panel];
         for (int f = 0; f < NAME_FORCES; ++f) {
-            const real *const c = m->load[f];
-            const real middle =
-                ((real)(window - m->since[f][0]) + since_panel[panel * NAME_PANELS + m->since[f][1]]) + half;
-            m->force[panel][f][0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2];
-            m->force[panel][f][1] = half * (c[1] + 2 * middle * c[2]);
-            m->force[panel][f][2] = half * half / 2 * c[2];
+            const real *const c = load[f];
+            const real middle = ((real)(window - since[f][0]) + since_panel[panel * NAME_PANELS + since[f][1]]) + half;
+            force[panel][f][0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2];
+            force[panel][f][1] = half * (c[1] + 2 * middle * c[2]);
+            force[panel][f][2] = half * half / 2 * c[2];
         }
     }
+    return event;
 }
 
 /* The velocity q of a body on a panel; `velocity` goes from its start to its end. What the polynomial misses. */
@@ -288,29 +291,34 @@ static real march(model_of *m, const laws *law, int half, int degree, real *size
     return missed;
 }
 
-/* The outputs on a window as series: sums of waves, and of integrals of waves from tau = 0 on. */
-static void listen(model_of *m, const laws *law, int window, int half, int degree)
+static void clear(real *all, int degree)
 {
-    real *const all = m->series + m->place[window];
+    for (size_t k = 0; k < (size_t)NAME_STRANDS * (size_t)(degree + 2); ++k) {
+        all[k] = 0;
+    }
+}
+
+/* Add to all strands of a window what is heard of waves: each times its gain, or their integrals from tau = 0 on, of
+ * which `total` is what windows before have brought. */
+static void listen(const model_of *m, wave_of (*waves)[3], const real *gains, real *total, int half, int degree,
+                   real *all)
+{
+    real sum[NAME_DEGREE + 2];
     for (int s = 0; s < NAME_STRANDS; ++s) {
         real *const c = all + (size_t)s * (size_t)(degree + 2);
-        real sum[NAME_DEGREE + 2];
-        for (int k = 0; k <= degree + 1; ++k) {
-            c[k] = 0;
-        }
         for (int t = first_term[s]; t < first_term[s + 1]; ++t) {
-            const real *const w = m->waves[term_back[t] ? !half : half][term_way[t]][term_panel[t]][term_sender[t]];
+            const real *const w = waves[term_back[t] ? !half : half][term_way[t]][term_panel[t]][term_sender[t]];
             const int heard = term_heard[t];
-            const real gain = law->gain[heard];
+            const real gain = gains[heard];
             if (term_summed[t]) {
                 const real length = half_length[term_panel[t]];
                 integrate(m, w, degree, sum);
                 const real low = length * end_value(sum, degree + 1, term_low[t]);
-                c[0] += gain * (m->total[heard] - low);
+                c[0] += gain * (total[heard] - low);
                 for (int k = 1; k <= degree + 1; ++k) {
                     c[k] += gain * length * sum[k];
                 }
-                m->total[heard] += length * end_value(sum, degree + 1, term_high[t]) - low;
+                total[heard] += length * end_value(sum, degree + 1, term_high[t]) - low;
             } else {
                 for (int k = 0; k <= degree; ++k) {
                     c[k] += gain * w[k];
@@ -318,6 +326,11 @@ static void listen(model_of *m, const laws *law, int window, int half, int degre
             }
         }
     }
+}
+
+/* Look for the largest mean of each output. */
+static void look(model_of *m, const real *all, int degree)
+{
     for (int section = 0; section < SECTIONS; ++section) {
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
             const int at = section * NAME_OUTPUTS + output;
@@ -326,6 +339,58 @@ static void listen(model_of *m, const laws *law, int window, int half, int degre
                 mean += all[(size_t)strand_at[k] * (size_t)(degree + 2)];
             }
             m->largest[output] = larger(m->largest[output], mean);
+        }
+    }
+}
+
+/* One window of the derivatives by a parameter, of which `slope` is what the laws change by. With q'/rate + q = p,
+ *
+ *     dq'/rate + dq = dp + drate/rate (p - q). */
+static void follow(name_tangent *tangent, const laws *law, const laws *slope, int lane, int half, int degree)
+{
+    const model_of *const m = &tangent->value;
+    wave_of(*const waves)[3] = tangent->waves[lane];
+    real p[NAME_DEGREE + 2];
+    real q[NAME_DEGREE + 1];
+    for (int panel = 0; panel < NAME_PANELS; ++panel) {
+        for (int f = 0; f < NAME_FORCES; ++f) {
+            for (int k = 0; k < 3; ++k) {
+                waves[half][LOAD][panel][f][k] = tangent->force[lane][panel][f][k];
+            }
+        }
+        for (int node = 0; node < NAME_NODES; ++node) {
+            const real *const a = m->waves[!half][RIGHT][panel][node];
+            const real *const b = m->waves[!half][LEFT][panel][node + 2];
+            const real *const da = waves[!half][RIGHT][panel][node];
+            const real *const db = waves[!half][LEFT][panel][node + 2];
+            real *const left = waves[half][LEFT][panel][node + 1];
+            real *const right = waves[half][RIGHT][panel][node + 1];
+            const int f = force_on[node];
+            for (int k = 0; k <= degree; ++k) {
+                p[k] = law->alpha[node] * da[k] + law->beta[node] * db[k] + slope->alpha[node] * a[k] +
+                       slope->beta[node] * b[k];
+            }
+            p[degree + 1] = 0;
+            for (int k = 0; f >= 0 && k < 3; ++k) {
+                p[k] += tangent->force[lane][panel][f][k];
+            }
+            const real *sent = p;
+            if (law->rate[node] > 0) {
+                const real share_of_rate = slope->rate[node] / law->rate[node];
+                const real *const back = m->waves[half][LEFT][panel][node + 1];
+                for (int k = 0; k <= degree; ++k) {
+                    const real load = f >= 0 && k < 3 ? m->force[panel][f][k] : (real)0;
+                    const real pushed = law->alpha[node] * a[k] + law->beta[node] * b[k] + load;
+                    p[k] += share_of_rate * (pushed - (back[k] + a[k]));
+                }
+                const int row = m->row[panel * NAME_NODES + node];
+                (void)moved(m, row, degree, p, q, &tangent->velocity[lane][node]);
+                sent = q;
+            }
+            for (int k = 0; k <= degree; ++k) {
+                left[k] = sent[k] - da[k];
+                right[k] = sent[k] - db[k];
+            }
         }
     }
 }
@@ -346,56 +411,158 @@ static real estimated(const model_of *m, const laws *law, real missed)
     return worst;
 }
 
-int name_build(name_model *model, const name_parameters *parameters)
+/* What begins a model. 0, or 1 for a bad number. */
+static int begun(model_of *m, const name_parameters *parameters, laws *law)
 {
-    laws law;
-    real missed = 0;
-    real size = 0;
-    int degree = LEAST;
-    int event = 0;
-    size_t place = 0;
-    model->built = 0;
-    model->estimate = (real)NAN;
+    m->built = 0;
+    m->estimate = (real)NAN;
     if (!good(parameters)) {
         return 1;
     }
-    laws_of(parameters, &law);
-    if (!laws_within_reach(&law)) {
+    laws_of(parameters, law);
+    if (!laws_within_reach(law)) {
         return 1;
     }
-    start(model, &law, degree);
-    tabulate(model, &law, degree);
-    for (int window = 0; window < NAME_WINDOWS; ++window) {
-        const int half = window % 2;
-        press(model, &law, window, &event);
-        for (;;) {
-            real seen = size;
-            const real leak = march(model, &law, half, degree, &seen);
-            if (leak <= share * seen) {
-                missed += leak;
-                size = seen;
-                break;
-            }
-            if (degree == NAME_DEGREE) {
-                return finite_number(leak) && finite_number(seen) ? 2 : 1;
-            }
-            const int higher = degree + degree / 4 < NAME_DEGREE ? degree + degree / 4 : NAME_DEGREE;
-            lengthen(model, degree, higher);
-            tabulate(model, &law, higher);
-            degree = higher;
-        }
-        for (int node = 0; node < NAME_NODES; ++node) {
-            model->velocity[0][node] = model->velocity[1][node];
-        }
-        model->degree[window] = degree;
-        model->place[window] = place;
-        place += (size_t)NAME_STRANDS * (size_t)(degree + 2);
-        listen(model, &law, window, half, degree);
+    for (int event = 0; event < NAME_EVENTS; ++event) {
+        m->change[event] = law->load[event_load[event]] * law->strength[event_strength[event]];
     }
-    missed = 4 * missed + unit * (real)(degree + NAME_WINDOWS) * size;
-    model->estimate = estimated(model, &law, missed);
-    model->built = finite_number(size) && finite_number(model->estimate);
-    return !model->built;
+    start_waves(m->waves, law, LEAST);
+    start_sums(m->total, m->load, m->since);
+    for (int node = 0; node < NAME_NODES; ++node) {
+        m->velocity[0][node] = law->motion[node];
+    }
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        m->largest[output] = 0;
+    }
+    tabulate(m, law, LEAST);
+    return 0;
+}
+
+/* How far a build has come. */
+typedef struct {
+    int window, degree, event;
+    size_t place;
+    real missed, size;
+} progress;
+
+/* The next window, at the lowest degree, raised by quarters, that misses no more than its share. */
+static int next_window(model_of *m, const laws *law, progress *now)
+{
+    const int half = now->window % 2;
+    now->event = press(m->change, m->load, m->since, m->force, now->window, now->event);
+    for (;;) {
+        real seen = now->size;
+        const real leak = march(m, law, half, now->degree, &seen);
+        if (leak <= share * seen) {
+            now->missed += leak;
+            now->size = seen;
+            break;
+        }
+        if (now->degree == NAME_DEGREE) {
+            return finite_number(leak) && finite_number(seen) ? 2 : 1;
+        }
+        const int higher = now->degree + now->degree / 4;
+        const int next = higher < NAME_DEGREE ? higher : NAME_DEGREE;
+        lengthen(m->waves, now->degree, next);
+        tabulate(m, law, next);
+        now->degree = next;
+    }
+    for (int node = 0; node < NAME_NODES; ++node) {
+        m->velocity[0][node] = m->velocity[1][node];
+    }
+    m->degree[now->window] = now->degree;
+    m->place[now->window] = now->place;
+    return 0;
+}
+
+/* The outputs on a window that has been marched; then the next one is due. */
+static void kept(model_of *m, const laws *law, progress *now)
+{
+    real *const all = m->series + now->place;
+    clear(all, now->degree);
+    listen(m, m->waves, law->gain, m->total, now->window % 2, now->degree, all);
+    look(m, all, now->degree);
+    now->place += (size_t)NAME_STRANDS * (size_t)(now->degree + 2);
+    now->window += 1;
+}
+
+static int ended(model_of *m, const laws *law, const progress *now)
+{
+    const real missed = 4 * now->missed + unit * (real)(now->degree + NAME_WINDOWS) * now->size;
+    m->estimate = estimated(m, law, missed);
+    m->built = finite_number(now->size) && finite_number(m->estimate);
+    return !m->built;
+}
+
+int name_build(name_model *model, const name_parameters *parameters)
+{
+    laws law;
+    progress now = {0, LEAST, 0, 0, 0, 0};
+    int status = begun(model, parameters, &law);
+    while (status == 0 && now.window < NAME_WINDOWS) {
+        status = next_window(model, &law, &now);
+        if (status == 0) {
+            kept(model, &law, &now);
+        }
+    }
+    return status ? status : ended(model, &law, &now);
+}
+
+/* What begins the derivatives by a parameter. 0, or 1 where they are beyond all numbers. */
+static int begun_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane)
+{
+    if (!laws_within_reach(slope)) {
+        return 1;
+    }
+    for (int event = 0; event < NAME_EVENTS; ++event) {
+        const int own = LOAD_LANE >= 0 && lane == LOAD_LANE + event_load[event];
+        tangent->change[lane][event] = law->load[event_load[event]] * slope->strength[event_strength[event]] +
+                                       (own ? law->strength[event_strength[event]] : (real)0);
+    }
+    start_waves(tangent->waves[lane], slope, LEAST);
+    start_sums(tangent->total[lane], tangent->load[lane], tangent->since[lane]);
+    for (int node = 0; node < NAME_NODES; ++node) {
+        tangent->velocity[lane][node] = slope->motion[node];
+    }
+    return 0;
+}
+
+int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
+{
+    model_of *const m = &tangent->value;
+    laws law, slope;
+    progress now = {0, LEAST, 0, 0, 0, 0};
+    int status = begun(m, parameters, &law);
+    for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
+        slopes_of(parameters, lane, &slope);
+        status = begun_lane(tangent, &law, &slope, lane);
+    }
+    while (status == 0 && now.window < NAME_WINDOWS) {
+        const int before = now.degree;
+        const int first = now.event;
+        const int half = now.window % 2;
+        status = next_window(m, &law, &now);
+        for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
+            real total[NAME_HEARD + 1];
+            real *const all = tangent->series[lane] + now.place;
+            slopes_of(parameters, lane, &slope);
+            lengthen(tangent->waves[lane], before, now.degree);
+            (void)press(tangent->change[lane], tangent->load[lane], tangent->since[lane], tangent->force[lane],
+                        now.window, first);
+            follow(tangent, &law, &slope, lane, half, now.degree);
+            clear(all, now.degree);
+            listen(m, tangent->waves[lane], law.gain, tangent->total[lane], half, now.degree, all);
+            /* and where parameters change what outputs weigh, the waves themselves */
+            for (int k = 0; k < NAME_HEARD; ++k) {
+                total[k] = m->total[k];
+            }
+            listen(m, m->waves, slope.gain, total, half, now.degree, all);
+        }
+        if (status == 0) {
+            kept(m, &law, &now);
+        }
+    }
+    return status ? status : ended(m, &law, &now);
 }
 
 name_real name_error_estimate(const name_model *model)
@@ -456,11 +623,12 @@ static real instant(real tau0, real dtau, real one, real k)
     return step * one + tau0;
 }
 
-/* The samples that are asked for: `out` has `count` for each output. */
+/* The samples that are asked for, of a model's series or of its derivatives: `out` has `count` for each output. */
 typedef struct {
     real tau0, dtau, one, per_tau;
     size_t count;
     real *out;
+    const real *series;
 } samples;
 
 static const real offset[BLOCK] = {
@@ -495,7 +663,7 @@ static void block(const real *c, int degree, const real *u, int more, real *out)
 }
 
 /* A block of an output at t after the start of a window. */
-static void output_block(const model_of *m, int window, int at, const real *t, real *out)
+static void output_block(const model_of *m, const real *series, int window, int at, const real *t, real *out)
 {
     const int degree = m->degree[window];
     real u[BLOCK];
@@ -506,8 +674,7 @@ static void output_block(const model_of *m, int window, int at, const real *t, r
         for (int j = 0; j < BLOCK; ++j) {
             u[j] = ((t[j] - begin) + excess) * scale - 1;
         }
-        block(m->series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u,
-              k > first_strand[at], out);
+        block(series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u, k > first_strand[at], out);
     }
     for (int j = 0; first_strand[at] == first_strand[at + 1] && j < BLOCK; ++j) {
         out[j] = 0;
@@ -530,7 +697,7 @@ static void run(const model_of *m, int window, int section, const samples *s, si
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
             const int at = section * NAME_OUTPUTS + output;
             real *const row = s->out + (size_t)output * s->count + k;
-            output_block(m, window, at, t, left < BLOCK ? rest : row);
+            output_block(m, s->series, window, at, t, left < BLOCK ? rest : row);
             for (size_t j = 0; left < BLOCK && j < left; ++j) {
                 row[j] = rest[j];
             }
@@ -561,19 +728,19 @@ static size_t run_end(const model_of *m, int window, int section, const samples 
     return end;
 }
 
-int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out)
+static int sampled(const model_of *m, const real *series, real tau0, real dtau, size_t count, real *out)
 {
     const volatile real unity = 1;
-    const samples s = {tau0, dtau, unity, dtau < 0 || dtau > 0 ? 1 / dtau : 0, count, out};
+    const samples s = {tau0, dtau, unity, dtau < 0 || dtau > 0 ? 1 / dtau : 0, count, out, series};
     int outside = 0;
     size_t k = 0;
     while (k < count) {
         const real tau = instant(tau0, dtau, s.one, (real)k);
-        if (inside(model, tau)) {
+        if (inside(m, tau)) {
             const int window = (int)tau;
             const int section = section_at(tau - (real)window);
-            const size_t end = run_end(model, window, section, &s, k);
-            run(model, window, section, &s, k, end);
+            const size_t end = run_end(m, window, section, &s, k);
+            run(m, window, section, &s, k, end);
             k = end;
         } else {
             for (size_t output = 0; output < NAME_OUTPUTS; ++output) {
@@ -582,6 +749,22 @@ int name_model_sample(const name_model *model, name_real tau0, name_real dtau, s
             outside = 1;
             ++k;
         }
+    }
+    return outside;
+}
+
+int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out)
+{
+    return sampled(model, model->series, tau0, dtau, count, out);
+}
+
+int name_tangent_sample(
+    const name_tangent *tangent, name_real tau0, name_real dtau, size_t count, name_real *out)
+{
+    const model_of *const m = &tangent->value;
+    int outside = sampled(m, m->series, tau0, dtau, count, out);
+    for (size_t lane = 0; lane < NAME_LANES; ++lane) {
+        outside |= sampled(m, tangent->series[lane], tau0, dtau, count, out + (lane + 1) * NAME_OUTPUTS * count);
     }
     return outside;
 }

@@ -17,7 +17,9 @@ enum {
     NAME_PANELS = 2,
     NAME_NODES = 3,
     NAME_FORCES = 1,
-    NAME_HEARD = 4
+    NAME_HEARD = 4,
+    NAME_EVENTS = 3,
+    NAME_LANES = 3
 };
 
 #include "runtime_model.h"
@@ -30,6 +32,9 @@ int name_build(name_model *model, const name_parameters *parameters);
 name_real name_error_estimate(const name_model *model);
 int name_model_eval(const name_model *model, name_real tau, name_real *out);
 int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out);
+int name_build_tangent(name_tangent *tangent, const name_parameters *parameters);
+int name_tangent_sample(
+    const name_tangent *tangent, name_real tau0, name_real dtau, size_t count, name_real *out);
 
 #include <float.h>
 #include <math.h>
@@ -37,7 +42,7 @@ int name_model_sample(const name_model *model, name_real tau0, name_real dtau, s
 typedef name_real real;
 typedef name_model model_of;
 
-enum { LEAST = 8, EVENTS = 3, STRENGTHS = 1, SECTIONS = 3, TERMS = 6 };
+enum { LEAST = 8, LOAD_LANE = -1, STRENGTHS = 1, SECTIONS = 3, TERMS = 6 };
 
 /* What parameters make of nodes, rods, loads and outputs. */
 typedef struct {
@@ -53,6 +58,7 @@ typedef struct {
 
 int good(const name_parameters *p);
 void laws_of(const name_parameters *p, laws *law);
+void slopes_of(const name_parameters *p, int lane, laws *law);
 
 extern const real largest_number;
 extern const real share;

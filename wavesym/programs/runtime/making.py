@@ -100,6 +100,7 @@ def _constants(made: RuntimePlan) -> dict[str, float]:
         "strands": len(made.strands),
         "events": len(made.pushes),
         "strengths": len(_strengths(made.pushes)),
+        "lanes": sum(len(field.values) for field in made.fields),
         "sections": len(made.sections) - 1,
         "unit": 2 * nearest(DOUBLE.roundoff),
     }

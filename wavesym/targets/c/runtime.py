@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from flint import fmpq, fmpq_mpoly
@@ -18,7 +18,7 @@ from wavesym.targets.c.kernel import kernel
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_constants, c_literal, c_literals, c_tables
 
-_SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard")
+_SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard", "events", "lanes")
 
 
 @dataclass(frozen=True)
@@ -45,11 +45,16 @@ class CRuntimeHeader:
 
 @dataclass(frozen=True)
 class CRuntime:
-    """templates/c/runtime.c.j2; `laws` are what is assigned, with the expression; every table as its lines."""
+    """templates/c/runtime.c.j2; `laws` are what is assigned, with the expression; every table as its lines.
+
+    `slopes` are their derivatives, by the number of a parameter; `load_lane` is that of the first load, -1 for none.
+    """
 
     scene: Description
     fields: tuple[CRuntimeField, ...]
     laws: tuple[tuple[str, str], ...]
+    slopes: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]
+    load_lane: str
     tables: dict[str, Lines]
     constants: dict[str, str]
     amplitudes: Lines
@@ -82,7 +87,9 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     context = CRuntime(
         scene=scene,
         fields=fields,
-        laws=tuple(_assigned(laws)),
+        laws=tuple(_assigned(laws, laws.functions)),
+        slopes=tuple(_slopes(laws)),
+        load_lane=_load_lane(laws),
         tables=c_tables(program.tables, program.real),
         constants=constants,
         amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
@@ -125,11 +132,36 @@ def _fields(laws: RuntimeLaws) -> Iterator[CRuntimeField]:
         )
 
 
-def _assigned(laws: RuntimeLaws) -> Iterator[tuple[str, str]]:
+def _assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]]) -> Iterator[tuple[str, str]]:
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
-    for array, functions in laws.functions.items():
+    for array, functions in arrays.items():
         for k, function in enumerate(functions):
             yield f"{array}[{k}]", expression(function, places)
+
+
+def _slopes(laws: RuntimeLaws) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
+    """The derivatives that are not 0, by the number of the parameter."""
+    places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
+    for lane, label in enumerate(places):
+        found = [
+            (f"{array}[{k}]", expression(slope, places))
+            for array, functions in laws.functions.items()
+            for k, function in enumerate(functions)
+            if isinstance(function, Ratio) and label in function.ring.names
+            for slope in [function.derivative(label)]
+            if slope != 0
+        ]
+        if found:
+            yield str(lane), tuple(found)
+
+
+def _load_lane(laws: RuntimeLaws) -> str:
+    before = 0
+    for field in laws.fields:
+        if field.name == "load":
+            return str(before)
+        before += len(field.values)
+    return "-1"
 
 
 def expression(function: Function, places: Mapping[str, str]) -> str:
