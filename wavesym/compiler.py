@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from wavesym.model.node import System
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
+    from wavesym.running.sets import RuntimeModel
 
 
 _UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
@@ -317,6 +318,15 @@ def _written(scene: Scene, directory: str | Path | None, language: str, request:
     else:
         program = make(model, request, tested=tested(language))
     return {folder / name: text for name, text in files(program, language).items()}
+
+
+def runtime_model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
+    """A scene whose parameters `runtime` are given when it runs, compiled. CompilerError without a C compiler."""
+    from wavesym.programs.runtime.making import runtime_program
+    from wavesym.running.sets import RuntimeModel
+
+    given = amplitudes(scene) if "load" in runtime else ()
+    return RuntimeModel(runtime_program(lower(scene), Request(runtime=tuple(runtime)), given))
 
 
 def run(

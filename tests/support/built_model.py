@@ -28,14 +28,17 @@ class BuiltModel:
     def __init__(self, scene, runtime, folder, changes=(), flags=("-O2",)):
         written(scene, runtime, folder, changes)
         name = scene.name
-        size = f'#include "{name}.h"\nextern const size_t size;\nconst size_t size = sizeof({name}_model);\n'
+        sizes = f"{{sizeof({name}_model), sizeof({name}_tangent)}}"
+        size = f'#include "{name}.h"\nextern const size_t size[2];\nconst size_t size[2] = {sizes};\n'
         (folder / "size.c").write_text(size)
         command = [*LANGUAGES["c99"], *STRICT, *flags, "-fPIC", "-shared", f"{name}.c", "size.c", "-o", "made.so"]
         compiler().run(command, folder)
         self.library = ctypes.CDLL(str(folder / "made.so"))
         self.outputs = len(scene.outputs)
         self.until = float(re.search(r"_TAU_MAX (\S+)", (folder / f"{name}.h").read_text())[1])
-        self.model = np.zeros(ctypes.c_size_t.in_dll(self.library, "size").value, np.uint8)
+        self.model, self.tangent = (
+            np.zeros(size, np.uint8) for size in (ctypes.c_size_t * 2).in_dll(self.library, "size")
+        )
         self._build = getattr(self.library, f"{name}_build")
         self._build.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
         self._estimate = getattr(self.library, f"{name}_error_estimate")
@@ -44,6 +47,18 @@ class BuiltModel:
         self._eval.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p]
         self._sample = getattr(self.library, f"{name}_model_sample")
         self._sample.argtypes = [ctypes.c_void_p, *[ctypes.c_double] * 2, ctypes.c_size_t, ctypes.c_void_p]
+
+        self._build_tangent = getattr(self.library, f"{name}_build_tangent")
+        self._build_tangent.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+        self._tangents = getattr(self.library, f"{name}_tangent_sample")
+        self._tangents.argtypes = self._sample.argtypes
+
+    def tangents(self, parameters, tau0, dtau, count):
+        """Values and derivatives, of shape (1 + parameters, outputs, count)."""
+        given = np.array([float(number) for number in parameters])
+        status = self._build_tangent(self.tangent.ctypes.data, given.ctypes.data)
+        out = np.empty((1 + len(given), self.outputs, count))
+        return status or self._tangents(self.tangent.ctypes.data, tau0, dtau, count, out.ctypes.data), out
 
     def build(self, *parameters):
         given = np.array([float(number) for number in parameters])

@@ -159,7 +159,9 @@ class Ratio:
     def derivative(self, name: str) -> Ratio:
         """By a symbol."""
         place = self.ring.names.index(name)
-        slope = Ratio(self.ring, self.numerator.derivative(place)) / Ratio(self.ring, self.ring.product(self.denominator))
+        slope = Ratio(self.ring, self.numerator.derivative(place)) / Ratio(
+            self.ring, self.ring.product(self.denominator)
+        )
         for form, power in self.denominator.items():
             own = self.ring.forms[form]
             slope = slope - power * self * Ratio(self.ring, own.derivative(place)) / Ratio(self.ring, own)
