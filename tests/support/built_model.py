@@ -1,31 +1,40 @@
 """C with parameters at run time, compiled and loaded."""
 
 import ctypes
+import json
 import re
+from functools import cache
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
 from tests.support.builds import LANGUAGES, STRICT
 from wavesym import compiler as ways
 from wavesym.running.toolchain import compiler
+from wavesym.scene import Scene
 
 
 def written(scene, runtime, folder, changes=()):
     """The files of a scene, with `changes` (old, new) in NAME.c."""
-    ways.generate(scene, folder, runtime=runtime)
-    path = folder / f"{scene.name}.c"
-    text = path.read_text()
+    made = dict(_generated(scene.model_dump_json(), tuple(runtime)))
     for old, new in changes:
-        assert old in text, old
-        text = text.replace(old, new)
-    path.write_text(text)
-    return text
+        assert old in made[f"{scene.name}.c"], old
+        made[f"{scene.name}.c"] = made[f"{scene.name}.c"].replace(old, new)
+    for file, text in made.items():
+        (folder / file).write_text(text)
+
+
+@cache
+def _generated(scene, runtime):
+    with TemporaryDirectory() as folder:
+        paths = ways.generate(Scene(**json.loads(scene)), folder, runtime=runtime)
+        return tuple((path.name, path.read_text()) for path in paths)
 
 
 class BuiltModel:
     """One model; parameters are given one after the other, in the order of the struct."""
 
-    def __init__(self, scene, runtime, folder, changes=(), flags=("-O2",)):
+    def __init__(self, scene, runtime, folder, changes=(), flags=("-O1",)):
         written(scene, runtime, folder, changes)
         name = scene.name
         sizes = f"{{sizeof({name}_model), sizeof({name}_tangent)}}"
