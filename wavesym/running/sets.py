@@ -11,9 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from wavesym.errors import WavesymError
 from wavesym.programs.program import Program
 from wavesym.running.native import FAST, address, library
-from wavesym.targets.c.kernel import kernel
-from wavesym.targets.description import describe
-from wavesym.targets.files import sources
+from wavesym.targets.files import runtime_sets
 
 Array = NDArray[np.float64]
 
@@ -26,12 +24,10 @@ class RuntimeModel:
     """
 
     def __init__(self, program: Program) -> None:
-        laws, description = program.laws, describe(program)
+        laws, name = program.laws, program.provenance.model.name
         assert laws is not None
-        name = description.name
-        files = sources(program, "c")
-        text = files[f"{name}.c"] + "\n" + kernel("runtime_sets.c", description) + "\n"
-        loaded = library(text, FAST, (f"{name}.h", files[f"{name}.h"]))
+        files = runtime_sets(program)
+        loaded = library(files[f"{name}.c"], FAST, (f"{name}.h", files[f"{name}.h"]))
         size = getattr(loaded, f"{name}_model_size")
         size.restype = ctypes.c_size_t
         self._model = np.zeros(size(), np.uint8)

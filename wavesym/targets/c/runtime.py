@@ -105,6 +105,13 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     return made
 
 
+def sets(scene: Description, program: Program) -> dict[str, str]:
+    """The files, with what runs many sets of parameters in NAME.c."""
+    made = files(scene, program)
+    name = f"{scene.name}.c"
+    return made | {name: f"{made[name]}\n{kernel('runtime_sets.c', scene)}\n"}
+
+
 def _selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:
     # errors are estimated: ten times the tolerance is what no program that is right comes near to
     allowed = [10 * output.bound * output.largest for output in program.outputs]
