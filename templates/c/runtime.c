@@ -55,20 +55,26 @@ static void integrate(const model_of *m, const real *w, int degree, real *c)
     c[degree + 1] = w[degree] * m->inverse[degree + 1];
 }
 
-/* The same as series_at, sooner at both ends of a panel. */
+/* The same as series_at, sooner at both ends of a panel and in its middle. */
 static real end_value(const real *c, int degree, real u)
 {
-    real even = 0;
-    real odd = 0;
+    real some = 0;
+    real others = 0;
+    if (u >= 0 && u <= 0) {
+        for (int k = 0; k <= degree; k += 4) {
+            some += c[k];
+            others += k + 2 <= degree ? c[k + 2] : (real)0;
+        }
+        return some - others;
+    }
     if (u > -1 && u < 1) {
         return series_at(c, degree, u);
     }
-    for (int k = 0; k < degree; k += 2) {
-        even += c[k];
-        odd += c[k + 1];
+    for (int k = 0; k <= degree; k += 2) {
+        some += c[k];
+        others += k + 1 <= degree ? c[k + 1] : (real)0;
     }
-    even += degree % 2 ? (real)0 : c[degree];
-    return u < 0 ? even - odd : even + odd;
+    return u < 0 ? some - others : some + others;
 }
 
 static int laws_within_reach(const laws *law)
@@ -553,10 +559,14 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
             clear(all, now.degree);
             listen(m, tangent->waves[lane], law.gain, tangent->total[lane], half, now.degree, all);
             /* and where parameters change what outputs weigh, the waves themselves */
+            int weighs = 0;
             for (int k = 0; k < NAME_HEARD; ++k) {
                 total[k] = m->total[k];
+                weighs |= magnitude(slope.gain[k]) > 0;
             }
-            listen(m, m->waves, slope.gain, total, half, now.degree, all);
+            if (weighs) {
+                listen(m, m->waves, slope.gain, total, half, now.degree, all);
+            }
         }
         if (status == 0) {
             kept(m, &law, &now);
