@@ -46,7 +46,7 @@ from wavesym.results.peaks import table_of_peaks
 from wavesym.results.response import Response
 from wavesym.results.summary import Summary, summarised
 from wavesym.scene import Scene, lower
-from wavesym.scene.lowering import drifts
+from wavesym.scene.lowering import amplitudes, drifts
 from wavesym.targets import LANGUAGES
 from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from wavesym.model.node import System
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
+    from wavesym.running.sets import RuntimeModel
 
 
 _UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
@@ -250,14 +251,16 @@ def generate(
     precision: str = "double",
     windows: int | None = None,
     optimize: str | None = None,
+    runtime: Sequence[str] = (),
     *,
     force: bool = False,
 ) -> tuple[Path, ...]:
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
 
     `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
-    "speed" (usual in double precision) or for "size" (usual in single). Files that wavesym did not write are replaced
-    only by `force`; WavesymError else, and for a language, evaluator, precision or aim that there is not.
+    "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters that C takes when it
+    runs: "kappa", "inertia", "velocity", "load". Files that wavesym did not write are replaced only by
+    `force`; WavesymError else, and for a language, evaluator, precision or aim that there is not.
 
     >>> import wavesym
     >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):
@@ -265,7 +268,7 @@ def generate(
     drive/drive_m1.json
     drive/drive_m1.py
     """
-    made = _written(scene, directory, language, Request(evaluator, precision, windows, optimize))
+    made = _written(scene, directory, language, Request(evaluator, precision, windows, optimize, tuple(runtime)))
     for path in made:
         if not force and path.is_file() and not is_ours(path):
             raise WavesymError(f"{path}: exists and was not written by wavesym; --force replaces it")
@@ -282,13 +285,14 @@ def check(
     windows: int | None = None,
     optimize: str | None = None,
     source: str = "SCENE",
+    runtime: Sequence[str] = (),
 ) -> str:
     """The difference between what stands in `directory` and what `generate` would write; empty where there is none.
 
     Each file that is changed, missing or orphaned is named, with a diff; so is what a process that was killed left. The
     last line is the command that mends them, with the scene as it is given by `source`.
     """
-    request = Request(evaluator, precision, windows, optimize)
+    request = Request(evaluator, precision, windows, optimize, tuple(runtime))
     made = _written(scene, directory, language, request)
     folder = Path(directory or scene.name)
     found = [path for path in folder.glob(f"{scene.name}*") if path.is_file()]
@@ -304,8 +308,25 @@ def _written(scene: Scene, directory: str | Path | None, language: str, request:
     refuse_unknown("language", language, LANGUAGES)
     request.refuse_unknown()
     model = lower(scene)
-    program = make(model, request, tested=tested(language))
+    if request.runtime:
+        from wavesym.programs.runtime.making import runtime_program
+
+        if language != "c":
+            raise WavesymError(f"language: {language} given with --runtime, c expected")
+        given = amplitudes(scene) if "load" in request.runtime else ()
+        program = runtime_program(model, request, given, tested=True)
+    else:
+        program = make(model, request, tested=tested(language))
     return {folder / name: text for name, text in files(program, language).items()}
+
+
+def runtime_model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
+    """A scene whose parameters `runtime` are given when it runs, compiled. CompilerError without a C compiler."""
+    from wavesym.programs.runtime.making import runtime_program
+    from wavesym.running.sets import RuntimeModel
+
+    given = amplitudes(scene) if "load" in runtime else ()
+    return RuntimeModel(runtime_program(lower(scene), Request(runtime=tuple(runtime)), given))
 
 
 def run(

@@ -214,8 +214,8 @@ def test_generate(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["generate", "mine.toml"]) == 0
     assert main(["generate", "mine.toml", "-o", "there", "--language", "all", "--evaluator", "closed"]) == 0
     assert compiler.asked == [
-        (None, "c", "auto", "double", None, None),
-        (Path("there"), "all", "closed", "double", None, None),
+        (None, "c", "auto", "double", None, None, ()),
+        (Path("there"), "all", "closed", "double", None, None, ()),
     ]
     assert capsys.readouterr().out.split() == [str(Path("out/mine.c")), str(Path("out/mine.h"))] * 2
 

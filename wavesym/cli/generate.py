@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,7 @@ EVALUATORS = ["auto", "closed", "pieces", "march", "modes"]
 PRECISIONS = ["double", "single"]
 AIMS = ["speed", "size"]
 MOST_WINDOWS = 2**31 - 2
+FINEST = Fraction(1, 10**13)  # of tolerances at run time
 
 
 @click.command()
@@ -44,6 +46,11 @@ MOST_WINDOWS = 2**31 - 2
     type=click.Choice(AIMS),
     help="What is best, of programs that will do.  [default: speed; for single precision size]",
 )
+@click.option(
+    "--runtime",
+    metavar="LIST",
+    help="Parameters that come at run time, a list of kappa, inertia, velocity and load with commas between.",
+)
 @click.option("--force", is_flag=True, help="Replace files that wavesym did not write, too.")
 @click.option("--check", "only_check", is_flag=True, help="Write nothing; print a diff and exit 1 where files differ.")
 def generate(
@@ -54,6 +61,7 @@ def generate(
     precision: str,
     windows: int | None,
     optimize: str | None,
+    runtime: str | None,
     force: bool,
     only_check: bool,
 ) -> int:
@@ -66,16 +74,19 @@ def generate(
     from wavesym import compiler
 
     asked = (scene, directory, language, evaluator, precision, windows, optimize)
+    given = () if runtime is None else tuple(name.strip() for name in runtime.split(","))
     if only_check:
         with progress(f"check {scene.name}"):
-            difference = compiler.check(*asked, scene_argument())
+            difference = compiler.check(*asked, scene_argument(), given)
         if difference:
             put(difference)
         return 1 if difference else 0
     with progress(f"generate {scene.name}"):
-        written = compiler.generate(*asked, force=force)
+        written = compiler.generate(*asked, given, force=force)
     for path in written:
         click.echo(path)
+    if given and scene.output.tolerance < FINEST:
+        click.echo(f"{scene.name}: tolerance {float(scene.output.tolerance):g} taken as 1e-13 at run time", err=True)
     for line in compiler.no_load(scene):
         click.echo(f"{scene.name}: {line}", err=True)
     for manifest in (path for path in written if path.suffix == ".json"):

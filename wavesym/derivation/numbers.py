@@ -23,7 +23,7 @@ def number(expression: Expr, places: Mapping[str, int | fmpq], parameters: Param
         case Rational():
             return fmpq(int(expression.p), int(expression.q))
         case Symbol():
-            return fmpq(places[expression.name])
+            return fmpq(0) + places[expression.name]  # which may be a rational function
         case Indexed():
             index = int(number(expression.indices[0], places, None))
             value: fmpq = getattr(parameters, _FIELDS[str(expression.base)])[index]

@@ -9,15 +9,23 @@ from flint import fmpq
 
 from wavesym.derivation.exact_rule import JointRule, NodeRule, Weights
 from wavesym.model.node import Node
+from wavesym.numbers.ratio import Ratio
 
 
 def node_rule(node: Node) -> NodeRule:
     """The law of a node on powers of time; what acts on it is no part of that."""
-    return _derived(replace(node, loads=()))
+    bare = replace(node, loads=())
+    # functions of different rings may look alike, so what has symbols is not kept
+    symbolic = any(isinstance(value, Ratio) for value in (node.alpha, node.beta, node.damping))
+    return _derive(bare) if symbolic else _derived(bare)
 
 
 @cache
 def _derived(node: Node) -> NodeRule:
+    return _derive(node)
+
+
+def _derive(node: Node) -> NodeRule:
     # SymPy is needed only here, where laws are made
     from wavesym.derivation.recurrence import node_rule
 

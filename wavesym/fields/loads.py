@@ -83,6 +83,13 @@ class TimedLoad(Load):
         steps, ramps = self.lists
         return getattr(self, steps), getattr(self, ramps)
 
+    def by_list(self) -> Iterator[tuple[str, list[Applied]]]:
+        """Each list that is given, by name, as unit responses."""
+        for name, source, numbers in zip(self.lists, self.sources, self._numbers, strict=True):
+            if numbers:
+                times = zip(self.times, numbers, strict=True)
+                yield name, [Applied(source, rational(time), rational(number)) for time, number in times]
+
     def units(self) -> Iterator[Applied]:
         """The load as unit responses."""
         given = [(source, numbers) for source, numbers in zip(self.sources, self._numbers, strict=True) if numbers]

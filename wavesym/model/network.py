@@ -234,7 +234,7 @@ def network_of(chain: Chain) -> Network:
         points.append(replace(_point(node, scale), place=str(x)))
         if node.right:
             impedance = scale * node.beta / 2 or fmpq(1)  # a prescribed motion does not feel its rod
-            bars.append(Bar(x, x + 1, fmpq(1), fmpq(1), impedance, velocity=fmpq(node.right.velocity)))
+            bars.append(Bar(x, x + 1, fmpq(1), fmpq(1), impedance, velocity=_ZERO + node.right.velocity))
     return Network(tuple(points), tuple(bars))
 
 
@@ -242,7 +242,7 @@ def _point(node: Node, scale: fmpq) -> Point:
     if (node.alpha if node.left else 0) == (node.beta if node.right else 0) == 0:
         return _prescribed(node)
     loads = tuple(UnitLoad(load.kind, load.number, tuple(scale * c for c in load.coefficients)) for load in node.loads)
-    return Point(scale * node.inertia, scale * node.damping, velocity=fmpq(node.velocity), loads=loads)
+    return Point(scale * node.inertia, scale * node.damping, velocity=_ZERO + node.velocity, loads=loads)
 
 
 def _prescribed(node: Node) -> Point:
@@ -250,4 +250,4 @@ def _prescribed(node: Node) -> Point:
     loads = tuple(
         UnitLoad(load.kind, load.number, tuple(c / node.damping for c in load.coefficients)) for load in node.loads
     )
-    return Point(fmpq(0), motion="velocity", velocity=fmpq(node.velocity), loads=loads)
+    return Point(fmpq(0), motion="velocity", velocity=_ZERO + node.velocity, loads=loads)

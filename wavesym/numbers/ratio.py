@@ -156,6 +156,17 @@ class Ratio:
         )
         return fmpq(self.numerator(*point)) / below
 
+    def derivative(self, name: str) -> Ratio:
+        """By a symbol."""
+        place = self.ring.names.index(name)
+        slope = Ratio(self.ring, self.numerator.derivative(place)) / Ratio(
+            self.ring, self.ring.product(self.denominator)
+        )
+        for form, power in self.denominator.items():
+            own = self.ring.forms[form]
+            slope = slope - power * self * Ratio(self.ring, own.derivative(place)) / Ratio(self.ring, own)
+        return slope
+
     @property
     def letters(self) -> set[int]:
         """The places of the names that occur in it."""

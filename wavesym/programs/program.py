@@ -12,6 +12,7 @@ from wavesym.exact.contact import ContactEnd
 from wavesym.model.event import ContactEvent
 from wavesym.model.model import Model
 from wavesym.numbers.reals import Real
+from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.schemes import SCHEMES, Scheme
 
 
@@ -72,7 +73,8 @@ class Driven:
 class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
-    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, or "modes".
+    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "modes", or
+    "runtime": a march whose parameters come at run time, by its `laws`, in C alone.
     `tables`
     are flat, by name, each number as it is written: indices are ints, all else floats of the format; which there are,
     assembly.py says, of rings rings/tables.py, of modes modes/tables.py. `constants` are single numbers.
@@ -94,6 +96,7 @@ class Program:
     whole: bool = True
     driven: Driven | None = None
     proved: bool = True
+    laws: RuntimeLaws | None = None
 
     @property
     def evaluator(self) -> str:

@@ -3,18 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
 from wavesym.exact.reference import Reference, beginning
 from wavesym.model.model import Model
-from wavesym.programs.choice import Evaluator
+from wavesym.numbers.reals import Real
 from wavesym.programs.modes.evaluator import ModesEvaluator
-from wavesym.programs.program import ReferenceValues, StreamedValues
+from wavesym.programs.program import ProgramOutput, ReferenceValues, StreamedValues
 
 _MOST_POINTS = 2000
 _MOST_VALUES = 40_000
 
 
-def reference_values(model: Model, evaluator: Evaluator) -> ReferenceValues | StreamedValues:
+class Checked(Protocol):
+    """What has outputs to check, in numbers of a format, at some tau."""
+
+    @property
+    def real(self) -> Real: ...
+
+    @property
+    def outputs(self) -> tuple[ProgramOutput, ...]: ...
+
+    @property
+    def check_points(self) -> list[float]: ...
+
+
+def reference_values(model: Model, evaluator: Checked) -> ReferenceValues | StreamedValues:
     """At the points that an evaluator wants checked. On very long horizons they cover only the beginning."""
     if isinstance(evaluator, ModesEvaluator):
         return evaluator.streamed()

@@ -18,13 +18,14 @@ class Request:
 
     `optimize` says of programs that meet the tolerance which is best: the fastest ("speed"), or the one with the least
     tables ("size"). Unless it is said the fastest kind is taken; in single precision, which is for small machines, with
-    small tables.
+    small tables. `runtime` names the parameters that are given at run time.
     """
 
     evaluator: str = "auto"
     precision: str = "double"
     windows: int | None = None
     optimize: str | None = None
+    runtime: tuple[str, ...] = ()
 
     @property
     def options(self) -> str:
@@ -32,7 +33,8 @@ class Request:
         options = "" if self.evaluator == "auto" else f" --evaluator {self.evaluator}"
         options += "" if self.precision == "double" else f" --precision {self.precision}"
         options += "" if self.windows is None else f" --windows {self.windows}"
-        return options + ("" if self.optimize is None else f" --optimize {self.optimize}")
+        options += "" if self.optimize is None else f" --optimize {self.optimize}"
+        return options + (f" --runtime {','.join(self.runtime)}" if self.runtime else "")
 
     def refuse_unknown(self) -> None:
         """WavesymError for a word that is none of those there are."""

@@ -9,6 +9,8 @@ from fractions import Fraction
 
 from flint import fmpq
 
+from wavesym.errors import UnservedError
+from wavesym.fields.loads import TimedLoad
 from wavesym.model.damping import Damping
 from wavesym.model.loads import Applied, merged
 from wavesym.model.model import Labels, Model
@@ -70,6 +72,23 @@ def _loads(scene: Scene) -> tuple[Applied, ...]:
     if not scene.system.load_kinds:
         return (Applied("impact", fmpq(0), fmpq(1)),)
     return merged(unit for load in scene.load for unit in load.units())
+
+
+def amplitudes(scene: Scene) -> tuple[tuple[str, Applied], ...]:
+    """The numbers of the loads in the order of the scene, each with what it is called; zeros too.
+
+    UnservedError for loads that have samples.
+    """
+    found: list[tuple[str, Applied]] = []
+    for number, load in enumerate(scene.load):
+        if not isinstance(load, TimedLoad):
+            raise UnservedError(f"load[{number}]: samples given with --runtime load, times expected")
+        found += [
+            (f"{name}[{k}] of load {number}, tau = {load.times[k]}", unit)
+            for name, units in load.by_list()
+            for k, unit in enumerate(units)
+        ]
+    return tuple(found)
 
 
 def _inputs(scene: Scene) -> dict[str, tuple[fmpq, str]]:

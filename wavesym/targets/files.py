@@ -38,6 +38,12 @@ def sources(program: Program, language: str) -> dict[str, str]:
     return _target(language).files(describe(program), program)
 
 
+def runtime_sets(program: Program) -> dict[str, str]:
+    """The C of a program whose parameters come at run time, for many sets of them in one call."""
+    made: dict[str, str] = import_module("wavesym.targets.c.runtime").sets(describe(program), program)
+    return made
+
+
 def tested(language: str) -> bool:
     """Whether a self-test is among the files of a language, or of "all"."""
     return any(_target(name).tested for name in (TARGETS if language == "all" else (language,)))

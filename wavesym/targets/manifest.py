@@ -32,17 +32,25 @@ def manifest(description: Description, program: Program) -> str:
         "evaluator": program.evaluator,
         "reason": description.reason,
         "precision": program.real.name,
-        "size": {"target": SMALL_TARGET, "data": program.bytes, "code_at_most": CODE_AT_MOST[program.kind]},
+        "size": _size(program),
         "tau_max": program.tau_max,
-        "error_bound": program.error_bound,
+        **({} if program.laws else {"error_bound": program.error_bound}),
         **_clock(program),
         "outputs": [_output(output, program) for output in program.outputs],
         **_driven(program),
         **_streamed(program),
+        **_runtime(program),
         "contact_end": {contact.position: contact.digits for contact in description.contacts},
         **_events(description),
     }
     return json.dumps(content, indent=2) + "\n"
+
+
+def _size(program: Program) -> dict[str, object]:
+    """Bytes of tables, and of code, which grows with the laws where parameters come at run time."""
+    if program.laws:
+        return {"target": SMALL_TARGET, "data": program.bytes}
+    return {"target": SMALL_TARGET, "data": program.bytes, "code_at_most": CODE_AT_MOST[program.kind]}
 
 
 def _clock(program: Program) -> dict[str, object]:
@@ -56,7 +64,19 @@ def _output(output: ProgramOutput, program: Program) -> dict[str, object]:
     model = program.provenance.model
     units = {probe.name: probe.unit for probe in model.probes}
     unit = {"unit": units[output.name]} if model.clock else {}
-    return {"name": output.name, "error_bound": output.bound, **unit}
+    bound = {} if program.laws else {"error_bound": output.bound}
+    return {"name": output.name, **bound, **unit}
+
+
+def _runtime(program: Program) -> dict[str, object]:
+    """The parameters that come at run time, with what they are in the scene, and the largest degree."""
+    if program.laws is None:
+        return {}
+    given = {
+        field.name: {label: str(value) for label, value in zip(field.labels, field.values, strict=True)}
+        for field in program.laws.fields
+    }
+    return {"runtime": given, "degree": program.constants["degree"]}
 
 
 def _events(description: Description) -> dict[str, object]:

@@ -198,16 +198,16 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
     columns = model.light_cone(rational(max(tau_max, float(windows))))
     nodes = [model.named.nodes[x] for x in columns]
     loads = model.acting(rational(tau_max))
-    panels = _panels([load.time for load in loads])
+    cut = panels([load.time for load in loads])
     loaded = tuple(column for column, node in enumerate(nodes) if node.loads)
     starts = [rod.velocity / 2 if rod else fmpq(0) for rod in (*(node.left for node in nodes), nodes[-1].right)]
     return Plan(
         model,
-        panels,
+        cut,
         tuple(_junctions(nodes)),
         tuple(starts),
         loaded,
-        tuple(_events(nodes, loaded, loads, panels)),
+        tuple(_events(nodes, loaded, loads, cut)),
         tuple(_channels(nodes, loaded)),
         tuple(
             Watched(probe.name, tuple(_heard(model, terms, columns.start, loaded)))
@@ -222,7 +222,8 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
     )
 
 
-def _panels(times: Sequence[fmpq]) -> tuple[MarchPanel, ...]:
+def panels(times: Sequence[fmpq]) -> tuple[MarchPanel, ...]:
+    """The parts of every window between which loads begin or bend. CostError where there are too many."""
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise CostError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from wavesym.programs.program import Program, ReferenceValues, StreamedValues
-from wavesym.targets.c import closed, march, modes, pieces, rings
+from wavesym.targets.c import closed, march, modes, pieces, rings, runtime
 from wavesym.targets.c.header import header
 from wavesym.targets.c.selftest import selftest
 from wavesym.targets.description import Description
@@ -25,6 +25,8 @@ class CTarget:
     tested = True
 
     def files(self, description: Description, program: Program) -> dict[str, str]:
+        if program.kind == "runtime":
+            return runtime.files(description, program)
         name = description.name
         more = _MORE[program.kind](description, program) if program.kind in _MORE else ""
         made = {

@@ -1,0 +1,86 @@
+"""C with parameters at run time, compiled and loaded."""
+
+import ctypes
+import json
+import re
+from functools import cache
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from tests.support.builds import LANGUAGES, STRICT
+from wavesym import compiler as ways
+from wavesym.running.toolchain import compiler
+from wavesym.scene import Scene
+
+
+def written(scene, runtime, folder, changes=()):
+    """The files of a scene, with `changes` (old, new) in NAME.c."""
+    made = dict(_generated(scene.model_dump_json(), tuple(runtime)))
+    for old, new in changes:
+        assert old in made[f"{scene.name}.c"], old
+        made[f"{scene.name}.c"] = made[f"{scene.name}.c"].replace(old, new)
+    for file, text in made.items():
+        (folder / file).write_text(text)
+
+
+@cache
+def _generated(scene, runtime):
+    with TemporaryDirectory() as folder:
+        paths = ways.generate(Scene(**json.loads(scene)), folder, runtime=runtime)
+        return tuple((path.name, path.read_text()) for path in paths)
+
+
+class BuiltModel:
+    """One model; parameters are given one after the other, in the order of the struct."""
+
+    def __init__(self, scene, runtime, folder, changes=(), flags=("-O1",)):
+        written(scene, runtime, folder, changes)
+        name = scene.name
+        sizes = f"{{sizeof({name}_model), sizeof({name}_tangent)}}"
+        size = f'#include "{name}.h"\nextern const size_t size[2];\nconst size_t size[2] = {sizes};\n'
+        (folder / "size.c").write_text(size)
+        command = [*LANGUAGES["c99"], *STRICT, *flags, "-fPIC", "-shared", f"{name}.c", "size.c", "-o", "made.so"]
+        compiler().run(command, folder)
+        self.library = ctypes.CDLL(str(folder / "made.so"))
+        self.outputs = len(scene.outputs)
+        self.until = float(re.search(r"_TAU_MAX (\S+)", (folder / f"{name}.h").read_text())[1])
+        self.model, self.tangent = (
+            np.zeros(size, np.uint8) for size in (ctypes.c_size_t * 2).in_dll(self.library, "size")
+        )
+        self._build = getattr(self.library, f"{name}_build")
+        self._build.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+        self._estimate = getattr(self.library, f"{name}_error_estimate")
+        self._estimate.argtypes, self._estimate.restype = [ctypes.c_void_p], ctypes.c_double
+        self._eval = getattr(self.library, f"{name}_model_eval")
+        self._eval.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p]
+        self._sample = getattr(self.library, f"{name}_model_sample")
+        self._sample.argtypes = [ctypes.c_void_p, *[ctypes.c_double] * 2, ctypes.c_size_t, ctypes.c_void_p]
+
+        self._build_tangent = getattr(self.library, f"{name}_build_tangent")
+        self._build_tangent.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+        self._tangents = getattr(self.library, f"{name}_tangent_sample")
+        self._tangents.argtypes = self._sample.argtypes
+
+    def tangents(self, parameters, tau0, dtau, count):
+        """Values and derivatives, of shape (1 + parameters, outputs, count)."""
+        given = np.array([float(number) for number in parameters])
+        status = self._build_tangent(self.tangent.ctypes.data, given.ctypes.data)
+        out = np.empty((1 + len(given), self.outputs, count))
+        return status or self._tangents(self.tangent.ctypes.data, tau0, dtau, count, out.ctypes.data), out
+
+    def build(self, *parameters):
+        given = np.array([float(number) for number in parameters])
+        return self._build(self.model.ctypes.data, given.ctypes.data)
+
+    @property
+    def estimate(self):
+        return self._estimate(self.model.ctypes.data)
+
+    def at(self, tau):
+        out = np.empty(self.outputs)
+        return self._eval(self.model.ctypes.data, tau, out.ctypes.data), out
+
+    def sample(self, tau0, dtau, count):
+        out = np.empty((self.outputs, count))
+        return self._sample(self.model.ctypes.data, tau0, dtau, count, out.ctypes.data), out

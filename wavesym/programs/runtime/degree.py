@@ -1,0 +1,101 @@
+"""The largest degree of a program: enough for the scene's own parameters, and for kappa up to `STIFF` where kappa, or
+what else makes bodies light, is given at run time.
+
+Found as the program finds it, by marching: a degree is raised by a quarter until no window misses more than its share.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from flint import fmpq
+
+from wavesym.errors import CostError
+from wavesym.model.network import network_of
+from wavesym.numbers.doubles import nearest
+from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.march.plan import LOAD, Plan, plan
+from wavesym.programs.march.run import Run
+from wavesym.programs.runtime.plan import RuntimePlan
+
+STIFF = fmpq(100)
+LEAST = 8
+_MARGIN = 16  # outputs are often smaller than waves
+_HIGHEST = 1000
+_MOST_WORK = 3e8  # nodes * coefficients * windows, for each degree
+_LARGEST_MODEL = 1 << 28  # bytes
+
+
+def raised(degree: int) -> int:
+    """The next degree to try."""
+    return degree + degree // 4
+
+
+def share(given: RuntimePlan, tolerance: fmpq) -> float:
+    """What a window may miss, relative to the largest wave; no less than what rounding leaves."""
+    return max(nearest(tolerance / (_MARGIN * given.plan.windows)), 2 * nearest(DOUBLE.roundoff))
+
+
+def degrees(given: RuntimePlan, tolerance: fmpq) -> tuple[int, int]:
+    """The degree to begin with, about that of the scene's own parameters, and the one that is enough.
+
+    CostError where that would be beyond reason.
+    """
+    allowed = share(given, tolerance)
+    degree = _enough(_numbers(given, fmpq(0)), LEAST, allowed)
+    first = max(LEAST, 4 * degree // 5)
+    if any(field.positive for field in given.fields):
+        degree = _enough(_numbers(given, STIFF), degree, allowed)
+    size = 8 * given.plan.windows * len(given.strands) * (degree + 2)
+    if size > _LARGEST_MODEL:
+        raise CostError(
+            f"output.until: a model of {size:.1e} bytes would be kept to tau = {given.plan.tau_max:g}, at most "
+            f"{_LARGEST_MODEL:.1e} expected (a shorter horizon, or fewer outputs, helps)"
+        )
+    return first, degree
+
+
+def _numbers(given: RuntimePlan, least: fmpq) -> Plan:
+    """The plan of the scene's own numbers, no kappa below `least`; what loads have no amplitude has 1."""
+    model = given.model
+    chain = model.named
+    kappa = {i: max(value, least) for i, value in chain.parameters.kappa.items()}
+    chain = replace(chain, parameters=replace(chain.parameters, kappa=kappa))
+    loads = tuple(replace(load, weight=load.weight or fmpq(1)) for load in given.loads)
+    ordered = tuple(sorted(loads, key=lambda load: load.time))
+    return plan(replace(model, chain=chain, network=network_of(chain), loads=ordered or model.loads))
+
+
+def _enough(prepared: Plan, degree: int, allowed: float) -> int:
+    """The first of the degrees from one on that misses nothing."""
+    while not _misses_nothing(prepared, degree, allowed):
+        degree = raised(degree)
+        work = prepared.windows * len(prepared.panels) * len(prepared.junctions) * degree
+        if degree > _HIGHEST or work > _MOST_WORK:
+            raise CostError(
+                f"output.until: rates to {nearest(prepared.rate):g} need polynomials of degree {degree} to tau = "
+                f"{prepared.tau_max:g}, at most {_HIGHEST} and {_MOST_WORK:.1e} operations expected "
+                "(a shorter horizon helps)"
+            )
+    return degree
+
+
+def _misses_nothing(prepared: Plan, degree: int, allowed: float) -> bool:
+    run = Run(prepared, degree)
+    leak = np.array(
+        [
+            [0.0 if node.rate is None else run.operators[node.rate * panel.length].leak for node in prepared.junctions]
+            for panel in prepared.panels
+        ]
+    )
+    size = 0.0
+    for block in run.blocks():
+        missed = np.sum(np.abs(block.excess) * leak, axis=(1, 2))
+        means = np.max(np.abs(block.after[:, :LOAD, :, 1:-1, 0]), axis=(1, 2, 3))
+        sizes = np.maximum.accumulate(np.maximum(means, np.max(np.abs(block.ends), axis=(1, 2))))
+        sizes = np.maximum(sizes, size)
+        size = float(sizes[-1])
+        if not bool(np.all(missed <= allowed * sizes)):
+            return False
+    return True

@@ -1,0 +1,180 @@
+"""Model -> Program, for parameters at run time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import accumulate
+
+from flint import fmpq
+
+from wavesym.errors import WavesymError
+from wavesym.model.loads import Applied
+from wavesym.model.model import Model
+from wavesym.numbers.doubles import nearest, rational
+from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.programs.march.plan import LOAD
+from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
+from wavesym.programs.reference_values import reference_values
+from wavesym.programs.request import Request
+from wavesym.programs.runtime.degree import STIFF, degrees, share
+from wavesym.programs.runtime.laws import RuntimeLaws
+from wavesym.programs.runtime.plan import Function, Push, RuntimePlan, runtime_plan
+from wavesym.programs.runtime.request import fields
+
+FINEST = fmpq(1, 10**13)
+"""The smallest tolerance that doubles keep."""
+
+
+def runtime_program(
+    model: Model, request: Request, amplitudes: Sequence[tuple[str, Applied]], *, tested: bool = False
+) -> Program:
+    """The program of a model whose parameters `request.runtime` are given at run time.
+
+    `amplitudes` are those of its loads, each with what it is called. WavesymError, CostError as `fields`,
+    `runtime_plan` and `degrees` say, and where other options are given that say otherwise.
+    """
+    for option, value, usual in (
+        ("--evaluator", request.evaluator, "auto"),
+        ("--precision", request.precision, "double"),
+        ("--windows", request.windows, None),
+        ("--optimize", request.optimize, None),
+    ):
+        if value != usual:
+            raise WavesymError(f"{option}: {value} given with --runtime, {usual or 'nothing'} expected")
+    given = fields(model, request.runtime, amplitudes)
+    chosen = any(field.name == "load" for field in given)
+    loads = [load for _, load in amplitudes] if chosen else [load for load in model.loads if load.source != "impact"]
+    made = runtime_plan(model, given, loads)
+    tolerance = max(model.tolerance, FINEST)
+    least, degree = degrees(made, tolerance)
+    light = f" and for kappa up to {STIFF}" if any(field.positive for field in given) else ""
+    reason = (
+        f"march with {', '.join(request.runtime)} at run time, degrees from {least} to {degree}, enough for the "
+        f"scene's own parameters{light}; errors are estimated"
+    )
+    tables = _tables(made)
+    constants = {**_constants(made), "degree": degree, "least": least, "share": share(made, tolerance)}
+    program = Program(
+        "runtime",
+        DOUBLE,
+        made.plan.tau_max,
+        tuple(ProgramOutput(output.name, nearest(tolerance), 0.0) for output in made.plan.outputs),
+        tables,
+        constants,
+        8 * sum(map(len, tables.values())),
+        Provenance(model, reason, request.options),
+        proved=False,
+        laws=_laws(made, () if chosen else tuple(nearest(load.weight) for load in loads)),
+    )
+    return _with_reference(program) if tested else program
+
+
+def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:
+    nodes = made.plan.junctions
+    functions: dict[str, tuple[Function, ...]] = {
+        "alpha": tuple(node.alpha for node in nodes),
+        "beta": tuple(node.beta for node in nodes),
+        "rate": tuple(fmpq(0) if node.rate is None else node.rate for node in nodes),
+        "motion": tuple(node.motion for node in nodes),
+        "rod": made.plan.rods,
+        "strength": _strengths(made.pushes),
+        "gain": tuple(wave.gain for _, wave in made.heard),
+    }
+    return RuntimeLaws(made.fields, functions, amplitudes)
+
+
+def _strengths(pushes: Iterable[Push]) -> tuple[Function, ...]:
+    return tuple(dict.fromkeys(push.strength for push in pushes))
+
+
+def _constants(made: RuntimePlan) -> dict[str, float]:
+    """Sizes."""
+    plan = made.plan
+    return {
+        "windows": plan.windows,
+        "panels": len(plan.panels),
+        "nodes": len(plan.junctions),
+        "forces": len(plan.loaded),
+        "heard": len(made.heard),
+        "strands": len(made.strands),
+        "events": len(made.pushes),
+        "strengths": len(_strengths(made.pushes)),
+        "lanes": sum(len(field.values) for field in made.fields),
+        "sections": len(made.sections) - 1,
+        "unit": 2 * nearest(DOUBLE.roundoff),
+    }
+
+
+def _tables(made: RuntimePlan) -> dict[str, tuple[float, ...]]:
+    """Panels, changes of loads, sections, strands and the waves they are made of."""
+    plan, pushes = made.plan, made.pushes
+    strengths = _strengths(pushes)
+    terms = [term for strand in made.strands for term in strand.terms]
+    sections, outputs = len(made.sections) - 1, len(plan.outputs)
+    listening = [made.listening(section, output) for section in range(sections) for output in range(outputs)]
+    forces = {column: force for force, column in enumerate(plan.loaded)}
+
+    def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
+        return tuple(map(nearest, values))
+
+    return {
+        "half_length": reals(panel.length / 2 for panel in plan.panels),
+        "since_panel": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
+        "force_on": tuple(forces.get(column, -1) for column in range(len(plan.junctions))),
+        "event_window": tuple(push.window for push in pushes),
+        "event_panel": tuple(push.panel for push in pushes),
+        "event_force": tuple(push.force for push in pushes),
+        "event_power": tuple(push.power for push in pushes),
+        "event_strength": tuple(strengths.index(push.strength) for push in pushes),
+        "event_load": tuple(push.load for push in pushes),
+        "from": tuple(DOUBLE.not_below(begin) for begin in made.sections),
+        "first_strand": _firsts(map(len, listening)),
+        "strand_at": tuple(strand for group in listening for strand in group),
+        "strand_start": reals(strand.start for strand in made.strands),
+        "strand_excess": reals(rational(nearest(strand.start)) - strand.start for strand in made.strands),
+        "strand_scale": reals(1 / strand.half for strand in made.strands),
+        "first_term": _firsts(len(strand.terms) for strand in made.strands),
+        "term_heard": tuple(term.heard for term in terms),
+        "term_way": tuple(term.wave.way for term in terms),
+        "term_sender": tuple(term.wave.column + (term.wave.way != LOAD) for term in terms),
+        "term_back": tuple(term.stretch.back for term in terms),
+        "term_panel": tuple(term.stretch.panel for term in terms),
+        "term_summed": tuple(int(term.wave.summed) for term in terms),
+        "term_low": reals(term.low for term in terms),
+        "term_high": reals(term.high for term in terms),
+        "heard_output": tuple(output for output, _ in made.heard),
+    }
+
+
+def _firsts(counts: Iterable[int]) -> tuple[int, ...]:
+    return tuple(accumulate(counts, initial=0))
+
+
+@dataclass(frozen=True)
+class _Built:
+    """What reference values are asked for: the program with the scene's own parameters."""
+
+    program: Program
+
+    @property
+    def real(self) -> Real:
+        return self.program.real
+
+    @property
+    def outputs(self) -> tuple[ProgramOutput, ...]:
+        return self.program.outputs
+
+    @property
+    def check_points(self) -> list[float]:
+        until = self.program.tau_max
+        return sorted({k / 8 for k in range(int(min(8 * until, 160)) + 1)} | {until})
+
+
+def _with_reference(program: Program) -> Program:
+    """With values of the scene's own parameters, for a self-test, and the largest of each output."""
+    found = reference_values(program.provenance.model, _Built(program))
+    assert isinstance(found, ReferenceValues)
+    sizes = (max(map(abs, row)) for row in found.values)
+    outputs = tuple(replace(output, largest=size) for output, size in zip(program.outputs, sizes, strict=True))
+    return replace(program, outputs=outputs, reference=found)
