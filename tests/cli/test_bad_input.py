@@ -250,7 +250,7 @@ ABSURD = {
     "rods": drive(m=4000),
     "rods for long": drive(m=4000, until="1e6"),
 }
-LONG = ("steps", "light bodies", "rods")  # a few seconds for each request
+LONG = ("steps", "light bodies", "rods", "rods for long")  # a few seconds for each request
 REQUESTS = [
     ["generate", "bad.toml", "-o", "out", "--language", "all"],
     ["generate", "bad.toml", "-o", "out", "--evaluator", "march"],
@@ -359,6 +359,7 @@ def test_a_payload_that_reached_a_template_would_be_seen() -> None:
     assert not re.search(r"from_string|\beval\(|\bexec\(|sympify|getenv|shell=True|pickle\.load", sources)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "darwin", reason="names there are UTF-8")
 def test_names_that_are_no_utf8(tmp_path: Path) -> None:
     """They are printed as they are, or escaped on standard error."""

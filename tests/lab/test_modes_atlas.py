@@ -77,6 +77,7 @@ def check_damping(family):
             assert unsure.error < 1e-8 or ours.x < 1 / 20
 
 
+@pytest.mark.slow
 def test_damping():
     check_damping(damping.family(quietly, ratios=SOME))
 
@@ -122,6 +123,7 @@ def check_spacings(family):
         assert not hat.error > 1e-13
 
 
+@pytest.mark.slow
 def test_spacings():
     check_spacings(spacings.family(quietly, counts=(2, 32)))
 

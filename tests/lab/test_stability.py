@@ -186,6 +186,7 @@ def check_march(family, most):
         assert family.curve(panel, "error")[-1].error <= family.curve(panel, "error")[-1].bound
 
 
+@pytest.mark.slow
 def test_march():
     """The guard too: a degree that is too low is reported by the program, one that suffices is not."""
     family = endurance.family(quietly, horizon=300, tried={Fraction(3, 5): (12,)})

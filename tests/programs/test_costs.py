@@ -76,7 +76,9 @@ def test_numbers_of_99_characters_are_generated_and_run():
     assert len(Reference(lower(scene)).values([0.2 * k for k in range(201)])[0]) == 201
 
 
-@pytest.mark.parametrize(("samples", "outputs"), [(200, 100), (200, 300), (1000, 2000)])
+@pytest.mark.parametrize(
+    ("samples", "outputs"), [(200, 100), (200, 300), pytest.param(1000, 2000, marks=pytest.mark.slow)]
+)
 def test_a_long_record_is_not_for_closed_forms_nor_large_ones_for_pieces(samples, outputs, idle):
     scene = record(samples, outputs)
     for asked in (choice._WORTH_TRYING, 1e5):
