@@ -48,7 +48,7 @@ def family(progress: Progress) -> CurveFamily:
             points += [AtlasPoint(AT, rival.name, finer, at), AtlasPoint(AWAY, rival.name, finer, away)]
     return CurveFamily(
         "fronts",
-        "What rivals do at a front: four of seven never converge there, however fine they are away from it",
+        "What rivals do at a front: five of eight never converge there, however fine they are away from it",
         Axis("how many times finer than the coarsest grid, series or steps"),
         "largest error / largest value",
         tuple(sorted(points, key=lambda point: point.panel != AT)),
