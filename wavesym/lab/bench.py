@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import platform
-import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
@@ -18,7 +17,7 @@ import numpy as np
 from wavesym.lab import recorded, streamed
 from wavesym.lab.equal_degree import at_degree, fitted, ratios
 from wavesym.lab.harness import CALLS, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
-from wavesym.lab.timing import medians
+from wavesym.lab.timing import medians, ran
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import choose
 from wavesym.programs.making import make
@@ -210,15 +209,13 @@ def _generated(label: str, text: str, evaluator: str = "auto") -> Sequence[str]:
         path = Path(directory, "scene.toml")
         path.write_text(text, encoding="utf-8")
         command = [sys.executable, "-m", "wavesym", "generate", str(path), "-o", directory, "--evaluator", evaluator]
-        start = perf_counter()
-        process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-        _, status, usage = os.wait4(process.pid, 0)
-        seconds = perf_counter() - start
-        if status != 0:
-            return label, f"{seconds:.2f}", f"{usage.ru_maxrss / 1000:.0f}", "refused"
+        done = ran(command)
+        told = label, f"{done.seconds:.2f}", f"{done.megabytes:.0f}"
+        if not done.well:
+            return *told, "refused"
         header = next(Path(directory).glob("*.h")).read_text(encoding="utf-8")
         chosen = next(line for line in header.splitlines() if line.startswith(" * Evaluator: "))
-    return label, f"{seconds:.2f}", f"{usage.ru_maxrss / 1000:.0f}", chosen.removeprefix(" * Evaluator: ")
+    return *told, chosen.removeprefix(" * Evaluator: ")
 
 
 def _toml(each: Scene) -> str:

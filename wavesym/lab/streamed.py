@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -14,7 +12,7 @@ import numpy as np
 
 from wavesym.lab.harness import PLAIN, chosen_compiler, compilers
 from wavesym.lab.stream import stream
-from wavesym.lab.timing import medians
+from wavesym.lab.timing import medians, ran
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.programs.modes.evaluator import ModesEvaluator
@@ -84,11 +82,8 @@ def _run(text: str) -> tuple[str, str, str]:
         path.write_text(text, encoding="utf-8")
         out = str(Path(directory, "frame.csv"))
         command = [sys.executable, "-m", "wavesym", "run", str(path), "--samples", str(_SAMPLES), "-o", out]
-        start = perf_counter()
-        process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
-        _, status, usage = os.wait4(process.pid, 0)
-        seconds = perf_counter() - start
-    return f"{seconds:.2f} s" if status == 0 else "refused", f"{usage.ru_maxrss / 1000:.0f}", ""
+        done = ran(command)
+    return f"{done.seconds:.2f} s" if done.well else "refused", f"{done.megabytes:.0f}", ""
 
 
 def _many(made: ModesEvaluator) -> float:
