@@ -12,7 +12,7 @@ from flint import fmpq
 from wavesym.errors import CostError, RangeError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.signal import refuse_many, signals
 from wavesym.model.model import Model
-from wavesym.numbers.doubles import rational
+from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.closed import ClosedForm, closed_form
 from wavesym.programs.march.evaluator import MarchEvaluator, marched, unmet
@@ -184,6 +184,11 @@ def _modes(model: Model, real: Real, *_: object) -> ModesEvaluator:
 
 
 def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator | RingMarch:
+    if not asked and model.tolerance < real.roundoff:
+        raise CostError(
+            f"output.tolerance: {nearest(model.tolerance):g} given, at least {nearest(real.roundoff):.1g} expected, to "
+            f"which {real.name} precision rounds (a larger one helps)"
+        )
     if model.chain is None:
         if windows is not None:
             raise UnservedError("--windows: chain given, collision, drive or building expected (they take given loads)")
