@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import inf
+from math import inf, log10
 from typing import NamedTuple, Protocol
 
 from flint import fmpq
@@ -185,9 +185,10 @@ def _modes(model: Model, real: Real, *_: object) -> ModesEvaluator:
 
 def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator | RingMarch:
     if not asked and model.tolerance < real.roundoff:
+        digits, most = (-log10(nearest(each)) for each in (model.tolerance, real.roundoff))
         raise CostError(
-            f"output.tolerance: {nearest(model.tolerance):g} given, at least {nearest(real.roundoff):.1g} expected, to "
-            f"which {real.name} precision rounds (a larger one helps)"
+            f"output: {digits:.0f} digits would be marched for, at most {most:.0f} expected, as many as "
+            f"{real.name} precision has (a larger tolerance helps)"
         )
     if model.chain is None:
         if windows is not None:
