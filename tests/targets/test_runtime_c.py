@@ -198,7 +198,8 @@ def test_it_compiles_without_a_warning(language, tmp_path):
     if language == "c++17" and shutil.which("g++") is None:
         pytest.skip("no C++ here")
     for file in ("gears.c", "gears_selftest.c"):
-        compiler().run([*LANGUAGES[language], *STRICT, "-c", file, "-o", "made.o"], tmp_path)
+        compiler().run([*LANGUAGES[language], *STRICT, "-c", file, "-o", f"{file}.o"], tmp_path)
+        assert (tmp_path / f"{file}.o").stat().st_size > 0
 
 
 @needs_binutils
