@@ -91,7 +91,7 @@ def test_libraries_stay_behind_their_walls() -> None:
 
 
 @pytest.mark.parametrize(
-    ("room", "source"), [("model", "from wavesym.cli import main"), ("exact", "import wavesym.targets")]
+    ("room", "source"), [("mechanics", "from wavesym.cli import main"), ("exact", "import wavesym.targets")]
 )
 def test_an_arrow_that_runs_up_is_seen(room: str, source: str) -> None:
     (module,) = imported(source)

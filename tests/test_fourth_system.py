@@ -13,7 +13,7 @@ from tests.support.braced import Braced
 from tests.support.generated import files
 from wavesym import compiler
 from wavesym.errors import WavesymError
-from wavesym.model.loads import Applied
+from wavesym.mechanics.loads import Applied
 from wavesym.running.compiled import compiled, imported
 from wavesym.scene import Scene, lower
 from wavesym.systems import SYSTEMS

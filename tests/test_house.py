@@ -11,7 +11,7 @@ import pytest
 
 import wavesym
 from wavesym import compiler
-from wavesym.model import chain
+from wavesym.mechanics import chain
 from wavesym.scene import Scene
 
 PACKAGE = Path(wavesym.__file__).parent

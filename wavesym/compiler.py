@@ -3,7 +3,7 @@
     stage     call                       takes             gives                             room
     -------   ------------------------   ---------------   -------------------------------   --------------------
     read      Scene.from_toml            TOML              Scene: what the user said         scene/, systems/
-    lower     lower                      Scene             Model: exact, nodes and loads     scene/ -> model/
+    lower     lower                      Scene             Model: exact, nodes and loads     scene/ -> mechanics/
     derive    node_law, recurrence       nodes, a system   laws of coefficients              derivation/   SymPy
     run       full_table, signals, ...   Model, laws       tables, waves, reference values   exact/
     choose    make                       Model             Program: tables and bounds        programs/
@@ -37,7 +37,7 @@ from wavesym.exact.symbolic_cost import refuse_costly
 from wavesym.exact.table import Row, Table, full_table
 from wavesym.fields.loads import SampledLoad
 from wavesym.fields.table import shown
-from wavesym.model.symbolic import generic, symbolic
+from wavesym.mechanics.symbolic import generic, symbolic
 from wavesym.numbers.doubles import fraction, nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
@@ -52,9 +52,9 @@ from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
 
 if TYPE_CHECKING:
-    from wavesym.model.chain import Chain
-    from wavesym.model.model import Model
-    from wavesym.model.node import System
+    from wavesym.mechanics.chain import Chain
+    from wavesym.mechanics.model import Model
+    from wavesym.mechanics.node import System
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
     from wavesym.running.sets import RuntimeModel

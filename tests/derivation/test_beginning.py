@@ -8,7 +8,7 @@ from wavesym.derivation.delay_terms import exact
 from wavesym.derivation.numbers import number
 from wavesym.derivation.rods import rod_kinds
 from wavesym.documents.derivation.dimensions import LENGTH, SPEED, UNIT, dimensions
-from wavesym.model.node import Parameters, System
+from wavesym.mechanics.node import Parameters, System
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE

@@ -10,7 +10,7 @@ import pytest
 from tests.support.scenes import NAMED
 from wavesym.documents.derivation.document import derivation, scene_derivation
 from wavesym.errors import WavesymError
-from wavesym.model.symbolic import symbolic
+from wavesym.mechanics.symbolic import symbolic
 from wavesym.scene import Scene
 
 SYSTEMS = ("collision", "drive", "building")

@@ -16,9 +16,9 @@ from wavesym.documents.derivation.families import integral, own_rate, solved
 from wavesym.documents.derivation.patterns import GENERIC, pattern_laws, patterns, rates
 from wavesym.exact.increments import integrated
 from wavesym.exact.table import full_table
-from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters
-from wavesym.model.symbolic import symbolic
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Parameters
+from wavesym.mechanics.symbolic import symbolic
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE

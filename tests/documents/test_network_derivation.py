@@ -21,7 +21,7 @@ from wavesym.documents.derivation.network_statement import MOST_SYMBOLIC, networ
 from wavesym.documents.derivation.notation import Text
 from wavesym.exact.joint import JointLaw
 from wavesym.exact.joint_response import joint_polynomial
-from wavesym.model.network import Bar, Link, Network, Point
+from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.numbers.ratio import Ring
 from wavesym.scene import Scene, lower
 

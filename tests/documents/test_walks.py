@@ -11,7 +11,7 @@ from wavesym.documents.walks import walk_polynomials
 from wavesym.errors import CostError
 from wavesym.exact.table import Function
 from wavesym.exact.walks import departures, function_walks, letters, units, walks_until
-from wavesym.model.symbolic import generic
+from wavesym.mechanics.symbolic import generic
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.drive import DRIVE
 

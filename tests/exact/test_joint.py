@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
-from wavesym.model.network import Bar, Link, Network, Point
+from wavesym.mechanics.network import Bar, Link, Network, Point
 
 SMALL = st.fractions(0, 4, max_denominator=6).map(lambda x: fmpq(x.numerator, x.denominator))
 POSITIVE = st.fractions("1/4", 4, max_denominator=6).map(lambda x: fmpq(x.numerator, x.denominator))

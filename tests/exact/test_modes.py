@@ -16,8 +16,8 @@ from wavesym.exact.modes import frequencies as found
 from wavesym.exact.modes.frequencies import Spectrum, frequencies, searched
 from wavesym.exact.modes.statics import Statics
 from wavesym.exact.modes.stiffness import Stiffness
-from wavesym.model.network import Bar, End, Network, Point
-from wavesym.model.node import Node, Rod
+from wavesym.mechanics.network import Bar, End, Network, Point
+from wavesym.mechanics.node import Node, Rod
 from wavesym.scene import Scene, lower
 
 W, E = sympy.symbols("w E")  # E = exp(-i w)

@@ -16,8 +16,8 @@ from wavesym.exact.ball import Balls
 from wavesym.exact.joint import Enclosed
 from wavesym.exact.motion import Motion, is_zero
 from wavesym.exact.network_waves import SentWave
-from wavesym.model.loads import Applied
-from wavesym.model.network import End
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import End
 from wavesym.numbers.doubles import rational
 from wavesym.scene import lower
 

@@ -27,8 +27,8 @@ from wavesym.exact.network_response import RuledNetwork
 from wavesym.exact.network_table import NetworkTable, network_table
 from wavesym.exact.signal import Signal, observed, signals
 from wavesym.exact.table import Function, full_table
-from wavesym.model.model import Model
-from wavesym.model.network import Bar, Link, Network, Point
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text
 

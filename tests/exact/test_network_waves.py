@@ -16,7 +16,7 @@ from wavesym.exact.joint import Enclosed
 from wavesym.exact.knots import Knots
 from wavesym.exact.network_waves import NetworkWaves, SentWave
 from wavesym.exact.reference import Reference
-from wavesym.model.network import Bar, End, Link, Network, Point
+from wavesym.mechanics.network import Bar, End, Link, Network, Point
 from wavesym.numbers.doubles import rational
 from wavesym.scene import lower
 

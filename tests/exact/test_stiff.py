@@ -19,7 +19,7 @@ from wavesym.exact.joint import SWING, JointLaw
 from wavesym.exact.knots import MOST_KNOTS, Knots
 from wavesym.exact.motion import Motion
 from wavesym.exact.reference import Reference
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.scene import lower
 
 GROUND = [{"mass": 1, "name": "body", "spring": "K"}]

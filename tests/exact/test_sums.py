@@ -20,9 +20,9 @@ from wavesym.exact.increments import Increment, add, start, trimmed
 from wavesym.exact.motion import Motion
 from wavesym.exact.signal import Signal, signals
 from wavesym.exact.silence import silent
-from wavesym.model import reading
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics import reading
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 
@@ -206,7 +206,7 @@ def test_a_wrong_factor_is_seen(part: tuple[str, str], monkeypatch: pytest.Monke
     assert text.count(right) == 1
     changed: dict[str, Any] = {"__name__": reading.__name__}
     exec(compile(text.replace(right, wrong), reading.__file__, "exec"), changed)
-    monkeypatch.setattr("wavesym.model.model.readings", changed["readings"])
+    monkeypatch.setattr("wavesym.mechanics.model.readings", changed["readings"])
     assert not agree(accelerated(ALL))
 
 

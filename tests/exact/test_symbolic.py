@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from wavesym.errors import SceneError
 from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.table import full_table
-from wavesym.model import symbolic as symbolic_module
-from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters
-from wavesym.model.symbolic import generic, symbolic
+from wavesym.mechanics import symbolic as symbolic_module
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Parameters
+from wavesym.mechanics.symbolic import generic, symbolic
 from wavesym.numbers.forms import Forms
 from wavesym.numbers.ratio import Ratio, Ring
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND

@@ -7,7 +7,7 @@ from wavesym.errors import CostError
 from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import LARGEST_SYMBOLIC, refuse_costly, symbolic_terms
 from wavesym.exact.table import full_table
-from wavesym.model.symbolic import generic
+from wavesym.mechanics.symbolic import generic
 from wavesym.numbers.ratio import Ratio
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION

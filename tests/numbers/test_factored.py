@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.table import full_table
-from wavesym.model.symbolic import generic
+from wavesym.mechanics.symbolic import generic
 from wavesym.numbers import factored as module
 from wavesym.numbers.factored import irreducible
 from wavesym.systems.building import BUILDING_FORCE

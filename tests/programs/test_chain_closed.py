@@ -18,7 +18,7 @@ from tests.support.generated import files, program_files
 from tests.support.laplace import Laplace
 from wavesym.errors import UnservedError
 from wavesym.exact.signal import Arrival, Signal, signals
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.choice import attempt, choose
 from wavesym.programs.closed import ClosedForm, closed_form

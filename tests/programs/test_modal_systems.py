@@ -15,7 +15,7 @@ from tests.support.drawn import systems
 from tests.support.modal import building, by_elements, chain, samples
 from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.reference import Reference
-from wavesym.model.damping import Damping
+from wavesym.mechanics.damping import Damping
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes import system as made_by
 from wavesym.programs.modes.roughness import Roughness, roughness

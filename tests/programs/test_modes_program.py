@@ -14,7 +14,7 @@ from tests.support import oscillators
 from tests.support.oscillators import by_exponentials, exact
 from wavesym.cli import main
 from wavesym.errors import ToleranceError, UnservedError
-from wavesym.model.damping import Damping
+from wavesym.mechanics.damping import Damping
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs import choice
 from wavesym.programs.choice import attempts, choose

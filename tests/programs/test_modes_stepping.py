@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.support import oscillators
 from tests.support.oscillators import by_exponentials, evaluator, exact, storeys, uniform
 from wavesym.errors import UnservedError
-from wavesym.model.loads import Applied
+from wavesym.mechanics.loads import Applied
 from wavesym.numbers.doubles import midpoint, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.modes import rounding

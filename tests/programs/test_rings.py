@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from tests.support.drives import DRIVE, drive, every, exact, instants, small
 from tests.support.laplace import Laplace
 from wavesym.errors import CostError, UnservedError, WavesymError
-from wavesym.model.model import Model
-from wavesym.model.network import Link
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Link
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program

@@ -15,8 +15,8 @@ from tests.support.drives import drive, every, exact, instants, small
 from wavesym.errors import WavesymError
 from wavesym.exact.joint import JointLaw
 from wavesym.exact.motion import Motion
-from wavesym.model.model import Model
-from wavesym.model.network import Bar, Link, Network, Point
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.making import program

@@ -15,7 +15,7 @@ from tests.support.generated import files
 from tests.targets.test_march_hand import march
 from wavesym.errors import UnservedError
 from wavesym.exact.reference import Reference
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import marched

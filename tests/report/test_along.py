@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wavesym
-from wavesym.model.loads import Applied
+from wavesym.mechanics.loads import Applied
 from wavesym.report.along import Along, Band, Spot, along, cells, limit
 from wavesym.report.envelope_values import envelope, extremes
 from wavesym.report.loads import load_histories, stretches

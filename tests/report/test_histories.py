@@ -17,9 +17,9 @@ from wavesym.compiler import evaluator
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.increments import start
 from wavesym.exact.reference import Reference
-from wavesym.model.clock import Clock
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.clock import Clock
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.report import histories as made_of
 from wavesym.report.histories import Histories, History, arrivals, histories

@@ -9,7 +9,7 @@ from flint import arb
 import wavesym
 from wavesym.exact.field import Field
 from wavesym.exact.reference import Reference
-from wavesym.model.event import ContactEvent
+from wavesym.mechanics.event import ContactEvent
 from wavesym.report import xt
 from wavesym.report.stations import open_times
 from wavesym.scene import Scene, lower

@@ -22,8 +22,8 @@ from wavesym.compiler import SAMPLES
 from wavesym.errors import CostError
 from wavesym.exact.arrival import first_arrivals, light_arrivals
 from wavesym.exact.extremes import extremes
-from wavesym.model.clock import Clock
-from wavesym.model.damping import Damping
+from wavesym.mechanics.clock import Clock
+from wavesym.mechanics.damping import Damping
 from wavesym.programs.making import make
 from wavesym.programs.modes.panels import Panels
 from wavesym.programs.request import Request

@@ -10,7 +10,7 @@ from flint import fmpq
 
 from wavesym import compiler
 from wavesym.cli import main
-from wavesym.model.damping import Damping
+from wavesym.mechanics.damping import Damping
 from wavesym.rivals import advice, mass
 from wavesym.rivals.advice import advise
 from wavesym.scene import Scene, lower

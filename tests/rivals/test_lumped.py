@@ -7,7 +7,7 @@ import pytest
 from flint import fmpq
 from scipy.linalg import expm, sqrtm
 
-from wavesym.model.damping import Damping
+from wavesym.mechanics.damping import Damping
 from wavesym.numbers.doubles import rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request

@@ -10,7 +10,7 @@ from flint import fmpq
 
 from wavesym.compiler import evaluator
 from wavesym.exact.reference import Reference
-from wavesym.model.loads import Applied
+from wavesym.mechanics.loads import Applied
 from wavesym.rivals import characteristics, delays, differences, elements, laplace, modes, steps
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.line import stated

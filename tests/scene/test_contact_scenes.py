@@ -12,8 +12,8 @@ from flint import fmpq
 import wavesym
 from wavesym.cli import main
 from wavesym.errors import SceneError, UnservedError
-from wavesym.model.model import Model
-from wavesym.model.network import Link, Network
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Link, Network
 from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text
 

@@ -10,7 +10,7 @@ import wavesym
 from tests.support.modal import building, chain, samples
 from wavesym import compiler
 from wavesym.errors import SceneError, UnservedError
-from wavesym.model.damping import Damping
+from wavesym.mechanics.damping import Damping
 from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
 

@@ -10,7 +10,7 @@ import wavesym
 from tests.support.scenes import NAMED
 from wavesym.cli import main
 from wavesym.errors import CostError
-from wavesym.model.network import Network, Point
+from wavesym.mechanics.network import Network, Point
 from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text
 

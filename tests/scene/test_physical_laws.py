@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from wavesym.model.clock import Clock
+from wavesym.mechanics.clock import Clock
 from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
 from wavesym.scene.physical.building import Columns

@@ -23,7 +23,7 @@ from wavesym import compiler
 from wavesym.cli import main
 from wavesym.documents.inspection.units import remarks
 from wavesym.errors import SceneError
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import fraction
 from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text

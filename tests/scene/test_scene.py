@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wavesym
-from wavesym.model.loads import Applied
+from wavesym.mechanics.loads import Applied
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.scene import Scene, builtin_names, lower
 

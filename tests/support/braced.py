@@ -11,7 +11,7 @@ from pydantic import Field
 
 from wavesym.fields.loads import LoadKinds
 from wavesym.fields.numbers import Positives
-from wavesym.model.node import Family, Node, Parameters, Quantity, System
+from wavesym.mechanics.node import Family, Node, Parameters, Quantity, System
 from wavesym.systems.building import BUILDING_GROUND, Acceleration, SampledAcceleration
 from wavesym.systems.preset import Preset
 

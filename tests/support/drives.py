@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tests.support import chains
 from wavesym.exact.reference import Reference
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.scene import Scene
 
 DRIVE: dict[str, Any] = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.programs import making
 from wavesym.programs.choice import Made
 from wavesym.programs.program import Program

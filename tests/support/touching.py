@@ -11,12 +11,12 @@ from flint import ctx, fmpq
 from wavesym.exact.ball import Balls
 from wavesym.exact.events import events
 from wavesym.exact.motion import Motion
-from wavesym.model.event import ContactEvent
-from wavesym.model.loads import Applied
-from wavesym.model.model import Labels, Model
-from wavesym.model.network import Bar, Link, Network, Point
-from wavesym.model.node import UnitLoad
-from wavesym.model.probe import Probe
+from wavesym.mechanics.event import ContactEvent
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Labels, Model
+from wavesym.mechanics.network import Bar, Link, Network, Point
+from wavesym.mechanics.node import UnitLoad
+from wavesym.mechanics.probe import Probe
 
 
 def q(value: object) -> fmpq:

@@ -14,7 +14,7 @@ from flint import fmpq
 
 from tests.support.builds import LANGUAGES, STRICT
 from tests.support.oscillators import evaluator, exact, oscillators, storeys, uniform
-from wavesym.model.probe import Probe
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.assembly import assemble
 from wavesym.programs.modes.loads import LinearLoads

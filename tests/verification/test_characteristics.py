@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 from scipy.special import eval_laguerre
 
 from wavesym.errors import CostError
-from wavesym.model.chain import Chain
-from wavesym.model.loads import Applied
-from wavesym.model.node import Node, Parameters, Rod, System, UnitLoad, single
-from wavesym.model.probe import Probe
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.node import Node, Parameters, Rod, System, UnitLoad, single
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks

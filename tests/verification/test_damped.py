@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from flint import fmpq
 
-from wavesym.model.damping import Damping
+from wavesym.mechanics.damping import Damping
 from wavesym.scene import Scene, lower
 from wavesym.verification import damped as module
 from wavesym.verification.report import verify

@@ -8,8 +8,8 @@ from flint import fmpq
 
 from wavesym.exact import table as tables
 from wavesym.exact.table import Function, full_table
-from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Parameters
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE

@@ -10,8 +10,8 @@ from flint import fmpq
 
 from wavesym.exact.joint import JointLaw
 from wavesym.exact.reference import Reference
-from wavesym.model.model import Model
-from wavesym.model.network import Joint, Network
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Joint, Network
 from wavesym.scene import Scene, lower
 from wavesym.verification.checks import integration, spacetime
 from wavesym.verification.graph import graph

@@ -12,8 +12,8 @@ from flint import fmpq
 
 from wavesym.exact.events import events
 from wavesym.exact.reference import Reference
-from wavesym.model.model import Model
-from wavesym.model.network import Link, Network
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Link, Network
 from wavesym.scene import Scene, lower
 from wavesym.verification.checks import integration, invariants, spacetime
 from wavesym.verification.contacts import _compared, _Method, fronts, happening

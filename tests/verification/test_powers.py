@@ -22,9 +22,9 @@ from wavesym.documents.derivation.highest_powers import (
 )
 from wavesym.exact.table import Function, Rules
 from wavesym.exact.walks import Unit, departures, function_walks, letters, units, walks_until
-from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters
-from wavesym.model.symbolic import generic
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Parameters
+from wavesym.mechanics.symbolic import generic
 from wavesym.systems import presets
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from wavesym.exact.table import full_table
 from wavesym.exact.walks import letters, units, walks_until
-from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Parameters
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE

@@ -12,7 +12,7 @@ from sympy import Expr, IndexedBase, Integer, Rational, Symbol
 
 from wavesym.derivation.delay_terms import Line, Operator, Wave, exact, load, wave
 from wavesym.derivation.node_law import node_law
-from wavesym.model.node import Family, Node, Parameters, Rod, System
+from wavesym.mechanics.node import Family, Node, Parameters, Rod, System
 
 INDEX = Symbol("i", integer=True, positive=True)
 COUNT = Symbol("m", integer=True, positive=True)

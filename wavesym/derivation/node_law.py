@@ -18,7 +18,7 @@ from functools import cache
 from sympy import Expr, Rational, Symbol, expand, solve, symbols
 
 from wavesym.derivation.delay_terms import Operator, exact
-from wavesym.model.node import Node
+from wavesym.mechanics.node import Node
 
 INERTIA, DAMPING, ALPHA, BETA = symbols("M c alpha beta")
 _Q, _MOVED, _FORCE = symbols("q Dq S")

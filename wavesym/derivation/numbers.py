@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from flint import fmpq, fmpq_mpoly
 from sympy import Add, Expr, Indexed, IndexedBase, Integer, Mul, Pow, Rational, Symbol
 
-from wavesym.model.node import Parameters
+from wavesym.mechanics.node import Parameters
 
 if TYPE_CHECKING:
     from wavesym.numbers.ratio import Ratio

@@ -22,8 +22,8 @@ from wavesym.derivation.delay_terms import Operator
 from wavesym.derivation.exact_rule import JointRule, Linear, LoadTerm, NodeRule, Rule, Term, Weights
 from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, NodeLaw, node_law
 from wavesym.derivation.numbers import number
-from wavesym.model.chain import Chain
-from wavesym.model.node import Node, Parameters, System
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Node, Parameters, System
 
 RATE = Symbol("g")
 POWER = Symbol("k", integer=True, nonnegative=True)

@@ -8,7 +8,7 @@ from sympy import Expr
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.delay_terms import exact
-from wavesym.model.node import Rod, System
+from wavesym.mechanics.node import Rod, System
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from flint import fmpq
 
 from wavesym.exact.network_table import NetworkTable
 from wavesym.exact.table import Row, Table
-from wavesym.model.symbolic import SymbolicChain
+from wavesym.mechanics.symbolic import SymbolicChain
 from wavesym.numbers.factored import written
 from wavesym.numbers.ratio import Ratio
 from wavesym.rendering import render_stream

@@ -12,8 +12,8 @@ from flint import fmpq
 from wavesym.errors import CostError
 from wavesym.exact.table import Function, Rules
 from wavesym.exact.walks import Letters, Unit, departures, function_walks, letters, units, walks
-from wavesym.model.node import Quantity
-from wavesym.model.symbolic import SymbolicChain
+from wavesym.mechanics.node import Quantity
+from wavesym.mechanics.symbolic import SymbolicChain
 from wavesym.numbers.ratio import Ratio
 from wavesym.rendering import render
 

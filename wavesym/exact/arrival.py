@@ -18,7 +18,7 @@ from flint import fmpq
 from wavesym.exact.ball import Segment
 from wavesym.exact.motion import Motion
 from wavesym.exact.silence import arrivals
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 
 _MOST = 200_000  # fronts that are followed: some seconds

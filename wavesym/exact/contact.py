@@ -13,8 +13,8 @@ from wavesym.errors import CostError
 from wavesym.exact.ball import Segment, polynomials, segments
 from wavesym.exact.increments import Increment, apply, start, trimmed
 from wavesym.exact.signal import RuledChain, Signal, observed
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import midpoint, rational
 from wavesym.numbers.reals import DOUBLE, Real

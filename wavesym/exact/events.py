@@ -5,8 +5,8 @@ from __future__ import annotations
 from flint import arb, ctx, fmpq
 
 from wavesym.exact.schedule import Schedule, schedule
-from wavesym.model.event import ContactEvent
-from wavesym.model.model import Model
+from wavesym.mechanics.event import ContactEvent
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 

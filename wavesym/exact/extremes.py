@@ -27,8 +27,8 @@ from wavesym.errors import CostError, UnservedError
 from wavesym.exact.ball import Segment
 from wavesym.exact.motion import Motion, is_zero
 from wavesym.exact.silence import silent
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import middle, midpoint, nearest, not_below, rational
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from wavesym.exact.events import events
 from wavesym.exact.motion import Motion
 from wavesym.exact.network_waves import SentWave, Waves
-from wavesym.model.model import Model
-from wavesym.model.network import End
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import End
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import middle, nearest
 
 Array = NDArray[np.float64]

@@ -19,7 +19,7 @@ from wavesym.exact.fronts import departures, reachable
 from wavesym.exact.network_joints import START, NetworkJoints, unit_at
 from wavesym.exact.node_rules import joint_rule
 from wavesym.exact.table_size import MOST_WORK, Size, mean_bits, response_size
-from wavesym.model.network import End
+from wavesym.mechanics.network import End
 
 MOST_FRONTS = 20_000
 Shape = Mapping[fmpq, int]

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from flint import fmpq
 
-from wavesym.model.network import End, Network
+from wavesym.mechanics.network import End, Network
 
 T = TypeVar("T")
 Answer = Callable[[int, fmpq, Mapping[End, T]], Iterator[tuple[End, T]]]

@@ -10,7 +10,7 @@ from wavesym.errors import UnservedError
 from wavesym.exact.increments import Increment, add, integrated
 from wavesym.exact.joint import JointLaw
 from wavesym.exact.joint_response import JointResponse, joint_polynomial, joint_response, rates, written
-from wavesym.model.network import End, Network, Point
+from wavesym.mechanics.network import End, Network, Point
 
 START = "start"
 """The source of what moves at tau = 0."""

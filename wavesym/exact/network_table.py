@@ -10,7 +10,7 @@ from flint import fmpq
 
 from wavesym.exact.network_response import RuledNetwork, Timed, function_of
 from wavesym.exact.table import Function, Row
-from wavesym.model.network import Network
+from wavesym.mechanics.network import Network
 
 
 @dataclass(frozen=True)

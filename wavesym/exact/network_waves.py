@@ -11,8 +11,8 @@ from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
 from wavesym.exact.node_rules import joint_rule
-from wavesym.model.loads import Applied
-from wavesym.model.network import End, Joint, Network
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import End, Joint, Network
 
 # on a stretch that is shorter a few powers are enough
 _BRIEF = fmpq(1, 2**64)

@@ -8,7 +8,7 @@ from functools import cache
 from flint import fmpq
 
 from wavesym.derivation.exact_rule import JointRule, NodeRule, Weights
-from wavesym.model.node import Node
+from wavesym.mechanics.node import Node
 from wavesym.numbers.ratio import Ratio
 
 

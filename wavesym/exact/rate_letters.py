@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from flint import fmpq_mpoly
 
-from wavesym.model.symbolic import SymbolicChain, parameters, rates
+from wavesym.mechanics.symbolic import SymbolicChain, parameters, rates
 from wavesym.numbers.ratio import Ratio, Ring
 
 

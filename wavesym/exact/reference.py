@@ -16,7 +16,7 @@ from wavesym.exact.ball import Balls, Source, largest, segments, values
 from wavesym.exact.events import what_helps
 from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion, waves_size
 from wavesym.exact.signal import Signal, refuse_many, signals
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.balls import FIRST_BITS
 from wavesym.numbers.doubles import not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real

@@ -22,8 +22,8 @@ from wavesym.exact.crossing import first_fall, positive_until, sign_after
 from wavesym.exact.joint import Enclosed
 from wavesym.exact.touching_joint import Moved, SwingError
 from wavesym.exact.touching_waves import Stage, TouchingWaves
-from wavesym.model.loads import Applied
-from wavesym.model.network import Network
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import middle, nearest
 
 # stretches in all, and those whose motion is a series: half a minute

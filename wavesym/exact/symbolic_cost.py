@@ -13,8 +13,8 @@ from math import factorial, inf, log2
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.model.chain import Chain
-from wavesym.model.node import Node
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Node
 from wavesym.numbers.ratio import Ratio
 
 LARGEST_SYMBOLIC = 3_500_000  # terms; 280 bytes and 5 microseconds each were measured, writing them included

@@ -16,7 +16,7 @@ from flint import fmpq
 from wavesym.derivation.exact_rule import Rule
 from wavesym.exact.increments import Increment, add, apply, solve, start
 from wavesym.exact.table_size import refuse_large
-from wavesym.model.chain import Chain
+from wavesym.mechanics.chain import Chain
 
 
 class Function(NamedTuple):

@@ -18,8 +18,8 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.model.chain import Chain
-from wavesym.model.node import Quantity
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Quantity
 
 LARGEST = 400_000_000  # bytes; made and written in half a minute
 MOST_WORK = 1e6  # half a minute

@@ -28,8 +28,8 @@ from wavesym.exact.network_waves import Acting
 from wavesym.exact.node_rules import joint_rule
 from wavesym.exact.onset import Onset
 from wavesym.exact.sums import Terms, collected, one_at_each_instant, scaled, together, told
-from wavesym.model.loads import Applied
-from wavesym.model.network import Network
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import Network
 
 _NOTHING, _ONE = fmpq(0), fmpq(1)
 _SLACK = fmpq(1, 2**20)

@@ -15,8 +15,8 @@ from wavesym.exact.joint import Enclosed
 from wavesym.exact.network_waves import SentWave, Waves
 from wavesym.exact.sums import together
 from wavesym.exact.touching_joint import Moved, TouchingJoint
-from wavesym.model.loads import Applied
-from wavesym.model.network import End, Network
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import End, Network
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,8 @@ from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 
 from wavesym.errors import WavesymError
 from wavesym.exact.table import Function
-from wavesym.model.chain import Chain
-from wavesym.model.node import Node, Quantity
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Node, Quantity
 
 
 class Unit(NamedTuple):

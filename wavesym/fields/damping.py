@@ -11,7 +11,7 @@ from pydantic import PlainSerializer, PlainValidator
 from wavesym.errors import did_you_mean
 from wavesym.fields.numbers import exact
 from wavesym.fields.table import shown, wrong
-from wavesym.model.damping import Damping
+from wavesym.mechanics.damping import Damping
 from wavesym.numbers.doubles import fraction, rational
 
 _MOST = 1000

@@ -13,7 +13,7 @@ from pydantic import Field, field_validator, model_validator
 
 from wavesym.fields.numbers import Numbers, Positive
 from wavesym.fields.table import SceneTable, shown, wrong
-from wavesym.model.loads import Applied
+from wavesym.mechanics.loads import Applied
 from wavesym.numbers.doubles import rational
 
 _LONG = 440  # characters of a load that is written out

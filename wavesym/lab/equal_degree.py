@@ -14,7 +14,7 @@ from flint import fmpq
 
 from wavesym.lab.harness import SAMPLES, many
 from wavesym.lab.timing import medians
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.programs.pieces import Pieces

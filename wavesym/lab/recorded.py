@@ -10,7 +10,7 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.lab.timing import medians
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
 from wavesym.rivals import modal_elements

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.reference import Reference
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint, rational
 from wavesym.programs.making import make
 from wavesym.programs.program import Program

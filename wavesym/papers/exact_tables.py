@@ -9,8 +9,8 @@ from flint import fmpq
 
 from wavesym.exact.increments import Increment
 from wavesym.exact.table import Function, Rules, unit_response
-from wavesym.model.chain import Chain
-from wavesym.model.node import Family, Node, Parameters, Quantity, System
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Family, Node, Parameters, Quantity, System
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE

@@ -11,7 +11,7 @@ from flint import fmpq
 
 from wavesym.errors import CostError, RangeError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.signal import refuse_many, signals
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.closed import ClosedForm, closed_form

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.events import events
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import Made, choose
 from wavesym.programs.program import Program, Provenance

@@ -29,7 +29,7 @@ from wavesym.exact.ball import Balls, Segment
 from wavesym.exact.events import what_helps
 from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion, is_zero
 from wavesym.exact.silence import silent
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers import chebyshev
 from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import bound, middle, nearest, rational

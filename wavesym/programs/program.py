@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wavesym.exact.contact import ContactEnd
-from wavesym.model.event import ContactEvent
-from wavesym.model.model import Model
+from wavesym.mechanics.event import ContactEvent
+from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.schemes import SCHEMES, Scheme

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from wavesym.exact.reference import Reference, beginning
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.program import ProgramOutput, ReferenceValues, StreamedValues

@@ -15,7 +15,7 @@ from pydantic import Field, PlainValidator, model_validator
 from wavesym.fields.loads import Load, linear
 from wavesym.fields.numbers import Exact, Positive
 from wavesym.fields.table import shown, wrong
-from wavesym.model.loads import Applied
+from wavesym.mechanics.loads import Applied
 from wavesym.records.record_file import as_decimal
 from wavesym.records.recording import Recorded
 

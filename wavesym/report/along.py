@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.report.histories import Histories, Points, histories
 from wavesym.report.reduction import columns_of, extremes_between

@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.report.along import Along, Band
 from wavesym.report.envelope_values import envelope, extremes
 from wavesym.report.groups import axis_title

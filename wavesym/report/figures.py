@@ -14,7 +14,7 @@ from textwrap import wrap
 import numpy as np
 from matplotlib.figure import Figure
 
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.papers.pielorz1979.figure_scenes import TriedLoad, contact_end, figure, loads
 from wavesym.papers.pielorz1979.figures import (

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.report.histories import Histories, History, Points
 from wavesym.report.timescale import Timescale, timescale
 

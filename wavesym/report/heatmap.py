@@ -16,7 +16,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.report.along import Along, Band, cells, limit
 from wavesym.report.groups import axis_title, load_panel
 from wavesym.report.histories import History

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from wavesym.errors import ToleranceError, WavesymError
 from wavesym.exact.contact import ContactEnd, contact_ends
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.programs.making import make
 from wavesym.programs.program import Program

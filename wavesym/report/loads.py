@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 from flint import fmpq
 
-from wavesym.model.loads import Applied
-from wavesym.model.model import Model
-from wavesym.model.network import Point
-from wavesym.model.node import UnitLoad
-from wavesym.model.probe import Probe
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Point
+from wavesym.mechanics.node import UnitLoad
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.report.histories import History, Points
 from wavesym.scene.physical.scale import Scale

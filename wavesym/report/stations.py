@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from wavesym.model.event import ContactEvent
-from wavesym.model.model import Model
-from wavesym.model.network import Link, Network, Point
+from wavesym.mechanics.event import ContactEvent
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Link, Network, Point
 from wavesym.numbers.doubles import nearest
 from wavesym.systems.station import Station
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.field import Field
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.report.stations import open_times
 from wavesym.report.timescale import timescale

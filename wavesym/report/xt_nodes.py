@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from matplotlib.axes import Axes
 from matplotlib.transforms import ScaledTranslation
 
-from wavesym.model.network import Link, Network, Point
+from wavesym.mechanics.network import Link, Network, Point
 from wavesym.report.stations import Opened, standing
 from wavesym.systems.station import Lines, Station
 

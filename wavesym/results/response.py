@@ -12,8 +12,8 @@ import numpy as np
 from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.events import events
 from wavesym.exact.reference import Reference
-from wavesym.model.event import ContactEvent
-from wavesym.model.model import Model
+from wavesym.mechanics.event import ContactEvent
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import attempts, best

@@ -26,7 +26,7 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, SceneError
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.making import make
 from wavesym.programs.program import Program

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from wavesym.errors import CostError
 from wavesym.exact.knots import Knots
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes.panels import Panels

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact.arrival import first_arrivals, light_arrivals
 from wavesym.exact.extremes import NOTHING, Range, TrueExtreme, extremes
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.results.response import Response

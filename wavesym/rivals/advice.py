@@ -9,7 +9,7 @@ from flint import fmpq
 
 from wavesym.documents.advice import Advice, Candidate, Discrepancy
 from wavesym.errors import UnservedError
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import attempt, choose
 from wavesym.programs.making import program

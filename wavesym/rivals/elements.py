@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
-from wavesym.model.probe import Probe
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import fraction
 from wavesym.rivals.mass import Elements, Entries, Unknowns
 from wavesym.rivals.network import NetworkProblem, network_problem

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import czt
 
-from wavesym.model.probe import Probe
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import fraction
 from wavesym.rivals.network import NetworkProblem, network_problem
 from wavesym.rivals.problem import Array, Evaluate, Rival

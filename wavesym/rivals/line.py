@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from wavesym.errors import UnservedError
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.rivals.network import NetworkProblem, network_problem
 from wavesym.rivals.problem import Array, Problem, Watch, problem

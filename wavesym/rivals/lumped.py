@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from wavesym.errors import UnservedError
-from wavesym.model.probe import Probe
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import fraction
 from wavesym.programs.modes.damped import damped
 from wavesym.rivals.mass import Elements, dense

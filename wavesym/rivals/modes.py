@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wavesym.errors import UnservedError
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.rivals.line import stated
 from wavesym.rivals.problem import Array, Evaluate, Problem, Rival
 

@@ -10,10 +10,10 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.errors import UnservedError
-from wavesym.model.damping import Damping
-from wavesym.model.model import Model
-from wavesym.model.network import Bar, Network
-from wavesym.model.probe import Probe
+from wavesym.mechanics.damping import Damping
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Bar, Network
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import fraction, nearest
 from wavesym.rivals.problem import Array, Event, means, terms
 

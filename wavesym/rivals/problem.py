@@ -13,10 +13,10 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.model.chain import Chain
-from wavesym.model.loads import Applied
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import fraction, nearest
 
 Array = NDArray[np.float64]

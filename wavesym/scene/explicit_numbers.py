@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from flint import fmpq
 
-from wavesym.model.network import Bar, Network
+from wavesym.mechanics.network import Bar, Network
 from wavesym.numbers.doubles import fraction
 from wavesym.scene.physical.rounding import decimal_text
 from wavesym.scene.physical.scale import Scale

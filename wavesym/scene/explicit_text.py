@@ -9,7 +9,7 @@ from flint import fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.fields.loads import Load
-from wavesym.model.network import Network, Point
+from wavesym.mechanics.network import Network, Point
 from wavesym.scene.explicit_numbers import Dimensionless, InUnits, number_text
 from wavesym.scene.lowering import lower
 from wavesym.scene.outputs import QUANTITIES

@@ -11,10 +11,10 @@ from flint import fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.fields.loads import TimedLoad
-from wavesym.model.damping import Damping
-from wavesym.model.loads import Applied, merged
-from wavesym.model.model import Labels, Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.damping import Damping
+from wavesym.mechanics.loads import Applied, merged
+from wavesym.mechanics.model import Labels, Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
 from wavesym.scene.outputs import Observable
 from wavesym.scene.physical.scale import Scale

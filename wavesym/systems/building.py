@@ -17,7 +17,7 @@ from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import Numbers, Positives
 from wavesym.fields.table import shown, wrong
-from wavesym.model.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
+from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
 from wavesym.records.load import RecordedLoad
 from wavesym.systems.preset import Preset
 

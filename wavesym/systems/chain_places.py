@@ -8,7 +8,7 @@ from fractions import Fraction
 from flint import fmpq
 
 from wavesym.fields.table import Written, shown
-from wavesym.model.network import Point
+from wavesym.mechanics.network import Point
 from wavesym.systems.drawing import Drawing
 from wavesym.systems.place import MisplacedError, Place, Position, position_of
 from wavesym.systems.station import Station

@@ -16,9 +16,9 @@ from pydantic import Field, SerializerFunctionWrapHandler, field_validator, mode
 from wavesym.fields.loads import Load
 from wavesym.fields.numbers import Numbers, Positives
 from wavesym.fields.table import shown, wrong
-from wavesym.model.chain import Chain
-from wavesym.model.network import Link, Network, network_of
-from wavesym.model.node import Family, Node, Parameters, Quantity, Rod, System, single
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.network import Link, Network, network_of
+from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, single
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.preset import Preset
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from wavesym.fields.table import wrong
-from wavesym.model.network import Link, Point
+from wavesym.mechanics.network import Link, Point
 from wavesym.systems.lines import Keys
 
 

@@ -9,8 +9,8 @@ from fractions import Fraction
 from flint import fmpq
 
 from wavesym.fields.table import shown, wrong
-from wavesym.model.network import Bar, Link, Network, Point
-from wavesym.model.node import UnitLoad
+from wavesym.mechanics.network import Bar, Link, Network, Point
+from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
 from wavesym.systems.contacts import refuse_impacts, told_apart
 from wavesym.systems.lines import Keys, PlacedBetween, PlacedNode, alternating

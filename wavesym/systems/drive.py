@@ -13,9 +13,9 @@ from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import Integer, Numbers, Positives
 from wavesym.fields.table import shown
-from wavesym.model.chain import Chain
-from wavesym.model.network import Network, network_of
-from wavesym.model.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.network import Network, network_of
+from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
 from wavesym.records.load import RecordedLoad
 from wavesym.systems.preset import Preset
 

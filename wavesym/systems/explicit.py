@@ -12,8 +12,8 @@ from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, mod
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds
 from wavesym.fields.table import SceneTable, shown, wrong
-from wavesym.model.network import Network
-from wavesym.model.node import UnitLoad
+from wavesym.mechanics.network import Network
+from wavesym.mechanics.node import UnitLoad
 from wavesym.systems.chain_places import node, place
 from wavesym.systems.drawing import Drawing, drawn
 from wavesym.systems.node_loads import NODE_LOADS, OnNode

@@ -15,9 +15,9 @@ from pydantic import Field, ValidationInfo, field_validator
 from wavesym.fields.loads import Load, LoadKinds
 from wavesym.fields.numbers import Integer
 from wavesym.fields.table import SceneTable, Written, shown, wrong
-from wavesym.model.chain import Chain
-from wavesym.model.network import Network, network_of
-from wavesym.model.node import Parameters, System
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.network import Network, network_of
+from wavesym.mechanics.node import Parameters, System
 from wavesym.numbers.doubles import rational
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.station import Lines, straight

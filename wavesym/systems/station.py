@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from wavesym.model.network import Network
+from wavesym.mechanics.network import Network
 
 MAIN = ""
 """The name of the line that is no branch."""

@@ -10,8 +10,8 @@ from typing import Protocol
 
 from wavesym.fields.loads import Load
 from wavesym.fields.table import Written, shown
-from wavesym.model.chain import Chain
-from wavesym.model.network import End, Network
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.network import End, Network
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.station import Lines
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from textwrap import wrap
 
 from wavesym.exact.contact import ContactEnd
-from wavesym.model.event import ContactEvent
-from wavesym.model.model import Model
+from wavesym.mechanics.event import ContactEvent
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program

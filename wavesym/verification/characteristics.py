@@ -29,10 +29,10 @@ from flint import fmpq, fmpq_poly
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError
-from wavesym.model.chain import Chain
-from wavesym.model.loads import Applied
-from wavesym.model.node import Node
-from wavesym.model.probe import Probe
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.node import Node
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, nearest, rational
 
 Array = NDArray[np.float64]

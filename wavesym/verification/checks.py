@@ -13,7 +13,7 @@ import numpy as np
 
 from wavesym.errors import CostError, ToleranceError, WavesymError
 from wavesym.exact.reference import Reference
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.programs.making import make
 from wavesym.running.compiled import compiled, imported
 from wavesym.targets.files import files

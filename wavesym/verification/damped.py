@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import ToleranceError
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.programs.making import make
 from wavesym.rivals import modal_elements
 from wavesym.rivals.lumped import DiscreteModel

@@ -16,8 +16,8 @@ from wavesym.documents.derivation.patterns import patterns, rates
 from wavesym.exact.increments import Increment, add, trimmed
 from wavesym.exact.table import Function, Table, full_table
 from wavesym.exact.walks import Letters, departures, function_walks, letters, units, walks_until
-from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters, System
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Parameters, System
 from wavesym.systems import presets
 from wavesym.verification.arguments import (
     NODE_LAW,

@@ -23,8 +23,8 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.model.model import Model
-from wavesym.model.network import Network
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import fraction, nearest
 
 Array = NDArray[np.float64]

@@ -29,8 +29,8 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.exact.events import events
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, rational
 from wavesym.verification.graph import Array, Graph, graph
 from wavesym.verification.invariants import Balance

@@ -17,7 +17,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from wavesym.model.probe import Probe
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.verification.characteristics import COARSEST, LOBATTO, Integrated, SteppedPanel, stages, stepped_panels
 from wavesym.verification.graph import Array, Graph

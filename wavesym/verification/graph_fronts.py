@@ -20,7 +20,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.model.probe import Probe
+from wavesym.mechanics.probe import Probe
 from wavesym.verification.graph import Array, Change, Graph
 
 # instants closer than this, and forces and gaps smaller than this part of the largest, are not told apart

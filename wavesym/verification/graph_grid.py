@@ -29,8 +29,8 @@ from math import ceil, lcm
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction
 from wavesym.verification.graph import Array, Change, Graph, Struck, alike, graph
 from wavesym.verification.spacetime import (

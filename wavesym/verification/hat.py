@@ -16,8 +16,8 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, UnservedError
-from wavesym.model.loads import Applied
-from wavesym.model.model import Model
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.programs.making import make
 from wavesym.programs.request import Request

@@ -22,11 +22,11 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.model.chain import Chain
-from wavesym.model.loads import Applied
-from wavesym.model.model import Model
-from wavesym.model.node import Quantity
-from wavesym.model.probe import Probe
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.node import Quantity
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, nearest
 
 Array = NDArray[np.float64]

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.model.chain import Chain
-from wavesym.model.node import Node
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Node
 
 if TYPE_CHECKING:  # tables are what is checked, not what is used
     from wavesym.exact.table import Function, Table

@@ -15,8 +15,8 @@ from fractions import Fraction
 import numpy as np
 from flint import fmpq
 
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest
 from wavesym.verification.graph import Array, Graph, graph
 

@@ -22,7 +22,7 @@ from wavesym.derivation.delay import COUNT, INDEX
 from wavesym.derivation.delay_terms import exact
 from wavesym.derivation.recurrence import RATE, CoefficientLaw, SymbolicTerm, recurrence
 from wavesym.documents.derivation.highest_powers import BODY, INTERVAL, SOURCE, PowerFamily, PowerRow
-from wavesym.model.node import System
+from wavesym.mechanics.node import System
 
 NUMBERS = tuple(Symbol(name, integer=True, nonnegative=True) for name in "abcd")
 """Numbers 0, 1, 2, ... by which i, m, l and s are written."""

@@ -20,7 +20,7 @@ from sympy import Expr, Integer, Rational, Symbol, cancel, exp, together
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation
 from wavesym.derivation.delay_terms import Line, Operator, exact
-from wavesym.model.node import Family, Node, Rod, System
+from wavesym.mechanics.node import Family, Node, Rod, System
 
 S, E = Symbol("s"), Symbol("E")
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.exact.reference import Reference, beginning
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 
 _SPREAD = 400
 _GOLDEN = (math.sqrt(5) - 1) / 2

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.running.toolchain import compiler
 from wavesym.verification.checks import CHECKS
 from wavesym.verification.columns import Row, table

@@ -26,7 +26,7 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import UNIT_ROUNDOFF
 from wavesym.rivals.line import stated
 from wavesym.rivals.problem import Array, Problem, Watch

@@ -17,7 +17,7 @@ from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equation
 from wavesym.derivation.delay_terms import Operator
 from wavesym.derivation.numbers import number
 from wavesym.exact.table import Function, Table
-from wavesym.model.chain import Chain
+from wavesym.mechanics.chain import Chain
 
 Change = dict[fmpq, fmpq_poly]
 """sum over rates g of exp(-g w) * polynomial(w); what is 0 is left out."""

@@ -15,10 +15,10 @@ from wavesym.derivation.exact_rule import Linear, Rule, Weights
 from wavesym.derivation.numbers import expression, number, symbol
 from wavesym.derivation.recurrence import POWER, RATE, CoefficientLaw, SymbolicWeights, recurrence
 from wavesym.documents.derivation.families import placed
-from wavesym.model.chain import Chain
+from wavesym.mechanics.chain import Chain
 
 if TYPE_CHECKING:
-    from wavesym.model.symbolic import SymbolicChain
+    from wavesym.mechanics.symbolic import SymbolicChain
     from wavesym.numbers.ratio import Ratio
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from sympy import Expr, IndexedBase, Symbol, cancel
 
 from wavesym.derivation.delay import INDEX, SYMBOLS
-from wavesym.model.node import System
+from wavesym.mechanics.node import System
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE, DRIVE_RAMPS

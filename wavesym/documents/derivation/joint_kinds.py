@@ -13,7 +13,7 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.exact.joint import JointLaw
-from wavesym.model.network import Bar, Joint, Link, Network, Point
+from wavesym.mechanics.network import Bar, Joint, Link, Network, Point
 from wavesym.numbers.ratio import Ratio, Ring
 
 _NONE, _ONE = fmpq(0), fmpq(1)

@@ -17,7 +17,7 @@ from wavesym.documents.derivation.joint_kinds import Kind, LoneJoint, alone, kin
 from wavesym.documents.derivation.notation import Text
 from wavesym.exact.joint_response import JointResponse, joint_polynomial, joint_response, rates
 from wavesym.exact.network_joints import MOST_POINTS
-from wavesym.model.network import Network
+from wavesym.mechanics.network import Network
 from wavesym.numbers.ratio import Ratio
 
 MOST_SYMBOLIC = 2  # points of a joint whose polynomial in symbols anybody reads

@@ -11,7 +11,7 @@ from sympy import Expr, IndexedBase, Integer, cancel
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.recurrence import CoefficientLaw, recurrence
 from wavesym.documents.derivation.families import own_rate
-from wavesym.model.node import Parameters, System
+from wavesym.mechanics.node import Parameters, System
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.collision import COLLISION
 from wavesym.systems.drive import DRIVE, DRIVE_RAMPS

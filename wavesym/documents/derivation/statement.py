@@ -20,11 +20,11 @@ from wavesym.documents.derivation.notation import Text
 from wavesym.documents.derivation.patterns import Pattern, pattern_laws, patterns, rates
 from wavesym.documents.derivation.writer import Place, Writer
 from wavesym.errors import WavesymError
-from wavesym.model.node import Node, System
+from wavesym.mechanics.node import Node, System
 from wavesym.systems import presets
 
 if TYPE_CHECKING:
-    from wavesym.model.symbolic import SymbolicChain
+    from wavesym.mechanics.symbolic import SymbolicChain
 
 LARGEST_WRITTEN_OUT = 100
 MOST_FAMILIES = 6  # beyond that the law at one rate g is easier to read than a line for each

@@ -16,7 +16,7 @@ from wavesym.documents.derivation.families import Coefficient, Solved, own_rate,
 from wavesym.documents.derivation.highest_powers import PowerFamily, PowerRow, plain
 from wavesym.documents.derivation.notation import Text
 from wavesym.documents.derivation.patterns import Equal
-from wavesym.model.node import Node
+from wavesym.mechanics.node import Node
 
 Place = Callable[[Expr | int], Expr]
 

@@ -9,7 +9,7 @@ import numpy as np
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
 from wavesym.errors import CostError
 from wavesym.exact.modes.frequencies import frequencies
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.programs.modes.damped import damped
 
 _SHOWN = 12  # and those that damping is said of

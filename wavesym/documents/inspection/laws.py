@@ -10,7 +10,7 @@ from wavesym.documents.inspection.networked import joint_laws, not_served
 from wavesym.documents.inspection.section import Listing, Plain, Section, Told
 from wavesym.exact.node_rules import node_rule
 from wavesym.exact.table import Function, Rules
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 
 

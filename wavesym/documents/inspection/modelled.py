@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from wavesym.documents.inspection.damped import damped_modes
 from wavesym.documents.inspection.networked import counted, graph_cone, parts
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
-from wavesym.model.chain import Chain
-from wavesym.model.model import Model
-from wavesym.model.node import Node, UnitLoad
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.node import Node, UnitLoad
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 

@@ -12,8 +12,8 @@ from wavesym.exact.joint import JointLaw
 from wavesym.exact.joint_response import joint_polynomial, rates, written
 from wavesym.exact.knots import Knots
 from wavesym.exact.network_joints import MOST_POINTS
-from wavesym.model.model import Model
-from wavesym.model.network import Joint
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Joint
 from wavesym.numbers.doubles import rational
 
 LAW = "M q' + C q + K u = sum over ends of 2 n Z a + F, where u' = q, n q - a goes back into an end"

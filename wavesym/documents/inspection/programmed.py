@@ -10,7 +10,7 @@ from wavesym.documents.inspection.variants import told_degrees, variants
 from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.events import events
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import Tried, attempts, best
 from wavesym.programs.program import Program, Provenance

@@ -10,7 +10,7 @@ from wavesym.documents.inspection.programmed import chosen, contacts
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section
 from wavesym.documents.inspection.units import in_units
 from wavesym.documents.inspection.variants import variants
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import attempts
 from wavesym.scene.physical.scene import PhysicalScene

@@ -9,7 +9,7 @@ from wavesym.errors import CostError
 from wavesym.exact.motion import Motion
 from wavesym.exact.network_table import NetworkTable, network_table
 from wavesym.exact.table import Table, full_table
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 
 MOST_COUNTED = 30_000  # coefficients, which take a second or two to make

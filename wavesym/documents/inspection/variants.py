@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from wavesym.documents.inspection.section import Listing, Plain, Told, finite
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.programs.choice import MAKERS, Made, Tried, attempt
 from wavesym.programs.closed import ClosedForm
 from wavesym.programs.march.evaluator import MarchEvaluator

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from flint import fmpq
 
-from wavesym.model.network import Bar, End, Network, Point
+from wavesym.mechanics.network import Bar, End, Network, Point
 
 _ZERO, _ONE = fmpq(0), fmpq(1)
 # Where a bar is cut so that no mode within reach is at rest at both ends of a piece: a fraction with a large prime

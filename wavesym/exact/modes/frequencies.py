@@ -11,7 +11,7 @@ from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut, cut
 from wavesym.exact.modes.shape import Mode, Trial, rigid, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, Vector
-from wavesym.model.network import Network
+from wavesym.mechanics.network import Network
 
 _BITS = 192
 _BITS_A_ROW = 6  # of which determinants in balls take about 4

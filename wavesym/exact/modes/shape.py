@@ -10,7 +10,7 @@ from typing import NamedTuple
 from flint import arb, fmpq
 
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, circular
-from wavesym.model.network import End, Network
+from wavesym.mechanics.network import End, Network
 
 
 @dataclass(frozen=True)

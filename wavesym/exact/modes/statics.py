@@ -23,7 +23,7 @@ from flint import arb, fmpq
 
 from wavesym.exact.modes.shape import rigid
 from wavesym.exact.modes.stiffness import Stiffness
-from wavesym.model.network import End
+from wavesym.mechanics.network import End
 
 Forces = Mapping[int, arb | fmpq]
 """What acts on points."""

@@ -20,7 +20,7 @@ from flint import arb, fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
-from wavesym.model.network import Network
+from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
 
 # doubles (arrays of them), or balls

@@ -13,7 +13,7 @@ from wavesym.errors import CostError
 from wavesym.exact.reference import Reference
 from wavesym.lab.atlas.family import AtlasPoint
 from wavesym.lab.atlas.scenes import AIM
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint, rational
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.choice import MAKERS

@@ -14,7 +14,7 @@ from wavesym.exact.motion import Motion
 from wavesym.lab.atlas.attempts import Truth, attempt, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import made
-from wavesym.model.event import ContactEvent
+from wavesym.mechanics.event import ContactEvent
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene
 

@@ -16,7 +16,7 @@ import numpy as np
 from wavesym.lab.atlas import shaken
 from wavesym.lab.atlas.attempts import Array
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.rivals.lumped import DiscreteModel
 from wavesym.rivals.mass import Elements
 from wavesym.rivals.modal_elements import RIVAL

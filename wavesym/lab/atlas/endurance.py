@@ -14,7 +14,7 @@ import numpy as np
 
 from wavesym.lab.atlas import twisted_shaft as twist
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import MarchEvaluator, marched
 from wavesym.running.native import FAST, address, library

@@ -10,7 +10,7 @@ from wavesym.exact.knots import Knots
 from wavesym.lab.atlas.attempts import attempt, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import chain
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene
 

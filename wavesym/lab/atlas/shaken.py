@@ -9,7 +9,7 @@ import numpy as np
 
 from wavesym.lab.atlas.attempts import Array
 from wavesym.lab.atlas.scenes import aimed, made
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.making import program
 from wavesym.programs.modes.evaluator import ModesEvaluator

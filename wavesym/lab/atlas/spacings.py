@@ -13,7 +13,7 @@ from wavesym.exact.reference import Reference
 from wavesym.lab.atlas import shaken
 from wavesym.lab.atlas.attempts import Array
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint, nearest, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request

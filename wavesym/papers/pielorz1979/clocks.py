@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
-from wavesym.model.chain import Chain
+from wavesym.mechanics.chain import Chain
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.exact_tables import Exact
 from wavesym.papers.pielorz1979.equations import covers

@@ -13,7 +13,7 @@ from sympy import Expr, IndexedBase, Rational, expand
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.delay_terms import exact
-from wavesym.model.node import Node, Parameters
+from wavesym.mechanics.node import Node, Parameters
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
 from wavesym.papers.exact_tables import UNEQUAL_COLLISION, grounded_building, unequal_collision

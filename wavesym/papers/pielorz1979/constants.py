@@ -14,8 +14,8 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.model.chain import Chain
-from wavesym.model.node import Node, Parameters
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Node, Parameters
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, given, range_of, sides, span
 from wavesym.papers.pielorz1979.letters import IndexedLetters

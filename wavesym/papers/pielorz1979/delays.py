@@ -12,7 +12,7 @@ from sympy import Integer, expand
 
 from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equations
 from wavesym.derivation.delay_terms import Line, Operator, Wave, exact
-from wavesym.model.node import System
+from wavesym.mechanics.node import System
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, span
 from wavesym.papers.pielorz1979.equations import left_over, once, ranges_of, within

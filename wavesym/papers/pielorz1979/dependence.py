@@ -10,7 +10,7 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.exact.table import Function, Rules, unit_response
-from wavesym.model.chain import Chain
+from wavesym.mechanics.chain import Chain
 from wavesym.papers.evaluation import Scope, holds
 from wavesym.papers.exact_tables import INTERVALS, Exact, building, collision, drive
 from wavesym.papers.pielorz1979.forms import FORMS, FormScope, form_cases, moved, rates, right_form, shown

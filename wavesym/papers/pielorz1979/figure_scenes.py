@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from wavesym.errors import SceneError
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.reference import Reference
-from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, ungrouped
 from wavesym.papers.pielorz1979.transcript import entry
 from wavesym.papers.pielorz1979.truth import LoadStep

@@ -10,7 +10,7 @@ from typing import Any
 from flint import fmpq
 from sympy.tensor.indexed import IndexException
 
-from wavesym.model.chain import Chain
+from wavesym.mechanics.chain import Chain
 from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.jets import Jet
 from wavesym.papers.pielorz1979.truth import DrivenChain

@@ -9,7 +9,7 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.exact.table import Function, Rules
-from wavesym.model.node import Parameters
+from wavesym.mechanics.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.exact_tables import building, collision, drive, with_parameters
 from wavesym.papers.pielorz1979.cells import Asked, Counted, Indices, counted

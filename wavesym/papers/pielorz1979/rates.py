@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.model.node import Parameters
+from wavesym.mechanics.node import Parameters
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, places, sides
 from wavesym.papers.exact_tables import Exact, collision, drive, with_parameters

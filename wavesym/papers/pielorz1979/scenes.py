@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from flint import fmpq
 
-from wavesym.model.chain import Chain
+from wavesym.mechanics.chain import Chain
 from wavesym.papers.exact_tables import Exact
 from wavesym.papers.pielorz1979.truth import Loads
 from wavesym.papers.record import Reproduction

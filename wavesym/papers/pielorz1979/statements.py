@@ -15,11 +15,11 @@ from flint import arb, fmpq
 from wavesym.derivation.delay import delay_equations
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.table import Function
-from wavesym.model.chain import Chain
-from wavesym.model.loads import Applied
-from wavesym.model.model import Labels, Model
-from wavesym.model.network import network_of
-from wavesym.model.probe import Probe
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Labels, Model
+from wavesym.mechanics.network import network_of
+from wavesym.mechanics.probe import Probe
 from wavesym.papers.evaluation import Scope, span
 from wavesym.papers.exact_tables import drive, meeting, uneven_building
 from wavesym.papers.pielorz1979.clocks import arrival

@@ -11,7 +11,7 @@ from sympy import Symbol as Letter
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS
 from wavesym.derivation.delay_terms import Line
-from wavesym.model.node import Parameters
+from wavesym.mechanics.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.pielorz1979.letters import IndexedLetters, letter
 from wavesym.papers.tree import Call, Derivative, Series, Symbol, Tree

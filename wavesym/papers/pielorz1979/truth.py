@@ -15,7 +15,7 @@ from flint import fmpq
 
 from wavesym.exact.increments import Increment, combined, integrated, start
 from wavesym.exact.table import Function
-from wavesym.model.node import System
+from wavesym.mechanics.node import System
 from wavesym.papers.evaluation import MeaninglessError
 from wavesym.papers.exact_tables import Exact, collision, drive, uneven_building
 from wavesym.papers.exponentials import Exponentials

@@ -16,7 +16,7 @@ import numpy as np
 from flint import arb, fmpq
 
 from wavesym.errors import CostError, ToleranceError, WavesymError
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.bound import Verdict, judge

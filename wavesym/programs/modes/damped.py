@@ -8,7 +8,7 @@ from math import inf, sqrt
 
 import numpy as np
 
-from wavesym.model.damping import Damping
+from wavesym.mechanics.damping import Damping
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.modal import Numbers
 

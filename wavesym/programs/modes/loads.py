@@ -11,7 +11,7 @@ from math import gcd, lcm
 from flint import fmpq
 
 from wavesym.errors import UnservedError
-from wavesym.model.loads import Applied
+from wavesym.mechanics.loads import Applied
 from wavesym.numbers.doubles import nearest
 
 _STEPS_OF_ONE = 1000  # of a horizon, where there is nothing else to tell a spacing

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from flint import arb, fmpq
 
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound
 from wavesym.numbers.reals import Real
 from wavesym.programs.modes.evaluator import ModesEvaluator

@@ -13,7 +13,7 @@ from flint import arb, ctx, fmpq
 from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.statics import Shape, Statics
-from wavesym.model.network import End, Network
+from wavesym.mechanics.network import End, Network
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.modal import Numbers
 from wavesym.programs.modes.watched import Driver, Seen

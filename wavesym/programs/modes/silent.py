@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from flint import fmpq
 
-from wavesym.model.model import Model
-from wavesym.model.network import End
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import End
+from wavesym.mechanics.probe import Probe
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.watched import Driver, ground
 

@@ -11,7 +11,7 @@ from flint import fmpq
 
 from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.modes.frequencies import Spectrum
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.modes.damped import Damped, damped

@@ -11,9 +11,9 @@ from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.statics import Shape, Statics
-from wavesym.model.model import Model
-from wavesym.model.network import End, Network, Point
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import End, Network, Point
+from wavesym.mechanics.probe import Probe
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from functools import cached_property
 from flint import arb, fmpq
 
 from wavesym.errors import CostError
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.bound import Verdict

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from wavesym.exact.joint import JointLaw
 from wavesym.exact.node_rules import joint_rule
-from wavesym.model.network import Joint, Network
+from wavesym.mechanics.network import Joint, Network
 from wavesym.numbers.doubles import nearest
 
 _ZERO = fmpq(0)

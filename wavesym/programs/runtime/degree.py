@@ -12,7 +12,7 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.model.network import network_of
+from wavesym.mechanics.network import network_of
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.march.plan import LOAD, Plan, plan

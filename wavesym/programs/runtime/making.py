@@ -9,8 +9,8 @@ from itertools import accumulate
 from flint import fmpq
 
 from wavesym.errors import WavesymError
-from wavesym.model.loads import Applied
-from wavesym.model.model import Model
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.plan import LOAD

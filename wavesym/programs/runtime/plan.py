@@ -16,10 +16,10 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.exact.node_rules import node_rule
-from wavesym.model.loads import Applied
-from wavesym.model.model import Model
-from wavesym.model.network import network_of
-from wavesym.model.node import Parameters
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import network_of
+from wavesym.mechanics.node import Parameters
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ratio, Ring
 from wavesym.programs.march.plan import HeardWave, Plan, Stretch, panels, plan

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from flint import fmpq
 
 from wavesym.errors import UnservedError, WavesymError
-from wavesym.model.loads import Applied
-from wavesym.model.model import Model
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Model
 
 NAMES = ("kappa", "inertia", "velocity", "load")
 POSITIVE = frozenset({"kappa", "inertia"})

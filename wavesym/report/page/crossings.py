@@ -10,8 +10,8 @@ import numpy as np
 from wavesym.errors import WavesymError
 from wavesym.exact.contact import ContactEnd, contact_ends
 from wavesym.exact.field import Field
-from wavesym.model.model import Model
-from wavesym.model.network import Link
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Link
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.report.along import limit
 from wavesym.report.histories import Points

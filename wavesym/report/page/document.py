@@ -8,8 +8,8 @@ from itertools import groupby
 
 from wavesym import __version__
 from wavesym.errors import WavesymError
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.rendering import render

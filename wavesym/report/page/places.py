@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from wavesym.model.model import Model
+from wavesym.mechanics.model import Model
 from wavesym.report.along import Along, Band, cells, limit
 from wavesym.report.envelope_values import BandExtreme, envelope, extremes
 from wavesym.report.groups import axis_title

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from wavesym.documents.advice import WAVES, Advice, Candidate
 from wavesym.errors import WavesymError
 from wavesym.exact.contact import contact_ends
-from wavesym.model.model import Model
-from wavesym.model.probe import Probe
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.probe import Probe
 from wavesym.report.timescale import Timescale
 from wavesym.results.summary import OutputSummary, Peak, When, summarised
 from wavesym.rivals.advice import advise

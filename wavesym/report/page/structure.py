@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from wavesym.model.model import Model
-from wavesym.model.network import Bar, Link, Network, Point
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.numbers.doubles import nearest
 from wavesym.report.loads import load_histories
 from wavesym.report.page import symbols

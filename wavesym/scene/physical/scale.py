@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from wavesym.fields.quantity import unit
 from wavesym.fields.table import SceneTable, shown, wrong
-from wavesym.model.clock import Clock
+from wavesym.mechanics.clock import Clock
 from wavesym.numbers.doubles import rational
 from wavesym.scene.physical.elastic import Rods
 from wavesym.scene.physical.measured import placed

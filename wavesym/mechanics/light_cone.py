@@ -7,9 +7,9 @@ from dataclasses import fields
 
 from flint import fmpq
 
-from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters
-from wavesym.model.reading import Gauge
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Parameters
+from wavesym.mechanics.reading import Gauge
 
 
 def light_cone(chain: Chain, watched: Iterable[Gauge], until: fmpq) -> range:

@@ -9,14 +9,14 @@ from functools import cached_property
 from flint import fmpq
 
 from wavesym.errors import UnservedError
-from wavesym.model.chain import Chain
-from wavesym.model.clock import Clock
-from wavesym.model.damping import Damping
-from wavesym.model.light_cone import felt, light_cone
-from wavesym.model.loads import Applied
-from wavesym.model.network import Network
-from wavesym.model.probe import Probe
-from wavesym.model.reading import Gauge, Sum, readings
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.clock import Clock
+from wavesym.mechanics.damping import Damping
+from wavesym.mechanics.light_cone import felt, light_cone
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import Network
+from wavesym.mechanics.probe import Probe
+from wavesym.mechanics.reading import Gauge, Sum, readings
 from wavesym.numbers.reals import DOUBLE, Real
 
 

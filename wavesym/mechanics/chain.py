@@ -10,7 +10,7 @@ from functools import cached_property
 from flint import fmpq
 
 from wavesym.errors import WavesymError
-from wavesym.model.node import Node, Parameters, Quantity, Rod, System, UnitLoad
+from wavesym.mechanics.node import Node, Parameters, Quantity, Rod, System, UnitLoad
 from wavesym.numbers.doubles import rational
 
 _POWERS = 3  # of tau in a unit load: a ramp of acceleration is a parabola of velocity

@@ -10,8 +10,8 @@ from flint import fmpq
 from wavesym.derivation.delay import delay_equations
 from wavesym.errors import WavesymError
 from wavesym.exact.table import full_table
-from wavesym.model.chain import Chain
-from wavesym.model.node import Family, Node, Parameters, Rod, System, UnitLoad, single
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Family, Node, Parameters, Rod, System, UnitLoad, single
 from wavesym.verification.node_law import differences
 
 LOAD = UnitLoad("F", None, (1,))

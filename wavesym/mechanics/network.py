@@ -15,8 +15,8 @@ from typing import Literal, NamedTuple
 from flint import fmpq
 
 from wavesym.errors import UnservedError
-from wavesym.model.chain import Chain
-from wavesym.model.node import Node, UnitLoad
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Node, UnitLoad
 
 _ZERO, _ONE = fmpq(0), fmpq(1)
 

@@ -15,8 +15,8 @@ from math import factorial
 from flint import fmpq, fmpq_mpoly
 
 from wavesym.errors import SceneError
-from wavesym.model.chain import Chain
-from wavesym.model.node import Parameters, Quantity, System
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.node import Parameters, Quantity, System
 from wavesym.numbers.factored import written
 from wavesym.numbers.ratio import Ratio, Ring
 

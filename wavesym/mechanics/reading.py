@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from wavesym.model.network import End, Network
-from wavesym.model.probe import Probe
+from wavesym.mechanics.network import End, Network
+from wavesym.mechanics.probe import Probe
 
 _ZERO, _ONE = fmpq(0), fmpq(1)
 

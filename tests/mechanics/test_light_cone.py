@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 from flint import fmpq
 
-from wavesym.model.damping import Damping
+from wavesym.mechanics.damping import Damping
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 
