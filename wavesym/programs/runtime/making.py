@@ -13,7 +13,7 @@ from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.plan import LOAD
+from wavesym.programs.march.plan import LOAD, Plan
 from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
@@ -102,6 +102,7 @@ def _constants(made: RuntimePlan) -> dict[str, float]:
         "strengths": len(_strengths(made.pushes)),
         "lanes": sum(len(field.values) for field in made.fields),
         "sections": len(made.sections) - 1,
+        "groups": (len(made.sections) - 1) * len(plan.outputs),
         "unit": 2 * nearest(DOUBLE.roundoff),
     }
 
@@ -122,6 +123,8 @@ def _tables(made: RuntimePlan) -> dict[str, tuple[float, ...]]:
         "half_length": reals(panel.length / 2 for panel in plan.panels),
         "since_panel": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
         "force_on": tuple(forces.get(column, -1) for column in range(len(plan.junctions))),
+        "is_body": tuple(int(node.rate is not None) for node in plan.junctions),
+        "alike": _alike(plan),
         "event_window": tuple(push.window for push in pushes),
         "event_panel": tuple(push.panel for push in pushes),
         "event_force": tuple(push.force for push in pushes),
@@ -145,6 +148,12 @@ def _tables(made: RuntimePlan) -> dict[str, tuple[float, ...]]:
         "term_high": reals(term.high for term in terms),
         "heard_output": tuple(output for output, _ in made.heard),
     }
+
+
+def _alike(plan: Plan) -> tuple[int, ...]:
+    """For each node on each panel the first with the same rate, on a panel of the same length."""
+    bodies = [(node.rate, panel.length) for panel in plan.panels for node in plan.junctions]
+    return tuple(map(bodies.index, bodies))
 
 
 def _firsts(counts: Iterable[int]) -> tuple[int, ...]:

@@ -18,7 +18,7 @@ from wavesym.targets.c.kernel import kernel
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_constants, c_literal, c_literals, c_tables
 
-_SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard", "events", "lanes")
+_SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard", "events", "lanes", "groups")
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,7 @@ class CRuntimeHeader:
     fields: tuple[CRuntimeField, ...]
     sizes: tuple[tuple[str, str], ...]
     model: str
+    batch: str
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,8 @@ class CRuntime:
     amplitudes: Lines
     loads: str
     kernel: str
+    batch: str
+    misfit: str
 
 
 @dataclass(frozen=True)
@@ -83,6 +86,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         fields=fields,
         sizes=tuple((name.upper(), constants[name]) for name in _SIZES),
         model=kernel("runtime_model.h", scene),
+        batch=kernel("runtime_batch.h", scene),
     )
     context = CRuntime(
         scene=scene,
@@ -95,6 +99,8 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
         loads="amplitude" if own else "p->load",
         kernel=kernel("runtime.c", scene),
+        batch=kernel("runtime_batch.c", scene),
+        misfit=kernel("runtime_misfit.c", scene),
     )
     made = {
         f"{scene.name}.h": render("c/runtime.h.j2", header),
