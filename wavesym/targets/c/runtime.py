@@ -115,7 +115,8 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what runs many sets of parameters in NAME.c."""
     made = files(scene, program)
     name = f"{scene.name}.c"
-    return made | {name: f"{made[name]}\n{kernel('runtime_sets.c', scene)}\n"}
+    more = "\n\n".join(kernel(file, scene) for file in ("runtime_peaks.c", "runtime_sets.c"))
+    return made | {name: f"{made[name]}\n{more}\n"}
 
 
 def _selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:
