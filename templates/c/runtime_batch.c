@@ -8,7 +8,7 @@
 typedef name_batch batch_of;
 typedef name_wide wide;
 
-#if defined(__GNUC__) && !defined(__FRAMAC__)
+#if defined(NAME_VECTORS)
 static const wide none = {0};
 typedef __typeof__(none < none) mask;
 #define LANE(x, set) ((x)[set])

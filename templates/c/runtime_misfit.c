@@ -100,7 +100,7 @@ static int triangle(const real *tau, const real *values, size_t count, int windo
     for (size_t k = 0; k < cell(group, most, 0); ++k) {
         cells[k] = 0;
     }
-    for (int column = 0; column < columns && row < points; ++column) {
+    for (int column = 0; column < columns; ++column) {
         real *const v = work + row * points;
         const int s = strand_at[first_strand[group] + column % strands];
         size_t point = 0;
@@ -119,7 +119,7 @@ static int triangle(const real *tau, const real *values, size_t count, int windo
         const real whole = squares(v, points);
         project(work, row, points, group, COLUMNS + column, cells, v);
         const real left = squares(v, points);
-        if (left > (64 * unit) * (64 * unit) * whole) {
+        if (row < points && left > (64 * unit) * (64 * unit) * whole) {
             cells[cell(group, row, WEIGHT)] = left;
             cells[cell(group, row, LOWEST)] = (real)(column / strands);
             cells[cell(group, row, COLUMNS + column)] = 1;

@@ -1,5 +1,6 @@
 /* runtime_sets.c: many sets of parameters one after the other, for callers to whom a call costs more than a model.
  * Plain C that is put below NAME.c and runtime_peaks.c; what stands below the first empty line. */
+#include "runtime_misfit.c"
 #include "runtime_peaks.c"
 
 size_t name_model_size(void);
@@ -10,6 +11,10 @@ void name_sets_peaks(const name_parameters *parameters, size_t sets, name_model 
                      name_real *estimate, name_real *out);
 void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tangent *tangent, const name_real *tau,
                         int even, size_t count, int *status, name_real *estimate, name_real *out);
+
+void name_sets_sizes(size_t *sizes);
+void name_sets_misfits(const name_parameters *parameters, size_t sets, name_batch *batch, const name_data *data,
+                       int *status, name_real *estimate, name_real *out);
 
 size_t name_model_size(void)
 {
@@ -72,6 +77,29 @@ void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tan
             for (size_t row = 0; row < rows; ++row) {
                 all[row * count + k] = now[row];
             }
+        }
+    }
+}
+
+/* Of a batch and of data, in bytes. */
+void name_sets_sizes(size_t *sizes)
+{
+    sizes[0] = sizeof(name_batch);
+    sizes[1] = sizeof(name_data);
+}
+
+/* Of each set the status, the estimate, and the sum of the squares of its misfits. */
+void name_sets_misfits(const name_parameters *parameters, size_t sets, name_batch *batch, const name_data *data,
+                       int *status, name_real *estimate, name_real *out)
+{
+    for (size_t set = 0; set < sets; set += NAME_WIDTH) {
+        name_real misfit[NAME_WIDTH];
+        (void)name_build_batch(batch, parameters + set, sets - set);
+        name_batch_misfit(batch, data, misfit);
+        for (size_t k = 0; k < NAME_WIDTH && set + k < sets; ++k) {
+            status[set + k] = batch->status[k];
+            estimate[set + k] = LANE(batch->estimate, k);
+            out[set + k] = misfit[k];
         }
     }
 }

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.engine import Array, Found
@@ -20,8 +22,8 @@ class CompiledSets:
         files = runtime_sets(program)
         loaded = library(files[f"{name}.c"], FAST, (f"{name}.h", files[f"{name}.h"]))
         self._outputs = len(program.outputs)
-        self._values, self._peaks, self._tangents = (
-            getattr(loaded, f"{name}_sets{kind}") for kind in ("", "_peaks", "_tangents")
+        self._values, self._peaks, self._tangents, self._misfits = (
+            getattr(loaded, f"{name}_sets{kind}") for kind in ("", "_peaks", "_tangents", "_misfits")
         )
         many, where = ctypes.c_size_t, ctypes.c_void_p
         for of_taus in (self._values, self._tangents):
@@ -29,6 +31,14 @@ class CompiledSets:
             of_taus.restype = None
         self._peaks.argtypes = [where, many, where, where, where, where]
         self._peaks.restype = None
+        self._misfits.argtypes = [where, many, where, where, where, where, where]
+        self._misfits.restype = None
+        self._data_size, self._data = getattr(loaded, f"{name}_data_size"), getattr(loaded, f"{name}_data_init")
+        self._data_size.argtypes, self._data_size.restype = [where, many], many
+        self._data.argtypes = [where, where, where, where, many]
+        sizes = (many * 2)()
+        getattr(loaded, f"{name}_sets_sizes")(sizes)
+        self._batch_size, self._data_bytes = sizes
         self._size, self._tangent_size = (
             ctypes.CFUNCTYPE(ctypes.c_size_t)((f"{name}_{kind}_size", loaded))() for kind in ("model", "tangent")
         )
@@ -48,6 +58,21 @@ class CompiledSets:
         self._peaks(address(given), len(given), address(model), *_places(found))
         return found
 
+    def misfit(self, tau: Array, data: Array) -> Callable[[Array], Found]:
+        """See `Engine`."""
+        values = np.ascontiguousarray(data)
+        kept, numbers = np.empty(self._data_bytes, np.uint8), np.empty(self._data_size(address(tau), len(tau)))
+        self._data(address(kept), address(numbers), address(tau), address(values), len(tau))
+
+        def misfits(given: Array) -> Found:
+            _ = numbers  # C reads them, so that they must live as long as this
+            found = _none(len(given), ())
+            batch = _aligned(self._batch_size)
+            self._misfits(address(given), len(given), address(batch), address(kept), *_places(found))
+            return found
+
+        return misfits
+
     def _at(self, function: ctypes._NamedFuncPointer, size: int, given: Array, tau: Array, lanes: int) -> Found:
         even = len(tau) > 1 and _even(tau)
         told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
@@ -55,6 +80,13 @@ class CompiledSets:
         model = np.empty(size, np.uint8)  # of this call, so that several may run at once
         function(address(given), len(given), address(model), address(told), even, len(tau), *_places(found))
         return found
+
+
+def _aligned(size: int) -> NDArray[np.uint8]:
+    """Memory from a multiple of 64 bytes on."""
+    memory = np.empty(size + 64, np.uint8)
+    begin = -memory.ctypes.data % 64
+    return memory[begin : begin + size]
 
 
 def _none(sets: int, shape: tuple[int, ...]) -> Found:

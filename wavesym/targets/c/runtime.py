@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from flint import fmpq, fmpq_mpoly
 
-from wavesym.numbers.doubles import nearest
 from wavesym.numbers.ratio import Ratio
-from wavesym.numbers.reals import DOUBLE
+from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.plan import Function
@@ -59,6 +58,7 @@ class CRuntime:
     tables: dict[str, Lines]
     constants: dict[str, str]
     amplitudes: Lines
+    largest: str
     loads: str
     kernel: str
     batch: str
@@ -78,7 +78,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     """The files of a program, by name."""
     laws = program.laws
     assert laws is not None
-    fields = tuple(_fields(laws))
+    fields = tuple(_fields(laws, program.real))
     constants = c_constants(program.constants, program.real)
     own = not any(field.name == "load" for field in fields)
     header = CRuntimeHeader(
@@ -91,8 +91,9 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     context = CRuntime(
         scene=scene,
         fields=fields,
-        laws=tuple(_assigned(laws, laws.functions)),
-        slopes=tuple(_slopes(laws)),
+        laws=tuple(_assigned(laws, laws.functions, program.real)),
+        slopes=tuple(_slopes(laws, program.real)),
+        largest="FLT_MAX" if program.real.name == "single" else "DBL_MAX",
         load_lane=_load_lane(laws),
         tables=c_tables(program.tables, program.real),
         constants=constants,
@@ -134,7 +135,7 @@ def _selftest(scene: Description, program: Program, reference: ReferenceValues) 
     return render("c/runtime_selftest.c.j2", context)
 
 
-def _fields(laws: RuntimeLaws) -> Iterator[CRuntimeField]:
+def _fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:
     for field in laws.fields:
         yield CRuntimeField(
             name=field.name,
@@ -142,23 +143,23 @@ def _fields(laws: RuntimeLaws) -> Iterator[CRuntimeField]:
             count=str(len(field.values)),
             check="positive_number" if field.positive else "finite_number",
             labels=field.labels,
-            values=c_literals(map(nearest, field.values), DOUBLE),
+            values=c_literals(map(real.nearest, field.values), real),
         )
 
 
-def _assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]]) -> Iterator[tuple[str, str]]:
+def _assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: Real) -> Iterator[tuple[str, str]]:
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
     for array, functions in arrays.items():
         for k, function in enumerate(functions):
-            yield f"{array}[{k}]", expression(function, places)
+            yield f"{array}[{k}]", expression(function, places, real)
 
 
-def _slopes(laws: RuntimeLaws) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
+def _slopes(laws: RuntimeLaws, real: Real) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
     """The derivatives that are not 0, by the number of the parameter."""
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
     for lane, label in enumerate(places):
         found = [
-            (f"{array}[{k}]", expression(slope, places))
+            (f"{array}[{k}]", expression(slope, places, real))
             for array, functions in laws.functions.items()
             for k, function in enumerate(functions)
             if isinstance(function, Ratio) and label in function.ring.names
@@ -178,27 +179,27 @@ def _load_lane(laws: RuntimeLaws) -> str:
     return "-1"
 
 
-def expression(function: Function, places: Mapping[str, str]) -> str:
+def expression(function: Function, places: Mapping[str, str], real: Real) -> str:
     """A rational function in C, with `places` for its symbols; one product over another, sums multiplied out."""
     if not isinstance(function, Ratio):
-        return c_literal(nearest(function), DOUBLE)
+        return c_literal(real.nearest(function), real)
     names = [places[name] for name in function.ring.names]
-    above = _sum(function.numerator, names)
+    above = _sum(function.numerator, names, real)
     below = [
         factor
         for form, power in sorted(function.denominator.items())
-        for factor in [_sum(function.ring.forms[form], names)] * power
+        for factor in [_sum(function.ring.forms[form], names, real)] * power
     ]
     return f"{above} / ({' * '.join(below)})" if below else above
 
 
-def _sum(polynomial: fmpq_mpoly, names: list[str]) -> str:
-    terms = [_term(fmpq(value), powers, names) for powers, value in polynomial.to_dict().items()]
-    return terms[0] if len(terms) == 1 else f"({' + '.join(terms)})" if terms else "0.0"
+def _sum(polynomial: fmpq_mpoly, names: list[str], real: Real) -> str:
+    terms = [_term(fmpq(value), powers, names, real) for powers, value in polynomial.to_dict().items()]
+    return terms[0] if len(terms) == 1 else f"({' + '.join(terms)})" if terms else c_literal(0.0, real)
 
 
-def _term(value: fmpq, powers: tuple[int, ...], names: list[str]) -> str:
+def _term(value: fmpq, powers: tuple[int, ...], names: list[str], real: Real) -> str:
     factors = [name for name, power in zip(names, powers, strict=True) for _ in range(int(power))]
     if value == -1 and factors:
         return f"-{' * '.join(factors)}"
-    return " * ".join(([] if value == 1 and factors else [c_literal(nearest(value), DOUBLE)]) + factors)
+    return " * ".join(([] if value == 1 and factors else [c_literal(real.nearest(value), real)]) + factors)
