@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from wavesym.errors import WavesymError
 from wavesym.programs.program import Program
-from wavesym.programs.runtime.engine import Array, Engine
+from wavesym.programs.runtime.engine import Array
+from wavesym.running.sets import sets_engine
 
 _WHY = ("", "a number that is not finite, or not positive where it has to be, or too large", "bodies too light")
 
@@ -64,10 +65,10 @@ class RuntimeModel:
     range. WavesymError for a field that there is not, and for arrays of other shapes.
     """
 
-    def __init__(self, program: Program, engine: Engine) -> None:
+    def __init__(self, program: Program) -> None:
         laws = program.laws
         assert laws is not None
-        self._engine = engine
+        self._engine = sets_engine(program)
         self.parameters: Mapping[str, Array] = {
             field.name: np.array([float(value) for value in field.values]) for field in laws.fields
         }

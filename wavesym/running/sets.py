@@ -1,4 +1,4 @@
-"""C of a scene whose parameters are given when it runs: compiled once, then called for as many sets as there are."""
+"""Programs whose parameters are given when they run, computed for as many sets as there are: in C, compiled once."""
 
 from __future__ import annotations
 
@@ -7,9 +7,20 @@ import ctypes
 import numpy as np
 
 from wavesym.programs.program import Program
-from wavesym.programs.runtime.engine import Array, Found
+from wavesym.programs.runtime.arrays.engine import ArraySets
+from wavesym.programs.runtime.engine import Array, Engine, FoundSets
 from wavesym.running.native import FAST, address, library
+from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.targets.files import runtime_sets
+
+
+def sets_engine(program: Program) -> Engine:
+    """What computes a program here: C, or NumPy where there is no compiler."""
+    try:
+        compiler()
+    except CompilerError:
+        return ArraySets(program)
+    return CompiledSets(program)
 
 
 class CompiledSets:
@@ -33,22 +44,22 @@ class CompiledSets:
             ctypes.CFUNCTYPE(ctypes.c_size_t)((f"{name}_{kind}_size", loaded))() for kind in ("model", "tangent")
         )
 
-    def values(self, given: Array, tau: Array) -> Found:
+    def values(self, given: Array, tau: Array) -> FoundSets:
         """See `Engine`."""
         return self._at(self._values, self._size, given, tau, 1)
 
-    def tangents(self, given: Array, tau: Array) -> Found:
+    def tangents(self, given: Array, tau: Array) -> FoundSets:
         """See `Engine`."""
         return self._at(self._tangents, self._tangent_size, given, tau, 1 + given.shape[1])
 
-    def peaks(self, given: Array) -> Found:
+    def peaks(self, given: Array) -> FoundSets:
         """See `Engine`."""
         found = _none(len(given), (self._outputs, 4))
         model = np.empty(self._size, np.uint8)
         self._peaks(address(given), len(given), address(model), *_places(found))
         return found
 
-    def _at(self, function: ctypes._NamedFuncPointer, size: int, given: Array, tau: Array, lanes: int) -> Found:
+    def _at(self, function: ctypes._NamedFuncPointer, size: int, given: Array, tau: Array, lanes: int) -> FoundSets:
         even = len(tau) > 1 and _even(tau)
         told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
         found = _none(len(given), (lanes, self._outputs, len(tau)))
@@ -57,11 +68,11 @@ class CompiledSets:
         return found
 
 
-def _none(sets: int, shape: tuple[int, ...]) -> Found:
-    return Found(np.empty(sets, np.int32), np.empty(sets), np.empty((sets, *shape)))
+def _none(sets: int, shape: tuple[int, ...]) -> FoundSets:
+    return FoundSets(np.empty(sets, np.int32), np.empty(sets), np.empty((sets, *shape)))
 
 
-def _places(found: Found) -> tuple[int, int, int]:
+def _places(found: FoundSets) -> tuple[int, int, int]:
     return address(found.status), address(found.estimate), address(found.values)
 
 
