@@ -1,14 +1,15 @@
 """Many sets of parameters at once, from Python: each is what the exact outputs of its own scene are."""
 
+from contextlib import nullcontext
 from functools import cache
 
 import numpy as np
 import pytest
 
 import wavesym
+from tests.support.without_compiler import without_compiler
 from wavesym.errors import WavesymError
 from wavesym.programs.runtime.arrays.engine import ArraySets
-from wavesym.running import toolchain
 
 SCENE = wavesym.Scene.from_toml("drive_equal").with_(
     {"output.until": 4, "output.tolerance": "1e-11", "load[1].times": ["3/2"]}
@@ -18,11 +19,7 @@ KAPPA = np.array([[1, 1, 1], [0.5, 2, 0.25], [3, 0.125, 3], [1, 1.0000001, 1], [
 
 @pytest.fixture(scope="module", params=["C", "NumPy"])
 def model(request):
-    with pytest.MonkeyPatch.context() as machine:
-        if request.param == "NumPy":
-            machine.delenv("CC", raising=False)
-            machine.setenv("PATH", "")
-            machine.setattr(toolchain, "find_spec", lambda name: None)
+    with without_compiler() if request.param == "NumPy" else nullcontext():
         return wavesym.model(SCENE, runtime=["kappa", "load"])
 
 

@@ -74,6 +74,10 @@ class RuntimeModel:
         }
         self.labels: Mapping[str, tuple[str, ...]] = {field.name: field.labels for field in laws.fields}
         """What the numbers of each field are called."""
+        self.units: Mapping[str, tuple[str, ...]] = {
+            field.name: tuple(unit.text for unit in field.units) for field in laws.fields
+        }
+        """Their units; empty where they have none."""
         self.outputs = tuple(output.name for output in program.outputs)
         self.tau_max = program.tau_max
 

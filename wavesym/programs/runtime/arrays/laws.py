@@ -14,7 +14,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.numbers.ratio import Ratio
 from wavesym.programs.runtime.engine import Array
 from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.plan import Function
+from wavesym.programs.runtime.units import Function
 
 
 @dataclass(frozen=True)
