@@ -336,11 +336,9 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     """
     from wavesym.programs.runtime.making import runtime_program
     from wavesym.running.model import RuntimeModel
-    from wavesym.running.sets import CompiledSets
 
     given = amplitudes(scene) if "load" in runtime else ()
-    program = runtime_program(lower(scene), Request(runtime=tuple(runtime)), given)
-    return RuntimeModel(program, CompiledSets(program))
+    return RuntimeModel(runtime_program(lower(scene), Request(runtime=tuple(runtime)), given))
 
 
 def run(

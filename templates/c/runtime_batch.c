@@ -1,7 +1,7 @@
 /* runtime_batch.c: the march of runtime.c for many sets of parameters at once, a set in each lane of a vector.
  * Plain C where there is no GNU C, one set at a time. Stands below the text of runtime.c in generated files, which have
  * what stands below the first empty line. */
-#include "runtime.c"
+#include "runtime_bound.c"
 
 /* All sets have one degree, the highest that one of them needs. A set that is refused goes along as another, or runs
  * wild in its own lane. */

@@ -1,6 +1,5 @@
 /* runtime_sets.c: many sets of parameters one after the other, for callers to whom a call costs more than a model.
  * Plain C that is put below NAME.c and runtime_peaks.c; what stands below the first empty line. */
-#include "runtime_misfit.c"
 #include "runtime_peaks.c"
 
 size_t name_model_size(void);
@@ -13,6 +12,8 @@ void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tan
                         int even, size_t count, int *status, name_real *estimate, name_real *out);
 
 void name_sets_sizes(size_t *sizes);
+void name_sets_bounds(const name_parameters *parameters, size_t sets, name_model *model, int *status,
+                      name_real *estimate, name_real *out);
 void name_sets_misfits(const name_parameters *parameters, size_t sets, name_batch *batch, const name_data *data,
                        int *status, name_real *estimate, name_real *out);
 
@@ -78,6 +79,16 @@ void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tan
                 all[row * count + k] = now[row];
             }
         }
+    }
+}
+
+/* Of each set the status, the estimate, and the bounds: out[set*OUTPUTS + output]. */
+void name_sets_bounds(const name_parameters *parameters, size_t sets, name_model *model, int *status,
+                      name_real *estimate, name_real *out)
+{
+    for (size_t set = 0; set < sets; ++set) {
+        status[set] = name_error_bound(model, parameters + set, out + set * NAME_OUTPUTS);
+        estimate[set] = name_error_estimate(model);
     }
 }
 

@@ -38,6 +38,7 @@ int name_model_sample(const name_model *model, name_real tau0, name_real dtau, s
 int name_build_tangent(name_tangent *tangent, const name_parameters *parameters);
 int name_tangent_sample(
     const name_tangent *tangent, name_real tau0, name_real dtau, size_t count, name_real *out);
+int name_error_bound(name_model *model, const name_parameters *parameters, name_real *bound);
 int name_build_batch(name_batch *batch, const name_parameters *parameters, size_t sets);
 int name_batch_model(const name_batch *batch, int set, name_model *model);
 size_t name_data_size(const name_real *tau, size_t count);
@@ -70,8 +71,10 @@ void laws_of(const name_parameters *p, laws *law);
 void slopes_of(const name_parameters *p, int lane, laws *law);
 
 extern const real largest_number;
+extern const real least_number;
 extern const real share;
 extern const real unit;
+extern const real roundings;
 
 extern const real half_length[];
 extern const real since_panel[];

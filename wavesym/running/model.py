@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from wavesym.errors import WavesymError
 from wavesym.programs.program import Program
-from wavesym.programs.runtime.engine import Array, Engine
+from wavesym.programs.runtime.engine import Array
+from wavesym.running.sets import sets_engine
 
 _WHY = ("", "a number that is not finite, or not positive where it has to be, or too large", "bodies too light")
 
@@ -64,15 +65,19 @@ class RuntimeModel:
     range. WavesymError for a field that there is not, and for arrays of other shapes.
     """
 
-    def __init__(self, program: Program, engine: Engine) -> None:
+    def __init__(self, program: Program) -> None:
         laws = program.laws
         assert laws is not None
-        self._engine = engine
+        self._engine = sets_engine(program)
         self.parameters: Mapping[str, Array] = {
             field.name: np.array([float(value) for value in field.values]) for field in laws.fields
         }
         self.labels: Mapping[str, tuple[str, ...]] = {field.name: field.labels for field in laws.fields}
         """What the numbers of each field are called."""
+        self.units: Mapping[str, tuple[str, ...]] = {
+            field.name: tuple(unit.text for unit in field.units) for field in laws.fields
+        }
+        """Their units; empty where they have none."""
         self.outputs = tuple(output.name for output in program.outputs)
         self.tau_max = program.tau_max
 
@@ -116,6 +121,14 @@ class RuntimeModel:
             return misfits(self._given(parameters)).values
 
         return of
+
+    def bounds(self, **parameters: ArrayLike) -> Array:
+        """Of each set and output the largest error relative to its largest value on the horizon, at most: proved.
+
+        It is pessimistic by a few digits, infinite where it leaves nothing. Of shape (sets, outputs); UnservedError
+        where there is no C compiler.
+        """
+        return self._engine.bounds(self._given(parameters)).values
 
     def check(self, **parameters: ArrayLike) -> SetChecks:
         """Which sets are refused, and what errors the others have."""

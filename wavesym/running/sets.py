@@ -1,4 +1,4 @@
-"""C of a scene whose parameters are given when it runs: compiled once, then called for as many sets as there are."""
+"""Programs whose parameters are given when they run, computed for as many sets as there are: in C, compiled once."""
 
 from __future__ import annotations
 
@@ -9,9 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.programs.program import Program
-from wavesym.programs.runtime.engine import Array, Found
+from wavesym.programs.runtime.arrays.engine import ArraySets
+from wavesym.programs.runtime.engine import Array, Engine, FoundSets
 from wavesym.running.native import FAST, address, library
+from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.targets.files import runtime_sets
+
+
+def sets_engine(program: Program) -> Engine:
+    """What computes a program here: C, or NumPy where there is no compiler."""
+    try:
+        compiler()
+    except CompilerError:
+        return ArraySets(program)
+    return CompiledSets(program)
 
 
 class CompiledSets:
@@ -22,15 +33,16 @@ class CompiledSets:
         files = runtime_sets(program)
         loaded = library(files[f"{name}.c"], FAST, (f"{name}.h", files[f"{name}.h"]))
         self._outputs = len(program.outputs)
-        self._values, self._peaks, self._tangents, self._misfits = (
-            getattr(loaded, f"{name}_sets{kind}") for kind in ("", "_peaks", "_tangents", "_misfits")
+        self._values, self._peaks, self._tangents, self._misfits, self._bounds = (
+            getattr(loaded, f"{name}_sets{kind}") for kind in ("", "_peaks", "_tangents", "_misfits", "_bounds")
         )
         many, where = ctypes.c_size_t, ctypes.c_void_p
         for of_taus in (self._values, self._tangents):
             of_taus.argtypes = [where, many, where, where, ctypes.c_int, many, where, where, where]
             of_taus.restype = None
-        self._peaks.argtypes = [where, many, where, where, where, where]
-        self._peaks.restype = None
+        for of_sets in (self._peaks, self._bounds):
+            of_sets.argtypes = [where, many, where, where, where, where]
+            of_sets.restype = None
         self._misfits.argtypes = [where, many, where, where, where, where, where]
         self._misfits.restype = None
         self._data_size, self._data = getattr(loaded, f"{name}_data_size"), getattr(loaded, f"{name}_data_init")
@@ -43,28 +55,35 @@ class CompiledSets:
             ctypes.CFUNCTYPE(ctypes.c_size_t)((f"{name}_{kind}_size", loaded))() for kind in ("model", "tangent")
         )
 
-    def values(self, given: Array, tau: Array) -> Found:
+    def values(self, given: Array, tau: Array) -> FoundSets:
         """See `Engine`."""
         return self._at(self._values, self._size, given, tau, 1)
 
-    def tangents(self, given: Array, tau: Array) -> Found:
+    def tangents(self, given: Array, tau: Array) -> FoundSets:
         """See `Engine`."""
         return self._at(self._tangents, self._tangent_size, given, tau, 1 + given.shape[1])
 
-    def peaks(self, given: Array) -> Found:
+    def peaks(self, given: Array) -> FoundSets:
         """See `Engine`."""
-        found = _none(len(given), (self._outputs, 4))
+        return self._of_each(self._peaks, given, (self._outputs, 4))
+
+    def bounds(self, given: Array) -> FoundSets:
+        """See `Engine`."""
+        return self._of_each(self._bounds, given, (self._outputs,))
+
+    def _of_each(self, function: ctypes._NamedFuncPointer, given: Array, shape: tuple[int, ...]) -> FoundSets:
+        found = _none(len(given), shape)
         model = np.empty(self._size, np.uint8)
-        self._peaks(address(given), len(given), address(model), *_places(found))
+        function(address(given), len(given), address(model), *_places(found))
         return found
 
-    def misfit(self, tau: Array, data: Array) -> Callable[[Array], Found]:
+    def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
         """See `Engine`."""
         values = np.ascontiguousarray(data)
         kept, numbers = np.empty(self._data_bytes, np.uint8), np.empty(self._data_size(address(tau), len(tau)))
         self._data(address(kept), address(numbers), address(tau), address(values), len(tau))
 
-        def misfits(given: Array) -> Found:
+        def misfits(given: Array) -> FoundSets:
             _ = numbers  # C reads them, so that they must live as long as this
             found = _none(len(given), ())
             batch = _aligned(self._batch_size)
@@ -73,7 +92,7 @@ class CompiledSets:
 
         return misfits
 
-    def _at(self, function: ctypes._NamedFuncPointer, size: int, given: Array, tau: Array, lanes: int) -> Found:
+    def _at(self, function: ctypes._NamedFuncPointer, size: int, given: Array, tau: Array, lanes: int) -> FoundSets:
         even = len(tau) > 1 and _even(tau)
         told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
         found = _none(len(given), (lanes, self._outputs, len(tau)))
@@ -89,11 +108,11 @@ def _aligned(size: int) -> NDArray[np.uint8]:
     return memory[begin : begin + size]
 
 
-def _none(sets: int, shape: tuple[int, ...]) -> Found:
-    return Found(np.empty(sets, np.int32), np.empty(sets), np.empty((sets, *shape)))
+def _none(sets: int, shape: tuple[int, ...]) -> FoundSets:
+    return FoundSets(np.empty(sets, np.int32), np.empty(sets), np.empty((sets, *shape)))
 
 
-def _places(found: Found) -> tuple[int, int, int]:
+def _places(found: FoundSets) -> tuple[int, int, int]:
     return address(found.status), address(found.estimate), address(found.values)
 
 

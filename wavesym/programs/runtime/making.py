@@ -19,8 +19,10 @@ from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.degree import STIFF, degrees, share
 from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.plan import Function, Push, RuntimePlan, runtime_plan
+from wavesym.programs.runtime.plan import Push, RuntimePlan, runtime_plan
 from wavesym.programs.runtime.request import fields
+from wavesym.programs.runtime.roundings import most_roundings
+from wavesym.programs.runtime.units import Function
 
 FINEST = {"double": fmpq(1, 10**13), "single": fmpq(1, 10**5)}
 """The smallest tolerance that numbers keep, by precision."""
@@ -54,7 +56,10 @@ def runtime_program(
         f"scene's own parameters{light}; errors are estimated"
     )
     tables = _tables(made, real)
-    constants = {**_constants(made, real), "degree": degree, "least": least, "share": share(made, tolerance, real)}
+    laws = _laws(made, () if chosen else tuple(real.nearest(load.weight) for load in loads))
+    positive = [label for field in given if field.positive for label in field.labels]
+    rounded = most_roundings(laws.functions, positive)
+    constants = {**_constants(made, real), "roundings": rounded, "degree": degree, "least": least, "share": share(made, tolerance, real)}
     program = Program(
         "runtime",
         real,
@@ -65,7 +70,7 @@ def runtime_program(
         real.bytes * sum(map(len, tables.values())),
         Provenance(model, reason, request.options),
         proved=False,
-        laws=_laws(made, () if chosen else tuple(real.nearest(load.weight) for load in loads)),
+        laws=laws,
     )
     return _with_reference(program) if tested else program
 

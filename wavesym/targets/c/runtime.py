@@ -11,13 +11,14 @@ from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.plan import Function
+from wavesym.programs.runtime.units import Function, ParameterUnit
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_constants, c_literal, c_literals, c_tables
 
 _SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard", "events", "lanes", "groups")
+_LIMITS = {"double": "DBL", "single": "FLT"}
 
 
 @dataclass(frozen=True)
@@ -59,8 +60,10 @@ class CRuntime:
     constants: dict[str, str]
     amplitudes: Lines
     largest: str
+    least: str
     loads: str
     kernel: str
+    bound: str
     batch: str
     misfit: str
 
@@ -93,13 +96,15 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         fields=fields,
         laws=tuple(_assigned(laws, laws.functions, program.real)),
         slopes=tuple(_slopes(laws, program.real)),
-        largest="FLT_MAX" if program.real.name == "single" else "DBL_MAX",
+        largest=f"{_LIMITS[program.real.name]}_MAX",
+        least=f"{_LIMITS[program.real.name]}_MIN",
         load_lane=_load_lane(laws),
         tables=c_tables(program.tables, program.real),
         constants=constants,
         amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
         loads="amplitude" if own else "p->load",
         kernel=kernel("runtime.c", scene),
+        bound=kernel("runtime_bound.c", scene),
         batch=kernel("runtime_batch.c", scene),
         misfit=kernel("runtime_misfit.c", scene),
     )
@@ -142,9 +147,13 @@ def _fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:
             constant=field.name.upper(),
             count=str(len(field.values)),
             check="positive_number" if field.positive else "finite_number",
-            labels=field.labels,
+            labels=tuple(map(_told, field.labels, field.units)),
             values=c_literals(map(real.nearest, field.values), real),
         )
+
+
+def _told(label: str, unit: ParameterUnit) -> str:
+    return f"{label} [{unit.text}]" if unit.text else label
 
 
 def _assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: Real) -> Iterator[tuple[str, str]]:
