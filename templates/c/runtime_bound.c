@@ -1,6 +1,6 @@
 /* runtime_bound.c: a proved bound of the errors of a model, from what it sends itself.
  * Plain C that stands below the text of runtime.c in generated files, which have what stands below the first empty line. */
-#include "runtime.c"
+#include "runtime_read.c"
 
 /* What may be wrong, at most; docs/march.md of wavesym has the proof. In short: let q be what a body sends plus what
  * arrived. How far q is from the law of the body is computed here, rounding included. That starts an error on this panel;

@@ -52,7 +52,7 @@ void name_batch_misfit(const name_batch *batch, const name_data *data, name_real
 typedef name_real real;
 typedef name_model model_of;
 
-enum { LEAST = 8, LOAD_LANE = -1, STRENGTHS = 1, SECTIONS = 3, TERMS = 6 };
+enum { LEAST = 8, LOAD_LANE = -1, STRENGTHS = 1, SECTIONS = 3, CYCLE = 1, TERMS = 6 };
 
 /* What parameters make of nodes, rods, loads and outputs. */
 typedef struct {
@@ -74,6 +74,8 @@ extern const real largest_number;
 extern const real least_number;
 extern const real share;
 extern const real unit;
+extern const real window_length;
+extern const real span;
 extern const real roundings;
 
 extern const real half_length[];

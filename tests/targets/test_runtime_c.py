@@ -242,7 +242,7 @@ def test_what_is_not_served_is_refused(scene, runtime, message, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "more", [{"language": "all"}, {"evaluator": "march"}, {"precision": "single"}, {"windows": 3}, {"optimize": "size"}]
+    "more", [{"language": "all"}, {"evaluator": "march"}, {"windows": 3}, {"optimize": "size"}]
 )
 def test_other_options_are_refused(more, tmp_path):
     with pytest.raises(WavesymError, match="with --runtime"):

@@ -62,7 +62,9 @@ class CRuntime:
     largest: str
     least: str
     loads: str
+    series: str
     kernel: str
+    read: str
     bound: str
     batch: str
     misfit: str
@@ -103,7 +105,9 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         constants=constants,
         amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
         loads="amplitude" if own else "p->load",
+        series=kernel("runtime_series.c", scene),
         kernel=kernel("runtime.c", scene),
+        read=kernel("runtime_read.c", scene),
         bound=kernel("runtime_bound.c", scene),
         batch=kernel("runtime_batch.c", scene),
         misfit=kernel("runtime_misfit.c", scene),
