@@ -62,7 +62,9 @@ def test_no_error_is_larger_whatever_the_parameters(case, flags, tmp_path):
         assert np.all(bound[np.isfinite(bound)] < 1e-6)
     for _ in range(6):
         given = {
-            name: (10 ** random.uniform(-3, 2, len(choices[0]))).tolist() if name in ("kappa", "inertia") else choices[0]
+            name: (10 ** random.uniform(-3, 2, len(choices[0]))).tolist()
+            if name in ("kappa", "inertia")
+            else choices[0]
             for name, choices in numbers.items()
         }
         if made.build(*flat(given)) != 2:

@@ -59,7 +59,13 @@ def runtime_program(
     laws = _laws(made, () if chosen else tuple(real.nearest(load.weight) for load in loads))
     positive = [label for field in given if field.positive for label in field.labels]
     rounded = most_roundings(laws.functions, positive)
-    constants = {**_constants(made, real), "roundings": rounded, "degree": degree, "least": least, "share": share(made, tolerance, real)}
+    constants = {
+        **_constants(made, real),
+        "roundings": rounded,
+        "degree": degree,
+        "least": least,
+        "share": share(made, tolerance, real),
+    }
     program = Program(
         "runtime",
         real,
