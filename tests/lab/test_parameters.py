@@ -9,7 +9,7 @@ import wavesym
 from wavesym.errors import UnservedError
 from wavesym.lab import parameters
 from wavesym.rivals.line import stated
-from wavesym.rivals.specialised import Grid, in_c, in_numpy
+from wavesym.rivals.specialised import SampleGrid, in_c, in_numpy
 from wavesym.scene import lower
 
 FOLDER = Path(__file__).parents[2] / "bench"
@@ -18,7 +18,7 @@ SCENES = parameters.scenes(FOLDER)
 
 def errors(scene, stride):
     problem = stated(lower(scene))
-    grid = Grid(problem, 101, stride)
+    grid = SampleGrid(problem, 101, stride)
     other = stated(lower(scene.with_({"system.kappa": [2] * len(scene.system.kappa)})))
     found = in_c(grid, problem)(problem)()
     by_numpy = in_numpy(grid, [other, problem])
@@ -37,9 +37,9 @@ def test_what_is_written_by_hand_is_right():
 def test_what_is_off_the_grid_is_refused():
     problem = stated(lower(SCENES["building, m = 2, to 20"]))
     with pytest.raises(UnservedError, match="a strain or velocity on the grid expected"):
-        Grid(problem, 101, 1)
+        SampleGrid(problem, 101, 1)
     with pytest.raises(UnservedError, match="a whole number from 4 on"):
-        Grid(problem, 1000, 1)
+        SampleGrid(problem, 1000, 1)
 
 
 @pytest.mark.slow

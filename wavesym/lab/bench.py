@@ -79,8 +79,8 @@ def report(folder: Path) -> Iterator[str]:
     yield ""
     yield "## Parameters at run time"
     yield ""
-    yield f"From kappa to {parameters.SAMPLES} samples of all outputs, tolerance 1e-12, nothing left out but compiling. *By hand*:"
-    yield "characteristics with exponential integration of order 4, written for the scene alone."
+    yield f"From kappa to {parameters.SAMPLES} samples of all outputs, tolerance 1e-12, nothing left out but compiling."
+    yield "*By hand*: characteristics with exponential integration of order 4, written for the scene alone."
     yield ""
     yield from _table(
         ("scene", "way", "us to coefficients", "us to samples", "error", "estimate", "proved bound"),

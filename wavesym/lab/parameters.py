@@ -23,7 +23,7 @@ from wavesym.programs.runtime.making import runtime_program
 from wavesym.results.response import Response
 from wavesym.rivals import steps
 from wavesym.rivals.line import stated
-from wavesym.rivals.specialised import Grid, in_c, in_numpy
+from wavesym.rivals.specialised import SampleGrid, in_c, in_numpy
 from wavesym.running.model import RuntimeModel
 from wavesym.running.native import FAST, address, library
 from wavesym.scene import Scene, lower
@@ -87,10 +87,15 @@ def scenes(folder: Path) -> dict[str, Scene]:
 
 def light(scene: Scene) -> Scene:
     """With bodies as light as programs expect at most."""
-    return scene.with_({"system.kappa": [LIGHT] * len(scene.system.kappa)})
+    return scene.with_({"system.kappa": [LIGHT] * len(_kappa(scene))})
 
 
-class Timed:
+def _kappa(scene: Scene) -> Array:
+    own = lower(scene).named.parameters.kappa
+    return np.array([nearest(value) for _, value in sorted(own.items())])
+
+
+class TimedSets:
     """A scene's C with kappa at run time, called in loops that are C, too."""
 
     def __init__(self, scene: Scene, precision: str = "double") -> None:
@@ -100,11 +105,9 @@ class Timed:
         real = {"double": "double", "single": "float"}[precision]
         calls = _CALLS.replace("NAME_real", real).replace("NAME", name).replace("PREFIX", name.upper())
         self.library = library(files[f"{name}.c"] + calls, FAST, (f"{name}.h", files[f"{name}.h"]))
-        self.kind = np.float64 if precision == "double" else np.float32
+        self.kind = np.dtype(np.float64 if precision == "double" else np.float32)
         self.outputs, self.until = len(scene.outputs), self.program.tau_max
-        assert self.program.laws is not None
-        (field,) = self.program.laws.fields
-        self.own = np.array([nearest(value) for value in field.values])
+        self.own = _kappa(scene)
 
     def numbers(self, kappa: Array) -> NDArray[np.generic]:
         """As the C takes them."""
@@ -145,7 +148,7 @@ def _truth(scene: Scene) -> Array:
 
 
 def _instants(until: float) -> Array:
-    return np.arange(SAMPLES) * (until / (SAMPLES - 1))
+    return np.arange(SAMPLES, dtype=np.float64) * (until / (SAMPLES - 1))
 
 
 def _worst(found: Array, truth: Array) -> float:
@@ -154,8 +157,8 @@ def _worst(found: Array, truth: Array) -> float:
 
 
 def _ours(scene: Scene, each: Scene, truth: Array) -> Sequence[str]:
-    timed = Timed(scene)
-    kappa = np.array([float(value) for value in each.system.kappa])
+    timed = TimedSets(scene)
+    kappa = _kappa(each)
     out, calls = np.empty(truth.shape), 20
     many, where = ctypes.c_size_t(calls), ctypes.c_void_p(address(out))
     step = ctypes.c_double(timed.until / (SAMPLES - 1))
@@ -183,7 +186,7 @@ def _theirs(scene: Scene, truth: Array) -> Iterator[Sequence[str]]:
     problem = stated(model)
     for stride in _STRIDES:
         try:
-            grid = Grid(problem, SAMPLES, stride)
+            grid = SampleGrid(problem, SAMPLES, stride)
         except UnservedError:
             continue
         call = in_c(grid, problem)(problem)
@@ -194,7 +197,7 @@ def _theirs(scene: Scene, truth: Array) -> Iterator[Sequence[str]]:
         if error < 1e-12:
             break
     for stride in _STRIDES[1:3]:
-        grid = Grid(problem, SAMPLES, stride)
+        grid = SampleGrid(problem, SAMPLES, stride)
         (seconds,) = medians([partial(in_numpy, grid, [problem] * _SETS)], rounds=3)
         error = _worst(in_numpy(grid, [problem])[0], truth)
         way = f"by hand, NumPy, {_SETS} sets at once, {grid.steps} steps a unit"
@@ -210,7 +213,7 @@ def many_rows(folder: Path) -> Iterator[Sequence[str]]:
     """What, and how many sets a second, or how long."""
     building = Scene.from_toml(folder / "b.toml").with_({"output.tolerance": "1e-13"})
     for precision in ("double", "single"):
-        timed = Timed(building, precision)
+        timed = TimedSets(building, precision)
         kappa = timed.own * np.random.default_rng(1).uniform(0.8, 1.2, (_MANY, len(timed.own)))
         calls = timed.call("batches", kappa, ctypes.c_size_t(_MANY), timed.batch())
         (seconds,) = medians([calls])

@@ -23,7 +23,7 @@ _GAUSS = np.polynomial.legendre.leggauss(24)
 _FIRSTS = (0, -1, -2)
 
 
-class Grid:
+class SampleGrid:
     """`stride` steps from each of `count` samples to the next, the last at the horizon or before; for one scene."""
 
     def __init__(self, problem: Problem, count: int, stride: int) -> None:
@@ -56,7 +56,7 @@ class Grid:
         return [np.ascontiguousarray(each, np.float64) for each in of]
 
 
-def in_c(grid: Grid, problem: Problem) -> Callable[[Problem], Callable[[], Array]]:
+def in_c(grid: SampleGrid, problem: Problem) -> Callable[[Problem], Callable[[], Array]]:
     """A call that makes samples of a set of parameters, (outputs, count); compiled for the sizes of this scene."""
     output, node, way, sign, lag = zip(*grid.terms, strict=True)
     windows, nodes = zip(*grid.events, strict=True) if grid.events else ((), ())
@@ -96,7 +96,7 @@ def _listed(values: Sequence[float]) -> str:
     return ", ".join(map(str, values)) or "0"
 
 
-def in_numpy(grid: Grid, problems: Sequence[Problem]) -> Array:
+def in_numpy(grid: SampleGrid, problems: Sequence[Problem]) -> Array:
     """Samples of all sets at once: (sets, outputs, count)."""
     one, steps = problems[0], grid.steps
     h, sets = 1 / steps, len(problems)
@@ -137,6 +137,6 @@ def in_numpy(grid: Grid, problems: Sequence[Problem]) -> Array:
         wave[window + 1, 0, 1:-1], wave[window + 1, 1, 1:-1] = v - a, v - b
     out = np.zeros((sets, grid.outputs, grid.count))
     for output, node, way, sign, lag in grid.terms:
-        window, place = np.divmod(np.arange(grid.count) * grid.stride - lag + steps, steps)
-        out[:, output] += sign * wave[window, way, node + 1, place].T
+        at, place = np.divmod(np.arange(grid.count) * grid.stride - lag + steps, steps)
+        out[:, output] += sign * wave[at, way, node + 1, place].T
     return out
