@@ -59,8 +59,8 @@ class ChartRow:
 class Measured:
     """A scene's chart in numbers: its points, and the nanoseconds that writing a double takes.
 
-    All errors have `known` in them, what the values that they are measured from may be wrong by. `new_parameters` is how
-    many seconds pass from new kappa to all samples, by C that takes them when it runs; None where there is no such C.
+    All errors have `known` in them, what the values that they are measured from may be wrong by. `new_parameters` is
+    how many seconds pass from new kappa to all samples, by C that takes them when it runs; None where no C does.
     """
 
     rows: tuple[ChartRow, ...]

@@ -235,3 +235,10 @@ def many_rows(folder: Path) -> Iterator[Sequence[str]]:
     sets = model.parameters["kappa"] * np.linspace(0.2, 3, 200)[:, np.newaxis]
     (seconds,) = medians([partial(model.peaks, kappa=sets)])
     yield "200 kappa of it with true peaks, 1e-6", f"{1e3 * seconds:.1f} ms"
+    shafts = Scene.from_toml(folder.parent / "examples" / "fit" / "shafts.toml")
+    model = RuntimeModel(runtime_program(lower(shafts), Request(runtime=("kappa",)), ()))
+    (seconds,) = medians([partial(model.gradients, _instants(model.tau_max), kappa=model.parameters["kappa"])])
+    yield (
+        f"a step of the fit in examples/fit: {SAMPLES} samples, their derivatives, from Python",
+        f"{1e3 * seconds:.2f} ms",
+    )

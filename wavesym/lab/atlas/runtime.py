@@ -15,7 +15,7 @@ from wavesym.programs.runtime.making import runtime_program
 from wavesym.running.model import RuntimeModel
 from wavesym.scene import lower
 
-KAPPAS = tuple(factor * Fraction(10) ** exponent for exponent in range(-3, 3) for factor in (1, 3)) + (Fraction(1000),)
+KAPPAS = (*(factor * Fraction(10) ** power for power in range(-3, 3) for factor in (1, 3)), Fraction(1000))
 SHAFTS = (1, 3)
 COUNTS = (1, 2, 3, 5, 10, 20, 50, 100, 200)
 RATES = (Fraction(1, 20), Fraction(1), Fraction(20))
