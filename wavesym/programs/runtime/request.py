@@ -13,19 +13,20 @@ from wavesym.mechanics.model import Model
 from wavesym.programs.runtime.units import ParameterUnit, unit_of, unit_of_load
 
 NAMES = ("kappa", "inertia", "velocity", "load")
-POSITIVE = frozenset({"kappa", "inertia"})
+POSITIVE = frozenset({"kappa", "inertia", "mass", "dashpot", "spring", "impedance"})
 
 
 @dataclass(frozen=True)
 class RuntimeField:
-    """A field of the parameters: its name, what each of its numbers is called, what they are in the scene, and in which
-    units: those of results, none where a scene has none.
+    """A field of the parameters: its name, what each of its numbers is called, what they are in the scene, in which
+    units (those of results, none where a scene has none), and what each is for people.
     """
 
     name: str
     labels: tuple[str, ...]
     values: tuple[fmpq, ...]
     units: tuple[ParameterUnit, ...]
+    told: tuple[str, ...]
 
     @property
     def positive(self) -> bool:
@@ -58,15 +59,17 @@ def fields(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, A
     for name, of in there.items():
         if name in names:
             unit = unit_of(model, name)
-            found.append(_field(name, [(f"{name}_{i}", value, unit) for i, value in of]))
+            found.append(field_of(name, [(f"{name}_{i}", value, unit) for i, value in of]))
     if "load" in names:
-        found.append(_field("load", [(told, load.weight, unit_of_load(model, load)) for told, load in amplitudes]))
+        found.append(field_of("load", [(told, load.weight, unit_of_load(model, load)) for told, load in amplitudes]))
     return tuple(found)
 
 
-def _field(name: str, numbers: Sequence[tuple[str, fmpq, ParameterUnit]]) -> RuntimeField:
-    values = tuple(value * unit.size for _, value, unit in numbers)
-    return RuntimeField(name, tuple(label for label, _, _ in numbers), values, tuple(unit for _, _, unit in numbers))
+def field_of(name: str, numbers: Sequence[tuple[str, fmpq, ParameterUnit]], told: Sequence[str] = ()) -> RuntimeField:
+    """A field of numbers, each with its label and unit; `told` says what each is, where labels do not."""
+    labels, values, units = zip(*numbers, strict=True)
+    sized = tuple(value * unit.size for value, unit in zip(values, units, strict=True))
+    return RuntimeField(name, labels, sized, units, tuple(told) or labels)
 
 
 def _one_of(names: Sequence[str]) -> str:
