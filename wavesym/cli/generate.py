@@ -49,7 +49,8 @@ FINEST = {"double": Fraction(1, 10**13), "single": Fraction(1, 10**5)}  # of tol
 @click.option(
     "--runtime",
     metavar="LIST",
-    help="Parameters that come at run time, a list of kappa, inertia, velocity and load with commas between.",
+    help="Parameters that come at run time, with commas between: of kappa, inertia, velocity and load; of a chain that "
+    "is written out mass, dashpot, spring, impedance, velocity and load.",
 )
 @click.option("--force", is_flag=True, help="Replace files that wavesym did not write, too.")
 @click.option("--check", "only_check", is_flag=True, help="Write nothing; print a diff and exit 1 where files differ.")

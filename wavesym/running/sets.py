@@ -49,7 +49,7 @@ class CompiledSets:
         self._size, self._tangent_size = (self._function(f"{kind}_size", [], _MANY)() for kind in ("model", "tangent"))
 
     def _function(self, name: str, arguments: list[Any], result: Any = None) -> ctypes._NamedFuncPointer:
-        found = getattr(self._loaded, f"{self._name}_{name}")
+        found: ctypes._NamedFuncPointer = getattr(self._loaded, f"{self._name}_{name}")
         found.argtypes, found.restype = arguments, result
         return found
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
-from wavesym.errors import UnservedError, WavesymError
+from wavesym.errors import WavesymError
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.programs.runtime.units import ParameterUnit, unit_of, unit_of_load
@@ -41,20 +41,13 @@ def fields(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, A
     UnservedError for a scene that a march of named systems does not serve, WavesymError for a name that it does not
     have.
     """
-    if model.chain is None:
-        raise UnservedError("--runtime: chain given, collision, drive or building expected, contacts closed")
+    chain = model.named
     model.refuse_damping()
     there = {
-        name: tuple(sorted(numbers.items()))
-        for name in NAMES
-        if (numbers := getattr(model.chain.parameters, name, None))
+        name: tuple(sorted(numbers.items())) for name in NAMES if (numbers := getattr(chain.parameters, name, None))
     }
     known = [*there, *(["load"] if amplitudes or any(load.source != "impact" for load in model.loads) else [])]
-    for place, name in enumerate(names):
-        if name not in known:
-            raise WavesymError(f"--runtime: {name or 'nothing'} given, {_one_of(known)} expected")
-        if name in names[:place]:
-            raise WavesymError(f"--runtime: {name} given twice, once expected")
+    refuse_others(names, known)
     found = []
     for name, of in there.items():
         if name in names:
@@ -70,6 +63,15 @@ def field_of(name: str, numbers: Sequence[tuple[str, fmpq, ParameterUnit]], told
     labels, values, units = zip(*numbers, strict=True)
     sized = tuple(value * unit.size for value, unit in zip(values, units, strict=True))
     return RuntimeField(name, labels, sized, units, tuple(told) or labels)
+
+
+def refuse_others(names: Sequence[str], known: Sequence[str]) -> None:
+    """WavesymError for a name that a scene does not have, and for one that is given twice."""
+    for place, name in enumerate(names):
+        if name not in known:
+            raise WavesymError(f"--runtime: {name or 'nothing'} given, {_one_of(known)} expected")
+        if name in names[:place]:
+            raise WavesymError(f"--runtime: {name} given twice, once expected")
 
 
 def _one_of(names: Sequence[str]) -> str:

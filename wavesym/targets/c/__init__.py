@@ -16,7 +16,7 @@ _SOURCES = {
     "rings": rings.source,
     "modes": modes.source,
 }
-_AT_RUN_TIME = {"runtime": runtime, "joints": joints}
+_AT_RUN_TIME = {"runtime": runtime.files, "joints": joints.files}
 _MORE = {"march": march.streaming, "modes": modes.streaming}
 
 
@@ -27,7 +27,7 @@ class CTarget:
 
     def files(self, description: Description, program: Program) -> dict[str, str]:
         if program.kind in _AT_RUN_TIME:
-            return _AT_RUN_TIME[program.kind].files(description, program)
+            return _AT_RUN_TIME[program.kind](description, program)
         name = description.name
         more = _MORE[program.kind](description, program) if program.kind in _MORE else ""
         made = {

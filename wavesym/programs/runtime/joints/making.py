@@ -17,6 +17,7 @@ from wavesym.numbers.reals import Real
 from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.request import Request
 from wavesym.programs.rings.plan import RingPlan
+from wavesym.programs.rings.space import JointRows
 from wavesym.programs.runtime.degree import LARGEST_MODEL, LEAST, MARGIN
 from wavesym.programs.runtime.joints.network import free_network
 from wavesym.programs.runtime.joints.plan import JointsPlan, joints_plan
@@ -216,8 +217,8 @@ def _tables(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[
 def _masses(made: JointsPlan) -> Iterator[int]:
     """Of each state whether it is the velocity of a mass: these come first in a joint."""
     for joint in made.plan.joints:
-        for n in range(len(joint.space.weights)):
-            yield int(n < joint.space.masses)
+        if isinstance(rows := joint.space, JointRows):  # others have no state
+            yield from (int(n < rows.masses) for n in range(len(rows.weights)))
 
 
 def _firsts(counts: Iterable[int]) -> tuple[int, ...]:

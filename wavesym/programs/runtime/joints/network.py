@@ -8,12 +8,12 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.errors import UnservedError, WavesymError
+from wavesym.errors import UnservedError
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.ratio import Ring
-from wavesym.programs.runtime.request import RuntimeField, field_of
+from wavesym.programs.runtime.request import RuntimeField, field_of, refuse_others
 from wavesym.programs.runtime.units import PLAIN
 
 Numbers = dict[tuple[str, int], fmpq]
@@ -44,12 +44,9 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
             raise UnservedError(f"--runtime: the end at {point.place} moves at tau = 0, one at rest expected")
     there = {name: numbers for name, of in _KINDS.items() if (numbers := dict(of(network)))}
     known = [*there, *(["load"] if amplitudes or model.loads else [])]
-    for place, name in enumerate(names):
-        if name not in known:
-            raise WavesymError(f"--runtime: {name or 'nothing'} given, {' or '.join(known)} expected")
-        if name in names[:place]:
-            raise WavesymError(f"--runtime: {name} given twice, once expected")
-    fields, symbols = [], {}
+    refuse_others(names, known)
+    fields: list[RuntimeField] = []
+    symbols: dict[tuple[str, str, int], str] = {}
     for name in there:
         if name in names:
             labels = {key: f"{name}_{kind}_{number}" for key in there[name] for kind, number in [key]}
