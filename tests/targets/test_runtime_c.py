@@ -232,7 +232,11 @@ def test_its_selftest_sees_what_is_broken(tmp_path):
         (COLLISION, ["load"], "--runtime: load given, kappa or velocity expected"),
         (COLLISION, ["kappa", "kappa"], "--runtime: kappa given twice, once expected"),
         (COLLISION, [""], "--runtime: nothing given, kappa or velocity expected"),
-        (wavesym.Scene.from_toml("stepped_shaft"), ["kappa"], "--runtime: chain given, collision, drive or building"),
+        (
+            wavesym.Scene.from_toml("stepped_shaft"),
+            ["kappa"],
+            "--runtime: kappa given, mass, dashpot, impedance, velocity or load",
+        ),
     ],
 )
 def test_what_is_not_served_is_refused(scene, runtime, message, tmp_path):
