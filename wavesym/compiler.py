@@ -46,7 +46,7 @@ from wavesym.results.peaks import table_of_peaks
 from wavesym.results.response import Response
 from wavesym.results.summary import Summary, summarised
 from wavesym.scene import Scene, lower
-from wavesym.scene.lowering import amplitudes, drifts
+from wavesym.scene.lowering import amplitudes, drifts, sources
 from wavesym.targets import LANGUAGES
 from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
     from wavesym.running.sets import RuntimeModel
+    from wavesym.running.stream import StreamModel
 
 
 _UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
@@ -253,14 +254,17 @@ def generate(
     optimize: str | None = None,
     runtime: Sequence[str] = (),
     *,
+    stream: bool = False,
+    step: Fraction | None = None,
     force: bool = False,
 ) -> tuple[Path, ...]:
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
 
     `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
     "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters that C takes when it
-    runs: "kappa", "inertia", "velocity", "load". Files that wavesym did not write are replaced only by
-    `force`; WavesymError else, and for a language, evaluator, precision or aim that there is not.
+    runs: "kappa", "inertia", "velocity", "load". A `stream` takes the loads sample by sample, at any time, or best at
+    multiples of `step`, in tau. Files that wavesym did not write are replaced only by `force`; WavesymError else, and
+    for a language, evaluator, precision or aim that there is not.
 
     >>> import wavesym
     >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):
@@ -268,7 +272,9 @@ def generate(
     drive/drive_m1.json
     drive/drive_m1.py
     """
-    made = _written(scene, directory, language, Request(evaluator, precision, windows, optimize, tuple(runtime)))
+    made = _written(
+        scene, directory, language, _request(evaluator, precision, windows, optimize, runtime, stream, step)
+    )
     for path in made:
         if not force and path.is_file() and not is_ours(path):
             raise WavesymError(f"{path}: exists and was not written by wavesym; --force replaces it")
@@ -286,13 +292,16 @@ def check(
     optimize: str | None = None,
     source: str = "SCENE",
     runtime: Sequence[str] = (),
+    *,
+    stream: bool = False,
+    step: Fraction | None = None,
 ) -> str:
     """The difference between what stands in `directory` and what `generate` would write; empty where there is none.
 
     Each file that is changed, missing or orphaned is named, with a diff; so is what a process that was killed left. The
     last line is the command that mends them, with the scene as it is given by `source`.
     """
-    request = Request(evaluator, precision, windows, optimize, tuple(runtime))
+    request = _request(evaluator, precision, windows, optimize, runtime, stream, step)
     made = _written(scene, directory, language, request)
     folder = Path(directory or scene.name)
     found = [path for path in folder.glob(f"{scene.name}*") if path.is_file()]
@@ -302,13 +311,33 @@ def check(
     return difference.report(["wavesym", "generate", source, "-o", str(folder), *options])
 
 
+def _request(
+    evaluator: str,
+    precision: str,
+    windows: int | None,
+    optimize: str | None,
+    runtime: Sequence[str],
+    stream: bool,
+    step: Fraction | None,
+) -> Request:
+    """The options of `generate` as one value. WavesymError for a step without a stream."""
+    if step is not None and not stream:
+        raise WavesymError(f"--step: {step} given without --stream, nothing expected")
+    every = None if step is None else rational(step)
+    return Request(evaluator, precision, windows, optimize, tuple(runtime), stream, every)
+
+
 def _written(scene: Scene, directory: str | Path | None, language: str, request: Request) -> dict[Path, str]:
     """The text of every file of a scene, by path."""
     folder = Path(directory or scene.name)
     refuse_unknown("language", language, LANGUAGES)
     request.refuse_unknown()
     model = lower(scene)
-    if request.runtime:
+    if request.stream:
+        if language != "c":
+            raise WavesymError(f"language: {language} given with --stream, c expected")
+        program = _stream(scene, model, request, tested=True)
+    elif request.runtime:
         from wavesym.programs.runtime.making import runtime_program
 
         if language != "c":
@@ -327,6 +356,20 @@ def runtime_model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
 
     given = amplitudes(scene) if "load" in runtime else ()
     return RuntimeModel(runtime_program(lower(scene), Request(runtime=tuple(runtime)), given))
+
+
+def stream_model(scene: Scene, precision: str = "double", step: Fraction | None = None) -> StreamModel:
+    """A scene whose loads are given while it runs, compiled. CompilerError without a C compiler."""
+    from wavesym.running.stream import StreamModel
+
+    return StreamModel(_stream(scene, lower(scene), _request("auto", precision, None, None, (), True, step)))
+
+
+def _stream(scene: Scene, model: Model, request: Request, *, tested: bool = False) -> Program:
+    from wavesym.programs.stream.making import stream_program
+    from wavesym.programs.stream.plan import inputs_of
+
+    return stream_program(model, request, inputs_of(model, sources(scene)), tested=tested)
 
 
 def run(

@@ -18,7 +18,8 @@ from flint import fmpq, fmpq_poly
 from wavesym.errors import CostError
 from wavesym.exact.node_rules import joint_rule
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import End, Network
+from wavesym.mechanics.network import End, Network, Point
+from wavesym.mechanics.node import UnitLoad
 from wavesym.mechanics.reading import Sum
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
@@ -93,6 +94,7 @@ class RingPlan:
     events: tuple[LoadEvent, ...]
     outputs: tuple[WatchedPlace, ...]
     tau_max: float
+    pushed: tuple[int, ...]  # the point of each force
 
     @property
     def windows(self) -> int:
@@ -148,8 +150,8 @@ class RingPlan:
         return tuple(found)
 
 
-def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
-    """The plan of a chain in `real` numbers.
+def ring_plan(model: Model, real: Real = DOUBLE, *, whole: bool = False) -> RingPlan:
+    """The plan of a chain in `real` numbers; of the `whole` of it, or of what can be felt by the horizon.
 
     UnservedError for contacts; CostError where the step would be too small, or load times have too many remainders.
     """
@@ -158,7 +160,7 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
     model.refuse_damping()
     tau_max = model.horizon(real)
     until = rational(tau_max)
-    reached = model.reached(until)
+    reached = model.reached(until + sum((bar.delay for bar in network.bars), _ZERO) if whole else until)
     modelled = {end for number in reached for end, _ in network.joints[number].ends}
     bars = sorted({end.bar for end in modelled} | {read.rod - 1 for read in model.watched if read.point is None})
     step = _step([network.bars[bar].delay for bar in bars])
@@ -201,6 +203,7 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
             for probe, terms in model.sums.items()
         ),
         tau_max,
+        tuple(sorted(loads.numbers)),
     )
 
 
@@ -236,15 +239,10 @@ class _Loads:
         self.changes: list[tuple[fmpq, int, fmpq_poly]] = []
         for number in points:
             point = model.network.points[number]
-            units = {unit.source: fmpq_poly(list(unit.coefficients)) for unit in point.loads}
+            units = {unit.source: moved_by(point, unit) for unit in point.loads}
             for load in model.acting(until):
                 if load.source in units:
-                    polynomial = load.weight * units[load.source]
-                    if point.motion is None:
-                        polynomial *= joint_rule().load
-                    elif point.motion == "acceleration":
-                        polynomial = polynomial.integral()
-                    self.changes.append((load.time, number, polynomial))
+                    self.changes.append((load.time, number, load.weight * units[load.source]))
             if point.motion is not None and point.velocity != 0:
                 self.changes.append((_ZERO, number, fmpq_poly([point.velocity])))
         acting = {number for _, number, _ in self.changes}
@@ -264,6 +262,14 @@ class _Loads:
             now[force] = time, total
             window = int((time / step).floor())
             yield LoadEvent(window, places[time - window * step], force, _three(total))
+
+
+def moved_by(point: Point, unit: UnitLoad) -> fmpq_poly:
+    """The force that a unit load makes of itself at a point, or the velocity that it prescribes."""
+    polynomial = fmpq_poly(list(unit.coefficients))
+    if point.motion == "acceleration":
+        return polynomial.integral()
+    return polynomial if point.motion else joint_rule().load * polynomial
 
 
 def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:
