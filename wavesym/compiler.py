@@ -58,7 +58,6 @@ if TYPE_CHECKING:
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
     from wavesym.running.sets import RuntimeModel
-    from wavesym.running.stream import StreamModel
 
 
 _UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
@@ -323,6 +322,8 @@ def _request(
     """The options of `generate` as one value. WavesymError for a step without a stream."""
     if step is not None and not stream:
         raise WavesymError(f"--step: {step} given without --stream, nothing expected")
+    if step is not None and evaluator == "modes":
+        raise WavesymError(f"--step: {step} given with --evaluator modes, nothing expected (loads say what it is)")
     every = None if step is None else rational(step)
     return Request(evaluator, precision, windows, optimize, tuple(runtime), stream, every)
 
@@ -333,10 +334,10 @@ def _written(scene: Scene, directory: str | Path | None, language: str, request:
     refuse_unknown("language", language, LANGUAGES)
     request.refuse_unknown()
     model = lower(scene)
-    if request.stream:
+    if request.stream and request.evaluator != "modes":
         if language != "c":
             raise WavesymError(f"language: {language} given with --stream, c expected")
-        program = _stream(scene, model, request, tested=True)
+        program = stream_program(scene, request, tested=True)
     elif request.runtime:
         from wavesym.programs.runtime.making import runtime_program
 
@@ -358,18 +359,13 @@ def runtime_model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     return RuntimeModel(runtime_program(lower(scene), Request(runtime=tuple(runtime)), given))
 
 
-def stream_model(scene: Scene, precision: str = "double", step: Fraction | None = None) -> StreamModel:
-    """A scene whose loads are given while it runs, compiled. CompilerError without a C compiler."""
-    from wavesym.running.stream import StreamModel
-
-    return StreamModel(_stream(scene, lower(scene), _request("auto", precision, None, None, (), True, step)))
-
-
-def _stream(scene: Scene, model: Model, request: Request, *, tested: bool = False) -> Program:
-    from wavesym.programs.stream.making import stream_program
+def stream_program(scene: Scene, request: Request, *, tested: bool = False) -> Program:
+    """The program of a scene whose loads are given while it runs; its sources are the inputs, in order."""
+    from wavesym.programs.stream import making
     from wavesym.programs.stream.plan import inputs_of
 
-    return stream_program(model, request, inputs_of(model, sources(scene)), tested=tested)
+    model = lower(scene)
+    return making.stream_program(model, request, inputs_of(model, sources(scene)), tested=tested)
 
 
 def run(

@@ -20,6 +20,15 @@ static real absolute(real x)
     return x < 0 ? -x : x;
 }
 
+/* A polynomial will miss so much. What is sent on a panel of a window is felt on that panel of others: all other panels
+ * know nothing of it. */
+static void lose(stream *state, real much)
+{
+    real *const missed = state->missed + state->phase;
+    *missed += much * much;
+    state->lost = *missed > state->lost ? *missed : state->lost;
+}
+
 /* y += factor a */
 static void add(real *y, real factor, const real *a, int count)
 {
@@ -129,7 +138,7 @@ static void move(stream *state, int joint)
     }
     multiply(missed, slip + first_slip[joint], given, points, width);
     for (int k = 0; k < points; ++k) {
-        state->lost += missed[k] * missed[k];
+        lose(state, missed[k]);
     }
 }
 
@@ -157,6 +166,7 @@ static void scatter(stream *state, int joint)
 static void begin(stream *state)
 {
     state->seen = 0;
+    state->phase = state->phase + 1 < NAME_PANELS ? state->phase + 1 : 0;
     for (int joint = 0; joint < JOINTS; ++joint) {
         if (first_state[joint] < first_state[joint + 1]) {
             move(state, joint);
@@ -197,7 +207,7 @@ static void finish(stream *state)
     }
     for (int k = 0; k < TRACKS; ++k) {
         const real mean = absolute(wave_sent(state, k)[0]);
-        state->size = mean > state->size ? mean : state->size;
+        state->size = slots[k] > 1 && mean > state->size ? mean : state->size;
         state->at[k] = state->at[k] + 1 < slots[k] ? state->at[k] + 1 : 0;
     }
 }
@@ -327,6 +337,17 @@ static void blurs(const stream *state, real *blur)
     }
 }
 
+/* Whether a point of a joint sends into a rod, and is not only looked at. */
+static int sends(int joint, int point)
+{
+    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+        if (point_of[port] == point && slots[send[port]] > 1) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 /* Loads jump and bend now; what of that polynomials will miss. */
 static void bend(stream *state, const real *jump, const real *turn)
 {
@@ -375,7 +396,9 @@ static void bend(stream *state, const real *jump, const real *turn)
             for (int order = 0; order < 3; ++order) {
                 sum += blur[order] * absolute(q[order][point]);
             }
-            state->lost += sum * sum;
+            if (sends(joint, point)) {
+                lose(state, sum);
+            }
         }
     }
 }
@@ -454,6 +477,10 @@ void name_init(stream *state)
     state->time_low = 0;
     state->lost = 0;
     state->size = 0;
+    state->phase = -1;
+    for (int k = 0; k < NAME_PANELS; ++k) {
+        state->missed[k] = 0;
+    }
     for (int k = 0; k < TRACKS; ++k) {
         state->at[k] = 0;
         for (int slot = 0; slot < slots[k]; ++slot) {
@@ -461,7 +488,7 @@ void name_init(stream *state)
                 state->waves[first_slot[k] + slot][power] = power == 0 ? held[k] : (real)0;
             }
         }
-        state->size = absolute(held[k]) > state->size ? absolute(held[k]) : state->size;
+        state->size = slots[k] > 1 && absolute(held[k]) > state->size ? absolute(held[k]) : state->size;
     }
     for (int j = 0; j < LOADS; ++j) {
         state->load[j] = 0;
@@ -548,7 +575,8 @@ int name_step(stream *state, real dtau, const real *load, real *out)
         go_on(state, then, 1, before, load);
     }
     read_now(state, out);
-    return state->lost > tolerance * tolerance * state->size * state->size ? 2 : 0;
+    /* before the first panel is over nothing has been sent that it could be small against */
+    return state->size > 0 && state->lost > tolerance * tolerance * state->size * state->size ? 2 : 0;
 }
 
 real name_lost(const stream *state)

@@ -5,9 +5,10 @@
 typedef struct name_state {
     name_real time;      /* since the current panel began, */
     name_real time_low;  /* and what is lost of that by rounding */
-    name_real lost;      /* squared: what polynomials have missed so far, */
+    name_real lost;      /* squared: what polynomials have missed so far, on that panel of a window where it is most, */
     name_real size;      /* and the largest wave that it is small against */
     int seen;            /* how many instants of the panel are past */
+    int phase;           /* which panel of a window it is */
     int at[NAME_TRACKS]; /* where a wave has the current panel */
     name_real load[NAME_LOADS + 1];      /* the loads now, */
     name_real slope[NAME_LOADS + 1];     /* and how fast they change */
@@ -16,6 +17,7 @@ typedef struct name_state {
     name_real own[NAME_STATES + 1];      /* what loads have added since the panel began, up to now, */
     name_real moved[NAME_OWN_POINTS + 1]; /* the integral of that, */
     name_real recorded[NAME_OWN_POINTS + 1][NAME_DEGREE + 1]; /* and velocities at the panel's instants */
+    name_real missed[NAME_PANELS];       /* squared: what polynomials have missed on a panel of all windows */
     name_real total[NAME_OUTPUTS];       /* integrals up to the panel */
     name_real waves[NAME_SLOTS][NAME_DEGREE + 1]; /* Chebyshev coefficients */
 } name_state;

@@ -6,6 +6,7 @@
 enum {
     NAME_LOADS = 1,
     NAME_DEGREE = 11,
+    NAME_PANELS = 8,
     NAME_TRACKS = 5,
     NAME_SLOTS = 37,
     NAME_STATES = 2,

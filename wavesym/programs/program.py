@@ -92,11 +92,11 @@ class Program:
     `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "modes",
     "runtime": a march whose parameters come at run time, by its `laws`, or "stream": one whose loads do. The last two
     are C alone.
-    `tables` are flat, by name, each number as it is written: indices are ints, all else floats of the format; which there
-    are, assembly.py says, of rings rings/tables.py, of modes modes/tables.py, of streams stream/tables.py. `constants`
-    are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march, modes and a
-    stream, `sources` are the names of loads that it can be given; a march is `whole` where no node was left out. Its
-    error is `proved`, or an estimate.
+    `tables` are flat, by name, each number as it is written: indices are ints, all else floats of the format; which
+    there are, assembly.py says, of rings rings/tables.py, of modes modes/tables.py, of streams stream/tables.py.
+    `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march,
+    modes and a stream, `sources` are the names of loads that it can be given; a march is `whole` where no node was left
+    out. Its error is `proved`, or an estimate.
     """
 
     kind: str
