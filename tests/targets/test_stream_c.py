@@ -132,7 +132,7 @@ def test_the_alarm_is_given_when_a_kink_is_lost_and_not_before(case, place):
     assert stream.lost < 1e-13
     status, _ = stream.step(0.0, [-1.0] * len(places))
     estimate = stream.lost
-    tau, found, step = float(late), [], 1 / 96
+    tau, found, step = float(late), [], 1 / 97
     taus = []
     while tau + step < until:
         status, out = stream.step(step, [-1.0] * len(places))
@@ -292,11 +292,11 @@ def test_built_in_scenes_test_themselves_in_c_and_cpp(name, precision, tmp_path)
 BREAKS = {
     "what arrives": ("slots[arrive[port]] - 1), SIZE);", "slots[arrive[port]] - 2), SIZE);"),
     "a state": ("x[k] += own[k];", ""),
-    "a force": ("state->force[force] += s[3 * force + 1]", "state->force[force] += 2 * s[3 * force + 1]"),
+    "a force": ("s[3 * force] = state->force[force];", "s[3 * force] = 0;"),
     "a power": ("(length / (real)(power + 1))", "(length / (real)(power + 2))"),
     "an instant": ("instant[k] <= from + length", "instant[k] < from"),
     "what is sent": ("add(wave_sent(state, send[port]), ratio[port], c, SIZE);", ""),
-    "a jump": ("press(state, load);\n            }", "}"),
+    "a jump": ("            press(state, load);\n        }", "        }"),
     "a ring": ("state->at[k] + 1 : 0", "state->at[k] + 1 : 1"),
     "an integral": ("state->total[output] += gain[k] * integral(state, k, panel);", ""),
     "a moment of rest": ("state->moved[point] = 0;\n        }\n        for", "}\n        for"),
@@ -376,7 +376,7 @@ def test_tables_are_declared_as_they_are_written(tmp_path):
 
 
 @pytest.mark.slow
-@settings(max_examples=25)
+@settings(settings.get_profile("first_failure"), max_examples=12)
 @given(st.data())
 def test_systems_that_are_drawn(data):
     """Equal and nearly equal parameters, stiff ones, and outputs anywhere."""
@@ -386,6 +386,6 @@ def test_systems_that_are_drawn(data):
     scene = loaded(scene, places, PANEL)
     until = PANEL * int(Fraction(scene.output.until) / PANEL)
     model = built(scene)
-    ran = run(model, JUMPS[:1], PANEL, until, Fraction(data.draw(st.integers(1, 40)), 97))
+    ran = run(model, JUMPS[:1], PANEL, until, Fraction(data.draw(st.integers(1, 11)), 97))
     assert max(ran.status) == 0
     assert np.max(missed(ran, scene)) < 1e-10

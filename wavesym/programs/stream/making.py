@@ -36,6 +36,7 @@ from wavesym.programs.stream.tables import StreamTables
 
 _ONE = fmpq(1)
 _ROUNDINGS = 64  # no tolerance is smaller
+_SPARE = 4  # of the tolerance one step of each load takes so much less
 
 
 def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, tested: bool = False) -> Program:
@@ -95,9 +96,10 @@ def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
             raise
         except ArithmeticError as error:
             raise CostError(f"system.parts: to solve the joints of a stream, {error} (softer springs help)") from None
-        if max(verdict.bounds) <= tolerance:
-            return degree, verdict
-        if verdict.truncated <= verdict.rounded:
+        worst = max(verdict.bounds)
+        # what polynomials have in it; where nothing is left of an output, what rounding has says what matters
+        share = worst * verdict.truncated / (verdict.truncated + verdict.rounded)
+        if _SPARE * share <= tolerance if isfinite(worst) else _SPARE * verdict.truncated <= verdict.rounded:
             return degree, verdict
         degree += 1
 
