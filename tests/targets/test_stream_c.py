@@ -7,6 +7,7 @@ import json
 import re
 import subprocess
 from fractions import Fraction
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,7 @@ from tests.support.builds import LANGUAGES, STRICT, needs_binutils, sections
 from tests.support.drives import DRIVE, EVERY
 from tests.support.streamed import built, knots, missed, run
 from wavesym.errors import WavesymError
-from wavesym.running.toolchain import compiler
+from wavesym.running.toolchain import at_hand, compiler
 from wavesym.targets.manifest import CODE_AT_MOST
 
 PANEL = Fraction(1, 8)
@@ -364,6 +365,38 @@ def test_it_allocates_nothing_and_is_small(precision, tmp_path):
     sizes = sections(tmp_path / "made.o")
     assert sizes[".text"] <= CODE_AT_MOST["stream"]
     assert not {".data", ".bss"} & sizes.keys()
+
+
+CORTEX = ("-target", "thumb-freestanding-eabihf", "-mcpu=cortex_m4+vfp4d16sp", "-Os", "-fno-sanitize=all", "-I.")
+
+
+def small(name, precision, folder):
+    """Bytes of code and tables, and of a state, for a Cortex-M4F; and what is called."""
+    (zig,) = (each for each in at_hand(()) if each.name == "ziglang")
+    wavesym.generate(wavesym.Scene.from_toml(name), folder, precision=precision, stream=True)
+    (folder / "math.h").write_text('#define NAN __builtin_nanf("")\n')
+    (folder / "state.c").write_text(f'#include "{name}.h"\nchar state[sizeof({name}_state)];\n')
+    for file in (name, "state"):
+        zig.run([*CORTEX, "-c", f"{file}.c", "-o", f"{file}.o"], folder)
+    code = sections(folder / f"{name}.o")
+    said = subprocess.run(["nm", "-u", folder / f"{name}.o"], capture_output=True, text=True, check=True).stdout
+    size = sum(bytes_ for section, bytes_ in code.items() if re.match(r"\.(text|rodata|ARM)", section))
+    return size, sections(folder / "state.o")[".bss"], set(said.split()) - {"U"}
+
+
+@needs_binutils
+@pytest.mark.slow
+@pytest.mark.skipif(not find_spec("ziglang"), reason="no ziglang here")
+def test_the_sizes_on_a_small_machine_are_those_of_the_page(tmp_path):
+    page = (Path(__file__).parents[2] / "docs" / "march.md").read_text()
+    rows = re.findall(r"^\| (\w+), (double|single) \| (\d+) \| (\d+) \|$", page, re.MULTILINE)
+    assert len(rows) == 4
+    for name, precision, code, state in rows:
+        found, kept, called = small(name, precision, tmp_path / f"{name}_{precision}")
+        assert abs(found - int(code)) <= 0.03 * int(code), (name, precision, found)
+        assert kept == int(state), (name, precision)
+        if precision == "single":
+            assert not [symbol for symbol in called if symbol.startswith("__aeabi_d")]
 
 
 def test_tables_are_declared_as_they_are_written(tmp_path):

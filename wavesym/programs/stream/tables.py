@@ -130,11 +130,12 @@ class StreamTables:
 
     @property
     def step_operations(self) -> int:
-        """The same for a part of a step within a panel that needs no division, and reading all outputs once."""
+        """About the same for a step within a panel, in as many parts as it may have; all outputs are read once."""
         size, total = self._degree + 1, 0
+        parts = 1 + int(nearest(self._plan.panel) * self._fastest)
         for n in self._plan.loaded:
             space = self._joints[n].space
-            total += (self._terms + 1) * (space.states + space.points) * (space.states + space.points)
+            total += parts * (self._terms + 1) * (space.states + space.points) ** 2
             total += space.points * size * (self._terms + 1)
         for output in self._plan.rings.outputs:
             total += sum((2 * 4 * 3 if one.summed else 3) * size for one in output.heard)
