@@ -278,6 +278,38 @@ def test_a_stream_says_what_it_is_and_tests_itself(tmp_path):
     assert manifest["proved"] is False
 
 
+DIRECT = {
+    "base force": {"strain@0", "velocity@0", "velocity@0+"},
+    "base moves": set(),
+    "drive": {"acceleration@0", "acceleration@1"},
+    "shafts that differ": set(),
+    "every joint": {"velocity@seat"},
+    "hung": set(),
+}
+
+
+@cases("drive")
+def test_what_loads_act_on_at_once_is_said(case, tmp_path):
+    """By the manifest, and by what a step of 0 changes."""
+    scene, places = CASES[case]
+    if not scene.load:
+        scene = loaded(scene, places, PANEL)
+    model = built(scene)
+    stream = model.start()
+    rest = [0.0] * len(places)
+    before = stream.step(0.0, rest)[1]
+    changed = {}
+    for j, load in enumerate(model.loads):
+        other = stream.copy().step(0.0, [*rest[:j], 1.0, *rest[j + 1 :]])[1]
+        for name, one, two in zip(model.outputs, before, other, strict=True):
+            if one != two:
+                changed.setdefault(name, []).append(load)
+    wavesym.generate(scene, tmp_path, stream=True)
+    said = json.loads((tmp_path / f"{scene.name}.json").read_text())["direct"]
+    assert said == changed
+    assert set(said) <= DIRECT[case]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", ["building_m2", "drive_equal", "collision_m4", "geared_drive", "damped_building"])

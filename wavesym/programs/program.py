@@ -96,7 +96,8 @@ class Program:
     there are, assembly.py says, of rings rings/tables.py, of modes modes/tables.py, of streams stream/tables.py.
     `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march,
     modes and a stream, `sources` are the names of loads that it can be given; a march is `whole` where no node was left
-    out. Its error is `proved`, or an estimate.
+    out. Its error is `proved`, or an estimate. Of a stream `direct` has for each output the sources that act on it at
+    once.
     """
 
     kind: str
@@ -113,6 +114,7 @@ class Program:
     driven: Driven | None = None
     proved: bool = True
     laws: RuntimeLaws | None = None
+    direct: tuple[tuple[int, ...], ...] = ()
 
     @property
     def evaluator(self) -> str:

@@ -91,7 +91,10 @@ def _streamed(program: Program) -> dict[str, object]:
     key = {"modes": "spacing", "stream": "panel"}.get(program.kind)
     if key is None:
         return {}
-    told = {} if program.proved else {"proved": False}
+    told: dict[str, object] = {} if program.proved else {"proved": False}
+    if program.kind == "stream":
+        pairs = zip(program.outputs, program.direct, strict=True)
+        told["direct"] = {output.name: [program.sources[j] for j in of] for output, of in pairs if of}
     return {key: program.constants[key], "loads": list(program.sources), **told}
 
 

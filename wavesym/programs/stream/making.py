@@ -71,6 +71,7 @@ def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, t
         Provenance(model, _reason(plan, degree, made), request.options),
         sources=tuple(f"{given.name} [{given.unit}]" if given.unit else given.name for given in plan.inputs),
         proved=False,
+        direct=plan.direct,
     )
     return replace(program, reference=_reference(model, plan, program)) if tested else program
 

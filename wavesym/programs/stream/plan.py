@@ -11,7 +11,7 @@ such that
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from flint import fmpq, fmpq_poly
@@ -24,7 +24,7 @@ from wavesym.mechanics.node import RAMPS
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import MarchPanel
-from wavesym.programs.rings.plan import MarchedJoint, RingPlan, WatchedPlace, moved_by, ring_plan
+from wavesym.programs.rings.plan import Heard, MarchedJoint, RingPlan, WatchedPlace, moved_by, ring_plan
 
 LONGEST = fmpq(1, 8)
 SHORTEST = fmpq(1, 64)
@@ -77,6 +77,32 @@ class StreamPlan:
         """The joints on which something acts, by number."""
         return _loaded(self.rings.joints)
 
+    @property
+    def direct(self) -> tuple[tuple[int, ...], ...]:
+        """Of each output the inputs that act on it at once: where a loaded point without mass is heard, or a load."""
+        passing: dict[int, tuple[fmpq, ...]] = {}
+        for n in self.loaded:
+            joint = self.rings.joints[n]
+            for port, track in zip(joint.space.ports, joint.sends, strict=True):
+                passing[track] = tuple(
+                    port.ratio * sum((joint.space.passed[port.point, k] * gain for k, gain in gains), _ZERO)
+                    for gains in self._gains(joint)
+                )
+        return tuple(
+            tuple(
+                j
+                for j in range(len(self.inputs))
+                if sum((one.gain * passing[one.track][j] for one in output.heard if _at_once(one, passing)), _ZERO) != 0
+            )
+            for output in self.rings.outputs
+        )
+
+    def _gains(self, joint: MarchedJoint) -> Iterator[list[tuple[int, fmpq]]]:
+        """Of each input how much of it acts on which points of a joint, but through its integral."""
+        acting = [(k, self.acting[force]) for k, force in enumerate(joint.forces) if force >= 0]
+        for j in range(len(self.inputs)):
+            yield [(k, force.gains[j]) for k, force in acting if not force.summed]
+
     def late(self, delay: fmpq) -> tuple[int, fmpq]:
         """A delay as whole panels and a rest."""
         whole = int((delay / self.panel).floor())
@@ -114,6 +140,10 @@ def _acting(network: Network, rings: RingPlan, inputs: Sequence[Input]) -> Itera
         summed = any(response.degree() > 0 for response in responses)
         gains = (response[int(summed)] / given.size for response, given in zip(responses, inputs, strict=True))
         yield InputForce(point.velocity if point.motion is not None else _ZERO, tuple(gains), summed)
+
+
+def _at_once(one: Heard, passing: Container[int]) -> bool:
+    return one.track in passing and one.delay == 0 and not one.summed
 
 
 def _loaded(joints: Sequence[MarchedJoint]) -> tuple[int, ...]:

@@ -27,11 +27,14 @@ class CStream:
 
 @dataclass(frozen=True)
 class CStreamHeader:
-    """templates/c/stream.h.j2: the loads and their units as text, and as constants."""
+    """templates/c/stream.h.j2: the loads and their units as text, and as constants; outputs with those that act on them
+    at once.
+    """
 
     scene: Description
     constants: dict[str, str]
     sources: tuple[tuple[str, str], ...]
+    direct: tuple[tuple[str, str], ...]
     state: str
 
 
@@ -62,6 +65,11 @@ def streaming(scene: Description, program: Program) -> str:
         scene=scene,
         constants=c_constants(program.constants, program.real),
         sources=tuple(zip(program.sources, constants(names), strict=True)),
+        direct=tuple(
+            (output.name, ", ".join(program.sources[j] for j in of))
+            for output, of in zip(program.outputs, program.direct, strict=True)
+            if of
+        ),
         state=kernel("stream_state.h", scene),
     )
     return render("c/stream.h.j2", context)
