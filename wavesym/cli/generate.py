@@ -79,6 +79,7 @@ STEP = StepParameter()
     metavar="DTAU",
     help="For a stream whose steps all begin at multiples of this, in tau, as 0.1 or 1/8.",
 )
+@click.option("--package", is_flag=True, help="Add what builds, tests and installs C: CMake, ctest, pkg-config.")
 @click.option("--force", is_flag=True, help="Replace files that wavesym did not write, too.")
 @click.option("--check", "only_check", is_flag=True, help="Write nothing; print a diff and exit 1 where files differ.")
 def generate(
@@ -92,6 +93,7 @@ def generate(
     runtime: str | None,
     stream: bool,
     step: Fraction | None,
+    package: bool,
     force: bool,
     only_check: bool,
 ) -> int:
@@ -107,12 +109,12 @@ def generate(
     given = () if runtime is None else tuple(name.strip() for name in runtime.split(","))
     if only_check:
         with progress(f"check {scene.name}"):
-            difference = compiler.check(*asked, scene_argument(), given, stream=stream, step=step)
+            difference = compiler.check(*asked, scene_argument(), given, stream=stream, step=step, package=package)
         if difference:
             put(difference)
         return 1 if difference else 0
     with progress(f"generate {scene.name}"):
-        written = compiler.generate(*asked, given, stream=stream, step=step, force=force)
+        written = compiler.generate(*asked, given, stream=stream, step=step, package=package, force=force)
     for path in written:
         click.echo(path)
     if given and scene.output.tolerance < FINEST:

@@ -159,10 +159,12 @@ def _panels(rings: RingPlan, spacing: fmpq | None) -> int:
     fastest = max(joint.space.norm for joint in joints)
     few = 1 if spacing is None else int((step / spacing).p)
     count = few
-    while (length := step / count) > min(LONGEST, shortest) or (
-        nearest(length) * fastest > _CALM and length > SHORTEST
-    ):
+    while step / count > min(LONGEST, shortest):
         count += few
+    # by halves, so that edges stay edges
+    while nearest(step / count) * fastest > _CALM and step / count > SHORTEST:
+        count *= 2
+    length = step / count
     if length < FINEST:
         what = _why(near, shortest) if shortest < FINEST else f"--step: {spacing} given with a march on steps of {step}"
         raise CostError(f"{what}: panels of {length}, at least {FINEST} expected (a step in simpler proportion helps)")
