@@ -288,7 +288,7 @@ DIRECT = {
 }
 
 
-@cases("drive")
+@cases()
 def test_what_loads_act_on_at_once_is_said(case, tmp_path):
     """By the manifest, and by what a step of 0 changes."""
     scene, places = CASES[case]
