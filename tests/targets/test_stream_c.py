@@ -12,14 +12,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, reject, settings
 from hypothesis import strategies as st
 
 import wavesym
 from tests.support import drawn
 from tests.support.builds import LANGUAGES, STRICT, needs_binutils, sections
-from tests.support.drives import DRIVE, EVERY
+from tests.support.drives import DRIVE, EVERY, small
 from tests.support.streamed import built, knots, missed, run
+from wavesym.cli import main
+from wavesym.compiler import check
 from wavesym.errors import WavesymError
 from wavesym.running.toolchain import at_hand, compiler
 from wavesym.targets.manifest import CODE_AT_MOST
@@ -227,6 +229,12 @@ def test_what_is_refused_changes_nothing_and_a_copy_goes_on():
         stream.step(0.1, [1.0, 2.0])
 
 
+@pytest.mark.parametrize("step", ["0", "-1/8", "soon", "1e-400"])
+def test_a_step_is_a_positive_number(step, capsys):
+    assert main(["generate", "drive_m1", "--stream", "--step", step]) == 2
+    assert f"{step} given, a positive number such as 0.1 or 1/8 expected" in capsys.readouterr().err
+
+
 REFUSED = {
     "bouncing": ({"stream": True}, "chained", "opens and closes"),
     "damped": ({"stream": True}, "damped", "system.damping: given, none expected"),
@@ -315,6 +323,9 @@ def test_what_loads_act_on_at_once_is_said(case, tmp_path):
 @pytest.mark.parametrize("name", ["building_m2", "drive_equal", "collision_m4", "geared_drive", "damped_building"])
 def test_built_in_scenes_test_themselves_in_c_and_cpp(name, precision, tmp_path):
     wavesym.generate(wavesym.Scene.from_toml(name), tmp_path, precision=precision, stream=True)
+    scene = wavesym.Scene.from_toml(name)
+    assert check(scene, tmp_path, precision=precision, stream=True) == ""
+    assert "--stream" in check(scene.with_({"output.until": 3}), tmp_path, precision=precision, stream=True)
     assert selftest(tmp_path, name) == 0
     assert selftest(tmp_path, name, "-ffp-contract=fast", "-O3") == 0
     for file in (f"{name}.c", f"{name}_selftest.c"):
@@ -402,7 +413,7 @@ def test_it_allocates_nothing_and_is_small(precision, tmp_path):
 CORTEX = ("-target", "thumb-freestanding-eabihf", "-mcpu=cortex_m4+vfp4d16sp", "-Os", "-fno-sanitize=all", "-I.")
 
 
-def small(name, precision, folder):
+def compact(name, precision, folder):
     """Bytes of code and tables, and of a state, for a Cortex-M4F; and what is called."""
     (zig,) = (each for each in at_hand(()) if each.name == "ziglang")
     wavesym.generate(wavesym.Scene.from_toml(name), folder, precision=precision, stream=True)
@@ -424,7 +435,7 @@ def test_the_sizes_on_a_small_machine_are_those_of_the_page(tmp_path):
     rows = re.findall(r"^\| (\w+), (double|single) \| (\d+) \| (\d+) \|$", page, re.MULTILINE)
     assert len(rows) == 4
     for name, precision, code, state in rows:
-        found, kept, called = small(name, precision, tmp_path / f"{name}_{precision}")
+        found, kept, called = compact(name, precision, tmp_path / f"{name}_{precision}")
         assert abs(found - int(code)) <= 0.03 * int(code), (name, precision, found)
         assert kept == int(state), (name, precision)
         if precision == "single":
@@ -454,3 +465,29 @@ def test_systems_that_are_drawn(data):
     ran = run(model, JUMPS[:1], PANEL, until, Fraction(data.draw(st.integers(1, 11)), 97))
     assert max(ran.status) == 0
     assert np.max(missed(ran, scene)) < 1e-10
+
+
+@pytest.mark.slow
+@settings(settings.get_profile("wavesym"), max_examples=40, phases=[Phase.explicit, Phase.generate])
+@given(small(until="3"))
+def test_chains_that_are_drawn(table):
+    """Rods that differ, springs, gears, prescribed motions; a load where the scene has one, or on the first name."""
+    output = table["output"] | {"tolerance": "1e-11"}
+    names = [part["name"] for part in table["system"]["parts"] if isinstance(part, dict) and "name" in part]
+    places = list(dict.fromkeys(load["at"] for load in table.get("load", ()))) or names[:1]
+    try:
+        scene = wavesym.Scene(
+            name="drawn",
+            system=table["system"],
+            load=[{"at": place, "times": [0], "steps": [1]} for place in places],
+            output=output,
+        )
+        model = built(scene)
+    except WavesymError:  # a name that no load takes; lengths without a common measure
+        reject()
+    panel = Fraction(model.panel).limit_denominator(10**11)
+    jumps = [JUMPS[0]] * len(places)
+    scene = loaded(scene, [{"at": place} for place in places], panel, jumps)
+    ran = run(model, jumps, panel, panel * int(3 / panel), panel * Fraction(23, 47))
+    assert max(ran.status, default=0) == 0
+    assert np.max(missed(ran, scene), initial=0) < 1e-11

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
+from math import inf, isfinite
 
 from flint import arb, fmpq
 
@@ -99,8 +99,8 @@ def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
             raise CostError(f"system.parts: to solve the joints of a stream, {error} (softer springs help)") from None
         worst = max(verdict.bounds)
         # what polynomials have in it; where nothing is left of an output, what rounding has says what matters
-        share = worst * verdict.truncated / (verdict.truncated + verdict.rounded)
-        if _SPARE * share <= tolerance if isfinite(worst) else _SPARE * verdict.truncated <= verdict.rounded:
+        share = tolerance * (verdict.truncated + verdict.rounded) / worst if 0 < worst < inf else verdict.rounded
+        if _SPARE * verdict.truncated <= share:
             return degree, verdict
         degree += 1
 
