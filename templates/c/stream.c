@@ -531,7 +531,7 @@ static void go_on(stream *state, pair then, real done, const real *before, const
 
 int name_step(stream *state, real dtau, const real *load, real *out)
 {
-    int wrong = !(dtau == 0 || (dtau >= shortest && is_number(dtau)));
+    int wrong = !(dtau == 0 || (dtau >= shortest && dtau <= longest));
     for (int j = 0; j < LOADS; ++j) {
         wrong |= !is_number(load[j]);
     }

@@ -41,7 +41,7 @@ void name_init(stream *state);
 int name_step(stream *state, real dtau, const real *load, real *out);
 real name_lost(const stream *state);
 
-extern const real panel, panel_low, scale, fastest, tolerance, shortest;
+extern const real panel, panel_low, scale, fastest, tolerance, shortest, longest;
 
 extern const int slots[];
 extern const int first_slot[];

@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 
 # of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
 _CAUTION = 4
+_LONGEST = 10**6  # panels of a step, each of which takes its time
 _SHORTEST = fmpq(1, 10**30)  # of steps but 0: no slope of a load is larger than the load times 1e30
 
 
@@ -102,6 +103,7 @@ class StreamTables:
             "fastest": real.nearest(rational(self._fastest)),
             "tolerance": real.nearest(rational(tolerance)),
             "shortest": real.nearest(_SHORTEST),
+            "longest": real.nearest(_LONGEST * plan.panel),
             "operations": self.panel_operations,
             "step_operations": self.step_operations,
         }
