@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from itertools import islice
@@ -370,7 +371,7 @@ def stream_program(scene: Scene, request: Request, *, tested: bool = False) -> P
     from wavesym.programs.stream import making
     from wavesym.programs.stream.plan import inputs_of
 
-    model = lower(scene)
+    model = replace(lower(scene), endless=True)
     return making.stream_program(model, request, inputs_of(model, sources(scene)), tested=tested)
 
 

@@ -218,7 +218,15 @@ def test_what_is_refused_changes_nothing_and_a_copy_goes_on():
     stream.step(0.0, [1.0])
     stream.step(0.77, [2.0])
     before = stream.state.copy()
-    for dtau, load in ((-0.1, 1.0), (np.nan, 1.0), (np.inf, 1.0), (1e300, 1.0), (1e-31, 1.0), (0.1, np.nan), (0.0, np.inf)):
+    for dtau, load in (
+        (-0.1, 1.0),
+        (np.nan, 1.0),
+        (np.inf, 1.0),
+        (1e300, 1.0),
+        (1e-31, 1.0),
+        (0.1, np.nan),
+        (0.0, np.inf),
+    ):
         status, out = stream.step(dtau, [load])
         assert status == 1
         assert np.isnan(out).all()
@@ -233,6 +241,16 @@ def test_what_is_refused_changes_nothing_and_a_copy_goes_on():
 def test_a_step_is_a_positive_number(step, capsys):
     assert main(["generate", "drive_m1", "--stream", "--step", step]) == 2
     assert f"{step} given, a positive number such as 0.1 or 1/8 expected" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_nothing_is_left_out_as_a_stream_has_no_horizon():
+    """What cannot be felt within the horizon is felt later."""
+    system = {"type": "drive", "m": 4, "kappa": [1, "1/2", 2, 1], "inertia": [1, 1, 2, 1, 1]}
+    output = {"until": 1, "tolerance": "1e-9", "velocity": [0]}
+    scene = loaded(wavesym.Scene(name="long", system=system, output=output), [{"body": 1}], Fraction(1))
+    ran = run(built(scene), JUMPS[:1], Fraction(1), Fraction(12), Fraction(1, 3))
+    assert np.max(missed(ran, scene.with_({"output.until": 12}))) < 1e-6
 
 
 REFUSED = {

@@ -150,8 +150,8 @@ class RingPlan:
         return tuple(found)
 
 
-def ring_plan(model: Model, real: Real = DOUBLE, *, whole: bool = False) -> RingPlan:
-    """The plan of a chain in `real` numbers; of the `whole` of it, or of what can be felt by the horizon.
+def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
+    """The plan of a chain in `real` numbers.
 
     UnservedError for contacts; CostError where the step would be too small, or load times have too many remainders.
     """
@@ -160,7 +160,7 @@ def ring_plan(model: Model, real: Real = DOUBLE, *, whole: bool = False) -> Ring
     model.refuse_damping()
     tau_max = model.horizon(real)
     until = rational(tau_max)
-    reached = model.reached(until + sum((bar.delay for bar in network.bars), _ZERO) if whole else until)
+    reached = model.reached(until)
     modelled = {end for number in reached for end, _ in network.joints[number].ends}
     bars = sorted({end.bar for end in modelled} | {read.rod - 1 for read in model.watched if read.point is None})
     step = _step([network.bars[bar].delay for bar in bars])

@@ -127,7 +127,9 @@ def _reference(model: Model, plan: StreamPlan, program: Program) -> SteppedValue
     looked = [(k + _PLACES[k % len(_PLACES)]) * panel for k in range(count)]
     taus = [nearest(tau) for tau in looked]
     own = merged(applied) if plan.inputs else model.loads
-    found = reference_values(replace(model.shortened(last), loads=own), _Driven(program.real, program.outputs, taus))
+    found = reference_values(
+        replace(model.shortened(last), loads=own, endless=False), _Driven(program.real, program.outputs, taus)
+    )
     assert isinstance(found, ReferenceValues)
     columns = dict(zip(found.taus, zip(*found.values, strict=True), strict=True))
     rows, now, time = [], [fmpq(0)] * len(plan.inputs), fmpq(0)

@@ -125,7 +125,7 @@ def stream_plan(model: Model, inputs: Sequence[Input], real: Real, spacing: fmpq
     UnservedError for contacts and damped modes; CostError where panels would be too short.
     """
     steps = tuple(Applied(given.source, _ZERO, _ONE) for given in sorted(inputs, key=lambda given: given.source))
-    rings = ring_plan(replace(model, loads=steps), real, whole=True)
+    rings = ring_plan(replace(model, loads=steps), real)
     count = _panels(rings, spacing)
     length = rings.step / count
     rings = replace(rings, panels=tuple(MarchPanel(k * length, length) for k in range(count)))
