@@ -248,7 +248,7 @@ def test_nothing_is_left_out_as_a_stream_has_no_horizon():
     """What cannot be felt within the horizon is felt later."""
     system = {"type": "drive", "m": 4, "kappa": [1, "1/2", 2, 1], "inertia": [1, 1, 2, 1, 1]}
     output = {"until": 1, "tolerance": "1e-9", "velocity": [0]}
-    scene = loaded(wavesym.Scene(name="long", system=system, output=output), [{"body": 1}], Fraction(1))
+    scene = loaded(wavesym.Scene(name="far", system=system, output=output), [{"body": 1}], Fraction(1))
     ran = run(built(scene), JUMPS[:1], Fraction(1), Fraction(12), Fraction(1, 3))
     assert np.max(missed(ran, scene.with_({"output.until": 12}))) < 1e-6
 
