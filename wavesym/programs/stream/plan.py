@@ -24,11 +24,12 @@ from wavesym.mechanics.node import RAMPS
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import MarchPanel
-from wavesym.programs.rings.plan import Heard, MarchedJoint, RingPlan, WatchedPlace, moved_by, ring_plan
+from wavesym.programs.rings.plan import Heard, MarchedJoint, RingPlan, moved_by, ring_plan
 
 LONGEST = fmpq(1, 8)
 SHORTEST = fmpq(1, 64)
 FINEST = fmpq(1, 1024)
+"""No panel is shorter, unless the step of the march is nearly so."""
 _CALM = 4.0  # rate times panel
 
 _ZERO, _ONE = fmpq(0), fmpq(1)
@@ -158,18 +159,19 @@ def _panels(rings: RingPlan, spacing: fmpq | None) -> int:
     shortest = min((delay for delay in near if delay != 0), default=step)
     fastest = max(joint.space.norm for joint in joints)
     few = 1 if spacing is None else int((step / spacing).p)
-    count = few
-    while step / count > min(LONGEST, shortest):
-        count += few
+    longest, most = min(LONGEST, shortest), max(int((step / FINEST).floor()), 8)
+    count = few * int((step / (few * longest)).ceil())
+    if count > most and few > most:
+        raise CostError(
+            f"load: steps of {spacing} are edges of {few} panels in a window of {step}, at most {most} expected "
+            "(a --step in a simpler proportion to it helps)"
+        )
+    if count > most:
+        raise CostError(
+            f"output: {near[shortest].name} hears a loaded node after {shortest}, which takes {count} panels in a "
+            f"window of {step}, at most {most} expected (a place at that node, or farther away, helps)"
+        )
     # by halves, so that edges stay edges
     while nearest(step / count) * fastest > _CALM and step / count > SHORTEST:
         count *= 2
-    length = step / count
-    if length < FINEST:
-        what = _why(near, shortest) if shortest < FINEST else f"--step: {spacing} given with a march on steps of {step}"
-        raise CostError(f"{what}: panels of {length}, at least {FINEST} expected (a step in simpler proportion helps)")
     return count
-
-
-def _why(near: dict[fmpq, WatchedPlace], shortest: fmpq) -> str:
-    return f"output: {near[shortest].name} hears a loaded node after {shortest}"
