@@ -12,11 +12,11 @@ from wavesym.errors import UnservedError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping
+from wavesym.mechanics.gauge import Gauge, Sum, readings
 from wavesym.mechanics.light_cone import felt, light_cone
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.probe import Probe
-from wavesym.mechanics.reading import Gauge, Sum, readings
 from wavesym.numbers.reals import DOUBLE, Real
 
 
