@@ -18,6 +18,7 @@ LARGEST_EXPONENT = 300
 _LARGEST = Fraction(10) ** LARGEST_EXPONENT
 _SMALLEST = 1 / _LARGEST
 _MOST_BITS = 2048  # above what LONGEST and LARGEST_EXPONENT let through
+_MODERATE_BITS = 996  # of numerator and denominator: 2^996 is less than 10^LARGEST_EXPONENT
 
 _DECIMAL = re.compile(r"([+-]?[0-9]+)(?:\.([0-9]+))?(?:[eE]([+-]?[0-9]+))?")
 _RATIO = re.compile(r"([+-]?[0-9]+)/([0-9]+)")
@@ -45,6 +46,8 @@ def exact(value: object) -> Fraction:
 
     Raises (as does every validator here) the error of `table.wrong`.
     """
+    if type(value) is Fraction and max(n.bit_length() for n in value.as_integer_ratio()) <= _MODERATE_BITS:
+        return value  # as the many samples of a record are
     text = written(value)
     if text is not None:
         number = _parsed(text, value)

@@ -10,12 +10,14 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Annotated, Self
 
+from flint import fmpq
 from pydantic import Field, PlainValidator, model_validator
 
 from wavesym.fields.loads import Load, linear
 from wavesym.fields.numbers import Exact, Positive
 from wavesym.fields.table import shown, wrong
 from wavesym.mechanics.loads import Applied
+from wavesym.numbers.doubles import rational
 from wavesym.records.record_file import as_decimal
 from wavesym.records.recording import Recorded
 
@@ -71,10 +73,11 @@ class RecordedLoad(Load):
 
     def units(self) -> Iterator[Applied]:
         """The load as unit responses: steps and ramps."""
-        samples = [self.scale * sample for sample in self.record.samples]
+        scale, end = rational(self.scale), fmpq(0)
+        samples = [scale * rational(sample) for sample in self.record.samples]
         if self.begin == 0:
-            return linear(Fraction(0), self.step, [*samples, Fraction(0)], self.sources)
-        return linear(self.begin - self.step, self.step, [Fraction(0), *samples, Fraction(0)], self.sources)
+            return linear(Fraction(0), self.step, [*samples, end], self.sources)
+        return linear(self.begin - self.step, self.step, [end, *samples, end], self.sources)
 
     @property
     def told(self) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from math import lcm
 
 from wavesym.errors import SceneError
 from wavesym.fields.numbers import LARGEST_EXPONENT, LONGEST
@@ -47,6 +49,8 @@ class RecordFile:
         if told is None and len(times) < 2:
             return None
         step = times[1] - times[0] if told is None else told
+        if told is None and step > 0 and _in_step(times):
+            return step
         for k, (before, time) in enumerate(pairwise(times), 1):
             if (since := time - before) <= 0:
                 what = f"the time {as_decimal(time)} given, more than the {as_decimal(before)} before it expected"
@@ -58,6 +62,14 @@ class RecordFile:
                 what = f"the time {as_decimal(time)} given, {as_decimal(expected)} expected ({_even(step, told)})"
                 raise damaged(self.file, self.lines[k], what)
         return step
+
+
+def _in_step(times: Sequence[Fraction]) -> bool:
+    """Whether times are as far apart as the first two: in integers, as there may be many."""
+    over = lcm(*{time.denominator for time in times})
+    ticks = [time.numerator * (over // time.denominator) for time in times]
+    first, step = ticks[0], ticks[1] - ticks[0]
+    return ticks == list(range(first, first + len(ticks) * step, step))
 
 
 def _even(step: Fraction, told: Fraction | None) -> str:

@@ -33,6 +33,18 @@ class LinearLoads:
         """Of the panels between the times."""
         return tuple(after - before for before, after in pairwise(self.times))
 
+    @cached_property
+    def distinct(self) -> tuple[tuple[fmpq, ...], tuple[int, ...]]:
+        """The different lengths of panels in order, and which of them each panel has. (An fmpq is slow to hash.)"""
+        found: list[fmpq] = []
+        kind = [0] * len(self.lengths)
+        order = sorted(range(len(kind)), key=self.lengths.__getitem__)
+        for k in order:
+            if not found or self.lengths[k] != found[-1]:
+                found.append(self.lengths[k])
+            kind[k] = len(found) - 1
+        return tuple(found), tuple(kind)
+
     @property
     def largest(self) -> fmpq:
         """The largest absolute value at one of the times."""
@@ -40,7 +52,8 @@ class LinearLoads:
 
     def spacing(self, until: fmpq, told: fmpq | None = None) -> fmpq:
         """The step of a stream: `told`, where all times but the first lie so far apart, or their common measure."""
-        gaps = set(self.lengths if self.times[1:] and any(self.samples[1]) else self.lengths[1:])
+        lengths, kind = self.distinct
+        gaps = [lengths[k] for k in set(kind if self.times[1:] and any(self.samples[1]) else kind[1:])]
         if not gaps:
             return told or until / _STEPS_OF_ONE
         over = lcm(*(int(gap.q) for gap in gaps))
@@ -53,25 +66,21 @@ def linear_loads(loads: Sequence[Applied], sources: Sequence[tuple[str, str]], u
 
     UnservedError for a load that jumps.
     """
-    slopes: list[dict[fmpq, fmpq]] = [{} for _ in sources]
     place: Mapping[str, int] = {ramp: j for j, (_, ramp) in enumerate(sources)}
     steps = {step for step, _ in sources}
-    for load in loads:
+    slope = [fmpq(0)] * len(sources)
+    times, samples = [fmpq(0)], [tuple(slope)]
+    for load in sorted(loads, key=lambda load: load.time):
         if load.time > until:
-            continue
+            break
         if load.source in steps:
             raise UnservedError(
                 f"load: {load.source} jumps by {nearest(load.weight):g} at tau = {nearest(load.time):g}, no jump "
                 "expected in modes (a record that starts a step later rises to its first sample)"
             )
-        slopes[place[load.source]][load.time] = load.weight
-    times = sorted({fmpq(0), *(time for changes in slopes for time in changes)})
-    slope = [fmpq(0)] * len(sources)
-    value = list(slope)
-    samples = []
-    for k, time in enumerate(times):
-        if k:
-            value = [v + b * (time - times[k - 1]) for v, b in zip(value, slope, strict=True)]
-        slope = [b + changes.get(time, 0) for b, changes in zip(slope, slopes, strict=True)]
-        samples.append(tuple(value))
+        if load.time != times[-1]:
+            after = load.time - times[-1]
+            samples.append(tuple(v + b * after for v, b in zip(samples[-1], slope, strict=True)))
+            times.append(load.time)
+        slope[place[load.source]] += load.weight
     return LinearLoads(tuple(times), tuple(samples), tuple(slope))

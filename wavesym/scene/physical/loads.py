@@ -88,7 +88,7 @@ def _unit(load: Mapping[str, Any], acting: LoadUnit) -> Fraction:
 
 
 def read(load: object) -> object:
-    """A load whose record is what was in its file, as it is dumped. Raises the error of `table.wrong`."""
+    """A load whose record is what was in its file. Raises the error of `table.wrong`."""
     if not isinstance(load, Mapping) or not isinstance(path := load.get("record"), str | PathLike):
         return load
     spacing = None
@@ -100,15 +100,15 @@ def read(load: object) -> object:
             recording = recorded(path, load.get("column"), lambda clock: spacing and spacing / _clock(clock))
         except SceneError as error:
             raise wrong(str(error)) from None
-    return {**load, "record": recording.model_dump(exclude_defaults=True)}
+    return {**load, "record": recording}
 
 
 def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
     """A record without units. What its file says may be said again, but not otherwise."""
     with placed("record"):
-        if not isinstance(load["record"], Mapping):
+        if not isinstance(load["record"], Recording | Mapping):
             raise wrong(f"{shown(load['record'])} given, the path of a file expected")
-        recording = Recording.model_validate(load["record"])
+        recording = Recording.model_validate(load["record"])  # as it is, or as it was dumped
         clock = _clock(recording.clock)
         said = unit(recording.unit, acting.dimension) / acting.size if recording.unit else None
     factor = _unit(load, acting) if said is None or "unit" in load else said
