@@ -408,7 +408,7 @@ def report(scene: Scene, path: Path) -> None:
 def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[list[str], list[str]]:
     """Response spectra as CSV lines, and what to say of them; drawn at `path`, too, where there is one.
 
-    SceneError for a scene without outputs of quantity acceleration; ToleranceError, CostError as in `spectra`.
+    WavesymError for a scene without outputs of quantity acceleration; ToleranceError, CostError as in `spectra`.
     """
     from wavesym.results.spectrum import spectra
 

@@ -25,7 +25,8 @@ class RecordFile:
     """The samples of a file, exact, and as they are `written` there; `lines` says on which line each of them is.
 
     What the file does not say is None, or empty: `unit` is that of the samples, `clock` that of times. `times` are
-    those of a time column, one for each sample; `spacing` is what a file without one says in its header.
+    those of a time column, one for each sample; `spacing` is what a file without one says in its header. `head` is the
+    line that says units.
     """
 
     file: str
@@ -37,6 +38,7 @@ class RecordFile:
     clock: str = ""
     spacing: Fraction | None = None
     times: tuple[Fraction, ...] | None = None
+    head: int = 1
 
     def even(self, told: Fraction | None = None) -> Fraction | None:
         """The time between two samples, in the file's unit; None where neither the file nor `told` says it.

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from itertools import pairwise
 from os import PathLike
 from typing import Any
+
+from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.dimensions import DIMENSIONS
 from wavesym.fields.numbers import exact
 from wavesym.fields.quantity import unit
 from wavesym.fields.table import Written, listed, shown, wrong
-from wavesym.records.record_file import as_decimal
+from wavesym.records.record_file import RecordFile, as_decimal, damaged
 from wavesym.records.recording import Recording, recorded
 from wavesym.scene.physical.measured import measured, placed
 from wavesym.scene.physical.rewritten import LoadUnit
@@ -87,20 +89,31 @@ def _unit(load: Mapping[str, Any], acting: LoadUnit) -> Fraction:
         return unit(load["unit"], acting.dimension) / acting.size
 
 
-def read(load: object) -> object:
+def read(load: object, acts: Callable[[Mapping[str, Any]], LoadUnit]) -> object:
     """A load whose record is what was in its file. Raises the error of `table.wrong`."""
     if not isinstance(load, Mapping) or not isinstance(path := load.get("record"), str | PathLike):
         return load
-    spacing = None
+    dimension, spacing = acts(load).dimension, None
     if "spacing" in load:
         with placed("spacing"):
             spacing = measured(load["spacing"], "time", 1)
     with placed("record"):
         try:
-            recording = recorded(path, load.get("column"), lambda clock: spacing and spacing / _clock(clock))
+            recording = recorded(path, load.get("column"), lambda said: _told(said, dimension, spacing))
         except SceneError as error:
             raise wrong(str(error)) from None
     return {**load, "record": recording}
+
+
+def _told(said: RecordFile, dimension: str, spacing: Fraction | None) -> Fraction | None:
+    """A spacing in the file's unit of time. SceneError where its units are none of a time and of what it acts as."""
+    try:
+        if said.unit:
+            unit(said.unit, dimension)
+        clock = _clock(said.clock)
+    except PydanticCustomError as error:
+        raise damaged(said.file, said.head, (error.context or {})["what"]) from None
+    return spacing and spacing / clock
 
 
 def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:

@@ -78,7 +78,7 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     said = dict(fields)
     inputs = []
     if isinstance(loads := fields.get("load"), list | tuple):
-        said["load"] = [_read(load, k) for k, load in enumerate(loads)]
+        said["load"] = [_read(load, k, found) for k, load in enumerate(loads)]
         made["load"] = [_load(load, k, found, seconds) for k, load in enumerate(said["load"])]
         for acting in (found.acting(load) for load in said["load"] if isinstance(load, Mapping)):
             size, text = results.told(acting.dimension)
@@ -109,9 +109,9 @@ def _system(table: object, units: UnitsTable) -> Rewritten:
         return _SYSTEMS[kind].model_validate(table).rewritten()
 
 
-def _read(load: object, k: int) -> object:
+def _read(load: object, k: int, found: Rewritten) -> object:
     with placed("load", k):
-        return read(load)
+        return read(load, found.acting)
 
 
 def _load(load: object, k: int, found: Rewritten, seconds: Fraction) -> object:
