@@ -233,8 +233,8 @@ def _named(model: Model, option: str, command: str) -> Chain:
     model.refuse_damping()
     if model.chain is None:
         raise UnservedError(
-            f"system.type: chain given with {option}, collision, drive or building expected (`{command}` without "
-            f"{option} serves a chain)"
+            f"system.type: {model.labels.type} given with {option}, collision, drive or building expected "
+            f"(`{command}` without {option} serves a chain)"
         )
     return model.chain
 

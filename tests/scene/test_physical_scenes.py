@@ -13,6 +13,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+import numpy as np
 import pytest
 from flint import fmpq
 from hypothesis import given, settings
@@ -22,7 +23,7 @@ import wavesym
 from wavesym import compiler
 from wavesym.cli import main
 from wavesym.documents.inspection.units import remarks
-from wavesym.errors import SceneError
+from wavesym.errors import SceneError, UnservedError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import fraction
 from wavesym.scene import Scene, lower
@@ -276,6 +277,36 @@ def test_a_building_written_out_is_the_same_building(other: dict[str, str], base
         system["foundation_mass"] = "500 t"
     one, other = both_ways(changed(BUILDING, "system", system), tmp_path)
     assert one == other
+
+
+@pytest.mark.parametrize("base", ["ground", "force"])
+def test_a_building_of_unequal_storeys_is_a_building(base: str) -> None:
+    """It says so, and knows its foundation: where storeys hardly differ, it moves as the one where they do not."""
+    system: dict[str, Any] = {"type": "building", "base": base, "storey": [STOREY, STOREY]}
+    if base == "force":
+        system["foundation_mass"] = "500 t"
+    output = {"until": "50 ms", "displacement": [0, 2], "relative": [1, 2], "drift": [1, 2]}
+    equal = Scene(**(BUILDING | {"system": system, "output": output}))
+    hardly = STOREY | {"stiffness": "678000000.001 N/m"}
+    unequal = Scene(**(BUILDING | {"system": system | {"storey": [STOREY, hardly]}, "output": output}))
+    models = lower(equal), lower(unequal)
+    assert models[1].chain is None
+    assert {model.labels.system["type"] for model in models} == {unequal.system.type} == {"building"}
+    taus = np.linspace(0, models[1].horizon(), 9)
+    one, other = (wavesym.evaluator(scene)(taus) for scene in (equal, unequal))
+    assert np.abs(one - other).max() < 1e-9 * np.abs(one).max() < np.abs(one[2]).max()
+    np.testing.assert_allclose(other[5], other[1] - other[0], atol=1e-15)  # relative@2, the roof less the foundation
+
+
+@pytest.mark.parametrize("name", ["drive", "collision"])
+def test_others_of_unequal_rods_are_still_what_they_are(name: str) -> None:
+    path = "system.shaft.1.length" if name == "drive" else "system.body.0.left.length"
+    scene = Scene(**changed(ALL[name], path, "0.9 m"))
+    assert (lower(scene).chain, lower(scene).labels.system["type"]) == (None, name)
+    with pytest.raises(UnservedError, match=f"system.type: {name} of rods that differ, which is a chain, given"):
+        _ = lower(scene).named
+    with pytest.raises(SceneError, match=r"output.relative\[0\]: 1 given, a building or a chain expected"):
+        scene.with_({"output.relative": [1]})
 
 
 @pytest.mark.parametrize("name", ["drive", "collision"])
@@ -606,6 +637,21 @@ def test_places_of_pictures_have_units() -> None:
     assert axes.get_xlabel() == "arm:x in mm"
     for x, label in zip(axes.get_xticks(), axes.get_xticklabels(), strict=True):
         assert float(label.get_text()) == pytest.approx(x * 1200, abs=1e-9)
+
+
+@pytest.mark.parametrize(("rods", "whole"), [(1, 1.2), (3, 0.7), (3, 0.6), (5, 2.4), (9, 3.0), (55, 3.5)])
+def test_a_picture_has_a_tick_at_its_end(rods: int, whole: float) -> None:
+    """Where that is a round length, whatever doubles make of so many rods of a part of it."""
+    pytest.importorskip("matplotlib")
+    from matplotlib.figure import Figure
+
+    from wavesym.report.xt import _lengths
+
+    axes = Figure().add_subplot()
+    axes.set_xlim(0, rods)
+    _lengths(axes, "x in m", whole / rods)
+    assert (axes.get_xticks()[-1], axes.get_xticklabels()[-1].get_text()) == (rods, f"{whole:g}")
+    assert axes.get_xlim() == (0, rods)
 
 
 @pytest.mark.slow

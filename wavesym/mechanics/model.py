@@ -31,6 +31,12 @@ class Labels:
     loads: tuple[str, ...]
     sha256: str
 
+    @property
+    def type(self) -> str:
+        """Of a chain that is written out, also where it is a named system: that has rods that differ then."""
+        type = self.system["type"]
+        return type if type == "chain" else f"{type} of rods that differ, which is a chain,"
+
 
 @dataclass(frozen=True)
 class Model:
@@ -61,7 +67,7 @@ class Model:
         if self.chain is None:
             self.network.refuse_contacts()
             raise UnservedError(
-                "system.type: chain given, collision, drive or building expected "
+                f"system.type: {self.labels.type} given, collision, drive or building expected "
                 "(a chain has pieces, a march and `run`)"
             )
         return self.chain

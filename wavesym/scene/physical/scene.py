@@ -22,7 +22,7 @@ from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
 from wavesym.scene.physical.said import words
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
-from wavesym.systems import SYSTEMS
+from wavesym.systems import SYSTEMS, ExplicitChain, SystemTable, WrittenOut
 
 _SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
     "collision": PhysicalCollision,
@@ -73,7 +73,7 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     with placed("units"):
         results = Results.of(units, found.kind)
     with placed("system"):  # before loads and places on it
-        made["system"] = SYSTEMS[str(found.system["type"])].model_validate(found.system)
+        made["system"] = _table(found.system).model_validate(found.system)
     seconds = found.rods.seconds
     said = dict(fields)
     inputs = []
@@ -88,6 +88,12 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
             made["output"] = _output(output, found, seconds)
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
     return PhysicalScene(plain(said), made, scale, found.kappa, tuple(inputs))
+
+
+def _table(system: Mapping[str, object]) -> type[SystemTable]:
+    """What takes a system without units: one that is named may have been written out."""
+    known = SYSTEMS[str(system["type"])]
+    return WrittenOut if "parts" in system and known is not ExplicitChain else known
 
 
 def _system(table: object, units: UnitsTable) -> Rewritten:
