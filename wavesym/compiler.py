@@ -411,12 +411,14 @@ def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[li
     WavesymError for a scene without outputs of quantity acceleration; ToleranceError, CostError as in `spectra`.
     """
     from wavesym.results.spectrum import spectra
+    from wavesym.results.stepping import apart
 
     if path is not None:
         from wavesym.report.saving import picture_format
 
         picture_format(path)
-    found = spectra(lower(scene), damping)
+    model = lower(scene)
+    found = spectra(model, damping)
     if path is not None:
         from wavesym.report.saving import save
         from wavesym.report.spectra import draw
@@ -425,10 +427,8 @@ def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[li
     names = [f"{name} [{unit}]" if unit else name for name, unit in zip(found.names, found.units, strict=True)]
     header = ",".join(["period" if found.time_unit is None else f"period [{found.time_unit}]", *names]) + "\n"
     rows = (",".join(map(repr, row)) + "\n" for row in np.vstack([found.periods, found.values]).T.tolist())
-    said = (
-        f"damping {damping:g}, values {found.step:g} tau apart; with half as many spectra change by {found.change:.1e}"
-    )
-    return [header, *rows], [*warnings(scene), said]
+    said = f"damping {damping:g}, values {apart(model, found.step)}; with half as many spectra change by"
+    return [header, *rows], [*unexpected(model), f"{said} {found.change:.1e}"]
 
 
 def advise(scene: Scene, tolerance: float = 0.01, format: str = "text") -> str:

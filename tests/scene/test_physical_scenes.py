@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -24,6 +25,7 @@ from wavesym import compiler
 from wavesym.cli import main
 from wavesym.documents.inspection.units import remarks
 from wavesym.errors import SceneError, UnservedError
+from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import fraction
 from wavesym.scene import Scene, lower
@@ -40,6 +42,21 @@ BUILDING = {
     "load": [{"times": ["0 s", "20 ms"], "a": ["0.1 g", "-0.1 g"], "b": ["0 g/s", "0.5 g/s"]}],
     "output": {"until": "50 ms", "velocity": [2], "force": [0], "drift": [1]},
 }
+FRAME = """name = "frame"
+[units]
+[system]
+type = "building"
+base = "ground"
+[[system.storey]]
+count = 2
+height = "3.5 m"
+stiffness = "678 MN/m"
+column_mass = "10.871 t"
+floor_mass = "350 t"
+[[load]]
+times = ["0 s"]
+a = ["0.3 g"]
+"""
 SHAFT = {"length": "1.2 m", "diameter": "50 mm", "G": "80 GPa", "rho": "7850 kg/m^3"}
 DRIVE = {
     "units": {},
@@ -623,6 +640,31 @@ def test_remarks_are_made_of_what_is_odd() -> None:
     assert any(line.startswith("kappa = 31.4 of rod 2, above 10") for line in said)
     assert any(line.startswith("kappa = ") and "of rod 1, " not in line for line in said)
     assert not list(remarks(physical(BUILDING)))
+
+
+def test_what_is_refused_later_speaks_of_seconds_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Engines know only tau; who gave seconds and g reads of these."""
+    file = tmp_path / "frame.toml"
+    file.write_text(FRAME + '[output]\nuntil = "2000 s"\ndrift = [1]\n')
+    said = []
+    for evaluator in ("pieces", "modes"):
+        assert main(["generate", str(file), "--evaluator", evaluator, "--check"]) == 2
+        said.append(capsys.readouterr().err)
+    assert re.search(r"3 nodes times [0-9.e+]+ units of tau \(2000 s\) are", said[0])
+    assert "load: a jumps by 2.94199 m/s^2 at 0 s, no jump expected in modes" in said[1]
+    file.write_text(file.read_text().replace("10.871 t", "1e200 kg").replace("350 t", "1e-200 kg"))
+    assert main(["run", str(file)]) == 2
+    assert capsys.readouterr().err.startswith(f"{file}: system: its quantities make kappa[0]: a number of about 400")
+
+
+def test_taus_in_a_message_have_their_times_beside_them() -> None:
+    clock = Clock(fmpq(1, 8), fmpq(125), "ms")
+    assert clock.beside("a bound to tau = 1.6e+1 for x") == "a bound to tau = 1.6e+1 (2000 ms) for x"
+    assert clock.beside("by tau = 58.5, at most 3 expected.") == "by tau = 58.5 (7312.5 ms), at most 3 expected."
+    assert clock.beside("from tau = 4. 3 nodes times 8 units of tau") == (
+        "from tau = 4 (500 ms). 3 nodes times 8 units of tau (1000 ms)"
+    )
+    assert clock.beside("a tau that is no number") == "a tau that is no number"
 
 
 def test_places_of_pictures_have_units() -> None:

@@ -17,6 +17,7 @@ from wavesym.mechanics.light_cone import felt, light_cone
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.probe import Probe
+from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE, Real
 
 
@@ -71,6 +72,12 @@ class Model:
                 "(a chain has pieces, a march and `run`)"
             )
         return self.chain
+
+    def told(self, load: Applied) -> str:
+        """A step of a load, in units where there are any: how much, and when."""
+        factor, unit = self.inputs.get(load.source, (fmpq(1), ""))
+        when = self.clock.told(load.time) if self.clock else f"tau = {nearest(load.time):g}"
+        return f"{load.source} jumps by {nearest(load.weight * factor):g}{unit and ' '}{unit} at {when}"
 
     @cached_property
     def sums(self) -> Mapping[Probe, Sum]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -12,7 +12,6 @@ from flint import fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.loads import Applied
-from wavesym.numbers.doubles import nearest
 
 _STEPS_OF_ONE = 1000  # of a horizon, where there is nothing else to tell a spacing
 
@@ -61,10 +60,12 @@ class LinearLoads:
         return told if told and (common / told).q == 1 else common
 
 
-def linear_loads(loads: Sequence[Applied], sources: Sequence[tuple[str, str]], until: fmpq) -> LinearLoads:
+def linear_loads(
+    loads: Sequence[Applied], sources: Sequence[tuple[str, str]], until: fmpq, told: Callable[[Applied], str]
+) -> LinearLoads:
     """Loads j made of unit steps and ramps, whose names are sources[j], as far as they are felt by `until`.
 
-    UnservedError for a load that jumps.
+    UnservedError for a load that jumps; `told` is what is said of that step.
     """
     place: Mapping[str, int] = {ramp: j for j, (_, ramp) in enumerate(sources)}
     steps = {step for step, _ in sources}
@@ -75,8 +76,8 @@ def linear_loads(loads: Sequence[Applied], sources: Sequence[tuple[str, str]], u
             break
         if load.source in steps:
             raise UnservedError(
-                f"load: {load.source} jumps by {nearest(load.weight):g} at tau = {nearest(load.time):g}, no jump "
-                "expected in modes (a record that starts a step later rises to its first sample)"
+                f"load: {told(load)}, no jump expected in modes (a record that starts a step later rises to its "
+                "first sample)"
             )
         if load.time != times[-1]:
             after = load.time - times[-1]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 from pydantic_core import PydanticCustomError
 
 from wavesym.fields.numbers import exact
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.table import key_path, shown, wrong
 from wavesym.scene.outputs import LONGEST_HORIZON
 from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
@@ -72,7 +73,7 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     found = _system(fields.get("system"), units)
     with placed("units"):
         results = Results.of(units, found.kind)
-    with placed("system"):  # before loads and places on it
+    with placed("system"), _of_quantities(fields["system"]):  # before loads and places on it
         made["system"] = _table(found.system).model_validate(found.system)
     seconds = found.rods.seconds
     said = dict(fields)
@@ -88,6 +89,19 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
             made["output"] = _output(output, found, seconds)
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
     return PhysicalScene(plain(said), made, scale, found.kappa, tuple(inputs))
+
+
+@contextmanager
+def _of_quantities(said: Mapping[str, Any]) -> Iterator[None]:
+    """What is wrong with a number that nobody wrote, such as a kappa, is said of the quantities that make it."""
+    try:
+        with placed():
+            yield
+    except PydanticCustomError as error:
+        what, at = (error.context or {})["what"], (error.context or {})["at"]
+        if not at or at[0] in said:
+            raise
+        raise wrong(f"its quantities make {key_path(at)}: {what}") from None
 
 
 def _table(system: Mapping[str, object]) -> type[SystemTable]:
