@@ -31,7 +31,8 @@ def spacing(model: Model) -> float:
 
 def apart(model: Model, step: float) -> str:
     """How far samples are apart, in a few words."""
-    return f"{model.clock.told(rational(step))} apart" if model.clock else f"{step:g} tau apart"
+    clock = model.clock
+    return f"{clock.time(rational(step)):.4g} {clock.unit} apart" if clock else f"{step:g} tau apart"
 
 
 def sampled(model: Model, program: Program, step: float) -> tuple[Numbers, Numbers]:
