@@ -16,8 +16,9 @@ from hypothesis import strategies as st
 
 import wavesym
 from wavesym.errors import SceneError
+from wavesym.fields.numbers import decimal_text
 from wavesym.records.read import read_record
-from wavesym.records.record_file import as_decimal, decimal
+from wavesym.records.record_file import decimal
 
 ROOT = Path(wavesym.__file__).parents[1]
 EL_CENTRO = ROOT / "examples" / "records" / "elcentro_1940_ns_peknold"
@@ -299,7 +300,7 @@ def test_no_text_does_more_than_be_refused(place, text):
 
 @given(st.fractions(max_denominator=10**6))
 def test_a_decimal_reads_back(number):
-    text = as_decimal(number)
+    text = decimal_text(number)
     assert Fraction(text) == number
     assert "/" in text or decimal(text) == number
 

@@ -12,10 +12,10 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.dimensions import DIMENSIONS
-from wavesym.fields.numbers import exact
+from wavesym.fields.numbers import decimal_text, exact
 from wavesym.fields.quantity import unit
 from wavesym.fields.table import Written, listed, shown, wrong
-from wavesym.records.record_file import RecordFile, as_decimal, damaged
+from wavesym.records.record_file import RecordFile, damaged
 from wavesym.records.recording import Recording, recorded
 from wavesym.scene.physical.measured import measured, placed
 from wavesym.scene.physical.rewritten import LoadUnit
@@ -137,7 +137,7 @@ def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> d
             with placed(key):
                 time = measured(load[key], "time", least)
                 if told is not None and time != told * clock:
-                    expected = f"{as_decimal(told)} {recording.clock or 's'} expected, as in the file, or none"
+                    expected = f"{decimal_text(told)} {recording.clock or 's'} expected, as in the file, or none"
                     raise wrong(f"{shown(load[key])} given, {expected}")
             table[key] = time / seconds
     return table
