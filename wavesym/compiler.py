@@ -20,8 +20,6 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
-from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,7 +29,6 @@ from wavesym.difference import Difference
 from wavesym.documents.summary import summary_text as told
 from wavesym.documents.tables import symbolic_lines, table_lines
 from wavesym.errors import SceneError, UnservedError, WavesymError
-from wavesym.exact.contact import contact_ends
 from wavesym.exact.network_table import NetworkTable, network_table
 from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import refuse_costly
@@ -39,13 +36,15 @@ from wavesym.exact.table import Row, Table, full_table
 from wavesym.fields.loads import SampledLoad
 from wavesym.fields.table import shown
 from wavesym.mechanics.symbolic import generic, symbolic
-from wavesym.numbers.doubles import fraction, nearest, not_below, rational
+from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
 from wavesym.records.load import RecordedLoad
 from wavesym.results.peaks import table_of_peaks
 from wavesym.results.response import Response
+from wavesym.results.rows import SAMPLES, csv_lines, grid
 from wavesym.results.summary import Summary, summarised
+from wavesym.results.unexpected import event_lines, outside, unexpected, without_load
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes, drifts, sources
 from wavesym.targets import LANGUAGES
@@ -62,8 +61,6 @@ if TYPE_CHECKING:
 
 
 _UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
-_AT_ONCE = 5000  # tau of `run`
-SAMPLES = 1001  # of `run`, where it is not told how many
 MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
 
 
@@ -238,8 +235,8 @@ def _named(model: Model, option: str, command: str) -> Chain:
     model.refuse_damping()
     if model.chain is None:
         raise UnservedError(
-            f"system.type: chain given with {option}, collision, drive or building expected (`{command}` without "
-            f"{option} serves a chain)"
+            f"system.type: {model.labels.type} given with {option}, collision, drive or building expected "
+            f"(`{command}` without {option} serves a chain)"
         )
     return model.chain
 
@@ -380,105 +377,30 @@ def run(
 ) -> Iterator[str]:
     """The outputs as CSV lines, as they are computed: at `at`, or at `samples` equally spaced tau of the horizon.
 
-    Of a physical scene `at` are times in the unit of results, and so is the first column. Where values are not right to
-    the last bit, `tell` is told of which program they are, and its bound. ToleranceError or CostError where there is
-    none that will do, before there is a line.
+    `tell` is told, before the first line, what a user might not expect, when contacts open and close, and, where values
+    are not right to the last bit, of which program they are, and its bound. ToleranceError or CostError where there is
+    none that will do, or where it would take minutes to know what contacts do.
     """
     model = lower(scene)
     response = Response(model)
-    blocks = iter(partial(_rows, response, _instants(model, samples, at)), [])
-    first = next(blocks, [])  # what goes wrong does so before the header
+    for line in (*outside(model, at or ()), *unexpected(model), *event_lines(response)):
+        tell(line)
+    lines = csv_lines(response, samples, at)
     if made := response.program:
-        tell(f"values of {made.evaluator}, not right to the last bit: {_trusted(made)}")
-    return _csv(_columns(model), first, blocks)
+        said = "proved bound" if made.proved else "estimate"
+        trusted = f"{said} of the error {made.error_bound:g} of an output's largest value"
+        tell(f"values of {made.evaluator}, not right to the last bit: {trusted}")
+    return lines
 
 
-def _trusted(made: Program) -> str:
-    said = "proved bound" if made.proved else "estimate"
-    return f"{said} of the error {made.error_bound:g} of an output's largest value"
-
-
-def _columns(model: Model) -> list[str]:
-    """The header of CSV, with units where there are any."""
-    names = [probe.told for probe in model.probes]
-    clock = model.clock
-    return ["tau" if clock is None else "time" if clock.unit == "s" else f"time [{clock.unit}]", *names]
-
-
-def _instants(model: Model, samples: int, at: Sequence[float] | None) -> Iterator[tuple[float, float]]:
-    """What stands in the first column, and the tau that it is."""
-    clock, until = model.clock, model.until
-    if clock is None:
-        yield from ((tau, tau) for tau in (at if at is not None else grid(model, samples)))
-    elif at is not None:
-        yield from ((time, clock.tau(time, until)) for time in at)
-    else:
-        taus = (until * k / max(samples - 1, 1) for k in range(samples))
-        yield from ((clock.time(tau), not_below(tau)) for tau in taus)
-
-
-def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:
-    yield ",".join(names) + "\n"
-    yield from first
-    for block in blocks:
-        yield from block
-
-
-def _rows(response: Response, instants: Iterator[tuple[float, float]]) -> list[str]:
-    """The lines of the next instants, none where there are no more."""
-    some = list(islice(instants, _AT_ONCE))
-    values = np.vstack([np.asarray([first for first, _ in some]), response([tau for _, tau in some])]).T
-    return [",".join(map(repr, row)) + "\n" for row in values.tolist()]
-
-
-def grid(model: Model, samples: int) -> Iterator[float]:
-    """`samples` equally spaced tau, each rounded once; the last one is the end of the horizon."""
-    yield from (nearest(model.until * k / (samples - 1)) for k in range(samples - 1))
-    yield model.horizon() if samples > 1 else 0.0
-
-
-def events(scene: Scene) -> list[str]:
-    """A line for each time that a contact opens or closes. CostError where that would take minutes to know."""
-    model = lower(scene)
-    return [
-        f"contact at x = {each.x} {each.kind} at tau = {each.digits}{_in_time(model, each.double)}"
-        for each in Response(model).events
-    ]
-
-
-def _in_time(model: Model, tau: float) -> str:
-    """The same instant in the unit of a physical scene, to stand behind a tau."""
-    return f", {model.clock.told(rational(tau))}" if model.clock else ""
-
-
-def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
-    """What a user might not expect: no load, tau out of range, contacts that open early enough to matter."""
-    model = lower(scene)
-    last, clock = model.horizon(), model.clock
-    outside = sum(not 0 <= tau <= last for _, tau in _instants(model, 0, taus))
-    what, end = ("times", clock.told(model.until)) if clock else ("tau", str(scene.output.until))
-    lines = [f"{outside} of {len(taus)} {what} are outside 0 to {end}, where values are nan"] * bool(outside)
-    return [*_no_load(model), *lines, *_contact_warnings(model)]
+def warnings(scene: Scene) -> list[str]:
+    """What a user might not expect: no load, contacts that open early enough to matter."""
+    return unexpected(lower(scene))
 
 
 def no_load(scene: Scene) -> list[str]:
     """A line for a scene in which nothing happens."""
-    return _no_load(lower(scene))
-
-
-def _no_load(model: Model) -> list[str]:
-    network = model.network
-    moving = any(bar.velocity or bar.strain for bar in network.bars) or any(point.velocity for point in network.points)
-    return [] if model.loads or moving else ["no load, so that all outputs are 0"]
-
-
-def _contact_warnings(model: Model) -> list[str]:
-    """A line for every contact that opens early enough to matter to an output."""
-    return [
-        f"contact at x = {end.x} opens at tau = {end.digits}{_in_time(model, end.double)}: what that can reach is "
-        "computed as if it stayed closed"
-        for end in contact_ends(model)
-    ]
+    return without_load(lower(scene))
 
 
 def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
@@ -533,15 +455,17 @@ def report(scene: Scene, path: Path) -> None:
 def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[list[str], list[str]]:
     """Response spectra as CSV lines, and what to say of them; drawn at `path`, too, where there is one.
 
-    SceneError for a scene without outputs of quantity acceleration; ToleranceError, CostError as in `spectra`.
+    WavesymError for a scene without outputs of quantity acceleration; ToleranceError, CostError as in `spectra`.
     """
     from wavesym.results.spectrum import spectra
+    from wavesym.results.stepping import apart
 
     if path is not None:
         from wavesym.report.saving import picture_format
 
         picture_format(path)
-    found = spectra(lower(scene), damping)
+    model = lower(scene)
+    found = spectra(model, damping)
     if path is not None:
         from wavesym.report.saving import save
         from wavesym.report.spectra import draw
@@ -550,10 +474,8 @@ def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[li
     names = [f"{name} [{unit}]" if unit else name for name, unit in zip(found.names, found.units, strict=True)]
     header = ",".join(["period" if found.time_unit is None else f"period [{found.time_unit}]", *names]) + "\n"
     rows = (",".join(map(repr, row)) + "\n" for row in np.vstack([found.periods, found.values]).T.tolist())
-    said = (
-        f"damping {damping:g}, values {found.step:g} tau apart; with half as many spectra change by {found.change:.1e}"
-    )
-    return [header, *rows], [*warnings(scene), said]
+    said = f"damping {damping:g}, values {apart(model, found.step)}; with half as many spectra change by"
+    return [header, *rows], [*unexpected(model), f"{said} {found.change:.1e}"]
 
 
 def advise(scene: Scene, tolerance: float = 0.01, format: str = "text") -> str:
