@@ -73,8 +73,8 @@ class Driven:
 class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
-    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "modes", or
-    "runtime": a march whose parameters come at run time, by its `laws`, in C alone.
+    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "hats", that
+    of one hat of each record, in NumPy alone, "modes", or "runtime": a march whose parameters come at run time, by its `laws`, in C alone.
     `tables`
     are flat, by name, each number as it is written: indices are ints, all else floats of the format; which there are,
     assembly.py says, of rings rings/tables.py, of modes modes/tables.py. `constants` are single numbers.
@@ -101,7 +101,7 @@ class Program:
     @property
     def evaluator(self) -> str:
         """What a user calls its kind."""
-        return "march" if self.kind == "rings" else self.kind
+        return "march" if self.kind in ("rings", "hats") else self.kind
 
     @property
     def error_bound(self) -> float:

@@ -164,10 +164,15 @@ class WindowBlock:
 
     def read(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
         """All outputs at some tau in these windows."""
+        return self.at(*self._scheme.places(tau))
+
+    def at(
+        self, window: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """The same where `places` are known."""
         scheme = self._scheme
-        window, phase, t = scheme.places(tau)
         n = window - self.first
-        out = np.zeros((scheme.outputs, len(tau)), scheme.real)
+        out = np.zeros((scheme.outputs, len(t)), scheme.real)
         for output in range(scheme.outputs):
             summed = scheme.summed[self._heard(output)]
             if np.any(summed):
@@ -228,9 +233,9 @@ class WindowBlock:
 class MarchingRings:
     """A march on its way."""
 
-    def __init__(self, scheme: RingScheme) -> None:
+    def __init__(self, scheme: RingScheme, most: int | None = None) -> None:
         tracks, size = len(scheme.held), scheme.degree + 1
-        self.most = max(1, min(256, 2_000_000 // (tracks * scheme.panels * size)))
+        self.most = most or max(1, min(256, 2_000_000 // (tracks * scheme.panels * size)))
         """So many windows at once."""
         self._scheme = scheme
         self._waves = np.zeros((scheme.deepest + self.most, tracks, scheme.panels, size), scheme.real)
