@@ -39,7 +39,17 @@ def assemble(
         case RingMarch(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
             return Program("rings", evaluator.real, tau_max, outputs, tables, constants, evaluator.bytes, provenance)
         case HatMarch(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
-            return Program("hats", evaluator.real, tau_max, outputs, tables, constants, evaluator.bytes, provenance)
+            return Program(
+                "hats",
+                evaluator.real,
+                tau_max,
+                outputs,
+                tables,
+                constants,
+                evaluator.bytes,
+                provenance,
+                numpy_only=evaluator.refusal,
+            )
         case ModesEvaluator(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
             return Program(
                 "modes",

@@ -195,8 +195,8 @@ def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -
         raise UnservedError("--windows: chain given, collision, drive or building expected (they take given loads)")
     try:
         return ring_march(model, real) if model.chain is None else marched(model, real, windows=windows)
-    except SpacingError:
-        hats = hat_march(model) if windows is None and real is DOUBLE else None
+    except SpacingError as refusal:
+        hats = hat_march(model, str(refusal)) if windows is None and real is DOUBLE else None
         if hats is None:
             raise
         return hats

@@ -34,11 +34,15 @@ _MARGIN = 1.01  # what is of second order in the roundoff
 
 @dataclass(frozen=True)
 class HatMarch:
-    """`marches` of the rest, where there is `rest` (1, else 0), and of one hat of each of the `records`."""
+    """`marches` of the rest, where there is `rest` (1, else 0), and of one hat of each of the `records`.
+
+    `refusal` says why the loads are not marched as they are.
+    """
 
     marches: tuple[RingMarch, ...]
     rest: int
     records: tuple[RecordLoad, ...]
+    refusal: str
     outputs: tuple[ProgramOutput, ...] = ()
 
     @property
@@ -121,7 +125,7 @@ class HatMarch:
         return [0.0]
 
 
-def hat_march(model: Model) -> HatMarch | None:
+def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     """The march of one hat of each record; None where no load is a record.
 
     SpacingError where the rest of the loads fits into no window or a record has too many samples; UnservedError,
@@ -133,7 +137,7 @@ def hat_march(model: Model) -> HatMarch | None:
     moving = [bar.velocity or bar.strain for bar in model.network.bars] + [p.velocity for p in model.network.points]
     rest = [judged_march(replace(model, loads=parts.rest))] if parts.rest or any(moving) else []
     hats = [judged_march(still(model, record)) for record in parts.records]
-    made = HatMarch(tuple(march for march, _ in (*rest, *hats)), len(rest), parts.records)
+    made = HatMarch(tuple(march for march, _ in (*rest, *hats)), len(rest), parts.records, refusal)
     parted = [np.array([verdict.errors, verdict.heights]) for _, verdict in rest]
     parted += [_added(record, *hat) for record, hat in zip(parts.records, hats, strict=True)]
     errors, heights = sum(parted, np.zeros((2, len(model.probes))))

@@ -91,9 +91,9 @@ def _record(
     spacing = reduce(fmpq.gcd, (after - before for before, after in pairwise(times)))
     if (count := int(((until - begin) / spacing).floor()) + 2) > _MOST:
         raise SpacingError(
-            f"load: {ramp.removesuffix(':ramp')} has {count} samples on the horizon at a spacing of {told(spacing)}, "
+            f"load: {step.removesuffix(':step')} has {count} samples on the horizon at a spacing of {told(spacing)}, "
             f"at most {_MOST} expected in a march of one hat (modes, instants with a larger common measure, or a "
-            "shorter horizon help)"
+            "shorter horizon, help)"
         )
     slopes = list(accumulate(changes.get(begin + k * spacing, _ZERO) for k in range(count)))
     values = accumulate((slope * spacing for slope in slopes), initial=jump)

@@ -231,7 +231,8 @@ def panels(times: Sequence[fmpq]) -> tuple[MarchPanel, ...]:
     if len(cuts) - 1 > MOST_PANELS:
         raise SpacingError(
             f"load: times at a spacing of {told(common(times))} have {len(cuts) - 1} different fractional parts, at "
-            f"most {MOST_PANELS} expected in a march (modes, {suiting(times)}, or fewer samples, helps)"
+            f"most {MOST_PANELS} expected in a march ({suiting(times)}, fewer samples, modes, or for what does not "
+            "jump NumPy or run, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 

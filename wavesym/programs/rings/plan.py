@@ -222,8 +222,8 @@ def _panels(times: list[fmpq], step: fmpq) -> tuple[MarchPanel, ...]:
     if len(cuts) - 1 > MOST_PANELS:
         raise SpacingError(
             f"load: times at a spacing of {told(common(times))} leave {len(cuts) - 1} different remainders of the step "
-            f"{told(step)}, at most {MOST_PANELS} expected in a march (modes, {suiting(times, step)}, or fewer samples, "
-            "helps)"
+            f"{told(step)}, at most {MOST_PANELS} expected in a march ({suiting(times, step)}, fewer samples, modes, "
+            "or for what does not jump NumPy or run, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 

@@ -24,3 +24,6 @@ SCHEMES: dict[str, type[Scheme]] = {
     "hats": HatScheme,
     "modes": ModesScheme,
 }
+
+PARTS: dict[str, tuple[type[Scheme], ...]] = {"hats": (RingScheme,)}
+"""What a scheme is made of."""

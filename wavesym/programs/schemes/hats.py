@@ -46,20 +46,20 @@ class HatScheme:
             for k in range(len(extents))
         ]
         rest = int(constants["rest"])
-        self._rest = marches[:rest]
         spacing, begin = (np.array(tables[name], real).reshape(-1, 2).tolist() for name in ("spacing", "begin_at"))
         sample, edges = np.array(tables["sample"], real), tables["first_sample"]
         self._records = [
             ShiftedHats(march, spacing[j], begin[j], sample[edges[j] : edges[j + 1]])
             for j, march in enumerate(marches[rest:])
         ]
+        self._parts: list[RingScheme | ShiftedHats] = [*marches[:rest], *self._records]
 
     def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
         """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range."""
         taus = np.asarray(tau, dtype=self._real)
         flat = taus.ravel()
         inside = (flat >= 0) & (flat <= self._tau_max)
-        parts = [part.evaluate(flat[inside]) for part in (*self._rest, *self._records)]
+        parts = [part.evaluate(flat[inside]) for part in self._parts]
         out = np.full((len(parts[0]), flat.size), np.nan, self._real)
         out[:, inside] = sum(parts[1:], parts[0])
         return out.reshape(len(out), *taus.shape)
@@ -67,7 +67,8 @@ class HatScheme:
     def evenly(self, step: float) -> NDArray[np.float64]:
         """Instants of the horizon, no more than `step` apart, that lie alike between the samples of the first record.
 
-        Values there take one march, and a Fourier transform for each place between samples.
+        There is an even number of equal steps from sample to sample, and at both ends. Values there take one march, and
+        a Fourier transform for each place between samples.
         """
         return self._records[0].evenly(step)
 
@@ -81,7 +82,7 @@ class ShiftedHats:
 
     KEPT = 1 << 24
     """So many numbers of a march are kept; where there are more it goes on block by block, each time."""
-    PAIRS = 1 << 16
+    PAIRS = 1 << 13
     """So many values are read at once."""
     VALUES = 1 << 22
     """So many are held."""
@@ -104,11 +105,13 @@ class ShiftedHats:
 
     def evenly(self, step: float) -> NDArray[np.float64]:
         """As HatScheme has it."""
-        parts = int(np.ceil(self._spacing / step))
-        last = self._march.tau_max
-        k = np.arange(-np.ceil(self._begin[0] / self._spacing), len(self._sample) + 1)
-        taus = (self._begin[0] + k * self._spacing)[:, None] + np.arange(parts) / parts * self._spacing
-        return np.unique(np.concatenate([[0.0, last], taus[(taus > 0) & (taus < last)]]))
+        parts = 2 * int(np.ceil(self._spacing / (2 * step)))
+        begin, last = self._begin[0], self._march.tau_max
+        k = np.arange(-np.floor(begin / self._spacing), np.floor((last - begin) / self._spacing) + 1)
+        starts = begin + k * self._spacing
+        taus = starts[:-1, None] + np.arange(parts) / parts * self._spacing
+        ends = (np.linspace(low, high, parts + 1) for low, high in ((0.0, starts[0]), (starts[-1], last)))
+        return np.unique(np.clip(np.concatenate([*ends, taus.ravel()]), 0.0, last))
 
     def evaluate(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
         """All outputs at tau: (outputs, tau.size)."""
@@ -116,8 +119,9 @@ class ShiftedHats:
         latest, phase = self._placed(tau)
         order = np.argsort(phase, kind="stable")
         order = order[latest[order] >= 0]
-        ends = self._apart(phase[order])
-        groups = [order[first:last] for first, last in zip(ends[:-1], ends[1:], strict=True)]
+        if not order.size:
+            return out
+        groups = np.split(order, self._apart(phase[order]))
         alone = np.array([group[0] for group in groups if len(group) == 1], int)
         if alone.size:
             out[:, alone] = self._single(latest[alone], phase[alone])
@@ -136,20 +140,25 @@ class ShiftedHats:
         since, lost = _difference(tau, self._begin[0])
         lost = lost - self._begin[1]
         number = np.floor(since / self._spacing)
-        for _ in range(2):
-            phase, more = _difference(since, number * self._high)
-            phase = phase + ((lost + more) - number * self._low)
-            number += np.where(phase < 0, -1, np.where(phase >= self._spacing, 1, 0))
+        number += np.floor(self._phase(since, lost, number) / self._spacing)
+        phase = self._phase(since, lost, number)
         # rounding may leave an instant of a sample just before it
         after = phase > self._spacing - self._near
-        number, phase = number + after, np.where(after, 0.0, np.maximum(phase, 0.0))
-        return number.astype(int), phase
+        return (number + after).astype(int), np.where(after, 0.0, np.maximum(phase, 0.0))
+
+    def _phase(
+        self, since: NDArray[np.float64], lost: NDArray[np.float64], number: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """since + lost - number spacing, rounded once."""
+        phase, more = _difference(since, number * self._high)
+        return np.asarray(phase + ((lost + more) - number * self._low))
 
     def _apart(self, phase: NDArray[np.float64]) -> list[int]:
-        """Where, in order, phases begin that differ by more than rounding makes of one; and the end."""
-        found = [0]
-        while found[-1] < phase.size:
-            found.append(int(np.searchsorted(phase, phase[found[-1]] + self._near, side="right")))
+        """Where, in order, a phase begins that differs from the one before by more than rounding makes of one."""
+        found = []
+        first = 0
+        while (first := int(np.searchsorted(phase, phase[first] + self._near, side="right"))) < phase.size:
+            found.append(first)
         return found
 
     def _blocks(self) -> "Iterator[WindowBlock]":
@@ -168,7 +177,7 @@ class ShiftedHats:
     def _read(
         self, latest: NDArray[np.int_], phase: NDArray[np.float64]
     ) -> "Iterator[tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]]":
-        """The response to one hat at phase[q] + m spacing, m = 0 ... latest[q]: q, m, and all outputs, some at a time."""
+        """The response to one hat at phase[q] + m spacing, m = 0 ... latest[q]: q, m and outputs, some at a time."""
         step = float(self._march.step)
         for block in self._blocks():
             until = block.first + block.count
@@ -222,7 +231,9 @@ class ShiftedHats:
         return np.asarray(np.fft.irfft(spectrum, size)[:, :count])
 
 
-def _difference(one: NDArray[np.float64], other: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _difference(
+    one: NDArray[np.float64], other: NDArray[np.float64] | float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """one - other, rounded, and what rounding has lost of it."""
     rounded = np.asarray(one - other)
     back = rounded - one

@@ -166,9 +166,7 @@ class WindowBlock:
         """All outputs at some tau in these windows."""
         return self.at(*self._scheme.places(tau))
 
-    def at(
-        self, window: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def at(self, window: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64]) -> NDArray[np.float64]:
         """The same where `places` are known."""
         scheme = self._scheme
         n = window - self.first
