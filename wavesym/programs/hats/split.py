@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import accumulate, pairwise
+from itertools import pairwise
 
 from flint import fmpq
 
@@ -45,20 +45,18 @@ class SplitLoads:
 
 
 def split(model: Model) -> SplitLoads:
-    """The loads of a model. A record is one that changes at many instants and does not jump but at its first.
+    """The loads of a model. A record is one that changes at many instants; its jumps belong to the rest.
 
     SpacingError for one of too many samples on the horizon.
     """
     until = rational(model.horizon())
     rest, records = list(model.acting(until)), []
     for step, ramp in _pairs(model):
-        steps = [load for load in rest if load.source == step]
-        ramps = [load for load in rest if load.source == ramp]
-        times = sorted({load.time for load in (*steps, *ramps)})
-        if len(times) < _FEW or any(load.time != times[0] for load in steps):
+        own = [load for load in rest if load.source in (step, ramp)]
+        if len({load.time for load in own}) < _FEW:
             continue
-        record, begun = _record(step, ramp, steps, ramps, until)
-        rest = [load for load in rest if load.source not in (step, ramp)] + begun
+        record, jumps = _record(step, ramp, own, until)
+        rest = [load for load in rest if load.source not in (step, ramp)] + jumps
         records.append(record)
     return SplitLoads(merged(rest), tuple(records))
 
@@ -78,15 +76,9 @@ def still(model: Model, load: RecordLoad) -> Model:
     return replace(model, chain=None, network=network, loads=load.hat, spacing=None)
 
 
-def _record(
-    step: str, ramp: str, steps: Sequence[Applied], ramps: Sequence[Applied], until: fmpq
-) -> tuple[RecordLoad, list[Applied]]:
-    """A record that is 0 where it begins, and what it differs by until its second sample: a jump, and back to 0."""
-    changes: dict[fmpq, fmpq] = {}
-    for load in ramps:
-        changes[load.time] = changes.get(load.time, _ZERO) + load.weight
-    jump = sum((load.weight for load in steps), _ZERO)
-    times = sorted({load.time for load in (*steps, *ramps)})
+def _record(step: str, ramp: str, loads: Sequence[Applied], until: fmpq) -> tuple[RecordLoad, list[Applied]]:
+    """A record that does not jump, and what it differs by: at each jump that, which goes back to 0 within a spacing."""
+    times = sorted({load.time for load in loads})
     begin = times[0]
     spacing = reduce(fmpq.gcd, (after - before for before, after in pairwise(times)))
     if (count := int(((until - begin) / spacing).floor()) + 2) > _MOST:
@@ -95,12 +87,18 @@ def _record(
             f"at most {_MOST} expected in a march of one hat (modes, instants with a larger common measure, or a "
             "shorter horizon, help)"
         )
-    slopes = list(accumulate(changes.get(begin + k * spacing, _ZERO) for k in range(count)))
-    values = accumulate((slope * spacing for slope in slopes), initial=jump)
-    next(values)
-    down = jump / spacing
-    begun = (Applied(step, begin, jump), Applied(ramp, begin, -down), Applied(ramp, begin + spacing, down))
-    return RecordLoad(ramp, begin, spacing, tuple(values)), [load for load in begun if load.weight]
+    jumps, bends = ({load.time: load.weight for load in loads if load.source == source} for source in (step, ramp))
+    samples = []
+    value = slope = _ZERO
+    for k in range(count):
+        slope += bends.get(begin + k * spacing, _ZERO)
+        value += jumps.get(begin + k * spacing, _ZERO) + slope * spacing
+        samples.append(value)
+    back: list[Applied] = []
+    for time, jump in jumps.items():
+        down = jump / spacing
+        back += [Applied(step, time, jump), Applied(ramp, time, -down), Applied(ramp, time + spacing, down)]
+    return RecordLoad(ramp, begin, spacing, tuple(samples)), back
 
 
 def _pairs(model: Model) -> Iterator[tuple[str, str]]:
