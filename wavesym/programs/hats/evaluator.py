@@ -15,6 +15,7 @@ import numpy as np
 from flint import arb, fmpq
 from numpy.typing import NDArray
 
+from wavesym.errors import SpacingError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
@@ -126,16 +127,18 @@ class HatMarch:
 
 
 def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
-    """The march of one hat of each record; None where no load is a record.
+    """The march of one hat of each record; None where no load is a record, or the rest fits into no window either.
 
-    SpacingError where the rest of the loads fits into no window or a record has too many samples; UnservedError,
-    CostError as of a march.
+    SpacingError for a record of too many samples; UnservedError, CostError as of a march.
     """
     parts = split(model)
     if not parts.records:
         return None
     moving = [bar.velocity or bar.strain for bar in model.network.bars] + [p.velocity for p in model.network.points]
-    rest = [judged_march(replace(model, loads=parts.rest))] if parts.rest or any(moving) else []
+    try:
+        rest = [judged_march(replace(model, loads=parts.rest))] if parts.rest or any(moving) else []
+    except SpacingError:
+        return None
     hats = [judged_march(still(model, record)) for record in parts.records]
     made = HatMarch(tuple(march for march, _ in (*rest, *hats)), len(rest), parts.records, refusal)
     parted = [np.array([verdict.errors, verdict.heights]) for _, verdict in rest]
