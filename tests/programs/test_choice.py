@@ -142,7 +142,7 @@ RECORDS = {"31.37": (60, 1900, 60), "1/200": (400, 200, 200)}
 
 @pytest.mark.parametrize("spacing", RECORDS)
 def test_of_a_record_that_is_too_much_all_the_causes_are_told(spacing):
-    """Modes and a march of one hat take one that does not jump; no march takes many jumps."""
+    """Modes and a march of one hat take what does not jump; nothing takes so many jumps."""
     count, until, parts = RECORDS[spacing]
     record = wavesym.Scene(
         name="record",
@@ -163,7 +163,7 @@ def test_of_a_record_that_is_too_much_all_the_causes_are_told(spacing):
     assert f"march: load: times at a spacing of {spaced} have {parts} different fractional parts, at most 16" in line
     assert re.search(r"closed: load: \S+ increments would arrive at the outputs, at most 5.0e\+04 expected", line)
     assert re.search(r"pieces: load: 4 nodes times \d+ units of tau are \d+ stretches between loads, at most", line)
-    assert "modes: load: a jumps by -50 at tau = 0, no jump expected" in line
+    assert "modes: " not in line  # which are for something else
     assert line.count(" help") == 3
     assert "\n" not in line
     assert len(line) < 700
