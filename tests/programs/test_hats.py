@@ -30,6 +30,9 @@ from wavesym.programs.rings.evaluator import ring_march
 from wavesym.programs.schemes.hats import ShiftedHats
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
+from wavesym.verification.graph import graph
+from wavesym.verification.graph_characteristics import integrate_graph
+from wavesym.verification.observed import observed
 
 HALF_ULP = 2.0**-53
 SAMPLES = [(37 * k * k) % 101 - 50 for k in range(25)]
@@ -324,4 +327,40 @@ def test_layers_on_rock_under_el_centro_are_what_waves_from_layer_to_layer_make(
     allowed = np.array([made.bound * made.largest for made in found.outputs])
     assert np.all(error <= allowed + 1e-12 * np.abs(true).max(axis=1))
     assert np.all(error <= 1e-11 * np.abs(true).max(axis=1))
+    assert found.error_bound < 1e-7
+
+
+DAMPERS = [
+    {"motion": "acceleration", "name": "ground"},
+    {"rod": 1, "spring": "1/5", "dashpot": "1/2"},
+    {"mass": 2, "name": "floor1"},
+    {"rod": 1, "dashpot": "1/4"},
+    {"mass": 2, "name": "floor2"},
+    {"rod": 1, "dashpot": "1/4"},
+    {"mass": 1, "name": "roof"},
+]
+
+
+@pytest.mark.slow
+def test_dampers_between_floors_under_el_centro_are_what_integration_along_characteristics_says() -> None:
+    """It starts from the wave equation and cuts its windows at every sample."""
+    samples = [fraction(value) for value in el_centro()[:60]]
+    load = {"at": "ground", "spacing": "0.37", "samples": samples}
+    watched = {"velocity": ["floor1", "roof"], "strain": ["1/2", "1+"], "displacement": ["roof"]}
+    output = {"until": 22, "tolerance": 1e-6, **watched}
+    model = lower(Scene(name="dampers", system={"type": "chain", "parts": DAMPERS}, load=[load], output=output))
+    found = made(model)
+    taus = np.random.default_rng(2).uniform(0, 22, 60)
+    values = found.scheme.evaluate(taus)
+    views = observed(model)
+    motions = [integrate_graph(graph(model), 22.0, steps) for steps in (60, 120)]
+    coarse, fine = (
+        np.array([view.values(lambda probe, motion=motion: motion.at(probe, taus), taus) for view in views])
+        for motion in motions
+    )
+    largest = np.abs(fine).max(axis=1)
+    between = np.abs(fine - coarse).max(axis=1)
+    rounding = np.array([view.roundoff(motions[-1].roundoff) for view in views])
+    assert np.all(between + rounding < 1e-9 * largest), (between, rounding)
+    assert np.all(np.abs(values - fine).max(axis=1) <= between + rounding)
     assert found.error_bound < 1e-7
