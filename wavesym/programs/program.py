@@ -119,6 +119,13 @@ class Program:
         """
         return self._scheme.evaluate(tau)
 
+    def each(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Each output at instants of its own: tau and values are (outputs, n)."""
+        if isinstance(self._scheme, HatScheme):
+            return self._scheme.each(tau)
+        flat, back = np.unique(tau, return_inverse=True)
+        return np.take_along_axis(self.evaluate(flat), back.reshape(tau.shape), axis=1)
+
     def instants(self, step: float) -> NDArray[np.float64]:
         """Instants of the horizon no more than `step` apart, both its ends included, where values are had soonest."""
         if isinstance(self._scheme, HatScheme):

@@ -52,17 +52,27 @@ class HatScheme:
             ShiftedHats(march, spacing[j], begin[j], sample[edges[j] : edges[j + 1]])
             for j, march in enumerate(marches[rest:])
         ]
-        self._parts: list[RingScheme | ShiftedHats] = [*marches[:rest], *self._records]
+        self._rest = marches[:rest]
 
     def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
         """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range."""
         taus = np.asarray(tau, dtype=self._real)
         flat = taus.ravel()
         inside = (flat >= 0) & (flat <= self._tau_max)
-        parts = [part.evaluate(flat[inside]) for part in self._parts]
+        parts = [part.evaluate(flat[inside]) for part in self._rest]
+        parts += [part.evaluate(flat[inside]) for part in self._records]
         out = np.full((len(parts[0]), flat.size), np.nan, self._real)
         out[:, inside] = sum(parts[1:], parts[0])
         return out.reshape(len(out), *taus.shape)
+
+    def each(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Each output at instants of its own in range: tau and values are (outputs, n)."""
+        flat, back = np.unique(tau, return_inverse=True)
+        own = back.reshape(tau.shape)
+        out = sum((np.take_along_axis(rest.evaluate(flat), own, axis=1) for rest in self._rest), np.zeros(tau.shape))
+        for output, taus in enumerate(tau):
+            out[output] += sum(record.evaluate(taus, range(output, output + 1))[0] for record in self._records)
+        return np.asarray(out)
 
     def evenly(self, step: float) -> NDArray[np.float64]:
         """Instants of the horizon, no more than `step` apart, that lie alike between the samples of the first record.
@@ -113,9 +123,10 @@ class ShiftedHats:
         ends = (np.linspace(low, high, parts + 1) for low, high in ((0.0, starts[0]), (starts[-1], last)))
         return np.unique(np.clip(np.concatenate([*ends, taus.ravel()]), 0.0, last))
 
-    def evaluate(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
-        """All outputs at tau: (outputs, tau.size)."""
-        out = np.zeros((self._march.outputs, tau.size))
+    def evaluate(self, tau: NDArray[np.float64], outputs: range | None = None) -> NDArray[np.float64]:
+        """All outputs, or some, at tau: (outputs, tau.size)."""
+        chosen = range(self._march.outputs) if outputs is None else outputs
+        out = np.zeros((len(chosen), tau.size))
         latest, phase = self._placed(tau)
         order = np.argsort(phase, kind="stable")
         order = order[latest[order] >= 0]
@@ -124,13 +135,13 @@ class ShiftedHats:
         groups = np.split(order, self._apart(phase[order]))
         alone = np.array([group[0] for group in groups if len(group) == 1], int)
         if alone.size:
-            out[:, alone] = self._single(latest[alone], phase[alone])
+            out[:, alone] = self._single(latest[alone], phase[alone], chosen)
         several = [group for group in groups if len(group) > 1]
         at_once = max(1, self.VALUES // (len(out) * len(self._sample) + 1))
         for first in range(0, len(several), at_once):
             some = several[first : first + at_once]
             last = np.array([latest[group].max() for group in some])
-            responses = self._responses(last, phase[[group[0] for group in some]])
+            responses = self._responses(last, phase[[group[0] for group in some]], chosen)
             for group, response in zip(some, responses, strict=True):
                 out[:, group] = self._convolved(response)[:, latest[group]]
         return out
@@ -175,7 +186,7 @@ class ShiftedHats:
             yield block
 
     def _read(
-        self, latest: NDArray[np.int_], phase: NDArray[np.float64]
+        self, latest: NDArray[np.int_], phase: NDArray[np.float64], outputs: range
     ) -> "Iterator[tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]]":
         """The response to one hat at phase[q] + m spacing, m = 0 ... latest[q]: q, m and outputs, some at a time."""
         step = float(self._march.step)
@@ -192,7 +203,7 @@ class ShiftedHats:
                 m = low[q] + (pair - (ends - counts)[q])
                 window, place, t = self._places(m, phase[q])
                 here = (window >= block.first) & (window < until)
-                yield q[here], m[here], block.at(window[here], place[here], t[here])
+                yield q[here], m[here], block.at(window[here], place[here], t[here], outputs)
 
     def _places(
         self, m: NDArray[np.int_], phase: NDArray[np.float64]
@@ -207,19 +218,19 @@ class ShiftedHats:
         place = np.searchsorted(march.begin, t, side="right") - 1
         return cycle.astype(int) * len(march.begin) + place, place, t
 
-    def _single(self, latest: NDArray[np.int_], phase: NDArray[np.float64]) -> NDArray[np.float64]:
-        """All outputs at instants of different phases, added up hat by hat."""
-        out = np.zeros((self._march.outputs, latest.size))
-        for q, m, values in self._read(latest, phase):
+    def _single(self, latest: NDArray[np.int_], phase: NDArray[np.float64], outputs: range) -> NDArray[np.float64]:
+        """Outputs at instants of different phases, added up hat by hat."""
+        out = np.zeros((len(outputs), latest.size))
+        for q, m, values in self._read(latest, phase, outputs):
             weights = self._sample[latest[q] - m]
             for total, row in zip(out, values, strict=True):
                 total += np.bincount(q, row * weights, minlength=latest.size)
         return out
 
-    def _responses(self, latest: NDArray[np.int_], phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _responses(self, latest: NDArray[np.int_], phase: NDArray[np.float64], outputs: range) -> NDArray[np.float64]:
         """Those to one hat at all m, for some phases: (phases, outputs, m)."""
-        made = np.zeros((latest.size, self._march.outputs, int(latest.max()) + 1))
-        for q, m, values in self._read(latest, phase):
+        made = np.zeros((latest.size, len(outputs), int(latest.max()) + 1))
+        for q, m, values in self._read(latest, phase, outputs):
             made[q, :, m] = values.T
         return made
 

@@ -157,6 +157,7 @@ class WindowBlock:
         self._scheme, self.first, self.count, self.waves = scheme, first, len(starts), waves
         self.starts, self.acting = starts, acting
         self.totals = np.repeat(totals[:, None], self.count + 1, axis=1)
+        self._integrals: dict[int, list[NDArray[np.float64]]] = {}
         n = np.arange(self.count)
         for output in range(scheme.outputs):
             if np.any(scheme.summed[self._heard(output)]):
@@ -166,17 +167,24 @@ class WindowBlock:
         """All outputs at some tau in these windows."""
         return self.at(*self._scheme.places(tau))
 
-    def at(self, window: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The same where `places` are known."""
+    def at(
+        self,
+        window: NDArray[np.int_],
+        phase: NDArray[np.int_],
+        t: NDArray[np.float64],
+        outputs: range | None = None,
+    ) -> NDArray[np.float64]:
+        """The same where `places` are known; all outputs, or some."""
         scheme = self._scheme
         n = window - self.first
-        out = np.zeros((scheme.outputs, len(t)), scheme.real)
-        for output in range(scheme.outputs):
+        chosen = range(scheme.outputs) if outputs is None else outputs
+        out = np.zeros((len(chosen), len(t)), scheme.real)
+        for row, output in zip(out, chosen, strict=True):
             summed = scheme.summed[self._heard(output)]
             if np.any(summed):
-                out[output] = self.totals[output, n] + self._gathered(output, n, phase, t)
+                row[:] = self.totals[output, n] + self._gathered(output, n, phase, t)
             if not np.all(summed):
-                out[output] += self._arrived(output, n, phase, t)
+                row += self._arrived(output, n, phase, t)
         return out
 
     def _heard(self, output: int) -> slice:
@@ -204,6 +212,15 @@ class WindowBlock:
             total += gain * _series(np.ascontiguousarray(c), u)
         return total
 
+    def _integral(self, track: int) -> list[NDArray[np.float64]]:
+        """Of a track, on each panel, the antiderivatives on all windows, (k, windows)."""
+        if track not in self._integrals:
+            until = self._scheme.deepest + self.count
+            self._integrals[track] = [
+                _antiderivative(self.waves[:until, track, panel].T) for panel in range(self._scheme.panels)
+            ]
+        return self._integrals[track]
+
     def _gathered(
         self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64] | None
     ) -> NDArray[np.float64]:
@@ -222,7 +239,7 @@ class WindowBlock:
                     over = t >= scheme.counts_from[s + 1, phase] if s + 1 < end else np.zeros(t.shape, bool)
                     high = np.where(over, high, within)
                 half = scheme.half_length[panel]
-                c = _antiderivative(self.waves[scheme.deepest + n[here] - scheme.back[s], track, panel].T)
+                c = self._integral(track)[panel][:, scheme.deepest + n[here] - scheme.back[s]]
                 low = np.full(here.shape, scheme.low[s], scheme.real)
                 total[here] += gain * (half * (_series(c, high[here] / half - 1) - _series(c, low / half - 1)))
         return total
