@@ -158,6 +158,7 @@ class WindowBlock:
         self.starts, self.acting = starts, acting
         self.totals = np.repeat(totals[:, None], self.count + 1, axis=1)
         self._integrals: dict[int, list[NDArray[np.float64]]] = {}
+        self._limits: dict[tuple[int, int], tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
         n = np.arange(self.count)
         for output in range(scheme.outputs):
             if np.any(scheme.summed[self._heard(output)]):
@@ -221,6 +222,19 @@ class WindowBlock:
             ]
         return self._integrals[track]
 
+    def _ends(self, track: int, stretch: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The antiderivatives where a stretch begins and where it ends, on all windows."""
+        scheme = self._scheme
+        if (track, stretch) not in self._limits:
+            panel = scheme.panel_of[stretch]
+            c, half = self._integral(track)[panel], scheme.half_length[panel]
+            low, high = (
+                _series(c, np.full(c.shape[1], each[stretch] / half - 1, scheme.real))
+                for each in (scheme.low, scheme.high)
+            )
+            self._limits[track, stretch] = low, high
+        return self._limits[track, stretch]
+
     def _gathered(
         self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64] | None
     ) -> NDArray[np.float64]:
@@ -230,18 +244,18 @@ class WindowBlock:
         for track, gain, delay in self._tracks(output, summed=True):
             first, end = scheme.first_stretch[delay], scheme.first_stretch[delay + 1]
             for s in range(first, end):
-                here, panel = np.arange(n.size), scheme.panel_of[s]
-                high = np.full(n.shape, scheme.high[s], scheme.real)
-                if t is not None:
-                    if s > first:
-                        here = np.flatnonzero(t >= scheme.counts_from[s, phase])
-                    within = (t - scheme.start[s, phase]) + scheme.excess[s, phase]
-                    over = t >= scheme.counts_from[s + 1, phase] if s + 1 < end else np.zeros(t.shape, bool)
-                    high = np.where(over, high, within)
+                panel, window = scheme.panel_of[s], scheme.deepest + n - scheme.back[s]
                 half = scheme.half_length[panel]
-                c = self._integral(track)[panel][:, scheme.deepest + n[here] - scheme.back[s]]
-                low = np.full(here.shape, scheme.low[s], scheme.real)
-                total[here] += gain * (half * (_series(c, high[here] / half - 1) - _series(c, low / half - 1)))
+                low, high = self._ends(track, s)
+                over = np.ones(n.shape, bool)
+                if t is not None:
+                    over = t >= scheme.counts_from[s + 1, phase] if s + 1 < end else ~over
+                    begun = ~over if s == first else ~over & (t >= scheme.counts_from[s, phase])
+                    here = np.flatnonzero(begun)
+                    within = (t[here] - scheme.start[s, phase[here]]) + scheme.excess[s, phase[here]]
+                    c = self._integral(track)[panel][:, window[here]]
+                    total[here] += gain * (half * (_series(c, within / half - 1) - low[window[here]]))
+                total[over] += gain * (half * (high[window[over]] - low[window[over]]))
         return total
 
 
