@@ -12,6 +12,7 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import wavesym
 from tests.support.drives import EVERY
 from tests.support.generated import numpy_text, program_files
 from tests.support.laplace import Laplace
@@ -328,6 +329,25 @@ def test_layers_on_rock_under_el_centro_are_what_waves_from_layer_to_layer_make(
     assert np.all(error <= allowed + 1e-12 * np.abs(true).max(axis=1))
     assert np.all(error <= 1e-11 * np.abs(true).max(axis=1))
     assert found.error_bound < 1e-7
+
+
+@pytest.mark.slow
+def test_what_users_call_takes_it() -> None:
+    samples = [fraction(value) for value in el_centro()]
+    scene = Scene(
+        name="soil",
+        system={"type": "chain", "parts": LAYERS},
+        load=[{"at": "outcrop", "spacing": str(SPACING), "samples": samples}],
+        output={"until": 610, "tolerance": 1e-6, "velocity": ["7/3"]},
+    )
+    response = wavesym.evaluator(scene)
+    _, surface, _ = layered(list(map(nearest, el_centro())), np.array([0.1]), 600)
+    assert response(0.1 + np.arange(600) / 3)[0] == pytest.approx(surface[:, 0], abs=1e-11)
+    assert response.program
+    assert (response.program.kind, response.program.evaluator) == ("hats", "march")
+    peaks = wavesym.summary(scene)
+    assert peaks.how.startswith("march at ")
+    assert peaks.outputs[0].max.value >= surface.max() - 1e-11
 
 
 DAMPERS = [
