@@ -16,7 +16,7 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import ToleranceError, WavesymError
+from wavesym.errors import SpacingError, ToleranceError, WavesymError
 from wavesym.exact.contact import ContactEnd, contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
@@ -25,6 +25,7 @@ from wavesym.programs.hats.split import rest_of
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
 from wavesym.programs.request import Request
+from wavesym.programs.rings.plan import ring_plan
 
 Points = NDArray[np.float64]
 
@@ -108,7 +109,8 @@ def histories(model: Model, columns: int = 1) -> Histories:
 
 def drawable(model: Model) -> Program:
     """A program of a model for pictures: of those that will do that which is made most quickly."""
-    for kind, least in _QUICK.items():
+    quick = list(_QUICK.items())
+    for kind, least in quick if _fits(model) else reversed(quick):
         with suppress(WavesymError):
             return make(model.tolerating(max(model.tolerance, least)), Request(kind))
     try:
@@ -117,6 +119,17 @@ def drawable(model: Model) -> Program:
         with suppress(WavesymError):  # rounding adds up over long horizons
             return make(model.tolerating(_SEEN), Request("march"))
         raise
+
+
+def _fits(model: Model) -> bool:
+    """Whether loads fit into the windows of a march; to march one hat instead takes longer than modes."""
+    try:
+        ring_plan(model)
+    except SpacingError:
+        return False
+    except WavesymError:  # as will be said
+        return True
+    return True
 
 
 def arrivals(model: Model, probe: Probe) -> list[float]:

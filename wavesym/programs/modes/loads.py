@@ -62,7 +62,7 @@ def linear_loads(loads: Sequence[Applied], sources: Sequence[tuple[str, str]], u
         if load.source in steps:
             raise UnservedError(
                 f"load: {load.source} jumps by {nearest(load.weight):g} at tau = {nearest(load.time):g}, no jump "
-                "expected in modes (a record that starts a step later rises to its first sample)"
+                "expected in modes (a steep ramp in place of a step, or a record that starts a step later, has none)"
             )
         slopes[place[load.source]][load.time] = load.weight
     times = sorted({fmpq(0), *(time for changes in slopes for time in changes)})
