@@ -15,7 +15,7 @@ from math import gcd, lcm
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.errors import CostError
+from wavesym.errors import CostError, SpacingError
 from wavesym.exact.node_rules import joint_rule
 from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.model import Model
@@ -23,7 +23,7 @@ from wavesym.mechanics.network import End, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch, spacing
+from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch, common, suiting, told
 from wavesym.programs.rings.space import SHOWN, JointSpace, Port, joint_space
 
 FINEST = 64
@@ -223,10 +223,10 @@ def _step(delays: list[fmpq]) -> fmpq:
 def _panels(times: list[fmpq], step: fmpq) -> tuple[MarchPanel, ...]:
     cuts = sorted({_ZERO, step} | {time - (time / step).floor() * step for time in times})
     if len(cuts) - 1 > MOST_PANELS:
-        raise CostError(
-            f"load: times at a spacing of {spacing(times)} leave {len(cuts) - 1} different remainders of the step "
-            f"{step}, at most {MOST_PANELS} expected in a march (modes, times in parts of {step},"
-            " or fewer samples, helps)"
+        raise SpacingError(
+            f"load: times at a spacing of {told(common(times))} leave {len(cuts) - 1} different remainders of the step "
+            f"{told(step)}, at most {MOST_PANELS} expected in a march ({suiting(times, step)}, fewer samples, modes, "
+            "or for what does not jump NumPy or run, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 

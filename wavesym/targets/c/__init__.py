@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from wavesym.errors import UnservedError
 from wavesym.programs.program import Program, ReferenceValues, SteppedValues, StreamedValues
 from wavesym.targets.c import closed, march, modes, pieces, rings, runtime, stream
 from wavesym.targets.c.header import header
@@ -29,6 +30,8 @@ class CTarget:
     tested = True
 
     def files(self, description: Description, program: Program) -> dict[str, str]:
+        if program.numpy_only:
+            raise UnservedError(program.numpy_only)
         if program.kind == "runtime":
             return runtime.files(description, program)
         name = description.name
