@@ -12,11 +12,12 @@ from wavesym.errors import UnservedError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping
+from wavesym.mechanics.gauge import Gauge, Sum, readings
 from wavesym.mechanics.light_cone import felt, light_cone
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.probe import Probe
-from wavesym.mechanics.reading import Gauge, Sum, readings
+from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE, Real
 
 
@@ -30,6 +31,12 @@ class Labels:
     system: Mapping[str, str]
     loads: tuple[str, ...]
     sha256: str
+
+    @property
+    def type(self) -> str:
+        """Of a chain that is written out, also where it is a named system: that has rods that differ then."""
+        type = self.system["type"]
+        return type if type == "chain" else f"{type} of rods that differ, which is a chain,"
 
 
 @dataclass(frozen=True)
@@ -61,10 +68,16 @@ class Model:
         if self.chain is None:
             self.network.refuse_contacts()
             raise UnservedError(
-                "system.type: chain given, collision, drive or building expected "
+                f"system.type: {self.labels.type} given, collision, drive or building expected "
                 "(a chain has pieces, a march and `run`)"
             )
         return self.chain
+
+    def told(self, load: Applied) -> str:
+        """A step of a load, in units where there are any: how much, and when."""
+        factor, unit = self.inputs.get(load.source, (fmpq(1), ""))
+        when = self.clock.told(load.time) if self.clock else f"tau = {nearest(load.time):g}"
+        return f"{load.source} jumps by {nearest(load.weight * factor):g}{unit and ' '}{unit} at {when}"
 
     @cached_property
     def sums(self) -> Mapping[Probe, Sum]:

@@ -18,9 +18,9 @@ from flint import fmpq, fmpq_poly
 
 from wavesym.errors import CostError
 from wavesym.exact.node_rules import joint_rule
+from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Joint, Network
-from wavesym.mechanics.reading import Sum
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch, spacing

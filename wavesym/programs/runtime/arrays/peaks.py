@@ -74,8 +74,8 @@ class _Summit:
     def explore(self, part: _Part, survey: Array, bend: Array, slack: Array) -> None:
         """Look for what is higher between the instants of a survey, closely where it can be.
 
-        `bend` is the bound of a whole panel. Near a front, or where an output comes to rest, that is far too large: then
-        the second differences are taken, four times the largest.
+        `bend` is the bound of a whole panel. Near a front, or where an output comes to rest, that is far too large:
+        there four times the largest second difference is taken.
         """
         heights = self.sign * survey
         steps = np.diff(part.t, axis=1)[:, :, None]
