@@ -118,6 +118,7 @@ def test_no_set_and_no_instant_are_empty(model):
     assert model.run(tau=[]).shape == (1, 3, 0)
     assert model.run(tau=2.0).shape == (1, 3)
     assert model.peaks(kappa=np.empty((0, 3))).min.shape == (0, 3)
+    assert model.gradients([1.0], kappa=np.empty((0, 3))).by["kappa"].shape == (0, 3, 3, 1)
 
 
 @pytest.mark.parametrize(
