@@ -1,0 +1,10 @@
+"""How the cases of a sweep are computed: which of them share work."""
+
+from __future__ import annotations
+
+from wavesym.sweeps.plan import Plan
+
+
+def kind(plan: Plan) -> tuple[str, tuple[bool, ...]]:
+    """The kind of its batches, and in which dimensions cases can be parts of one batch."""
+    return "single", (True,) * len(plan.dimensions)
