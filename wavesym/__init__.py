@@ -5,6 +5,7 @@
     summary     the least and the greatest value of each output, and when; `peaks` of several scenes as arrays
     sweep       many scenes that differ in a few fields or records, into a folder of labelled arrays
     tables      the exact coefficients of its wave functions
+    model       its outputs for many sets of parameters: values, gradients, extremes
     generate    its C and NumPy programs, written to files
 
 A request that cannot be carried out raises a WavesymError: SceneError, ToleranceError, CostError or RangeError.
@@ -22,7 +23,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from wavesym.compiler import evaluator, generate, peaks, summary, sweep, tables
+    from wavesym.compiler import evaluator, generate, model, peaks, summary, sweep, tables
     from wavesym.errors import CostError, RangeError, SceneError, ToleranceError, WavesymError
     from wavesym.scene import Scene
 
@@ -36,6 +37,7 @@ __all__ = [
     "__version__",
     "evaluator",
     "generate",
+    "model",
     "peaks",
     "summary",
     "sweep",
@@ -53,6 +55,7 @@ _HOMES = {
     "WavesymError": "wavesym.errors",
     "evaluator": "wavesym.compiler",
     "generate": "wavesym.compiler",
+    "model": "wavesym.compiler",
     "peaks": "wavesym.compiler",
     "summary": "wavesym.compiler",
     "sweep": "wavesym.compiler",

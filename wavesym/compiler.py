@@ -58,7 +58,7 @@ if TYPE_CHECKING:
     from wavesym.mechanics.node import System
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
-    from wavesym.running.sets import RuntimeModel
+    from wavesym.running.model import RuntimeModel
     from wavesym.sweeps.status import SweepStatus
 
 
@@ -373,10 +373,22 @@ def _written(scene: Scene, directory: str | Path | None, language: str, request:
     return {folder / name: text for name, text in files(program, language).items()}
 
 
-def runtime_model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
-    """A scene whose parameters `runtime` are given when it runs, compiled. CompilerError without a C compiler."""
+def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
+    """A scene whose parameters are given when it runs, for one set of them or for a million.
+
+    `runtime` names them: "kappa", "inertia", "velocity", "load", those that the scene has. It is compiled once, where
+    there is a C compiler; elsewhere NumPy computes the same, more slowly. WavesymError for a scene that has not got
+    these parameters, UnservedError and CostError for one that no such program serves.
+
+    >>> import wavesym
+    >>> model = wavesym.model(wavesym.Scene.from_toml("drive_m1"), runtime=["kappa"])
+    >>> model.run(kappa=[[0.5], [1], [2]], tau=[2.0, 4.0]).shape  # sets, outputs, then the shape of tau
+    (3, 4, 2)
+    >>> model.peaks(kappa=[[0.5], [1], [2]]).max.shape
+    (3, 4)
+    """
     from wavesym.programs.runtime.making import runtime_program
-    from wavesym.running.sets import RuntimeModel
+    from wavesym.running.model import RuntimeModel
 
     given = amplitudes(scene) if "load" in runtime else ()
     return RuntimeModel(runtime_program(lower(scene), Request(runtime=tuple(runtime)), given))

@@ -1,80 +1,79 @@
-"""Parameters at run time, from Python: C of a scene compiled once, then run for as many sets as are given."""
+"""Programs whose parameters are given when they run, computed for as many sets as there are: in C, compiled once."""
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from wavesym.errors import WavesymError
 from wavesym.programs.program import Program
+from wavesym.programs.runtime.arrays.engine import ArraySets
+from wavesym.programs.runtime.engine import Array, Engine, FoundSets
 from wavesym.running.native import FAST, address, library
+from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.targets.files import runtime_sets
 
-Array = NDArray[np.float64]
+
+def sets_engine(program: Program) -> Engine:
+    """What computes a program here: C, or NumPy where there is no compiler."""
+    try:
+        compiler()
+    except CompilerError:
+        return ArraySets(program)
+    return CompiledSets(program)
 
 
-class RuntimeModel:
-    """A scene whose parameters are given when it runs; all dimensionless.
-
-    `outputs` are the names of its outputs, `tau_max` its horizon, `parameters` how many numbers each field has.
-    CompilerError where there is no C compiler.
-    """
+class CompiledSets:
+    """One set after the other, in the memory of one model. CompilerError where there is no C compiler."""
 
     def __init__(self, program: Program) -> None:
-        laws, name = program.laws, program.provenance.model.name
-        assert laws is not None
+        name = program.provenance.model.name
         files = runtime_sets(program)
         loaded = library(files[f"{name}.c"], FAST, (f"{name}.h", files[f"{name}.h"]))
-        size = getattr(loaded, f"{name}_model_size")
-        size.restype = ctypes.c_size_t
-        self._model = np.zeros(size(), np.uint8)
-        self._sets = getattr(loaded, f"{name}_sets")
+        self._outputs = len(program.outputs)
+        self._values, self._peaks, self._tangents = (
+            getattr(loaded, f"{name}_sets{kind}") for kind in ("", "_peaks", "_tangents")
+        )
         many, where = ctypes.c_size_t, ctypes.c_void_p
-        self._sets.argtypes = [where, many, where, where, ctypes.c_int, many, where, where, where]
-        self._sets.restype = None
-        self._own = {field.name: np.array([float(value) for value in field.values]) for field in laws.fields}
-        self.outputs = tuple(output.name for output in program.outputs)
-        self.tau_max = program.tau_max
-        self.parameters: Mapping[str, int] = {name: len(values) for name, values in self._own.items()}
+        for of_taus in (self._values, self._tangents):
+            of_taus.argtypes = [where, many, where, where, ctypes.c_int, many, where, where, where]
+            of_taus.restype = None
+        self._peaks.argtypes = [where, many, where, where, where, where]
+        self._peaks.restype = None
+        self._size, self._tangent_size = (
+            ctypes.CFUNCTYPE(ctypes.c_size_t)((f"{name}_{kind}_size", loaded))() for kind in ("model", "tangent")
+        )
 
-    def run(self, tau: ArrayLike, **parameters: ArrayLike) -> tuple[Array, NDArray[np.int32], Array]:
-        """Values of shape (sets, outputs, times), the status of each set and its error estimate.
+    def values(self, given: Array, tau: Array) -> FoundSets:
+        """See `Engine`."""
+        return self._at(self._values, self._size, given, tau, 1)
 
-        `parameters` by name have the shape (sets, numbers), or (numbers,) for all sets; those that are not given are
-        the scene's. A set that is refused (status 1: a bad number; 2: bodies too light) has NaN throughout, as has tau
-        out of range. WavesymError for a name that was not asked for, and for other shapes.
-        """
-        given = self._given(parameters)
-        instants = np.ascontiguousarray(tau, np.float64).ravel()
-        even = len(instants) > 1 and _even(instants)
-        told = np.array([instants[0], instants[1] - instants[0]]) if even else instants
-        sets, count = len(given), len(instants)
-        status, estimate = np.zeros(sets, np.int32), np.zeros(sets)
-        out = np.zeros((sets, len(self.outputs), count))
-        places = (address(values) for values in (status, estimate, out))
-        self._sets(address(given), sets, address(self._model), address(told), even, count, *places)
-        return out, status, estimate
+    def tangents(self, given: Array, tau: Array) -> FoundSets:
+        """See `Engine`."""
+        return self._at(self._tangents, self._tangent_size, given, tau, 1 + given.shape[1])
 
-    def _given(self, parameters: Mapping[str, ArrayLike]) -> Array:
-        """All fields side by side, a row for each set."""
-        columns = dict(self._own)
-        for name, values in parameters.items():
-            if name not in columns:
-                raise WavesymError(f"{name} given, {' or '.join(columns)} expected")
-            numbers = np.asarray(values, np.float64)
-            if numbers.ndim not in (1, 2) or numbers.shape[-1] != self.parameters[name]:
-                wanted = f"(sets, {self.parameters[name]})"
-                raise WavesymError(f"{name}: an array of shape {numbers.shape} given, {wanted} expected")
-            columns[name] = numbers
-        counts = {len(values) for values in columns.values() if values.ndim == 2}
-        if len(counts) > 1:
-            raise WavesymError(f"{' and '.join(map(str, sorted(counts)))} sets given, as many of each expected")
-        sets = counts.pop() if counts else 1
-        rows = [np.broadcast_to(values, (sets, values.shape[-1])) for values in columns.values()]
-        return np.ascontiguousarray(np.concatenate(rows, axis=1))
+    def peaks(self, given: Array) -> FoundSets:
+        """See `Engine`."""
+        found = _none(len(given), (self._outputs, 4))
+        model = np.empty(self._size, np.uint8)
+        self._peaks(address(given), len(given), address(model), *_places(found))
+        return found
+
+    def _at(self, function: ctypes._NamedFuncPointer, size: int, given: Array, tau: Array, lanes: int) -> FoundSets:
+        even = len(tau) > 1 and _even(tau)
+        told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
+        found = _none(len(given), (lanes, self._outputs, len(tau)))
+        model = np.empty(size, np.uint8)  # of this call, so that several may run at once
+        function(address(given), len(given), address(model), address(told), even, len(tau), *_places(found))
+        return found
+
+
+def _none(sets: int, shape: tuple[int, ...]) -> FoundSets:
+    return FoundSets(np.empty(sets, np.int32), np.empty(sets), np.empty((sets, *shape)))
+
+
+def _places(found: FoundSets) -> tuple[int, int, int]:
+    return address(found.status), address(found.estimate), address(found.values)
 
 
 def _even(tau: Array) -> bool:

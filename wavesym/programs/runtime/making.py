@@ -19,8 +19,9 @@ from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.degree import STIFF, degrees, share
 from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.plan import Function, Push, RuntimePlan, runtime_plan
+from wavesym.programs.runtime.plan import Push, RuntimePlan, runtime_plan
 from wavesym.programs.runtime.request import fields
+from wavesym.programs.runtime.units import Function
 
 FINEST = fmpq(1, 10**13)
 """The smallest tolerance that doubles keep."""

@@ -10,6 +10,7 @@ from flint import fmpq
 from wavesym.errors import UnservedError, WavesymError
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
+from wavesym.programs.runtime.units import ParameterUnit, unit_of, unit_of_load
 
 NAMES = ("kappa", "inertia", "velocity", "load")
 POSITIVE = frozenset({"kappa", "inertia"})
@@ -17,11 +18,14 @@ POSITIVE = frozenset({"kappa", "inertia"})
 
 @dataclass(frozen=True)
 class RuntimeField:
-    """A field of the parameters: its name, what each of its numbers is called, and what they are in the scene."""
+    """A field of the parameters: its name, what each of its numbers is called, what they are in the scene, and in which
+    units: those of results, none where a scene has none.
+    """
 
     name: str
     labels: tuple[str, ...]
     values: tuple[fmpq, ...]
+    units: tuple[ParameterUnit, ...]
 
     @property
     def positive(self) -> bool:
@@ -38,8 +42,6 @@ def fields(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, A
     """
     if model.chain is None:
         raise UnservedError("--runtime: chain given, collision, drive or building expected, contacts closed")
-    if model.clock is not None:
-        raise UnservedError("--runtime: scene with [units] given, one without expected")
     model.refuse_damping()
     there = {
         name: tuple(sorted(numbers.items()))
@@ -52,16 +54,19 @@ def fields(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, A
             raise WavesymError(f"--runtime: {name or 'nothing'} given, {_one_of(known)} expected")
         if name in names[:place]:
             raise WavesymError(f"--runtime: {name} given twice, once expected")
-    found = [
-        RuntimeField(name, tuple(f"{name}_{i}" for i, _ in of), tuple(value for _, value in of))
-        for name, of in there.items()
-        if name in names
-    ]
+    found = []
+    for name, of in there.items():
+        if name in names:
+            unit = unit_of(model, name)
+            found.append(_field(name, [(f"{name}_{i}", value, unit) for i, value in of]))
     if "load" in names:
-        found.append(
-            RuntimeField("load", tuple(told for told, _ in amplitudes), tuple(load.weight for _, load in amplitudes))
-        )
+        found.append(_field("load", [(told, load.weight, unit_of_load(model, load)) for told, load in amplitudes]))
     return tuple(found)
+
+
+def _field(name: str, numbers: Sequence[tuple[str, fmpq, ParameterUnit]]) -> RuntimeField:
+    values = tuple(value * unit.size for _, value, unit in numbers)
+    return RuntimeField(name, tuple(label for label, _, _ in numbers), values, tuple(unit for _, _, unit in numbers))
 
 
 def _one_of(names: Sequence[str]) -> str:

@@ -12,7 +12,7 @@ from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.plan import Function
+from wavesym.programs.runtime.units import Function, ParameterUnit
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
 from wavesym.targets.description import Description
@@ -109,7 +109,8 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what runs many sets of parameters in NAME.c."""
     made = files(scene, program)
     name = f"{scene.name}.c"
-    return made | {name: f"{made[name]}\n{kernel('runtime_sets.c', scene)}\n"}
+    more = "\n\n".join(kernel(file, scene) for file in ("runtime_peaks.c", "runtime_sets.c"))
+    return made | {name: f"{made[name]}\n{more}\n"}
 
 
 def _selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:
@@ -134,9 +135,13 @@ def _fields(laws: RuntimeLaws) -> Iterator[CRuntimeField]:
             constant=field.name.upper(),
             count=str(len(field.values)),
             check="positive_number" if field.positive else "finite_number",
-            labels=field.labels,
+            labels=tuple(map(_told, field.labels, field.units)),
             values=c_literals(map(nearest, field.values), DOUBLE),
         )
+
+
+def _told(label: str, unit: ParameterUnit) -> str:
+    return f"{label} [{unit.text}]" if unit.text else label
 
 
 def _assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]]) -> Iterator[tuple[str, str]]:
