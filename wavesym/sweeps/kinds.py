@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from wavesym.sweeps import recorded
 from wavesym.sweeps.plan import Plan
 
 
 def kind(plan: Plan) -> tuple[str, tuple[bool, ...]]:
     """The kind of its batches, and in which dimensions cases can be parts of one batch."""
+    if recorded.serves(plan):
+        return "recorded", ()
     return "single", (True,) * len(plan.dimensions)

@@ -49,6 +49,12 @@ class Plan:
     time_unit: str | None
 
     @property
+    def records(self) -> Column | None:
+        """The records, where they are a dimension: the last one."""
+        last = self.dimensions[-1]
+        return last.columns[0] if last.name == RECORD else None
+
+    @property
     def shape(self) -> tuple[int, ...]:
         return tuple(map(len, self.dimensions))
 

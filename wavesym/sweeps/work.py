@@ -7,8 +7,9 @@ from threading import Lock
 from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.plan import Plan
+from wavesym.sweeps.recorded import recorded
 from wavesym.sweeps.single import single
-from wavesym.sweeps.values import BatchValues
+from wavesym.sweeps.values import BatchValues, CaseValues
 
 _ALONE = Lock()
 """The precision of balls is one for all threads of a process: two batches at once would set it for each other."""
@@ -17,10 +18,22 @@ _ALONE = Lock()
 def compute(plan: Plan, batches: Batches, batch: int) -> BatchValues:
     """The values of a batch. What is wrong with a case is its reason, and the others go on."""
     values = BatchValues.empty(plan, batches.region(batch))
+    region, left = batches.region(batch), batches.places(batch)
     with _ALONE:
-        for place in batches.places(batch):
+        for place, case in _shared(plan, batches.kind, left):
+            values.put(region, place, case)
+            left.remove(place)
+        for place in left:
             _attempt(plan, batches, batch, place, values)
     return values
+
+
+def _shared(plan: Plan, kind: str, places: list[tuple[int, ...]]) -> list[tuple[tuple[int, ...], CaseValues]]:
+    """The cases that can share work, as far as that serves them."""
+    try:
+        return list(recorded(plan, places)) if kind == "recorded" else []
+    except Exception:  # each by itself says what is wrong
+        return []
 
 
 def compute_case(plan: Plan, batches: Batches, batch: int, place: tuple[int, ...]) -> BatchValues:

@@ -39,7 +39,7 @@ class Panels(ModesScheme):
         out = np.empty((self._direct.shape[2], edges[-1] + 1))
         taus[-1], out[:, -1] = self._tau_max, self.evaluate(self._tau_max)
         kinds, kind = np.unique(lengths, return_inverse=True)
-        reads = lru_cache(_KEPT)(self._reads)
+        reads = lru_cache(_KEPT)(self.reads)
         for first in range(0, last + 1, self.BLOCK):
             panels = np.arange(first, min(first + self.BLOCK, last + 1))
             states = self.states(first // self.BLOCK, int(panels[-1])).reshape(len(panels), -1)
@@ -57,7 +57,11 @@ class Panels(ModesScheme):
                     out[:, at] = (known @ reads(s)).T
         return taus, out
 
-    def _reads(self, s: float) -> NDArray[np.float64]:
+    def turns(self, s: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        """What modes do in the times s: see `ModesScheme`."""
+        return self._turned(s)
+
+    def reads(self, s: float) -> NDArray[np.float64]:
         """What outputs take of displacements, velocities, and of each load's slope, value and integrals, s later."""
         p11, p12, p21, p22, one, two = (each[0][:, None] for each in self._turned(np.array([s])))
         moved, moving, push = self._moved, self._moving, self._push
