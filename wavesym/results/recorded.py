@@ -28,7 +28,7 @@ _PER_STEP, _PER_CROSSING = 16, 4  # samples of a closer look, as of `stepping`
 _SAFE = 2.0  # of how much higher than the samples a top may be
 _NEARER = 8  # times, in the second look at a top
 _EQUAL = 1e-14
-_AT_ONCE = 1 << 22  # numbers of an array
+_AT_ONCE = 1 << 18  # numbers of an array: what a cache holds
 _ROUNDING = 64 * 2.0**-53
 _ATTEMPTS = 4
 
@@ -88,16 +88,48 @@ def recorded_extremes(model: Model, records: ManyRecords) -> RecordedExtremes:
 def _extremes(response: RecordResponse, model: Model, records: ManyRecords) -> tuple[Numbers, Numbers]:
     """Values and tau, (records, outputs, 2)."""
     count, n = records.samples.shape
-    outputs = len(model.probes)
-    each = max(1, _AT_ONCE // (n * _PARTS * outputs))
-    found = [_some(response, model, records, slice(first, min(first + each, count))) for first in range(0, count, each)]
-    return np.concatenate([values for values, _ in found]), np.concatenate([taus for _, taus in found])
+    each = max(1, _AT_ONCE // (n * _PARTS * len(model.probes)))
+    end = (model.horizon() - records.begin) / records.spacing  # in steps
+    states, candidates = [], []
+    for first in range(0, count, each):
+        coarse = response.respond(records.samples[first : first + each])
+        states.append(coarse.states)
+        candidates.append(_candidates(coarse.values[:, : int(end * _PARTS + 1e-9)]))
+    steps = _looked_at(response, model, records, np.concatenate(states), np.concatenate(candidates), end)
+    (least, early), (greatest, late) = (_tops(response, steps, count, sign) for sign in (-1.0, 1.0))
+    values, taus = np.stack([-least, greatest], axis=2), records.begin + np.stack([early, late], axis=2)
+    # never above rest, or below: at rest from the very start
+    none = np.array([-1.0, 1.0]) * values <= _EQUAL * np.abs(values).max(axis=2, keepdims=True)
+    values[none], taus[none] = 0.0, 0.0
+    return values, taus
+
+
+def _candidates(seen: Numbers) -> NDArray[np.bool_]:
+    """The steps, (records, steps), that may have the least or the greatest value of an output."""
+    whole = seen.shape[1] // _PARTS
+    middle, end = seen[:, : whole * _PARTS : 2], seen[:, 1 : whole * _PARTS : 2]
+    bent = np.empty_like(middle)
+    np.add(end[:, 1:], end[:, :-1], out=bent[:, 1:])
+    bent[:, 0] = end[:, 0]
+    bent -= middle
+    bent -= middle
+    higher = _SAFE / 8 * np.maximum(bent.max(axis=1), -bent.min(axis=1))
+    greatest = np.maximum(seen.max(axis=1), 0.0)
+    least = np.minimum(seen.min(axis=1), 0.0)
+    moved = greatest > least
+    high = np.where(moved, greatest - higher, np.inf)[:, None]
+    low = np.where(moved, least + higher, -np.inf)[:, None]
+    found: NDArray[np.bool_] = np.any((seen >= high) | (seen <= low), axis=2)
+    ends = found[:, 1 : whole * _PARTS : 2]
+    steps: NDArray[np.bool_] = found[:, : whole * _PARTS : 2] | ends
+    steps[:, 1:] |= ends[:, :-1]
+    return steps
 
 
 @dataclass(frozen=True)
 class _Steps:
-    """Steps of records that are looked at closely: `known` at their starts, how long they are, and the values at equally
-    spaced points, ends included: (steps, points, outputs)."""
+    """Steps of records that are looked at closely: what is `known` where they begin, how long they are, and the values
+    at equally spaced points, ends included: (steps, points, outputs)."""
 
     record: Places
     step: Places
@@ -106,45 +138,16 @@ class _Steps:
     values: Numbers
 
 
-def _some(response: RecordResponse, model: Model, records: ManyRecords, chosen: slice) -> tuple[Numbers, Numbers]:
-    samples = records.samples[chosen]
-    coarse = response.respond(samples)
-    end = (model.horizon() - records.begin) / records.spacing  # in steps
-    seen = coarse.values[:, : int(end * _PARTS + 1e-9) + 1]
-    steps = _looked_at(response, model, records, samples, coarse.states, _candidates(seen), end)
-    sides = [_tops(response, steps, len(samples), sign) for sign in (-1.0, 1.0)]
-    values = np.stack([-sides[0][0], sides[1][0]], axis=2)
-    taus = records.begin + np.stack([sides[0][1], sides[1][1]], axis=2) * 1.0
-    nothing = np.array([-1.0, 1.0]) * values <= _EQUAL * np.abs(values).max(axis=2, keepdims=True)
-    values[nothing], taus[nothing] = 0.0, 0.0  # rest, from the very start
-    return values, taus
-
-
-def _candidates(seen: Numbers) -> NDArray[np.bool_]:
-    """The steps, (records, steps), that may have the least or the greatest value of an output."""
-    whole = (seen.shape[1] - 1) // _PARTS
-    inner = seen[:, : whole * _PARTS + 1]
-    bent = np.abs(inner[:, :-1:2] + inner[:, 2::2] - 2 * inner[:, 1::2]).max(axis=1, initial=0.0)
-    higher = _SAFE * bent / 8
-    greatest, least = seen.max(axis=1), seen.min(axis=1)
-    some = greatest > least
-    high = (inner >= (greatest - higher)[:, None]) | (inner <= (least + higher)[:, None])
-    found = (high & some[:, None]).any(axis=2)
-    steps: NDArray[np.bool_] = found[:, :-1:2] | found[:, 1::2] | found[:, 2::2]
-    return steps
-
-
 def _looked_at(
     response: RecordResponse,
     model: Model,
     records: ManyRecords,
-    samples: Numbers,
     states: Numbers,
     candidates: NDArray[np.bool_],
     end: float,
 ) -> _Steps:
     """The candidates, and the last step, which may be a part of one."""
-    given, h = samples[:, :, None], records.spacing
+    samples, h = records.samples[:, :, None], records.spacing
     record, step = np.nonzero(candidates)
     whole = candidates.shape[1]
     length = np.full(len(record), h)
@@ -154,14 +157,14 @@ def _looked_at(
         length = np.concatenate([length, np.full(len(rows), (end - whole) * h)])
         order = np.argsort(record, kind="stable")
         record, step, length = record[order], step[order], length[order]
-    known = response.inside(given, states, record, step)
+    known = response.inside(samples, states, record, step)
     crossing = nearest(min(bar.delay for bar in model.network.bars))
     points = max(_PER_STEP, ceil(h / (crossing / _PER_CROSSING))) + 1
     values = np.empty((len(record), points, len(model.probes)))
     for size in np.unique(length).tolist():
         rows = np.flatnonzero(length == size)
-        for k in range(points):
-            values[rows, k] = known[rows] @ response.reads(size * k / (points - 1))
+        reads = response.reads(size * np.arange(points) / (points - 1))
+        values[rows] = np.tensordot(known[rows], reads, axes=(1, 1))
     return _Steps(record, step, known, length, values)
 
 

@@ -22,12 +22,13 @@ from wavesym.programs.modes.tables import scheme_tables
 
 _LONGEST = 64  # steps of a block
 _MOST = 1 << 24  # numbers of a matrix
+Places = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
 class RecordValues:
-    """What records do: `values` (records, instants, outputs) at `parts` instants a step, from rest at the first one on;
-    `states` (records, blocks, 2 modes), displacements and velocities where the blocks begin."""
+    """What records do, `parts` instants a step, from the first one after the start on: `values` (records, instants,
+    outputs); `states` (records, blocks, 2 modes) are displacements and velocities where blocks begin."""
 
     values: Numbers
     states: Numbers
@@ -78,34 +79,32 @@ class RecordResponse:
         (2 modes + (steps + 1) loads, steps * parts * outputs) and (2 modes + (steps + 1) loads, 2 modes).
         """
         count, modes, (turn, push) = self.steps, self._modes, self._step
-        loads = push.shape[2]
+        loads, outputs = push.shape[2], len(self.system.direct)
         states = np.zeros((count + 1, 2 * modes + (count + 1) * loads, 2, modes))
         on = np.arange(modes)
         states[0, on, 0, on] = states[0, modes + on, 1, on] = 1.0
         for k in range(count):
             now, then = states[k], states[k + 1]
-            then[:, 0] = turn[0, 0] * now[:, 0] + turn[0, 1] * now[:, 1]
-            then[:, 1] = turn[1, 0] * now[:, 0] + turn[1, 1] * now[:, 1]
+            np.einsum("abm,rbm->ram", turn, now, out=then)
             at = 2 * modes + k * loads
             then[at : at + loads] += push[0].transpose(1, 0, 2)
             then[at + loads : at + 2 * loads] += push[1].transpose(1, 0, 2)
-        rows, outputs = states.shape[1], len(self.system.direct)
-        values = np.zeros((rows, count, self.parts, outputs))
-        for part in range(self.parts):
-            # of the step that ends with the last part
-            s = self.spacing * (part + 1) / self.parts
-            reads = self._panels.reads(s)
-            values[:, :, part] = (
-                (states[:count].reshape(-1, 2 * modes) @ reads[: 2 * modes])
-                .reshape(count, rows, outputs)
-                .transpose(1, 0, 2)
-            )
+        rows = states.shape[1]
+        values = np.empty((rows, count, self.parts, outputs))
+        starts = states[:count].transpose(1, 0, 2, 3).reshape(rows * count, 2 * modes)
+        for part, reads in enumerate(self._panels.reads(self._parts)):
+            values[:, :, part] = (starts @ reads[: 2 * modes]).reshape(rows, count, outputs)
             slope, value = reads[2 * modes :][: 2 * loads].reshape(2, loads, outputs)
             for k in range(count):
                 at = 2 * modes + k * loads
                 values[at : at + loads, k, part] += value - slope / self.spacing
                 values[at + loads : at + 2 * loads, k, part] += slope / self.spacing
         return values.reshape(rows, -1), states[count].reshape(rows, 2 * modes)
+
+    @property
+    def _parts(self) -> Numbers:
+        """The instants of a step, after its start."""
+        return self.spacing * np.arange(1, self.parts + 1) / self.parts
 
     def respond(self, samples: Numbers) -> RecordValues:
         """All outputs under records whose `samples` are (records, n), or (records, n, loads); n - 1 steps."""
@@ -123,13 +122,11 @@ class RecordResponse:
         added = known[:, :, 2 * self._modes :] @ ends[2 * self._modes :]
         for block in range(blocks - 1):
             states[:, block + 1] = states[:, block] @ ends[: 2 * self._modes] + added[:, block]
-        made = np.zeros((records, (n - 1) * self.parts + 1, len(self.system.direct)))
-        made[:, 1:] = (known.reshape(records * blocks, -1) @ values).reshape(records, -1, made.shape[2])[
-            :, : made.shape[1] - 1
-        ]
+        made = (known.reshape(records * blocks, -1) @ values).reshape(records, -1, len(self.system.direct))
+        made = made[:, : (n - 1) * self.parts]
         if self._summing:
-            made[:, 1:] += self._sums(given)
-        return RecordValues(made, states)
+            made += self._sums(given)
+        return RecordValues(made, states.copy())
 
     @property
     def _summing(self) -> bool:
@@ -145,44 +142,41 @@ class RecordResponse:
         return made
 
     def _sums(self, samples: Numbers) -> Numbers:
-        """What the integrals up to the start of its step count in each value: (records, instants but the first, outputs)."""
+        """What the integrals up to the start of its step count in each value: (records, instants, outputs)."""
         once, twice = self._integrals(samples)[:, :, :-1]
         records, steps, loads = once.shape
         made = np.empty((records, steps, self.parts, len(self.system.direct)))
-        for part in range(self.parts):
-            first, second = self._panels.reads(self.spacing * (part + 1) / self.parts)[-2 * loads :].reshape(
-                2, loads, -1
-            )
+        for part, reads in enumerate(self._panels.reads(self._parts)):
+            first, second = reads[-2 * loads :].reshape(2, loads, -1)
             made[:, :, part] = once @ first + twice @ second
         return made.reshape(records, steps * self.parts, -1)
 
-    def inside(self, samples: Numbers, states: Numbers, record: NDArray[np.intp], step: NDArray[np.intp]) -> Numbers:
+    def inside(self, samples: Numbers, states: Numbers, record: Places, step: Places) -> Numbers:
         """What is known where a `step` of a `record` begins: (cases, 2 modes + 4 loads), to be multiplied with `reads`.
 
         `samples` are (records, n, loads), `states` those of `respond`.
         """
-        modes, (turn, _) = self._modes, self._step
-        block, since = step // self.steps, step % self.steps
-        count, loads = self.steps, samples.shape[2]
-        ends = self._early
-        padded = np.concatenate([np.zeros((len(samples), count, loads)), samples], axis=1)
+        count, loads, modes = self.steps, samples.shape[2], self._modes
+        block, since = step // count, step % count
         # of the samples of the block up to this step the last `count` + 1, those before the block 0
-        at = step[:, None] + np.arange(count + 1)
-        window = padded[record[:, None], at]
+        padded = np.concatenate([np.zeros((len(samples), count, loads)), samples], axis=1)
+        window = padded[record[:, None], step[:, None] + np.arange(count + 1)]
         window[np.arange(count + 1) < count - since[:, None]] = 0.0
-        state = states[record, block].reshape(-1, 2, modes)
-        powers = self._powers[since]
-        moved = powers[:, 0, 0] * state[:, 0] + powers[:, 0, 1] * state[:, 1]
-        moving = powers[:, 1, 0] * state[:, 0] + powers[:, 1, 1] * state[:, 1]
-        known = np.hstack([moved, moving]) + window.reshape(len(step), -1) @ ends
-        # a sample where the block begins starts no step before it
         first = window[np.arange(len(step)), count - since]
+        state = states[record, block].reshape(-1, 2, modes)
+        known = np.einsum("cabm,cbm->cam", self._powers[since], state).reshape(len(step), 2 * modes)
+        known += window.reshape(len(step), -1) @ self._matrices[1][2 * modes :]
+        # the sample with which the block begins ends no step of it
         known -= np.einsum("cj,ckj->ck", first, self._lead[since])
         now, then = samples[record, step], samples[record, step + 1]
         sums = self._integrals(samples)[:, record, step] if self._summing else np.zeros((2, *now.shape))
         return np.hstack([known, (then - now) / self.spacing, now, *sums])
 
-    def at(self, known: Numbers, s: Numbers, output: NDArray[np.intp]) -> Numbers:
+    def reads(self, s: Numbers) -> Numbers:
+        """What outputs take of `inside`, the times s after the start of a step: (times, 2 modes + 4 loads, outputs)."""
+        return self._panels.reads(s)
+
+    def at(self, known: Numbers, s: Numbers, output: Places) -> Numbers:
         """One `output` of each row of `inside`, s after the start of its step: (cases,)."""
         modes, loads, system = self._modes, self.system.pushes.shape[1], self.system
         y, v = known[:, :modes], known[:, modes : 2 * modes]
@@ -192,36 +186,23 @@ class RecordResponse:
         made = np.einsum("cm,cm->c", p11 * y + p12 * v + one * start + two * ramp, system.moved[output])
         made += np.einsum("cm,cm->c", p21 * y + p22 * v + p12 * start + one * ramp, system.moving[output])
         w = s[:, None]
-        direct = (
-            value + w * slope,
-            once + w * (value + w / 2 * slope),
-            twice + w * (once + w / 2 * (value + w / 3 * slope)),
-        )
-        return made + sum(np.einsum("cj,cj->c", part, system.direct[output, :, k]) for k, part in enumerate(direct))
+        load, sum_, double = value + w * slope, value + w / 2 * slope, value + w / 3 * slope
+        for k, part in enumerate((load, once + w * sum_, twice + w * (once + w / 2 * double))):
+            made += np.einsum("cj,cj->c", part, system.direct[output, :, k])
+        return np.asarray(made)
 
     @cached_property
     def _powers(self) -> Numbers:
-        """What `k` steps make of a state, for all k of a block: (steps, 2, 2, modes)."""
+        """What k steps make of a state, for all k of a block: (steps, 2, 2, modes)."""
         turn, _ = self._step
         made = np.zeros((self.steps, 2, 2, self._modes))
         made[0, 0, 0] = made[0, 1, 1] = 1.0
         for k in range(1, self.steps):
-            made[k] = np.einsum("abm,bcm->acm", turn, made[k - 1])
+            np.einsum("abm,bcm->acm", turn, made[k - 1], out=made[k])
         return made
 
     @cached_property
-    def _early(self) -> Numbers:
-        """What the last samples add to a state, the oldest first: ((steps + 1) loads, 2 modes)."""
-        _, ends = self._matrices
-        return ends[2 * self._modes :]
-
-    @cached_property
     def _lead(self) -> Numbers:
-        """What `_early` takes for what a sample adds to a step that ends with it, k steps later: (steps, 2 modes, loads)."""
+        """What a sample adds to a step that ends with it, k steps later: (steps, 2 modes, loads)."""
         _, push = self._step
-        made = np.einsum("kabm,bjm->kamj", self._powers, push[1])
-        return made.reshape(self.steps, 2 * self._modes, -1)
-
-    def reads(self, s: float) -> Numbers:
-        """What outputs take of `inside`, s after the start of a step: (2 modes + 4 loads, outputs)."""
-        return self._panels.reads(s)
+        return np.asarray(np.einsum("kabm,bjm->kamj", self._powers, push[1])).reshape(self.steps, 2 * self._modes, -1)

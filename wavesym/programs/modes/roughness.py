@@ -72,6 +72,15 @@ class ScaledRoughness(Roughness):
     def in_step(self) -> float:
         return self.unit.in_step * self.by * _MORE
 
+    def fading(self, rate: float) -> float:
+        """As of any load; here kinks are equally far apart."""
+        total, step, apart = np.abs(self.kinks), 1, float(self.times[1] - self.times[0])
+        while step < len(total):
+            earlier = total[:-step] * np.exp(-rate * apart * step * (1 - 1e-12))
+            total[step:] += earlier
+            step *= 2
+        return float(np.max(total) * _MORE)
+
 
 def of_samples(samples: Numbers) -> Roughness:
     """Of a load that is 0 until tau = 0, has these `samples` one unit of tau apart, the first of them 0, and then 0."""
