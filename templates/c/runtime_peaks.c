@@ -1,6 +1,6 @@
 /* runtime_peaks.c: the least and the greatest value of each output of a model, between samples, too.
  * Plain C that is put below runtime.c in NAME.c; what stands below the first empty line. */
-#include "runtime.c"
+#include "runtime_misfit.c"
 
 /* How often an interval is halved at most. */
 enum { DEEPEST = 60 };
@@ -59,7 +59,7 @@ static void climb(const part *p, summit *top, real left, real at_left, real righ
         if (last < DEEPEST - 1 && higher + p->bend * width * width / 8 > top->best + slack) {
             const real middle = left + width / 2;
             const real found = value(p->m, p->window, p->section, p->output, middle);
-            seen(top, found, (real)p->window + middle);
+            seen(top, found, cycle_begin(p->window) + middle);
             ++last;
             end[last] = middle;
             at_end[last] = top->sign * found;
@@ -86,9 +86,10 @@ static void search(const model_of *m, int output, summit *least, summit *greates
     for (int window = 0; window < NAME_WINDOWS; ++window) {
         for (int section = 0; section < SECTIONS; ++section) {
             real t[BLOCK], found[BLOCK];
-            const real reach = NAME_TAU_MAX - (real)window;
-            const real end = from[section + 1] < reach ? from[section + 1] : reach;
-            part p = {m, window, section, output, from[section], end - from[section], 0};
+            const int at = in_cycle(window, section);
+            const real reach = NAME_TAU_MAX - cycle_begin(window);
+            const real end = from[at + 1] < reach ? from[at + 1] : reach;
+            part p = {m, window, section, output, from[at], end - from[at], 0};
             if (p.length < 0) {
                 continue;
             }
@@ -101,8 +102,8 @@ static void search(const model_of *m, int output, summit *least, summit *greates
             }
             for (int j = 0; j < BLOCK; ++j) {
                 if (!slack) {
-                    seen(least, found[j], (real)window + t[j]);
-                    seen(greatest, found[j], (real)window + t[j]);
+                    seen(least, found[j], cycle_begin(window) + t[j]);
+                    seen(greatest, found[j], cycle_begin(window) + t[j]);
                 } else if (j > 0) {
                     climb(&p, greatest, t[j - 1], found[j - 1], t[j], found[j], *slack);
                     climb(&p, least, t[j - 1], found[j - 1], t[j], found[j], *slack);

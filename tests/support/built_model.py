@@ -14,9 +14,9 @@ from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene
 
 
-def written(scene, runtime, folder, changes=()):
+def written(scene, runtime, folder, changes=(), precision="double"):
     """The files of a scene, with `changes` (old, new) in NAME.c."""
-    made = dict(_generated(scene.model_dump_json(), tuple(runtime)))
+    made = dict(_generated(scene.model_dump_json(), tuple(runtime), precision))
     for old, new in changes:
         assert old in made[f"{scene.name}.c"], old
         made[f"{scene.name}.c"] = made[f"{scene.name}.c"].replace(old, new)
@@ -25,9 +25,9 @@ def written(scene, runtime, folder, changes=()):
 
 
 @cache
-def _generated(scene, runtime):
+def _generated(scene, runtime, precision):
     with TemporaryDirectory() as folder:
-        paths = ways.generate(Scene(**json.loads(scene)), folder, runtime=runtime)
+        paths = ways.generate(Scene(**json.loads(scene)), folder, runtime=runtime, precision=precision)
         return tuple((path.name, path.read_text()) for path in paths)
 
 

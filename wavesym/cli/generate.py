@@ -20,7 +20,7 @@ EVALUATORS = ["auto", "closed", "pieces", "march", "modes"]
 PRECISIONS = ["double", "single"]
 AIMS = ["speed", "size"]
 MOST_WINDOWS = 2**31 - 2
-FINEST = Fraction(1, 10**13)  # of tolerances at run time
+FINEST = {"double": Fraction(1, 10**13), "single": Fraction(1, 10**5)}  # of tolerances at run time
 
 
 @click.command()
@@ -85,8 +85,9 @@ def generate(
         written = compiler.generate(*asked, given, force=force)
     for path in written:
         click.echo(path)
-    if given and scene.output.tolerance < FINEST:
-        click.echo(f"{scene.name}: tolerance {float(scene.output.tolerance):g} taken as 1e-13 at run time", err=True)
+    if given and scene.output.tolerance < (finest := FINEST[precision]):
+        told = f"tolerance {float(scene.output.tolerance):g} taken as {float(finest):.0e} at run time"
+        click.echo(f"{scene.name}: {told}", err=True)
     for line in compiler.no_load(scene):
         click.echo(f"{scene.name}: {line}", err=True)
     for manifest in (path for path in written if path.suffix == ".json"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -102,6 +102,33 @@ class RuntimeModel:
         found = self._engine.peaks(self._given(parameters))
         least, tau_least, greatest, tau_greatest = np.moveaxis(found.values, 2, 0)
         return SetPeaks(least, tau_least, greatest, tau_greatest, SetChecks(found.status, found.estimate))
+
+    def misfit(self, tau: ArrayLike, data: ArrayLike) -> Callable[..., Array]:
+        """What makes of parameters, as `run` takes them, the sum of the squares of (output - data), of shape (sets,).
+
+        `data` of shape (outputs, *tau.shape) is NaN where there is none. Where C runs, the work that the number of tau
+        sets is done here, once.
+        """
+        instants, values = _numbers("tau", tau), _numbers("data", data)
+        wanted = (len(self.outputs), *instants.shape)
+        if values.shape != wanted:
+            raise WavesymError(f"data: an array of shape {values.shape} given, {wanted} expected")
+        if not np.all((instants >= 0) & (instants <= self.tau_max)):
+            raise WavesymError(f"tau: 0 to {self.tau_max:g} expected where there are data")
+        misfits = self._engine.misfit(instants.ravel(), values.reshape(len(self.outputs), -1))
+
+        def of(**parameters: ArrayLike) -> Array:
+            return misfits(self._given(parameters)).values
+
+        return of
+
+    def bounds(self, **parameters: ArrayLike) -> Array:
+        """Of each set and output the largest error relative to its largest value on the horizon, at most: proved.
+
+        It is pessimistic by a few digits, infinite where it leaves nothing. Of shape (sets, outputs); UnservedError
+        where there is no C compiler.
+        """
+        return self._engine.bounds(self._given(parameters)).values
 
     def check(self, **parameters: ArrayLike) -> SetChecks:
         """Which sets are refused, and what errors the others have."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -28,6 +29,14 @@ class Engine(Protocol):
 
     def tangents(self, given: Array, tau: Array) -> FoundSets:
         """The values, then their derivatives by each parameter: of shape (sets, 1 + parameters, outputs, times)."""
+
+    def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
+        """What makes of `given` the sums of the squares of all misfits, of shape (sets,). `data` of shape
+        (outputs, times) is NaN where there is none.
+        """
+
+    def bounds(self, given: Array) -> FoundSets:
+        """The proved bound of each output, of shape (sets, outputs). UnservedError where this cannot be computed."""
 
     def peaks(self, given: Array) -> FoundSets:
         """Of shape (sets, outputs, 4): the least value, its tau, the greatest value, its tau."""

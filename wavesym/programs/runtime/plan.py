@@ -22,6 +22,7 @@ from wavesym.mechanics.network import network_of
 from wavesym.mechanics.node import Parameters
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ring
+from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.plan import HeardWave, Plan, Stretch, panels, plan
 from wavesym.programs.runtime.request import RuntimeField
 from wavesym.programs.runtime.units import Function, force_kept, load_kept
@@ -96,7 +97,9 @@ class RuntimePlan:
         return [n for n, s in enumerate(self.strands) if s.output == output and s.begin <= at < s.end]
 
 
-def runtime_plan(model: Model, given: Sequence[RuntimeField], loads: Sequence[Applied]) -> RuntimePlan:
+def runtime_plan(
+    model: Model, given: Sequence[RuntimeField], loads: Sequence[Applied], real: Real = DOUBLE
+) -> RuntimePlan:
     """The plan of a model with the fields `given` at run time; CostError as for a march."""
     chain = model.named
     symbols = [label for field in given if field.name != "load" for label in field.labels]
@@ -117,9 +120,9 @@ def runtime_plan(model: Model, given: Sequence[RuntimeField], loads: Sequence[Ap
     free = replace(chain, parameters=parameters)
     chosen = [unit.size for field in given if field.name == "load" for unit in field.units]
     units = chosen or [fmpq(1)] * len(loads)
-    acting = [(load.time, number) for number, load in enumerate(loads) if load.time <= rational(model.horizon())]
+    acting = [(load.time, number) for number, load in enumerate(loads) if load.time <= rational(model.horizon(real))]
     made = replace(
-        plan(replace(model, chain=free, network=network_of(free), loads=())),
+        plan(replace(model, chain=free, network=network_of(free), loads=()), real),
         panels=panels([time for time, _ in acting]),
     )
     kept: list[Any] = [force_kept(model, free) if probe.quantity == "force" else fmpq(1) for probe in model.probes]

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from flint import fmpq, fmpq_mpoly
 
-from wavesym.numbers.doubles import nearest
 from wavesym.numbers.ratio import Ratio
-from wavesym.numbers.reals import DOUBLE
+from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.units import Function, ParameterUnit
@@ -18,7 +17,8 @@ from wavesym.targets.c.kernel import kernel
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_constants, c_literal, c_literals, c_tables
 
-_SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard", "events", "lanes")
+_SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard", "events", "lanes", "groups")
+_LIMITS = {"double": "DBL", "single": "FLT"}
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,7 @@ class CRuntimeHeader:
     fields: tuple[CRuntimeField, ...]
     sizes: tuple[tuple[str, str], ...]
     model: str
+    batch: str
 
 
 @dataclass(frozen=True)
@@ -58,8 +59,15 @@ class CRuntime:
     tables: dict[str, Lines]
     constants: dict[str, str]
     amplitudes: Lines
+    largest: str
+    least: str
     loads: str
+    series: str
     kernel: str
+    read: str
+    bound: str
+    batch: str
+    misfit: str
 
 
 @dataclass(frozen=True)
@@ -75,7 +83,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     """The files of a program, by name."""
     laws = program.laws
     assert laws is not None
-    fields = tuple(_fields(laws))
+    fields = tuple(_fields(laws, program.real))
     constants = c_constants(program.constants, program.real)
     own = not any(field.name == "load" for field in fields)
     header = CRuntimeHeader(
@@ -83,18 +91,26 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         fields=fields,
         sizes=tuple((name.upper(), constants[name]) for name in _SIZES),
         model=kernel("runtime_model.h", scene),
+        batch=kernel("runtime_batch.h", scene),
     )
     context = CRuntime(
         scene=scene,
         fields=fields,
-        laws=tuple(_assigned(laws, laws.functions)),
-        slopes=tuple(_slopes(laws)),
+        laws=tuple(_assigned(laws, laws.functions, program.real)),
+        slopes=tuple(_slopes(laws, program.real)),
+        largest=f"{_LIMITS[program.real.name]}_MAX",
+        least=f"{_LIMITS[program.real.name]}_MIN",
         load_lane=_load_lane(laws),
         tables=c_tables(program.tables, program.real),
         constants=constants,
         amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
         loads="amplitude" if own else "p->load",
+        series=kernel("runtime_series.c", scene),
         kernel=kernel("runtime.c", scene),
+        read=kernel("runtime_read.c", scene),
+        bound=kernel("runtime_bound.c", scene),
+        batch=kernel("runtime_batch.c", scene),
+        misfit=kernel("runtime_misfit.c", scene),
     )
     made = {
         f"{scene.name}.h": render("c/runtime.h.j2", header),
@@ -128,7 +144,7 @@ def _selftest(scene: Description, program: Program, reference: ReferenceValues) 
     return render("c/runtime_selftest.c.j2", context)
 
 
-def _fields(laws: RuntimeLaws) -> Iterator[CRuntimeField]:
+def _fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:
     for field in laws.fields:
         yield CRuntimeField(
             name=field.name,
@@ -136,7 +152,7 @@ def _fields(laws: RuntimeLaws) -> Iterator[CRuntimeField]:
             count=str(len(field.values)),
             check="positive_number" if field.positive else "finite_number",
             labels=tuple(map(_told, field.labels, field.units)),
-            values=c_literals(map(nearest, field.values), DOUBLE),
+            values=c_literals(map(real.nearest, field.values), real),
         )
 
 
@@ -144,19 +160,19 @@ def _told(label: str, unit: ParameterUnit) -> str:
     return f"{label} [{unit.text}]" if unit.text else label
 
 
-def _assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]]) -> Iterator[tuple[str, str]]:
+def _assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: Real) -> Iterator[tuple[str, str]]:
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
     for array, functions in arrays.items():
         for k, function in enumerate(functions):
-            yield f"{array}[{k}]", expression(function, places)
+            yield f"{array}[{k}]", expression(function, places, real)
 
 
-def _slopes(laws: RuntimeLaws) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
+def _slopes(laws: RuntimeLaws, real: Real) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
     """The derivatives that are not 0, by the number of the parameter."""
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
     for lane, label in enumerate(places):
         found = [
-            (f"{array}[{k}]", expression(slope, places))
+            (f"{array}[{k}]", expression(slope, places, real))
             for array, functions in laws.functions.items()
             for k, function in enumerate(functions)
             if isinstance(function, Ratio) and label in function.ring.names
@@ -176,27 +192,27 @@ def _load_lane(laws: RuntimeLaws) -> str:
     return "-1"
 
 
-def expression(function: Function, places: Mapping[str, str]) -> str:
+def expression(function: Function, places: Mapping[str, str], real: Real) -> str:
     """A rational function in C, with `places` for its symbols; one product over another, sums multiplied out."""
     if not isinstance(function, Ratio):
-        return c_literal(nearest(function), DOUBLE)
+        return c_literal(real.nearest(function), real)
     names = [places[name] for name in function.ring.names]
-    above = _sum(function.numerator, names)
+    above = _sum(function.numerator, names, real)
     below = [
         factor
         for form, power in sorted(function.denominator.items())
-        for factor in [_sum(function.ring.forms[form], names)] * power
+        for factor in [_sum(function.ring.forms[form], names, real)] * power
     ]
     return f"{above} / ({' * '.join(below)})" if below else above
 
 
-def _sum(polynomial: fmpq_mpoly, names: list[str]) -> str:
-    terms = [_term(fmpq(value), powers, names) for powers, value in polynomial.to_dict().items()]
-    return terms[0] if len(terms) == 1 else f"({' + '.join(terms)})" if terms else "0.0"
+def _sum(polynomial: fmpq_mpoly, names: list[str], real: Real) -> str:
+    terms = [_term(fmpq(value), powers, names, real) for powers, value in polynomial.to_dict().items()]
+    return terms[0] if len(terms) == 1 else f"({' + '.join(terms)})" if terms else c_literal(0.0, real)
 
 
-def _term(value: fmpq, powers: tuple[int, ...], names: list[str]) -> str:
+def _term(value: fmpq, powers: tuple[int, ...], names: list[str], real: Real) -> str:
     factors = [name for name, power in zip(names, powers, strict=True) for _ in range(int(power))]
     if value == -1 and factors:
         return f"-{' * '.join(factors)}"
-    return " * ".join(([] if value == 1 and factors else [c_literal(nearest(value), DOUBLE)]) + factors)
+    return " * ".join(([] if value == 1 and factors else [c_literal(real.nearest(value), real)]) + factors)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from wavesym.errors import UnservedError
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.arrays.march import ArrayMarch
 from wavesym.programs.runtime.arrays.peaks import array_peaks
@@ -31,6 +32,16 @@ class ArraySets:
         """See `Engine`."""
         shape = (1 + given.shape[1], self._tables.outputs, len(tau))
         return self._some(given, shape, lambda march: array_values(self._tables, march, tau), lanes=True)
+
+    def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
+        """See `Engine`."""
+        return lambda given: self._some(
+            given, (), lambda march: np.nansum((array_values(self._tables, march, tau)[:, 0] - data) ** 2, axis=(1, 2))
+        )
+
+    def bounds(self, given: Array) -> FoundSets:
+        """See `Engine`."""
+        raise UnservedError(f"bounds: {len(given)} sets given without a C compiler, one is expected")
 
     def peaks(self, given: Array) -> FoundSets:
         """See `Engine`."""
