@@ -13,19 +13,21 @@ from wavesym.sweeps.plan import Plan
 
 _MOST_BATCHES = 5000  # where each case is computed by itself: so many files of every array at most
 _RECORDS = 1000  # at once: with their values at all samples some hundred MB
-_SETS = 512  # of parameters at once
+_SETS, _FEWEST_SETS, _PARTS = 512, 64, 8  # of parameters at once: enough of them, and of batches for all workers
 
 
 @dataclass(frozen=True)
 class Batches:
     """The cases of a sweep as batches, numbered from 0: blocks of `chunk` cases in each dimension.
 
-    `kind` is how they are computed: "recorded", "parameters" or "single".
+    `kind` is how they are computed: "recorded", "parameters" or "single". `together` says of each dimension whether
+    the cases of a batch may differ in it.
     """
 
     kind: str
     shape: tuple[int, ...]
     chunk: tuple[int, ...]
+    together: tuple[bool, ...] = ()
 
     @property
     def grid(self) -> tuple[int, ...]:
@@ -58,7 +60,8 @@ def batches(plan: Plan, kind: str, together: tuple[bool, ...] = ()) -> Batches:
     if kind == "recorded":
         return Batches(kind, plan.shape, (*(1 for _ in plan.shape[:-1]), min(plan.shape[-1], _RECORDS)))
     if kind == "parameters":
-        return Batches(kind, plan.shape, _blocks(plan.shape, together, _SETS))
+        most = max(_FEWEST_SETS, min(_SETS, plan.cases // _PARTS))
+        return Batches(kind, plan.shape, _blocks(plan.shape, together, most), together)
     return Batches(kind, plan.shape, _blocks(plan.shape, (True,) * len(plan.shape), ceil(plan.cases / _MOST_BATCHES)))
 
 

@@ -40,7 +40,7 @@ class Column:
     def of(cls, path: str, given: Iterable[object]) -> Column:
         """The column of values as a user gives them."""
         values = tuple(plain(value) for value in given)
-        found = [_number(value) for value in values]
+        found = [number_of(value) for value in values]
         units = {each[1] for each in found if each is not None}
         told = tuple(value if isinstance(value, str) else json.dumps(value) for value in values)
         if None in found or len(units) != 1:
@@ -51,7 +51,7 @@ class Column:
     @cached_property
     def keys(self) -> tuple[object, ...]:
         """What tells two values apart: 0.5 and "1/2" are the same."""
-        return tuple(number or told for number, told in zip(map(_number, self.values), self.told, strict=True))
+        return tuple(number or told for number, told in zip(map(number_of, self.values), self.told, strict=True))
 
 
 @dataclass(frozen=True)
@@ -113,13 +113,13 @@ def _written(number: Fraction, unit: str) -> object:
 
 
 def _end(value: object, key: str) -> tuple[Fraction, str]:
-    found = _number(plain(value))
+    found = number_of(plain(value))
     if found is None:
         raise wrong(f"{shown(value)} given, a number expected, with a unit or without", key)
     return found
 
 
-def _number(value: object) -> tuple[Fraction, str] | None:
+def number_of(value: object) -> tuple[Fraction, str] | None:
     """A number and its unit, "" without; None of anything else."""
     if isinstance(value, bool) or (written(value) is None and not isinstance(value, int)):
         return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from wavesym.sweeps import recorded
+from wavesym.sweeps import parameters, recorded
 from wavesym.sweeps.plan import Plan
 
 
@@ -10,4 +10,6 @@ def kind(plan: Plan) -> tuple[str, tuple[bool, ...]]:
     """The kind of its batches, and in which dimensions cases can be parts of one batch."""
     if recorded.serves(plan):
         return "recorded", ()
+    if joined := parameters.together(plan):
+        return "parameters", joined
     return "single", (True,) * len(plan.dimensions)

@@ -6,6 +6,7 @@ from threading import Lock
 
 from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches
+from wavesym.sweeps.parameters import parameters
 from wavesym.sweeps.plan import Plan
 from wavesym.sweeps.recorded import recorded
 from wavesym.sweeps.single import single
@@ -20,7 +21,7 @@ def compute(plan: Plan, batches: Batches, batch: int) -> BatchValues:
     values = BatchValues.empty(plan, batches.region(batch))
     region, left = batches.region(batch), batches.places(batch)
     with _ALONE:
-        for place, case in _shared(plan, batches.kind, left):
+        for place, case in _shared(plan, batches, left):
             values.put(region, place, case)
             left.remove(place)
         for place in left:
@@ -28,10 +29,14 @@ def compute(plan: Plan, batches: Batches, batch: int) -> BatchValues:
     return values
 
 
-def _shared(plan: Plan, kind: str, places: list[tuple[int, ...]]) -> list[tuple[tuple[int, ...], CaseValues]]:
+def _shared(plan: Plan, batches: Batches, places: list[tuple[int, ...]]) -> list[tuple[tuple[int, ...], CaseValues]]:
     """The cases that can share work, as far as that serves them."""
     try:
-        return list(recorded(plan, places)) if kind == "recorded" else []
+        if batches.kind == "recorded":
+            return list(recorded(plan, places))
+        if batches.kind == "parameters":
+            return list(parameters(plan, places, batches.together))
+        return []
     except Exception:  # each by itself says what is wrong
         return []
 
