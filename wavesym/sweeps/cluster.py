@@ -11,7 +11,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterable, Iterator
 from concurrent.futures import CancelledError
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from itertools import islice
 from typing import Any
 from uuid import uuid4
@@ -24,7 +24,7 @@ from wavesym.sweeps.store import needed
 from wavesym.sweeps.values import BatchValues
 
 _AHEAD = 3  # batches under way for each thread, so that none waits for this process
-_DEATHS = 2  # of workers on this machine, before a batch is given up
+_DEATHS = 1  # of workers on this machine that a batch may survive, before it is given up
 _WAIT = 30  # seconds for a scheduler to answer, and for a worker of it
 Done = tuple[int, BatchValues]
 
@@ -42,26 +42,32 @@ def connected(workers: int | None, address: str | None) -> Iterator[Any]:
     import dask
     from distributed import Client, LocalCluster
 
-    for name in ("distributed", "tornado"):  # what goes wrong is told in a line of our own
-        logging.getLogger(name).setLevel(logging.CRITICAL)
-    if address:
+    with ExitStack() as stack:
+        stack.enter_context(_quiet())
+        if not address:
+            stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": _DEATHS}))
+            alone = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": logging.CRITICAL}
+            address = stack.enter_context(LocalCluster(n_workers=workers, **alone))
         try:
             client = Client(address, timeout=_WAIT, set_as_default=False)
         except (OSError, ValueError) as error:
-            raise ClusterError(
-                f"--scheduler: {address} given, the address of a Dask scheduler expected ({error})"
-            ) from None
-        with client:
-            yield client
-        return
-    settings = {"distributed.scheduler.allowed-failures": _DEATHS}
-    alone = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": logging.CRITICAL}
-    with (
-        dask.config.set(settings),
-        LocalCluster(n_workers=workers, **alone) as own,
-        Client(own, set_as_default=False) as client,
-    ):
-        yield client
+            expected = "the address of a Dask scheduler that answers expected"
+            raise ClusterError(f"--scheduler: {address} given, {expected} ({error})") from None
+        yield stack.enter_context(client)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """What goes wrong is told in a line of our own, not in the log of Dask."""
+    loggers = [logging.getLogger(name) for name in ("distributed", "distributed.client", "tornado")]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
 
 
 def on_workers(client: Any, plan: Plan, batches: Batches, todo: Iterable[int]) -> Iterator[Done]:
