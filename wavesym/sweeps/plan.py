@@ -183,6 +183,8 @@ def _column(request: SweepRequest, base: Scene, fields: dict[str, Any], path: st
         values = spread(request.vary[path])
         changed(fields, path, None)
         way = steps(path)
+        if len(way) == 1:
+            raise SceneError('a whole table given, a field in it such as "output.until" expected')
         if way[:1] == ["load"] and way[2:] == ["record"] and all(isinstance(value, str) for value in values):
             files = [each for value in values for each in found([str(value)], request.folder)]
             return record_column(path, files, request.folder, fields["load"][way[1]], base.scale is not None)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from os import PathLike
 from typing import Annotated, Any, Self
 
-from pydantic import Field, PlainValidator, ValidationError, field_validator, model_validator
+from pydantic import Field, PlainValidator, PrivateAttr, ValidationError, field_validator, model_validator
 
 from wavesym.errors import SceneError
 from wavesym.fields.numbers import Integer
@@ -103,7 +103,7 @@ def _texts(value: object) -> tuple[str, ...]:
 
 
 class SweepRequest(SceneTable):
-    """A sweep as a user writes it; `folder` is where its paths count from.
+    """A sweep as a user writes it.
 
     `vary` has the paths of fields in the order of their dimensions: all values with all others, or, where they are
     to `zip`, the k-th value of each in case k.
@@ -114,7 +114,8 @@ class SweepRequest(SceneTable):
     zip: bool = False
     vary: dict[str, Values] = Field(default_factory=dict)
     keep: Kept = Kept()
-    folder: str = Field(default="", exclude=True)
+
+    _folder: str = PrivateAttr(default="")
 
     @model_validator(mode="before")
     @classmethod
@@ -138,19 +139,26 @@ class SweepRequest(SceneTable):
             raise wrong("nothing that is varied given, a table [vary] or records expected")
         return self
 
+    @property
+    def folder(self) -> str:
+        """Where its paths count from."""
+        return self._folder
+
     @classmethod
     def read(cls, source: str | PathLike[str] | Mapping[str, Any]) -> tuple[str, Self]:
         """What messages call it, and the request: from a file, or from the same fields. Raises SceneError."""
         if isinstance(source, Mapping):
-            file, fields = "sweep", dict(source)
+            file, folder, fields = "sweep", "", dict(source)
         else:
             file, text = read_text(source, _EXPECTED)
-            fields = {**parsed(file, text), "folder": os.path.dirname(os.fspath(source))}
+            folder, fields = os.path.dirname(os.fspath(source)), parsed(file, text)
         try:
-            return file, cls.model_validate(fields)
+            request = cls.model_validate(fields)
         except ValidationError as error:
             what, path = first_error(error)
             raise SceneError(what, key_path(path), file) from None
+        request._folder = folder
+        return file, request
 
     def base(self) -> Scene:
         """The scene that cases are made of. SceneError names its file."""

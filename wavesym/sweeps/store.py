@@ -110,10 +110,19 @@ def _coordinates(group: Any, dimension: Dimension) -> None:
     """What is varied along a dimension: its own coordinate, or of columns that are zipped one of each."""
     if dimension.name == CASE:
         _plain(group, CASE, CASE, np.arange(len(dimension)))
-    for column in dimension.columns:
+    for number, column in enumerate(dimension.columns):
         units = {"units": column.unit} if column.unit else {}
         name = column.path if dimension.name == CASE else dimension.name
-        _plain(group, name, dimension.name, np.array(column.coordinate), path=column.path, written=column.told, **units)
+        _plain(
+            group,
+            name,
+            dimension.name,
+            np.array(column.coordinate),
+            path=column.path,
+            number=number,
+            written=column.told,
+            **units,
+        )
 
 
 def _plain(group: Any, name: str, dimension: str, values: Any, **attributes: object) -> None:

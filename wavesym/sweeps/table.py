@@ -43,6 +43,7 @@ def columns(results: Any) -> Iterator[Columns]:
     dimensions = list(results["bound"].dims)
     shape = tuple(results.sizes[name] for name in dimensions)
     varied = [name for name in results.coords if "path" in results[name].attrs]
+    varied.sort(key=lambda name: (dimensions.index(results[name].dims[0]), results[name].attrs["number"]))
     names = [str(name) for name in results[OUTPUT].values]
     along = {name: dimensions.index(results[name].dims[0]) for name in varied}
     # rows are read in the order of cases: whole slabs of the first dimensions
