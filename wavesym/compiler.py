@@ -306,14 +306,16 @@ def generate(
     optimize: str | None = None,
     runtime: Sequence[str] = (),
     *,
+    package: bool = False,
     force: bool = False,
 ) -> tuple[Path, ...]:
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
 
     `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
     "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters that C takes when it
-    runs: "kappa", "inertia", "velocity", "load". Files that wavesym did not write are replaced only by
-    `force`; WavesymError else, and for a language, evaluator, precision or aim that there is not.
+    runs: "kappa", "inertia", "velocity", "load". `package` adds what CMake builds, tests
+    and installs C with. Files that wavesym did not write are replaced only by `force`; WavesymError else, and for a
+    language, evaluator, precision or aim that there is not.
 
     >>> import wavesym
     >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):
@@ -321,7 +323,8 @@ def generate(
     drive/drive_m1.json
     drive/drive_m1.py
     """
-    made = _written(scene, directory, language, Request(evaluator, precision, windows, optimize, tuple(runtime)))
+    request = Request(evaluator, precision, windows, optimize, tuple(runtime))
+    made = _written(scene, directory, language, request, package)
     for path in made:
         if not force and path.is_file() and not is_ours(path):
             raise WavesymError(f"{path}: exists and was not written by wavesym; --force replaces it")
@@ -339,6 +342,8 @@ def check(
     optimize: str | None = None,
     source: str = "SCENE",
     runtime: Sequence[str] = (),
+    *,
+    package: bool = False,
 ) -> str:
     """The difference between what stands in `directory` and what `generate` would write; empty where there is none.
 
@@ -346,20 +351,24 @@ def check(
     last line is the command that mends them, with the scene as it is given by `source`.
     """
     request = Request(evaluator, precision, windows, optimize, tuple(runtime))
-    made = _written(scene, directory, language, request)
+    made = _written(scene, directory, language, request, package)
     folder = Path(directory or scene.name)
     found = [path for path in folder.glob(f"{scene.name}*") if path.is_file()]
     left = [path for path, place in traces(folder) if place.name.startswith(scene.name)]
     difference = Difference(made, [*found, *left])
-    options = ["--language", language, *request.options.split()]
+    options = ["--language", language, *request.options.split(), *(["--package"] if package else [])]
     return difference.report(["wavesym", "generate", source, "-o", str(folder), *options])
 
 
-def _written(scene: Scene, directory: str | Path | None, language: str, request: Request) -> dict[Path, str]:
+def _written(
+    scene: Scene, directory: str | Path | None, language: str, request: Request, package: bool
+) -> dict[Path, str]:
     """The text of every file of a scene, by path."""
     folder = Path(directory or scene.name)
     refuse_unknown("language", language, LANGUAGES)
     request.refuse_unknown()
+    if package and language not in ("c", "all"):
+        raise WavesymError(f"package: language {language} given, c or all expected, since CMake builds C")
     model = lower(scene)
     if request.runtime:
         from wavesym.programs.runtime.making import runtime_program
@@ -370,7 +379,7 @@ def _written(scene: Scene, directory: str | Path | None, language: str, request:
         program = runtime_program(model, request, given, tested=True)
     else:
         program = make(model, request, tested=tested(language))
-    return {folder / name: text for name, text in files(program, language).items()}
+    return {folder / name: text for name, text in files(program, language, packaged=package).items()}
 
 
 def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:

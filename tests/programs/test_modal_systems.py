@@ -212,7 +212,9 @@ def test_outputs_that_are_0_are_exactly_0():
     assert not values(model, made, np.linspace(0, 1.5, 9))[[0, 3]].any()
 
 
-@pytest.mark.parametrize("name", ["a ratio", "a list", "Rayleigh"])
+@pytest.mark.parametrize(
+    "name", ["a ratio", *(pytest.param(name, marks=pytest.mark.slow) for name in ("a list", "Rayleigh"))]
+)
 def test_damped_modes_move_before_a_wave_arrives(name):
     """A horizon that ends when the first wave arrives has the values of one that ends later."""
     watched = {"displacement": [1, 2], "drift": [2], "relative": [2]}

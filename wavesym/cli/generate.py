@@ -51,6 +51,7 @@ FINEST = {"double": Fraction(1, 10**13), "single": Fraction(1, 10**5)}  # of tol
     metavar="LIST",
     help="Parameters that come at run time, a list of kappa, inertia, velocity and load with commas between.",
 )
+@click.option("--package", is_flag=True, help="Add what builds, tests and installs C: CMake, ctest, pkg-config.")
 @click.option("--force", is_flag=True, help="Replace files that wavesym did not write, too.")
 @click.option("--check", "only_check", is_flag=True, help="Write nothing; print a diff and exit 1 where files differ.")
 def generate(
@@ -62,6 +63,7 @@ def generate(
     windows: int | None,
     optimize: str | None,
     runtime: str | None,
+    package: bool,
     force: bool,
     only_check: bool,
 ) -> int:
@@ -77,12 +79,12 @@ def generate(
     given = () if runtime is None else tuple(name.strip() for name in runtime.split(","))
     if only_check:
         with progress(f"check {scene.name}"):
-            difference = compiler.check(*asked, scene_argument(), given)
+            difference = compiler.check(*asked, scene_argument(), given, package=package)
         if difference:
             put(difference)
         return 1 if difference else 0
     with progress(f"generate {scene.name}"):
-        written = compiler.generate(*asked, given, force=force)
+        written = compiler.generate(*asked, given, package=package, force=force)
     for path in written:
         click.echo(path)
     if given and scene.output.tolerance < (finest := FINEST[precision]):
