@@ -24,6 +24,8 @@ from wavesym.sweeps.plan import CASE, OUTPUT, SAMPLE, Plan
 from wavesym.sweeps.values import BatchValues, kept_arrays, sizes
 
 NAME = "results.zarr"
+DIMENSIONS = "_ARRAY_DIMENSIONS"
+"""The attribute that xarray reads the names of an array's dimensions from."""
 
 
 def needed(*libraries: str) -> None:
@@ -81,7 +83,7 @@ class Store:
                 chunks=(*self.batches.chunk, *rest),
                 dtype="float64",
                 fill_value=np.nan,
-                attributes={"_ARRAY_DIMENSIONS": [*names, *each.dimensions], "long_name": each.what},
+                attributes={DIMENSIONS: [*names, *each.dimensions], "long_name": each.what},
             )
         os.replace(draft, self.path)
 
@@ -126,7 +128,17 @@ def _coordinates(group: Any, dimension: Dimension) -> None:
 
 
 def _plain(group: Any, name: str, dimension: str, values: Any, **attributes: object) -> None:
-    group.create_array(name, data=values, attributes={"_ARRAY_DIMENSIONS": [dimension], **attributes})
+    group.create_array(name, data=values, attributes={DIMENSIONS: [dimension], **attributes})
+
+
+def arrays(folder: str | PathLike[str]) -> Any:
+    """The arrays of the sweep in a folder as a zarr group, to read. WavesymError where there is none."""
+    needed("zarr")
+    import zarr
+
+    if not Path(folder, NAME).is_dir():
+        raise WavesymError(f"{folder}: no {NAME} in it, the folder of a sweep expected")
+    return zarr.open_group(Path(folder, NAME), mode="r")
 
 
 def opened(folder: str | PathLike[str]) -> Any:
@@ -135,11 +147,8 @@ def opened(folder: str | PathLike[str]) -> Any:
     The statistics, `bound` and what else was kept, over the varied paths, `record` and `output`; NaN where a case is
     not done, or failed. WavesymError where xarray is missing, or the folder is none of a sweep.
     """
-    needed("xarray", "zarr")
+    needed("xarray")
     import xarray
 
-    path = Path(folder, NAME)
-    if not path.is_dir():
-        raise WavesymError(f"{folder}: no results.zarr in it, the folder of a sweep expected")
-    found = xarray.open_zarr(path, consolidated=False, chunks=None)
+    found = xarray.open_zarr(arrays(folder).store, consolidated=False, chunks=None)
     return found.set_coords([name for name in found.data_vars if "path" in found[name].attrs or name == "unit"])

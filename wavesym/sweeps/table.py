@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import numpy as np
 from wavesym.errors import WavesymError
 from wavesym.sweeps.plan import OUTPUT
 from wavesym.sweeps.request import STATISTICS
-from wavesym.sweeps.store import needed, opened
+from wavesym.sweeps.store import DIMENSIONS, arrays, needed
 from wavesym.writing import write_whole
 
 _ROWS = 4096
@@ -24,41 +25,38 @@ def write_table(folder: Path, path: Path) -> None:
     """Write the table of the sweep in a folder. WavesymError for a suffix that is neither .csv nor .parquet.
 
     Columns are the values that were varied, by path, and of each output NAME.min, NAME.max, NAME.tau_min, NAME.tau_max,
-    as far as they were kept.
+    as far as they were kept. What there is no value of is empty.
     """
     if path.suffix not in (".csv", ".parquet"):
         raise WavesymError(f"--table: {path} given, a file .csv or .parquet expected")
     if path.suffix == ".parquet":
         needed("pyarrow")
-    blocks = columns(opened(folder))
+    blocks = _columns(arrays(folder))
     if path.suffix == ".csv":
         write_whole({path: _csv(blocks)})
     else:
         _parquet(blocks, path)
 
 
-def columns(results: Any) -> Iterator[Columns]:
-    """The columns of a sweep's results, block of rows by block; the first block has at least their names."""
-    kept = [name for name in STATISTICS if name in results]
-    dimensions = list(results["bound"].dims)
-    shape = tuple(results.sizes[name] for name in dimensions)
-    varied = [name for name in results.coords if "path" in results[name].attrs]
-    varied.sort(key=lambda name: (dimensions.index(results[name].dims[0]), results[name].attrs["number"]))
-    names = [str(name) for name in results[OUTPUT].values]
-    along = {name: dimensions.index(results[name].dims[0]) for name in varied}
-    # rows are read in the order of cases: whole slabs of the first dimensions
+def _columns(found: Any) -> Iterator[Columns]:
+    """The columns of a sweep's arrays, block of rows by block."""
+    dimensions, shape = found["bound"].attrs[DIMENSIONS], found["bound"].shape
+    kept = [name for name in STATISTICS if name in found]
+    names = found[OUTPUT][:].tolist()
+    varied = []
+    for name, array in found.arrays():
+        if "path" in array.attrs:
+            axis = dimensions.index(array.attrs[DIMENSIONS][0])
+            varied.append((axis, array.attrs["number"], name, array[:]))
+    varied.sort(key=lambda each: each[:2])
     for part in _slabs(shape):
-        counts = tuple(p.stop - p.start for p in part)
-        place = np.unravel_index(np.arange(int(np.prod(counts))), counts)
-        made: Columns = {}
-        for name in varied:
-            axis = along[name]
-            made[name] = results[name].values[part[axis]][place[axis]]
-        for name in kept:
-            values = results[name][part].values.reshape(len(place[0]), len(names))
-            made |= {f"{output}.{name}": values[:, k] for k, output in enumerate(names)}
-        order = [f"{output}.{name}" for output in names for name in kept]
-        yield {name: made[name] for name in (*varied, *order)}
+        counts = tuple(each.stop - each.start for each in part)
+        place = np.unravel_index(np.arange(prod(counts)), counts)
+        made: Columns = {name: values[part[axis]][place[axis]] for axis, _, name, values in varied}
+        values = {name: found[name][part].reshape(len(place[0]), len(names)) for name in kept}
+        for k, output in enumerate(names):
+            made |= {f"{output}.{name}": values[name][:, k] for name in kept}
+        yield made
 
 
 def _slabs(shape: tuple[int, ...]) -> Iterator[tuple[slice, ...]]:
@@ -85,8 +83,8 @@ def _csv(blocks: Iterator[Columns]) -> Iterator[str]:
         writer = csv.writer(text, lineterminator="\n")
         if not number:
             writer.writerow(block)
-        values = ([_cell(each) for each in column.tolist()] for column in block.values())
-        writer.writerows(zip(*values, strict=True))
+        columns = ([_cell(each) for each in column.tolist()] for column in block.values())
+        writer.writerows(zip(*columns, strict=True))
         yield text.getvalue()
 
 
