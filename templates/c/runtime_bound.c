@@ -8,11 +8,13 @@
 typedef struct {
     real energy;                              /* the norm of all errors so far */
     real wave[2][2][NAME_NODES + 2];          /* the largest error of a wave on a window, of both halves */
+    real size[2][2][NAME_PANELS][NAME_NODES + 2]; /* of a wave the sum of its coefficients' magnitudes */
     real force[NAME_PANELS][NAME_FORCES + 1]; /* of a load, on this window */
     real total[NAME_HEARD + 1];               /* of an integral */
     real end[NAME_NODES], end_error[NAME_NODES];
     real mass[NAME_NODES];                    /* root of half the mass of a body */
-    real impedance[NAME_NODES];               /* root of that of both rods */
+    real sent[NAME_PANELS][NAME_NODES];       /* the energy of waves of size 1 on a panel, to both sides */
+    real moved[NAME_PANELS][NAME_NODES];      /* and that of a velocity as large, with its waves */
     real load[NAME_FORCES + 1][3], roundings[NAME_FORCES + 1];
     int since[NAME_FORCES + 1][2];
     real output[NAME_OUTPUTS], seen[NAME_OUTPUTS];
@@ -46,6 +48,10 @@ static void begun_wrong(wrong *w, const laws *law)
         for (int node = 0; node < NAME_NODES + 2; ++node) {
             w->wave[half][LEFT][node] = node > 0 ? rounded * magnitude(law->rod[node - 1]) : 0;
             w->wave[half][RIGHT][node] = node <= NAME_NODES ? rounded * magnitude(law->rod[node]) : 0;
+            for (int panel = 0; panel < NAME_PANELS; ++panel) {
+                w->size[half][LEFT][panel][node] = node > 0 ? magnitude(law->rod[node - 1]) : 0;
+                w->size[half][RIGHT][panel][node] = node <= NAME_NODES ? magnitude(law->rod[node]) : 0;
+            }
         }
     }
     w->energy = 0;
@@ -55,11 +61,17 @@ static void begun_wrong(wrong *w, const laws *law)
         const real before = impedance;
         impedance = alpha > 0 && beta > 0 ? impedance * (beta / alpha) : impedance;
         const real mass = beta > 0 ? impedance / beta : before / alpha;
-        w->impedance[node] = root(before + impedance);
+        const real both = root(before + impedance);
         w->mass[node] = is_body[node] ? root(mass / law->rate[node]) : 0;
+        for (int panel = 0; panel < NAME_PANELS; ++panel) {
+            const real length = 2 * half_length[panel];
+            w->sent[panel][node] = root(length) * both;
+            w->moved[panel][node] =
+                is_body[node] ? root(1 + 2 * law->rate[node] * length) * w->mass[node] : w->sent[panel][node];
+        }
         w->end[node] = law->motion[node];
         w->end_error[node] = rounded * magnitude(law->motion[node]);
-        w->energy += rounded * w->impedance[node] * (magnitude(law->rod[node]) + magnitude(law->rod[node + 1]));
+        w->energy += rounded * both * (magnitude(law->rod[node]) + magnitude(law->rod[node + 1]));
     }
     for (int k = 0; k <= NAME_HEARD; ++k) {
         w->total[k] = 0;
@@ -68,6 +80,9 @@ static void begun_wrong(wrong *w, const laws *law)
         w->load[f][0] = w->load[f][1] = w->load[f][2] = 0;
         w->roundings[f] = roundings + 4;
         w->since[f][0] = w->since[f][1] = 0;
+        for (int panel = 0; panel < NAME_PANELS; ++panel) {
+            w->force[panel][f] = 0;
+        }
     }
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
         w->output[output] = 0;
@@ -114,7 +129,7 @@ static void defect(const model_of *m, const laws *law, wrong *w, int half, int p
     const real spare = (real)(16 * (degree + 4)) * least_number;
     real apart[NAME_DEGREE + 3]; /* q - p */
     real q[NAME_DEGREE + 1];
-    real pushes = 0, sizes = 0, sent = 0, aparts = 0, unequal = 0;
+    real pushes = 0, lefts = 0, rights = 0, sent = 0, aparts = 0, unequal = 0;
     for (int k = 0; k <= degree; ++k) {
         const real from_left = alpha * a[k];
         const real from_right = beta * b[k];
@@ -125,12 +140,16 @@ static void defect(const model_of *m, const laws *law, wrong *w, int half, int p
         q[k] = left[k] + a[k];
         apart[k] = q[k] - ((from_left + from_right) + load);
         pushes += pushed;
-        sizes += magnitude(left[k]) + magnitude(a[k]) + pushed;
+        lefts += magnitude(left[k]);
+        rights += magnitude(right[k]);
         sent += magnitude(q[k]);
         aparts += magnitude(apart[k]);
         unequal += magnitude(one - other) + unit * (magnitude(one) + magnitude(other));
     }
     *more = unequal;
+    const real sizes = lefts + w->size[!half][RIGHT][panel][node] + pushes;
+    w->size[half][LEFT][panel][node + 1] = lefts;
+    w->size[half][RIGHT][panel][node + 1] = rights;
     const real pushed_wrong = unit * (2 * sizes + (roundings + 2) * pushes + (roundings + 8) * aparts) +
                               (f >= 0 ? w->force[panel][f] : (real)0) + spare;
     if (!is_body[node]) {
@@ -164,12 +183,9 @@ static void worsen(const model_of *m, const laws *law, wrong *w, int half, int d
         own[node] = 0;
         more[node] = 0;
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
-            const real length = 2 * half_length[panel];
             real velocity, unequal;
             defect(m, law, w, half, panel, node, degree, &velocity, &unequal);
-            const real waves = root(length) * w->impedance[node];
-            w->energy += waves * unequal;
-            w->energy += is_body[node] ? root(1 + 2 * law->rate[node] * length) * w->mass[node] * velocity : waves * velocity;
+            w->energy += w->moved[panel][node] * velocity + w->sent[panel][node] * unequal;
             own[node] = velocity > own[node] ? velocity : own[node];
             more[node] = unequal > more[node] ? unequal : more[node];
         }
@@ -193,7 +209,8 @@ static void worsen(const model_of *m, const laws *law, wrong *w, int half, int d
     }
 }
 
-/* What the outputs of a window may be wrong by, and how large they are in the middle of sections. */
+/* What the outputs of a window may be wrong by; and how large they are in the middle of sections, where that may be more
+ * than was seen. */
 static void outputs_wrong(const model_of *m, const laws *law, wrong *w, int window, int degree)
 {
     const int half = window % 2;
@@ -203,21 +220,23 @@ static void outputs_wrong(const model_of *m, const laws *law, wrong *w, int wind
         const real *const c = m->series + m->place[window] + (size_t)s * (size_t)(degree + 2);
         const real terms = (real)(first_term[s + 1] - first_term[s]);
         strand[s] = spare;
+        real weight = (real)(degree + 2), more = 4, reading = 0; /* (k + 1)(k + 2) + degree */
         for (int k = 0; k <= degree + 1; ++k) {
-            strand[s] += 12 * unit * (real)((k + 1) * (k + 2) + degree) * magnitude(c[k]);
+            reading += weight * magnitude(c[k]);
+            weight += more;
+            more += 2;
         }
+        strand[s] += 12 * unit * reading;
         for (int t = first_term[s]; t < first_term[s + 1]; ++t) {
             const int then = term_back[t] ? !half : half;
             const int way = term_way[t];
             const int heard = term_heard[t];
-            const real *const v = m->waves[then][way][term_panel[t]][term_sender[t]];
             const real length = 2 * half_length[term_panel[t]];
             const real gain = magnitude(law->gain[heard]);
             const real sender = way == LOAD ? w->force[term_panel[t]][term_sender[t]] : w->wave[then][way][term_sender[t]];
-            real size = 0;
-            for (int k = 0; k <= degree; ++k) {
-                size += magnitude(v[k]);
-            }
+            const real *const load = m->waves[then][LOAD][term_panel[t]][term_sender[t]];
+            const real size = way == LOAD ? magnitude(load[0]) + magnitude(load[1]) + magnitude(load[2])
+                                          : w->size[then][way][term_panel[t]][term_sender[t]];
             if (term_summed[t]) {
                 const real total = magnitude(m->total[heard]) + length * size;
                 w->total[heard] += length * sender + unit * ((real)(degree + 16) * length * size + 2 * total) + spare;
@@ -231,12 +250,13 @@ static void outputs_wrong(const model_of *m, const laws *law, wrong *w, int wind
         const real middle = (from[section] + from[section + 1]) / 2;
         for (int output = 0; output < NAME_OUTPUTS && (real)window + from[section] <= NAME_TAU_MAX; ++output) {
             const int at = section * NAME_OUTPUTS + output;
-            real sum = 0;
+            real sum = 0, mean = 0;
             for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
                 sum += strand[strand_at[k]];
+                mean += m->series[m->place[window] + (size_t)strand_at[k] * (size_t)(degree + 2)];
             }
             w->output[output] = larger(w->output[output], sum);
-            if ((real)window + middle <= NAME_TAU_MAX) {
+            if ((real)window + middle <= NAME_TAU_MAX && !(magnitude(mean) <= w->seen[output])) {
                 w->seen[output] = larger(w->seen[output], value(m, window, section, output, middle));
             }
         }

@@ -1,6 +1,8 @@
 /* runtime_peaks.c: the least and the greatest value of each output of a model, between samples, too.
  * Plain C that is put below runtime.c in NAME.c; what stands below the first empty line. */
+#ifndef NAME_JOINTED
 #include "runtime_misfit.c"
+#endif
 
 /* How often an interval is halved at most. */
 enum { DEEPEST = 60 };

@@ -1,6 +1,6 @@
 /* runtime_read.c: values of a model that has been built, one by one and in blocks.
  * Plain C that is put below the march in NAME.c; what stands below the first empty line. */
-#ifndef NAME_SLOTS
+#ifndef NAME_JOINTED
 #include "runtime.c"
 #endif
 

@@ -1,6 +1,6 @@
 /* runtime_series.c: what marches under parameters that come at run time share: series, loads, the size of outputs.
  * Plain C of a program of a scene called `name`; it stands below the first empty line in NAME.c, above the march. */
-#ifndef NAME_SLOTS
+#ifndef NAME_JOINTED
 #include "runtime_tables.h"
 #endif
 

@@ -1,6 +1,8 @@
 /* runtime_sets.c: many sets of parameters one after the other, for callers to whom a call costs more than a model.
  * Plain C that is put below NAME.c and runtime_peaks.c; what stands below the first empty line. */
+#ifndef NAME_JOINTED
 #include "runtime_peaks.c"
+#endif
 
 size_t name_model_size(void);
 size_t name_tangent_size(void);
@@ -11,11 +13,6 @@ void name_sets_peaks(const name_parameters *parameters, size_t sets, name_model 
 void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tangent *tangent, const name_real *tau,
                         int even, size_t count, int *status, name_real *estimate, name_real *out);
 
-void name_sets_sizes(size_t *sizes);
-void name_sets_bounds(const name_parameters *parameters, size_t sets, name_model *model, int *status,
-                      name_real *estimate, name_real *out);
-void name_sets_misfits(const name_parameters *parameters, size_t sets, name_batch *batch, const name_data *data,
-                       int *status, name_real *estimate, name_real *out);
 
 size_t name_model_size(void)
 {
@@ -78,39 +75,6 @@ void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tan
             for (size_t row = 0; row < rows; ++row) {
                 all[row * count + k] = now[row];
             }
-        }
-    }
-}
-
-/* Of each set the status, the estimate, and the bounds: out[set*OUTPUTS + output]. */
-void name_sets_bounds(const name_parameters *parameters, size_t sets, name_model *model, int *status,
-                      name_real *estimate, name_real *out)
-{
-    for (size_t set = 0; set < sets; ++set) {
-        status[set] = name_error_bound(model, parameters + set, out + set * NAME_OUTPUTS);
-        estimate[set] = name_error_estimate(model);
-    }
-}
-
-/* Of a batch and of data, in bytes. */
-void name_sets_sizes(size_t *sizes)
-{
-    sizes[0] = sizeof(name_batch);
-    sizes[1] = sizeof(name_data);
-}
-
-/* Of each set the status, the estimate, and the sum of the squares of its misfits. */
-void name_sets_misfits(const name_parameters *parameters, size_t sets, name_batch *batch, const name_data *data,
-                       int *status, name_real *estimate, name_real *out)
-{
-    for (size_t set = 0; set < sets; set += NAME_WIDTH) {
-        name_real misfit[NAME_WIDTH];
-        (void)name_build_batch(batch, parameters + set, sets - set);
-        name_batch_misfit(batch, data, misfit);
-        for (size_t k = 0; k < NAME_WIDTH && set + k < sets; ++k) {
-            status[set + k] = batch->status[k];
-            estimate[set + k] = LANE(batch->estimate, k);
-            out[set + k] = misfit[k];
         }
     }
 }

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import wavesym
-from wavesym.errors import WavesymError
+from tests.support.without_compiler import without_compiler
+from wavesym.errors import UnservedError, WavesymError
 
 SCENE = wavesym.Scene.from_toml("drive_equal").with_(
     {"output.until": 6, "output.tolerance": "1e-11", "load[1].times": ["5/2"]}
@@ -61,3 +62,15 @@ def test_other_data_are_refused(model):
         model.misfit([0, 1], [1, 2])
     with pytest.raises(WavesymError, match="tau: 0 to 6 expected"):
         model.misfit([7.0], np.zeros((len(model.outputs), 1)))
+
+
+def test_numpy_finds_the_same(model):
+    with without_compiler():
+        other = wavesym.model(SCENE, runtime=["kappa"])
+    kappa = np.array([*KAPPA[:3], [1, -1, 1]])
+    tau, data = TAUS["few"], np.ones((len(model.outputs), 3))
+    data[0, 1] = np.nan
+    expected = model.misfit(tau, data)(kappa=kappa)
+    assert other.misfit(tau, data)(kappa=kappa) == pytest.approx(expected, rel=1e-9, nan_ok=True)
+    with pytest.raises(UnservedError, match="bounds: 4 sets given without a C compiler"):
+        other.bounds(kappa=kappa)

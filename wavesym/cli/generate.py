@@ -49,7 +49,8 @@ FINEST = {"double": Fraction(1, 10**13), "single": Fraction(1, 10**5)}  # of tol
 @click.option(
     "--runtime",
     metavar="LIST",
-    help="Parameters that come at run time, a list of kappa, inertia, velocity and load with commas between.",
+    help="Parameters that come at run time, with commas between: of kappa, inertia, velocity and load; of a chain that "
+    "is written out mass, dashpot, spring, impedance, velocity and load.",
 )
 @click.option("--package", is_flag=True, help="Add what builds, tests and installs C: CMake, ctest, pkg-config.")
 @click.option("--force", is_flag=True, help="Replace files that wavesym did not write, too.")

@@ -74,7 +74,7 @@ class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
     `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "modes", or
-    "runtime": a march whose parameters come at run time, by its `laws`, in C alone.
+    "runtime": a march whose parameters come at run time, by its `laws`, in C alone; "joints": that of a chain.
     `tables`
     are flat, by name, each number as it is written: indices are ints, all else floats of the format; which there are,
     assembly.py says, of rings rings/tables.py, of modes modes/tables.py. `constants` are single numbers.
@@ -101,7 +101,7 @@ class Program:
     @property
     def evaluator(self) -> str:
         """What a user calls its kind."""
-        return "march" if self.kind == "rings" else self.kind
+        return {"rings": "march", "joints": "runtime"}.get(self.kind, self.kind)
 
     @property
     def error_bound(self) -> float:

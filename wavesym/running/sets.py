@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.errors import UnservedError
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.arrays.engine import ArraySets
 from wavesym.programs.runtime.engine import Array, Engine, FoundSets
@@ -15,45 +17,41 @@ from wavesym.running.native import FAST, address, library
 from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.targets.files import runtime_sets
 
+_MANY, _WHERE = ctypes.c_size_t, ctypes.c_void_p
+_AT_ONCE = 1 << 22  # numbers
+
 
 def sets_engine(program: Program) -> Engine:
-    """What computes a program here: C, or NumPy where there is no compiler."""
+    """What computes a program here: C, or NumPy where there is no compiler. CompilerError for a chain there."""
+    if program.kind == "joints":
+        return CompiledSets(program)
     try:
         compiler()
     except CompilerError:
         return ArraySets(program)
-    return CompiledSets(program)
+    return BatchedSets(program)
 
 
 class CompiledSets:
     """One set after the other, in the memory of one model. CompilerError where there is no C compiler."""
 
     def __init__(self, program: Program) -> None:
-        name = program.provenance.model.name
+        self._name = program.provenance.model.name
         files = runtime_sets(program)
-        loaded = library(files[f"{name}.c"], FAST, (f"{name}.h", files[f"{name}.h"]))
+        header = (f"{self._name}.h", files[f"{self._name}.h"])
+        self._loaded = library(files[f"{self._name}.c"], FAST, header)
         self._outputs = len(program.outputs)
-        self._values, self._peaks, self._tangents, self._misfits, self._bounds = (
-            getattr(loaded, f"{name}_sets{kind}") for kind in ("", "_peaks", "_tangents", "_misfits", "_bounds")
+        self._values, self._tangents = (
+            self._function(f"sets{kind}", [_WHERE, _MANY, _WHERE, _WHERE, ctypes.c_int, _MANY, _WHERE, _WHERE, _WHERE])
+            for kind in ("", "_tangents")
         )
-        many, where = ctypes.c_size_t, ctypes.c_void_p
-        for of_taus in (self._values, self._tangents):
-            of_taus.argtypes = [where, many, where, where, ctypes.c_int, many, where, where, where]
-            of_taus.restype = None
-        for of_sets in (self._peaks, self._bounds):
-            of_sets.argtypes = [where, many, where, where, where, where]
-            of_sets.restype = None
-        self._misfits.argtypes = [where, many, where, where, where, where, where]
-        self._misfits.restype = None
-        self._data_size, self._data = getattr(loaded, f"{name}_data_size"), getattr(loaded, f"{name}_data_init")
-        self._data_size.argtypes, self._data_size.restype = [where, many], many
-        self._data.argtypes = [where, where, where, where, many]
-        sizes = (many * 2)()
-        getattr(loaded, f"{name}_sets_sizes")(sizes)
-        self._batch_size, self._data_bytes = sizes
-        self._size, self._tangent_size = (
-            ctypes.CFUNCTYPE(ctypes.c_size_t)((f"{name}_{kind}_size", loaded))() for kind in ("model", "tangent")
-        )
+        self._peaks = self._function("sets_peaks", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._size, self._tangent_size = (self._function(f"{kind}_size", [], _MANY)() for kind in ("model", "tangent"))
+
+    def _function(self, name: str, arguments: list[Any], result: Any = None) -> ctypes._NamedFuncPointer:
+        found: ctypes._NamedFuncPointer = getattr(self._loaded, f"{self._name}_{name}")
+        found.argtypes, found.restype = arguments, result
+        return found
 
     def values(self, given: Array, tau: Array) -> FoundSets:
         """See `Engine`."""
@@ -69,13 +67,55 @@ class CompiledSets:
 
     def bounds(self, given: Array) -> FoundSets:
         """See `Engine`."""
-        return self._of_each(self._bounds, given, (self._outputs,))
+        raise UnservedError(f"bounds: {len(given)} sets of a chain given, collision, drive or building expected")
+
+    def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
+        """See `Engine`; sample by sample, some sets at a time."""
+        step = max(1, _AT_ONCE // max(1, data.size))
+
+        def misfits(given: Array) -> FoundSets:
+            found = _none(len(given), ())
+            for begin in range(0, len(given), step):
+                here = slice(begin, begin + step)
+                some = self.values(given[here], tau)
+                found.status[here], found.estimate[here] = some.status, some.estimate
+                sums = np.nansum((some.values[:, 0] - data) ** 2, axis=(1, 2))
+                found.values[here] = np.where(some.status == 0, sums, np.nan)
+            return found
+
+        return misfits
 
     def _of_each(self, function: ctypes._NamedFuncPointer, given: Array, shape: tuple[int, ...]) -> FoundSets:
         found = _none(len(given), shape)
         model = np.empty(self._size, np.uint8)
         function(address(given), len(given), address(model), *_places(found))
         return found
+
+    def _at(self, function: ctypes._NamedFuncPointer, size: int, given: Array, tau: Array, lanes: int) -> FoundSets:
+        even = len(tau) > 1 and _even(tau)
+        told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
+        found = _none(len(given), (lanes, self._outputs, len(tau)))
+        model = np.empty(size, np.uint8)  # of this call, so that several may run at once
+        function(address(given), len(given), address(model), address(told), even, len(tau), *_places(found))
+        return found
+
+
+class BatchedSets(CompiledSets):
+    """Those of the named systems: with bounds, and with misfits of several sets side by side."""
+
+    def __init__(self, program: Program) -> None:
+        super().__init__(program)
+        self._misfits = self._function("sets_misfits", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._bounds = self._function("sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._data_size = self._function("data_size", [_WHERE, _MANY], _MANY)
+        self._data = self._function("data_init", [_WHERE, _WHERE, _WHERE, _WHERE, _MANY], ctypes.c_int)
+        sizes = (_MANY * 2)()
+        self._function("sets_sizes", [_MANY * 2])(sizes)
+        self._batch_size, self._data_bytes = sizes
+
+    def bounds(self, given: Array) -> FoundSets:
+        """See `Engine`."""
+        return self._of_each(self._bounds, given, (self._outputs,))
 
     def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
         """See `Engine`."""
@@ -91,14 +131,6 @@ class CompiledSets:
             return found
 
         return misfits
-
-    def _at(self, function: ctypes._NamedFuncPointer, size: int, given: Array, tau: Array, lanes: int) -> FoundSets:
-        even = len(tau) > 1 and _even(tau)
-        told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
-        found = _none(len(given), (lanes, self._outputs, len(tau)))
-        model = np.empty(size, np.uint8)  # of this call, so that several may run at once
-        function(address(given), len(given), address(model), address(told), even, len(tau), *_places(found))
-        return found
 
 
 def _aligned(size: int) -> NDArray[np.uint8]:

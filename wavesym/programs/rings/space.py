@@ -110,7 +110,7 @@ SHOWN = JointSpace(
 
 @dataclass(frozen=True)
 class JointRows:
-    """The laws of a joint as rows, of numbers or of functions of parameters."""
+    """The laws of a joint as rows, of numbers or of functions of parameters; the first of its states are `masses`."""
 
     rates: Rows
     pushed: Rows
@@ -119,6 +119,7 @@ class JointRows:
     weights: tuple[Any, ...]
     begun: tuple[Any, ...]
     ports: tuple[Port, ...]
+    masses: int
 
 
 def joint_space(network: Network, joint: Joint) -> JointSpace:
@@ -188,6 +189,7 @@ def joint_rows(network: Network, joint: Joint) -> JointRows:
         (*(law.mass[k] for k in heavy), *(stiffness for stiffness, _ in springs)),
         (*(network.points[joint.points[k]].velocity for k in heavy), *(_ZERO for _ in springs)),
         tuple(_ports(network, joint)),
+        len(heavy),
     )
 
 

@@ -21,10 +21,10 @@ from wavesym.programs.runtime.plan import RuntimePlan
 
 STIFF = fmpq(100)
 LEAST = 8
-_MARGIN = 16  # outputs are often smaller than waves
+MARGIN = 16  # outputs are often smaller than waves
 _HIGHEST = 1000
 _MOST_WORK = 3e8  # nodes * coefficients * windows, for each degree
-_LARGEST_MODEL = 1 << 28  # bytes
+LARGEST_MODEL = 1 << 28  # bytes
 
 
 def raised(degree: int) -> int:
@@ -34,7 +34,7 @@ def raised(degree: int) -> int:
 
 def share(given: RuntimePlan, tolerance: fmpq, real: Real) -> float:
     """What a window may miss, relative to the largest wave; no less than what rounding leaves."""
-    return max(nearest(tolerance / (_MARGIN * given.plan.windows)), 2 * nearest(real.roundoff))
+    return max(nearest(tolerance / (MARGIN * given.plan.windows)), 2 * nearest(real.roundoff))
 
 
 def degrees(given: RuntimePlan, tolerance: fmpq, real: Real) -> tuple[int, int]:
@@ -48,10 +48,10 @@ def degrees(given: RuntimePlan, tolerance: fmpq, real: Real) -> tuple[int, int]:
     if any(field.positive for field in given.fields):
         degree = _enough(_numbers(given, STIFF), degree, allowed)
     size = real.bytes * given.plan.windows * len(given.strands) * (degree + 2)
-    if size > _LARGEST_MODEL:
+    if size > LARGEST_MODEL:
         raise CostError(
             f"output.until: a model of {size:.1e} bytes would be kept to tau = {given.plan.tau_max:g}, at most "
-            f"{_LARGEST_MODEL:.1e} expected (a shorter horizon, or fewer outputs, helps)"
+            f"{LARGEST_MODEL:.1e} expected (a shorter horizon, or fewer outputs, helps)"
         )
     return first, degree
 

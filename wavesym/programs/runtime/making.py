@@ -18,6 +18,7 @@ from wavesym.programs.program import Program, ProgramOutput, Provenance, Referen
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.degree import STIFF, degrees, share
+from wavesym.programs.runtime.joints.making import joints_program
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.plan import Push, RuntimePlan, runtime_plan
 from wavesym.programs.runtime.request import fields
@@ -43,12 +44,15 @@ def runtime_program(
     ):
         if value != usual:
             raise WavesymError(f"{option}: {value} given with --runtime, {usual or 'nothing'} expected")
+    real = REALS[request.precision]
+    tolerance = max(model.tolerance, FINEST[real.name])
+    if model.chain is None:
+        program = joints_program(model, request, amplitudes, tolerance, real)
+        return _with_reference(program) if tested else program
     given = fields(model, request.runtime, amplitudes)
     chosen = any(field.name == "load" for field in given)
     loads = [load for _, load in amplitudes] if chosen else [load for load in model.loads if load.source != "impact"]
-    real = REALS[request.precision]
     made = runtime_plan(model, given, loads, real)
-    tolerance = max(model.tolerance, FINEST[real.name])
     least, degree = degrees(made, tolerance, real)
     light = f" and for kappa up to {STIFF}" if any(field.positive for field in given) else ""
     reason = (
@@ -59,7 +63,13 @@ def runtime_program(
     laws = _laws(made, () if chosen else tuple(real.nearest(load.weight) for load in loads))
     positive = [label for field in given if field.positive for label in field.labels]
     rounded = most_roundings(laws.functions, positive)
-    constants = {**_constants(made, real), "roundings": rounded, "degree": degree, "least": least, "share": share(made, tolerance, real)}
+    constants = {
+        **_constants(made, real),
+        "roundings": rounded,
+        "degree": degree,
+        "least": least,
+        "share": share(made, tolerance, real),
+    }
     program = Program(
         "runtime",
         real,

@@ -29,13 +29,13 @@ class ParameterUnit:
     text: str
 
 
-_NONE = ParameterUnit(fmpq(1), "")
+PLAIN = ParameterUnit(fmpq(1), "")
 
 
 def unit_of(model: Model, name: str) -> ParameterUnit:
     """That of the numbers of a field other than `load`."""
     if model.clock is None or name not in ("velocity", "inertia"):
-        return _NONE
+        return PLAIN
     if name == "inertia":  # as a physical drive is rewritten
         return ParameterUnit(fmpq(1), "kg*m^2")
     return ParameterUnit(*model.inputs["impact"])
@@ -44,7 +44,7 @@ def unit_of(model: Model, name: str) -> ParameterUnit:
 def unit_of_load(model: Model, load: Applied) -> ParameterUnit:
     """That of an amplitude: of a step, or of a ramp per unit of time."""
     if model.clock is None:
-        return _NONE
+        return PLAIN
     size, text = model.inputs[load.source]
     if load.source[0] not in RAMPS:
         return ParameterUnit(size, text)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from wavesym.programs.program import Program, ReferenceValues, StreamedValues
-from wavesym.targets.c import closed, march, modes, pieces, rings, runtime
+from wavesym.targets.c import closed, joints, march, modes, pieces, rings, runtime
 from wavesym.targets.c.header import header
 from wavesym.targets.c.selftest import selftest
 from wavesym.targets.description import Description
@@ -16,6 +16,7 @@ _SOURCES = {
     "rings": rings.source,
     "modes": modes.source,
 }
+_AT_RUN_TIME = {"runtime": runtime.files, "joints": joints.files}
 _MORE = {"march": march.streaming, "modes": modes.streaming}
 
 
@@ -25,8 +26,8 @@ class CTarget:
     tested = True
 
     def files(self, description: Description, program: Program) -> dict[str, str]:
-        if program.kind == "runtime":
-            return runtime.files(description, program)
+        if program.kind in _AT_RUN_TIME:
+            return _AT_RUN_TIME[program.kind](description, program)
         name = description.name
         more = _MORE[program.kind](description, program) if program.kind in _MORE else ""
         made = {

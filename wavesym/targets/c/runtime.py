@@ -18,7 +18,7 @@ from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_constants, c_literal, c_literals, c_tables
 
 _SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard", "events", "lanes", "groups")
-_LIMITS = {"double": "DBL", "single": "FLT"}
+LIMITS = {"double": "DBL", "single": "FLT"}
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     """The files of a program, by name."""
     laws = program.laws
     assert laws is not None
-    fields = tuple(_fields(laws, program.real))
+    fields = tuple(parameter_fields(laws, program.real))
     constants = c_constants(program.constants, program.real)
     own = not any(field.name == "load" for field in fields)
     header = CRuntimeHeader(
@@ -96,11 +96,11 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     context = CRuntime(
         scene=scene,
         fields=fields,
-        laws=tuple(_assigned(laws, laws.functions, program.real)),
-        slopes=tuple(_slopes(laws, program.real)),
-        largest=f"{_LIMITS[program.real.name]}_MAX",
-        least=f"{_LIMITS[program.real.name]}_MIN",
-        load_lane=_load_lane(laws),
+        laws=tuple(assigned(laws, laws.functions, program.real)),
+        slopes=tuple(slopes(laws, program.real)),
+        largest=f"{LIMITS[program.real.name]}_MAX",
+        least=f"{LIMITS[program.real.name]}_MIN",
+        load_lane=load_lane(laws),
         tables=c_tables(program.tables, program.real),
         constants=constants,
         amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
@@ -117,7 +117,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         f"{scene.name}.c": render("c/runtime.c.j2", context),
     }
     if isinstance(program.reference, ReferenceValues):
-        made[f"{scene.name}_selftest.c"] = _selftest(scene, program, program.reference)
+        made[f"{scene.name}_selftest.c"] = runtime_selftest(scene, program, program.reference)
     return made
 
 
@@ -125,11 +125,12 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what runs many sets of parameters in NAME.c."""
     made = files(scene, program)
     name = f"{scene.name}.c"
-    more = "\n\n".join(kernel(file, scene) for file in ("runtime_peaks.c", "runtime_sets.c"))
+    more = "\n\n".join(kernel(file, scene) for file in ("runtime_peaks.c", "runtime_sets.c", "runtime_sets_batch.c"))
     return made | {name: f"{made[name]}\n{more}\n"}
 
 
-def _selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:
+def runtime_selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:
+    """What compares values of the scene's own parameters with reference values."""
     # errors are estimated: ten times the tolerance is what no program that is right comes near to
     allowed = [10 * output.bound * output.largest for output in program.outputs]
     context = CRuntimeSelfTest(
@@ -144,14 +145,15 @@ def _selftest(scene: Description, program: Program, reference: ReferenceValues) 
     return render("c/runtime_selftest.c.j2", context)
 
 
-def _fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:
+def parameter_fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:
+    """The fields of the parameters, as C tells them."""
     for field in laws.fields:
         yield CRuntimeField(
             name=field.name,
             constant=field.name.upper(),
             count=str(len(field.values)),
             check="positive_number" if field.positive else "finite_number",
-            labels=tuple(map(_told, field.labels, field.units)),
+            labels=tuple(map(_told, field.told, field.units)),
             values=c_literals(map(real.nearest, field.values), real),
         )
 
@@ -160,14 +162,15 @@ def _told(label: str, unit: ParameterUnit) -> str:
     return f"{label} [{unit.text}]" if unit.text else label
 
 
-def _assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: Real) -> Iterator[tuple[str, str]]:
+def assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: Real) -> Iterator[tuple[str, str]]:
+    """What is assigned, with the expression."""
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
     for array, functions in arrays.items():
         for k, function in enumerate(functions):
             yield f"{array}[{k}]", expression(function, places, real)
 
 
-def _slopes(laws: RuntimeLaws, real: Real) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
+def slopes(laws: RuntimeLaws, real: Real) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
     """The derivatives that are not 0, by the number of the parameter."""
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
     for lane, label in enumerate(places):
@@ -183,7 +186,8 @@ def _slopes(laws: RuntimeLaws, real: Real) -> Iterator[tuple[str, tuple[tuple[st
             yield str(lane), tuple(found)
 
 
-def _load_lane(laws: RuntimeLaws) -> str:
+def load_lane(laws: RuntimeLaws) -> str:
+    """The number of the first load among all parameters, -1 where loads are none."""
     before = 0
     for field in laws.fields:
         if field.name == "load":

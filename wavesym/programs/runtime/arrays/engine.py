@@ -35,9 +35,12 @@ class ArraySets:
 
     def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
         """See `Engine`."""
-        return lambda given: self._some(
-            given, (), lambda march: np.nansum((array_values(self._tables, march, tau)[:, 0] - data) ** 2, axis=(1, 2))
-        )
+
+        def misfits(march: ArrayMarch) -> Array:
+            sums = np.nansum((array_values(self._tables, march, tau)[:, 0] - data) ** 2, axis=(1, 2))
+            return np.where(march.status == 0, sums, np.nan)
+
+        return lambda given: self._some(given, (), misfits)
 
     def bounds(self, given: Array) -> FoundSets:
         """See `Engine`."""
