@@ -154,6 +154,11 @@ def sweep(
     `workers` processes of this machine (in a program under `if __name__ == "__main__":`, as these import it), those of
     a Dask `scheduler`, or whoever is best. An xarray.Dataset: extremes over the varied paths, `record` and `output`,
     NaN for a case that failed. SceneError for a request that is wrong, WavesymError for the folder of another sweep.
+
+    >>> import wavesym
+    >>> request = {"scene": "drive_m1", "vary": {"output.until": [4, 5], "system.kappa[0]": ["1/2", 1, 2]}}
+    >>> wavesym.sweep(request, "stiffnesses")["max"].dims
+    ('output.until', 'system.kappa[0]', 'output')
     """
     from wavesym.sweeps.store import needed, opened
 
@@ -172,9 +177,9 @@ def run_sweep(
 ) -> int:
     """Compute what is left of a sweep; how many of its cases have failed. `watch` is told of all cases, and of those
     that are done and were done before."""
-    from wavesym.sweeps.running import Engine, run
+    from wavesym.sweeps.running import Computing, run
 
-    return run(source, folder, Engine(workers, scheduler), retry_failed, watch)
+    return run(source, folder, Computing(workers, scheduler), retry_failed, watch)
 
 
 def sweep_status(folder: Path) -> SweepStatus:

@@ -1,7 +1,7 @@
 """Loaded by a worker of Dask when it starts: says which batches it computes, and does what a test asks for in one.
 
-SPIED_LOG is a file that gets a line for each batch; SPIED_SECONDS is how long each takes at least; the batch SPIED_CRASH
-kills the worker, and the batch SPIED_EAT fills its memory.
+SPIED_LOG is a file that gets a line for each batch; SPIED_SECONDS is how long each takes at least; the batch
+SPIED_CRASH kills the worker, and the batch SPIED_EAT fills its memory.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from wavesym.errors import SceneError
 from wavesym.scene import Scene
-from wavesym.sweeps.plan import Plan, plan
+from wavesym.sweeps.plan import SweepPlan, plan
 from wavesym.sweeps.request import SweepRequest
 
 AT2 = """PEER
@@ -51,7 +51,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def planned(folder: Path, text: str) -> Plan:
+def planned(folder: Path, text: str) -> SweepPlan:
     (folder / "sweep.toml").write_text(text)
     file, request = SweepRequest.read(folder / "sweep.toml")
     return plan(request, file)

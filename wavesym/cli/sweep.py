@@ -13,7 +13,7 @@ from wavesym.cli.progress import progress
 
 @click.command()
 @click.argument("source", metavar="SWEEP", type=PATH)
-@click.option("-o", "--out", type=PATH, metavar="DIR", help="Folder of the results; where they are begun it goes on.")
+@click.option("-o", "out", type=PATH, metavar="DIR", help="Folder of the results; where they are begun it goes on.")
 @click.option("--workers", type=click.IntRange(min=1), help="So many processes of this machine compute.")
 @click.option("--scheduler", metavar="ADDRESS", help="The workers of this Dask scheduler compute (tcp://HOST:PORT).")
 @click.option("--retry-failed", is_flag=True, help="Cases that failed are tried again.")
@@ -37,8 +37,7 @@ def sweep(
 
     \b
     Example:
-      wavesym sweep sweep.toml -o results
-      wavesym sweep results --table results.csv
+      wavesym sweep stiffness.toml -o stiffness
     """
     from wavesym import compiler
 

@@ -9,7 +9,7 @@ from math import ceil, prod
 
 import numpy as np
 
-from wavesym.sweeps.plan import Plan
+from wavesym.sweeps.plan import SweepPlan
 
 _MOST_BATCHES = 5000  # where each case is computed by itself: so many files of every array at most
 _RECORDS = 1000  # at once: with their values at all samples some hundred MB
@@ -50,12 +50,12 @@ class Batches:
         """The indices of its cases, in order."""
         return list(product(*(range(part.start, part.stop) for part in self.region(batch))))
 
-    def mark(self, plan: Plan, batch: int) -> str:
+    def mark(self, plan: SweepPlan, batch: int) -> str:
         """A name for what becomes of a batch: a hash of all that goes into it."""
         return hashlib.sha256(f"{plan.sha256} {self.kind} {self.chunk} {batch}".encode()).hexdigest()
 
 
-def batches(plan: Plan, kind: str, together: tuple[bool, ...] = ()) -> Batches:
+def batches(plan: SweepPlan, kind: str, together: tuple[bool, ...] = ()) -> Batches:
     """The batches of a sweep; `together` says of each dimension whether its cases can be parts of one batch."""
     if kind == "recorded":
         return Batches(kind, plan.shape, (*(1 for _ in plan.shape[:-1]), min(plan.shape[-1], _RECORDS)))

@@ -19,7 +19,7 @@ from uuid import uuid4
 from wavesym import __version__
 from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches
-from wavesym.sweeps.plan import Plan
+from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.store import needed
 from wavesym.sweeps.values import BatchValues
 
@@ -70,7 +70,7 @@ def _quiet() -> Iterator[None]:
             logger.setLevel(level)
 
 
-def on_workers(client: Any, plan: Plan, batches: Batches, todo: Iterable[int]) -> Iterator[Done]:
+def on_workers(client: Any, plan: SweepPlan, batches: Batches, todo: Iterable[int]) -> Iterator[Done]:
     """The batches as they are done, in any order. ClusterError where the scheduler goes, or workers cannot do it."""
     from distributed import KilledWorker
 
@@ -85,7 +85,7 @@ def on_workers(client: Any, plan: Plan, batches: Batches, todo: Iterable[int]) -
         yield batch, _one_by_one(client, plan, batches, batch)
 
 
-def _one_by_one(client: Any, plan: Plan, batches: Batches, batch: int) -> BatchValues:
+def _one_by_one(client: Any, plan: SweepPlan, batches: Batches, batch: int) -> BatchValues:
     """A batch that killed its workers: each case alone, so that only what does it fails."""
     from distributed import KilledWorker
 
@@ -100,7 +100,7 @@ def _one_by_one(client: Any, plan: Plan, batches: Batches, batch: int) -> BatchV
 
 
 def _done(
-    client: Any, plan: Plan, tasks: Iterable[tuple[Any, ...]], ahead: int | None = None
+    client: Any, plan: SweepPlan, tasks: Iterable[tuple[Any, ...]], ahead: int | None = None
 ) -> Iterator[tuple[Any, Any]]:
     """Tasks with their futures as they are done; no future is held longer."""
     from distributed import as_completed
@@ -151,7 +151,7 @@ def _threads(client: Any) -> int:
     return sum(client.nthreads().values())
 
 
-def _send(client: Any, plan: Plan, batches: Batches) -> None:
+def _send(client: Any, plan: SweepPlan, batches: Batches) -> None:
     """The plan to every worker there is, and to those that come, once."""
     from wavesym.sweeps.worker import SentPlan
 

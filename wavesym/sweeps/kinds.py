@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from wavesym.sweeps import parameters, recorded
-from wavesym.sweeps.plan import Plan
+from wavesym.sweeps.plan import SweepPlan
 
 
-def kind(plan: Plan) -> tuple[str, tuple[bool, ...]]:
+def kind(plan: SweepPlan) -> tuple[str, tuple[bool, ...]]:
     """The kind of its batches, and in which dimensions cases can be parts of one batch."""
     if recorded.serves(plan):
         return "recorded", ()

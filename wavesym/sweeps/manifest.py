@@ -9,14 +9,14 @@ from typing import Any
 from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.marks import FOLDER
-from wavesym.sweeps.plan import SCHEMA, Plan
+from wavesym.sweeps.plan import SCHEMA, SweepPlan
 from wavesym.sweeps.store import NAME, Store
 from wavesym.writing import write_whole
 
 FILE = "manifest.json"
 
 
-def settle(folder: Path, plan: Plan, batches: Batches) -> Store:
+def settle(folder: Path, plan: SweepPlan, batches: Batches) -> Store:
     """The store of a sweep in its folder, made where it is not there. WavesymError for a folder of another sweep."""
     store = Store(folder, plan, batches)
     there = read(folder)
@@ -48,7 +48,7 @@ def read(folder: Path) -> dict[str, Any] | None:
     return manifest
 
 
-def _said(plan: Plan, batches: Batches) -> dict[str, Any]:
+def _said(plan: SweepPlan, batches: Batches) -> dict[str, Any]:
     from wavesym import __version__
 
     return {

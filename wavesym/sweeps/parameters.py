@@ -21,7 +21,7 @@ from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes
 from wavesym.scene.paths import changed, steps
 from wavesym.sweeps.dimension import Column, number_of
-from wavesym.sweeps.plan import Plan
+from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.single import instants, of_model, output_rows, spread_out
 from wavesym.sweeps.values import CaseValues, Numbers
 
@@ -41,7 +41,7 @@ class Lane:
     place: int
 
 
-def together(plan: Plan) -> tuple[bool, ...] | None:
+def together(plan: SweepPlan) -> tuple[bool, ...] | None:
     """Whether cases can differ in each dimension and still share a program; None where that is worth nothing."""
     if plan.time_unit is not None or "arrival" in plan.summary:
         return None
@@ -56,7 +56,7 @@ def together(plan: Plan) -> tuple[bool, ...] | None:
     return joined
 
 
-def parameters(plan: Plan, places: Sequence[Place], joined: Sequence[bool]) -> Iterator[tuple[Place, CaseValues]]:
+def parameters(plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool]) -> Iterator[tuple[Place, CaseValues]]:
     """The cases of one topology, as far as its program serves them to the tolerance; the others are left out."""
     topology = tuple(0 if lane else k for k, lane in zip(places[0], joined, strict=True))
     scene, model = _program(plan, topology)
@@ -84,7 +84,7 @@ def parameters(plan: Plan, places: Sequence[Place], joined: Sequence[bool]) -> I
 _PROGRAMS: dict[tuple[str, Place], tuple[Scene, RuntimeModel]] = {}
 
 
-def _program(plan: Plan, topology: Place) -> tuple[Scene, RuntimeModel]:
+def _program(plan: SweepPlan, topology: Place) -> tuple[Scene, RuntimeModel]:
     """The scene of the first case of a topology, and its program; the last one is kept."""
     key = plan.sha256, topology
     if key not in _PROGRAMS:
@@ -96,13 +96,13 @@ def _program(plan: Plan, topology: Place) -> tuple[Scene, RuntimeModel]:
     return _PROGRAMS[key]
 
 
-def _names(plan: Plan) -> tuple[str, ...]:
+def _names(plan: SweepPlan) -> tuple[str, ...]:
     """The fields that are varied."""
     lanes = (_lane(plan, column) for dimension in plan.dimensions for column in dimension.columns)
     return tuple(dict.fromkeys(lane.field for lane in lanes if lane))
 
 
-def _lane(plan: Plan, column: Column) -> Lane | None:
+def _lane(plan: SweepPlan, column: Column) -> Lane | None:
     """The number of the program that a column varies, if it is one."""
     if any(number is None or number[1] for number in map(number_of, column.values)):
         return None
@@ -119,7 +119,7 @@ def _lane(plan: Plan, column: Column) -> Lane | None:
 _LANES: dict[tuple[str, str], Lane | None] = {}
 
 
-def _found(plan: Plan, path: str, name: str) -> Lane | None:
+def _found(plan: SweepPlan, path: str, name: str) -> Lane | None:
     """Which number of a field changes with a path, and as it does."""
     key = plan.sha256, path
     if key not in _LANES:

@@ -19,7 +19,7 @@ from wavesym.errors import SceneError
 from wavesym.fields.table import shown
 from wavesym.scene.paths import changed, steps
 from wavesym.scene.scene import Scene
-from wavesym.sweeps.dimension import Column, Dimension, count_of, spread
+from wavesym.sweeps.dimension import Axis, Column, count_of, spread
 from wavesym.sweeps.measured import Unreadable, found, record_column
 from wavesym.sweeps.request import SweepRequest
 
@@ -32,7 +32,7 @@ _UNCHANGED = ("until", "tolerance")  # fields of the output that make no other o
 
 
 @dataclass(frozen=True)
-class Plan:
+class SweepPlan:
     """A sweep as it is carried out: cases are numbered from 0, the last dimension fastest.
 
     `fields` are those of the scene of the first case, plain; `summary` and `histories` say what is kept. `outputs` are
@@ -41,7 +41,7 @@ class Plan:
 
     name: str
     fields: dict[str, Any]
-    dimensions: tuple[Dimension, ...]
+    dimensions: tuple[Axis, ...]
     summary: tuple[str, ...]
     histories: int | None
     outputs: tuple[str, ...]
@@ -125,7 +125,7 @@ def _hashed(value: object) -> str:
     return hashlib.sha256(json.dumps(value, sort_keys=True, default=str).encode()).hexdigest()
 
 
-def plan(request: SweepRequest, file: str) -> Plan:
+def plan(request: SweepRequest, file: str) -> SweepPlan:
     """What a request comes to. SceneError, which names the `file`, for what is wrong with it."""
     try:
         return _planned(request)
@@ -135,17 +135,17 @@ def plan(request: SweepRequest, file: str) -> Plan:
         raise SceneError((error.context or {})["what"], "scene", file) from None
 
 
-def _planned(request: SweepRequest) -> Plan:
+def _planned(request: SweepRequest) -> SweepPlan:
     files = found(request.records, request.folder)
     _refuse_many(request, max(len(files), 1))
     base = request.base()
     fields = json.loads(json.dumps(base.model_dump(), default=str))
     columns = [_column(request, base, fields, path) for path in request.vary]
-    dimensions = [Dimension(column.path, (column,)) for column in columns]
+    dimensions = [Axis(column.path, (column,)) for column in columns]
     if request.zip:
-        dimensions = [Dimension(CASE, tuple(columns))] if columns else []
+        dimensions = [Axis(CASE, tuple(columns))] if columns else []
     if files:
-        dimensions.append(Dimension(RECORD, (_records(request, base, fields, files),)))
+        dimensions.append(Axis(RECORD, (_records(request, base, fields, files),)))
     for dimension in dimensions:
         dimension.refuse_duplicates("vary" if dimension.name == CASE else f"vary.{dimension.name}")
     _refuse_overlap([column.path for dimension in dimensions for column in dimension.columns])
@@ -154,7 +154,7 @@ def _planned(request: SweepRequest) -> Plan:
             if not isinstance(column.values[0], Unreadable):
                 fields = changed(fields, column.path, column.values[0])
     watched = _watched(base, fields, dimensions)
-    return Plan(
+    return SweepPlan(
         base.name,
         fields,
         tuple(dimensions),
@@ -220,7 +220,7 @@ def _refuse_overlap(paths: list[str]) -> None:
                 raise SceneError(f"given beside {shown(other)}, fields that lie apart expected", f"vary.{shown(path)}")
 
 
-def _watched(base: Scene, fields: dict[str, Any], dimensions: list[Dimension]) -> dict[str, str]:
+def _watched(base: Scene, fields: dict[str, Any], dimensions: list[Axis]) -> dict[str, str]:
     """The outputs of all cases, in order, with their units."""
 
     def told(scene: Scene) -> dict[str, str]:
@@ -241,7 +241,7 @@ def _makes_outputs(column: Column) -> bool:
     return way[0] == "output" and (way[1:2] == [] or way[1] not in _UNCHANGED)
 
 
-def _scenes(fields: dict[str, Any], dimensions: list[Dimension]) -> Iterator[Scene]:
+def _scenes(fields: dict[str, Any], dimensions: list[Axis]) -> Iterator[Scene]:
     for place in product(*(range(len(dimension)) for dimension in dimensions)):
         made = fields
         for dimension, k in zip(dimensions, place, strict=True):

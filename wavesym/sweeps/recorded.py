@@ -21,7 +21,7 @@ from wavesym.results.recorded import ManyRecords, recorded_extremes
 from wavesym.scene import Scene, lower
 from wavesym.scene.paths import changed
 from wavesym.sweeps.measured import Unreadable
-from wavesym.sweeps.plan import Plan
+from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.single import of_model, output_rows, spread_out
 from wavesym.sweeps.values import CaseValues, Numbers
 
@@ -31,7 +31,7 @@ _PROBE = ["0", "1"]
 Place = tuple[int, ...]
 
 
-def serves(plan: Plan) -> bool:
+def serves(plan: SweepPlan) -> bool:
     """Whether records that share a structure can be computed together: nothing but true extremes of one record."""
     loads = plan.fields.get("load", ())
     return (
@@ -43,7 +43,7 @@ def serves(plan: Plan) -> bool:
     )
 
 
-def recorded(plan: Plan, places: Sequence[Place]) -> Iterator[tuple[Place, CaseValues]]:
+def recorded(plan: SweepPlan, places: Sequence[Place]) -> Iterator[tuple[Place, CaseValues]]:
     """The cases of one structure, as far as modes serve them to the scene's tolerance; the others are left out."""
     values, path = plan.records.values, plan.records.path  # type: ignore[union-attr]
     alike: dict[str, list[Place]] = {}
@@ -61,7 +61,7 @@ def recorded(plan: Plan, places: Sequence[Place]) -> Iterator[tuple[Place, CaseV
 
 
 def _together(
-    plan: Plan, scene: Scene, records: Sequence[tuple[Place, _Samples]]
+    plan: SweepPlan, scene: Scene, records: Sequence[tuple[Place, _Samples]]
 ) -> Iterator[tuple[Place, CaseValues]]:
     """Those of records that a scene takes alike."""
     model, (load,) = lower(scene), scene.load

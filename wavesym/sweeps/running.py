@@ -18,7 +18,7 @@ from wavesym.sweeps.batches import Batches, batches
 from wavesym.sweeps.kinds import kind
 from wavesym.sweeps.manifest import settle
 from wavesym.sweeps.marks import Marks
-from wavesym.sweeps.plan import Plan, plan
+from wavesym.sweeps.plan import SweepPlan, plan
 from wavesym.sweeps.request import SweepRequest
 from wavesym.sweeps.store import Store, needed
 from wavesym.sweeps.values import BatchValues
@@ -30,20 +30,20 @@ Watch = Callable[[int, int, int], object]
 """Told of the cases: how many there are, are done, and were before this start."""
 
 
-class Engine(NamedTuple):
+class Computing(NamedTuple):
     """Who computes: so many processes of this machine, a cluster at an address, or whoever is best."""
 
     workers: int | None = None
     scheduler: str | None = None
 
 
-_WHOEVER = Engine()
+_WHOEVER = Computing()
 
 
 def run(
     source: str | os.PathLike[str] | Mapping[str, Any],
     folder: str | os.PathLike[str],
-    engine: Engine = _WHOEVER,
+    engine: Computing = _WHOEVER,
     retry_failed: bool = False,
     watch: Watch = lambda *_: None,
 ) -> int:
@@ -101,7 +101,9 @@ def _keep(store: Store, marks: Marks, batch: int, values: BatchValues) -> None:
     )
 
 
-def _computed(planned: Plan, parts: Batches, todo: Iterable[int], engine: Engine) -> Iterator[tuple[int, BatchValues]]:
+def _computed(
+    planned: SweepPlan, parts: Batches, todo: Iterable[int], engine: Computing
+) -> Iterator[tuple[int, BatchValues]]:
     """The batches by whoever is to compute them: this process, as long as that does not take long."""
     left = deque(todo)
     if not (engine.workers or engine.scheduler):

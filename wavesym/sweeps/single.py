@@ -12,11 +12,11 @@ from wavesym.numbers.doubles import nearest, not_below
 from wavesym.results.response import Response
 from wavesym.results.summary import OutputSummary, summarised
 from wavesym.scene import Scene, lower
-from wavesym.sweeps.plan import Plan
+from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.values import CaseValues, Numbers
 
 
-def single(plan: Plan, scene: Scene) -> CaseValues:
+def single(plan: SweepPlan, scene: Scene) -> CaseValues:
     """The values of a scene. WavesymError as for `summary` and `evaluator`."""
     model = lower(scene)
     rows = output_rows(plan, model)
@@ -37,7 +37,7 @@ def single(plan: Plan, scene: Scene) -> CaseValues:
     return CaseValues({**made, **of_model(plan, model), "bound": max(bounds)}, ", ".join(hows))
 
 
-def of_model(plan: Plan, model: Model) -> dict[str, float]:
+def of_model(plan: SweepPlan, model: Model) -> dict[str, float]:
     """What is kept of a case whatever it does: its horizon, and its clock."""
     if plan.time_unit is None:
         return {"until": nearest(model.until)}
@@ -51,7 +51,7 @@ def instants(model: Model, count: int) -> list[float]:
     return [min(not_below(model.until * k / (count - 1)), model.horizon()) for k in range(count)]
 
 
-def output_rows(plan: Plan, model: Model) -> list[int]:
+def output_rows(plan: SweepPlan, model: Model) -> list[int]:
     """The places of a model's outputs among those of the sweep."""
     place = {pair: k for k, pair in enumerate(zip(plan.outputs, plan.units, strict=True))}
     for probe in model.probes:
@@ -61,7 +61,7 @@ def output_rows(plan: Plan, model: Model) -> list[int]:
     return [place[probe.name, probe.unit] for probe in model.probes]
 
 
-def spread_out(plan: Plan, rows: Sequence[int], values: Numbers) -> Numbers:
+def spread_out(plan: SweepPlan, rows: Sequence[int], values: Numbers) -> Numbers:
     """Values of a model's outputs as those of the sweep's."""
     made = np.full((len(plan.outputs), *values.shape[1:]), np.nan)
     made[list(rows)] = values

@@ -19,8 +19,8 @@ import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches
-from wavesym.sweeps.dimension import Dimension
-from wavesym.sweeps.plan import CASE, OUTPUT, SAMPLE, Plan
+from wavesym.sweeps.dimension import Axis
+from wavesym.sweeps.plan import CASE, OUTPUT, SAMPLE, SweepPlan
 from wavesym.sweeps.values import BatchValues, kept_arrays, sizes
 
 NAME = "results.zarr"
@@ -42,7 +42,7 @@ class Store:
     """The arrays of the sweep in a folder."""
 
     folder: Path
-    plan: Plan
+    plan: SweepPlan
     batches: Batches
 
     @property
@@ -108,7 +108,7 @@ class Store:
         return made
 
 
-def _coordinates(group: Any, dimension: Dimension) -> None:
+def _coordinates(group: Any, dimension: Axis) -> None:
     """What is varied along a dimension: its own coordinate, or of columns that are zipped one of each."""
     if dimension.name == CASE:
         _plain(group, CASE, CASE, np.arange(len(dimension)))

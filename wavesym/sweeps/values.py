@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.sweeps.plan import OUTPUT, SAMPLE, Plan
+from wavesym.sweeps.plan import OUTPUT, SAMPLE, SweepPlan
 
 Numbers = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ _STATISTICS = {
 }
 
 
-def kept_arrays(plan: Plan) -> list[KeptArray]:
+def kept_arrays(plan: SweepPlan) -> list[KeptArray]:
     """The arrays of a sweep."""
     made = [KeptArray(name, (OUTPUT,), _STATISTICS[name]) for name in plan.summary]
     made.append(KeptArray("bound", (), "error of values, relative to each output's largest"))
@@ -43,7 +43,7 @@ def kept_arrays(plan: Plan) -> list[KeptArray]:
     return made
 
 
-def sizes(plan: Plan) -> dict[str, int]:
+def sizes(plan: SweepPlan) -> dict[str, int]:
     """How long the dimensions are that are not varied."""
     return {OUTPUT: len(plan.outputs), SAMPLE: plan.histories or 0}
 
@@ -66,7 +66,7 @@ class BatchValues:
     how: dict[str, int] = field(default_factory=dict)
 
     @classmethod
-    def empty(cls, plan: Plan, region: tuple[slice, ...]) -> BatchValues:
+    def empty(cls, plan: SweepPlan, region: tuple[slice, ...]) -> BatchValues:
         """Nothing yet."""
         shape, lengths = [part.stop - part.start for part in region], sizes(plan)
         return cls(

@@ -7,7 +7,7 @@ from threading import Lock
 from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.parameters import parameters
-from wavesym.sweeps.plan import Plan
+from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.recorded import recorded
 from wavesym.sweeps.single import single
 from wavesym.sweeps.values import BatchValues, CaseValues
@@ -16,7 +16,7 @@ _ALONE = Lock()
 """The precision of balls is one for all threads of a process: two batches at once would set it for each other."""
 
 
-def compute(plan: Plan, batches: Batches, batch: int) -> BatchValues:
+def compute(plan: SweepPlan, batches: Batches, batch: int) -> BatchValues:
     """The values of a batch. What is wrong with a case is its reason, and the others go on."""
     values = BatchValues.empty(plan, batches.region(batch))
     region, left = batches.region(batch), batches.places(batch)
@@ -29,7 +29,9 @@ def compute(plan: Plan, batches: Batches, batch: int) -> BatchValues:
     return values
 
 
-def _shared(plan: Plan, batches: Batches, places: list[tuple[int, ...]]) -> list[tuple[tuple[int, ...], CaseValues]]:
+def _shared(
+    plan: SweepPlan, batches: Batches, places: list[tuple[int, ...]]
+) -> list[tuple[tuple[int, ...], CaseValues]]:
     """The cases that can share work, as far as that serves them."""
     try:
         if batches.kind == "recorded":
@@ -41,7 +43,7 @@ def _shared(plan: Plan, batches: Batches, places: list[tuple[int, ...]]) -> list
         return []
 
 
-def compute_case(plan: Plan, batches: Batches, batch: int, place: tuple[int, ...]) -> BatchValues:
+def compute_case(plan: SweepPlan, batches: Batches, batch: int, place: tuple[int, ...]) -> BatchValues:
     """One case of a batch, by itself."""
     values = BatchValues.empty(plan, batches.region(batch))
     with _ALONE:
@@ -49,7 +51,7 @@ def compute_case(plan: Plan, batches: Batches, batch: int, place: tuple[int, ...
     return values
 
 
-def _attempt(plan: Plan, batches: Batches, batch: int, place: tuple[int, ...], values: BatchValues) -> None:
+def _attempt(plan: SweepPlan, batches: Batches, batch: int, place: tuple[int, ...], values: BatchValues) -> None:
     """The values of one case, or the reason why it has none."""
     try:
         values.put(batches.region(batch), place, single(plan, plan.scene(place)))

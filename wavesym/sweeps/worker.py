@@ -7,18 +7,18 @@ from distributed import WorkerPlugin
 from wavesym import __version__
 from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches
-from wavesym.sweeps.plan import Plan
+from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.values import BatchValues
 from wavesym.sweeps.work import compute, compute_case
 
-_PLANS: dict[str, tuple[Plan, Batches]] = {}
+_PLANS: dict[str, tuple[SweepPlan, Batches]] = {}
 """By the hash of the sweep."""
 
 
 class SentPlan(WorkerPlugin):  # type: ignore[misc]
     """Takes a plan to every worker that there is, and to those that come."""
 
-    def __init__(self, plan: Plan, batches: Batches) -> None:
+    def __init__(self, plan: SweepPlan, batches: Batches) -> None:
         self.plan, self.batches = plan, batches
         self.name = f"wavesym-{plan.sha256}"
 
