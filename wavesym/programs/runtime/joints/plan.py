@@ -88,7 +88,7 @@ def _pushes(
         load = loads[number]
         window = int((load.time / plan.step).floor())
         panel = places[load.time - window * plan.step]
-        for force, point in enumerate(model.network.points[k] for k in plan.loaded):
+        for force, point in enumerate(model.network.points[k] for k in plan.pushed):
             for unit in point.loads:
                 for power, of_unit in enumerate(unit.coefficients):
                     coefficient = of_unit / sizes[number]
