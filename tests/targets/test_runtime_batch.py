@@ -167,7 +167,6 @@ def test_in_single_precision_too(case, tmp_path):
     [
         ("*total += high - low;", "*total += high;"),
         ("b->edge[row][LOSS] * mean", "b->edge[row][SLACK] * mean"),
-        ("const int next = degree == NAME_DEGREE ? before :", "const int next = before < 0 ? before :"),
         ("b->alpha[node], set) = law->alpha[node]", "b->alpha[node], 0) = law->alpha[node]"),
     ],
 )
