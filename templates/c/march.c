@@ -354,7 +354,7 @@ int name_read(const march *state, real tau, real out[OUTPUTS])
     const real t = tau - (real)state->window;
     const int inside = state->within && state->window >= 0 && t >= 0 && t < 1 && tau <= last_tau;
     for (int output = 0; output < OUTPUTS; ++output) {
-        out[output] = inside ? value(state, output, t) : (real)NAN;
+        out[output] = inside ? value(state, output, t) : not_a_number();
     }
     return !inside;
 }
@@ -400,7 +400,7 @@ static int in_range(real tau)
 static int refuse(real out[OUTPUTS])
 {
     for (int output = 0; output < OUTPUTS; ++output) {
-        out[output] = (real)NAN;
+        out[output] = not_a_number();
     }
     return 1;
 }

@@ -291,7 +291,7 @@ static int in_range(real tau)
 static int refuse(real out[OUTPUTS])
 {
     for (int output = 0; output < OUTPUTS; ++output) {
-        out[output] = (real)NAN;
+        out[output] = not_a_number();
     }
     return 1;
 }

@@ -421,7 +421,7 @@ static real estimated(const model_of *m, const laws *law, real missed)
 static int begun(model_of *m, const name_parameters *parameters, laws *law)
 {
     m->built = 0;
-    m->estimate = (real)NAN;
+    m->estimate = not_a_number();
     if (!good(parameters)) {
         return 1;
     }
@@ -612,7 +612,7 @@ int name_model_eval(const name_model *model, name_real tau, name_real *out)
 {
     if (!inside(model, tau)) {
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
-            out[output] = (real)NAN;
+            out[output] = not_a_number();
         }
         return 1;
     }
@@ -754,7 +754,7 @@ static int sampled(const model_of *m, const real *series, real tau0, real dtau, 
             k = end;
         } else {
             for (size_t output = 0; output < NAME_OUTPUTS; ++output) {
-                out[output * count + k] = (real)NAN;
+                out[output * count + k] = not_a_number();
             }
             outside = 1;
             ++k;

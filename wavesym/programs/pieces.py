@@ -38,9 +38,8 @@ from wavesym.programs.program import ProgramOutput
 
 # A table larger than this is for the march.
 MOST_BYTES = 4 << 20
-# C evaluates so many samples at once (templates/c/pieces.c): their sums and offsets fill the vector registers of common
-# machines.
-BLOCK = 32
+# The numbers from 0 on that C has for the widest vectors (templates/c/pieces.c).
+_OFFSETS = 16
 # Pieces in a unit of tau: shorter ones have lower degrees, which is faster and rounds less, in larger tables.
 _USUAL = (8, 4, 2, 1)
 _SHORTER = (2, 4, 8, 16, 32)
@@ -59,8 +58,8 @@ _NEGLIGIBLE = arb(2) ** -200
 class PieceGrid:
     """Pieces that some outputs share: piece p is for starts[p] <= tau < starts[p + 1].
 
-    `powers[p][j]` are the coefficients of output `outputs[j]` in w = tau - centres[p], lowest first. `first[b]` is the
-    piece at tau = b / scale; from there at most `steps` more are to be tried.
+    `powers[p][j]` are the coefficients of output `outputs[j]` in w = tau - centres[p], lowest first; as many for each
+    output, so that one loop is for all of them. `first[b]` is the piece at tau = b / scale; from there at most `steps` more are to be tried.
     """
 
     outputs: tuple[int, ...]
@@ -96,7 +95,7 @@ class Pieces:
     @cached_property
     def bytes(self) -> int:
         """The size of the tables in C."""
-        return BLOCK * self.real.bytes + sum(_bytes(grid, self.real) for grid in self.grids)
+        return _OFFSETS * self.real.bytes + sum(_bytes(grid, self.real) for grid in self.grids)
 
     @cached_property
     def work(self) -> float:
@@ -384,11 +383,17 @@ class _Cuts:
             tuple(outputs),
             tuple(self.starts),
             tuple(self.centres),
-            tuple(zip(*columns, strict=True)),
+            tuple(map(_as_many, zip(*columns, strict=True))),
             scale,
             tuple(first),
             steps,
         )
+
+
+def _as_many(polynomials: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
+    """Polynomials with as many powers as the longest has; a power that is 0 adds no error."""
+    most = max(map(len, polynomials))
+    return tuple(powers + (0.0,) * (most - len(powers)) for powers in polynomials)
 
 
 def _cut_off(coefficients: Sequence[arb], allowed: arb, real: Real) -> tuple[arb, list[arb]]:
@@ -420,5 +425,5 @@ def _underflow(powers: Sequence[arb], real: Real) -> arb:
 
 def _bytes(grid: PieceGrid, real: Real) -> int:
     numbers = len(grid.starts) + len(grid.centres) + sum(len(p) for piece in grid.powers for p in piece)
-    indices = len(grid.first) + len(grid.powers) * len(grid.outputs) + 1
+    indices = len(grid.first) + len(grid.powers) + 1
     return numbers * real.bytes + indices * 4

@@ -59,6 +59,7 @@ class CRuntime:
     constants: dict[str, str]
     amplitudes: Lines
     loads: str
+    numbers: str
     kernel: str
 
 
@@ -94,6 +95,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         constants=constants,
         amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
         loads="amplitude" if own else "p->load",
+        numbers=kernel("real.h", scene),
         kernel=kernel("runtime.c", scene),
     )
     made = {
