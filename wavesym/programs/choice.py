@@ -192,7 +192,9 @@ def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -
         )
     if model.chain is None:
         if windows is not None:
-            raise UnservedError("--windows: chain given, collision, drive or building expected (they take given loads)")
+            raise UnservedError(
+                f"--windows: {model.labels.type} given, collision, drive or building expected (they take given loads)"
+            )
         return ring_march(model, real)
     return marched(model, real, windows=windows)
 

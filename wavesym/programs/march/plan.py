@@ -21,10 +21,10 @@ from flint import fmpq, fmpq_poly
 
 from wavesym.errors import CostError
 from wavesym.exact.node_rules import node_rule
+from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.node import RAMPS, Node
-from wavesym.mechanics.reading import Sum
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 
