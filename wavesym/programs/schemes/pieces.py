@@ -9,8 +9,8 @@ class PiecesScheme:
 
     Outputs that may jump or bend at the same times share a grid of pieces. Of grid g the outputs are
     member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces start at
-    first_piece[g] + g, as there is one more, the end of the last piece. The polynomials of piece p of all grids start at
-    first_power[p] among the coefficients: highest power first, of each power those of all members.
+    first_piece[g] + g, as there is one more, the end of the last piece. The polynomials of piece p of all grids start
+    at first_power[p] among the coefficients: highest power first, of each power those of all members.
     """
 
     TABLES = (
