@@ -160,16 +160,16 @@ int name_model_peaks(const name_model *model, name_real *out);
 int name_model_peaks(const name_model *model, name_real *out)
 {
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        summit least = {-1, -largest_number, (real)NAN};
-        summit greatest = {1, -largest_number, (real)NAN};
+        summit least = {-1, -largest_number, not_a_number()};
+        summit greatest = {1, -largest_number, not_a_number()};
         if (model->built) {
             search(model, output, &least, &greatest, NULL);
             const real slack = 4 * unit * larger(magnitude(least.best), greatest.best);
             search(model, output, &least, &greatest, &slack);
         }
-        out[output * 4] = model->built ? -least.best : (real)NAN;
+        out[output * 4] = model->built ? -least.best : not_a_number();
         out[output * 4 + 1] = least.tau;
-        out[output * 4 + 2] = model->built ? greatest.best : (real)NAN;
+        out[output * 4 + 2] = model->built ? greatest.best : not_a_number();
         out[output * 4 + 3] = greatest.tau;
     }
     return !model->built;

@@ -65,7 +65,7 @@ int name_model_eval(const name_model *model, name_real tau, name_real *out)
 {
     if (!inside(model, tau)) {
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
-            out[output] = (real)NAN;
+            out[output] = not_a_number();
         }
         return 1;
     }
@@ -216,7 +216,7 @@ static int sampled(const model_of *m, const real *series, real tau0, real dtau, 
             k = end;
         } else {
             for (size_t output = 0; output < NAME_OUTPUTS; ++output) {
-                out[output * count + k] = (real)NAN;
+                out[output * count + k] = not_a_number();
             }
             outside = 1;
             ++k;
