@@ -17,9 +17,10 @@ verification/ and papers/, what is measured by lab/. The heavy libraries load wh
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,6 +59,7 @@ if TYPE_CHECKING:
     from wavesym.mechanics.node import System
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
+    from wavesym.sweeps.status import SweepStatus
 
 
 _UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
@@ -134,6 +136,62 @@ def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Any:
     several = not isinstance(scenes, Scene)
     found = [summary(scene, at_samples=at_samples) for scene in ([scenes] if isinstance(scenes, Scene) else scenes)]
     return table_of_peaks(found, several)
+
+
+def sweep(
+    source: str | PathLike[str] | Mapping[str, Any],
+    folder: str | PathLike[str],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    retry_failed: bool = False,
+) -> Any:
+    """Compute many scenes into a folder, as `wavesym sweep` does; what is there goes on where it was.
+
+    `source` is a file of TOML or the same fields: `scene` (a Scene, or a path), `vary`, `records`, `keep`. By
+    `workers` processes of this machine (in a program under `if __name__ == "__main__":`, as these import it), those of
+    a Dask `scheduler`, or whoever is best. An xarray.Dataset: extremes over the varied paths, `record` and `output`,
+    NaN for a case that failed. SceneError for a request that is wrong, WavesymError for the folder of another sweep.
+
+    >>> import wavesym
+    >>> request = {"scene": "drive_m1", "vary": {"output.until": [4, 5], "system.kappa[0]": ["1/2", 1, 2]}}
+    >>> wavesym.sweep(request, "stiffnesses")["max"].dims
+    ('output.until', 'system.kappa[0]', 'output')
+    """
+    from wavesym.sweeps.store import needed, opened
+
+    needed("xarray", "zarr")
+    run_sweep(source, folder, workers, scheduler, retry_failed)
+    return opened(folder)
+
+
+def run_sweep(
+    source: str | PathLike[str] | Mapping[str, Any],
+    folder: str | PathLike[str],
+    workers: int | None,
+    scheduler: str | None,
+    retry_failed: bool,
+    watch: Callable[[int, int, int], object] = lambda *_: None,
+) -> int:
+    """Compute what is left of a sweep; how many of its cases have failed. `watch` is told of all cases, and of those
+    that are done and were done before."""
+    from wavesym.sweeps.running import Computing, run
+
+    return run(source, folder, Computing(workers, scheduler), retry_failed, watch)
+
+
+def sweep_status(folder: Path) -> SweepStatus:
+    """How many cases of the sweep in a folder are done, have failed and are left. WavesymError where there is none."""
+    from wavesym.sweeps.status import status
+
+    return status(folder)
+
+
+def sweep_table(folder: Path, path: Path) -> None:
+    """Write the results of a sweep as .csv or .parquet, a row for each case."""
+    from wavesym.sweeps.table import write_table
+
+    write_table(folder, path)
 
 
 def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
