@@ -103,10 +103,10 @@ def trial(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> Trial:
             if other != row:
                 scale[row] *= whole[other]
     rows = [a * b for a, b in zip(scale, inner, strict=True)]
-    return Trial(rows, root, whole[root], _mass(law, w, rows, stiffness.parents, cot, csc))
+    return Trial(rows, root, whole[root], moved_mass(law, w, rows, stiffness.parents, cot, csc))
 
 
-def _mass(
+def moved_mass(
     law: HarmonicLaw,
     w: arb,
     found: Sequence[arb],
