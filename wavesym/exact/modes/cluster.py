@@ -1,4 +1,4 @@
-"""Frequencies that no bits tell apart, as of equal branches: their shapes, as many as there are, from what a force does.
+"""Frequencies that no bits tell apart, as of equal branches: their shapes, all of them, from what forces do.
 
 Under a force on one point that swings with the frequency v, points move by K(v)^-1, which is, summed over all modes of
 mass 1, that of q q^T/(w_n^2 - v^2). So near frequencies that all lie within a much smaller ball, (w^2 - v^2) K(v)^-1 is
@@ -20,14 +20,14 @@ from wavesym.exact.modes.shape import Mode, moved_mass
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, circular
 
 _NEWTON = 12
-WIDE = 512
+WIDE = 560
 """Bits that the frequencies of a cluster share."""
 _APART = (11, 22, 44, 88, 176, 352)  # bits that other frequencies may share with them
-_BETWEEN = 70  # bits that a force is nearer to the cluster than others are
+_BETWEEN = 100  # bits that a force is nearer to the cluster than others are
 
 
 def clustered(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> list[Mode] | None:
-    """The modes from the n-th on whose frequencies are w but for 2^-512 of it; None where that is not so.
+    """The modes from the n-th on whose frequencies are w but for 2^-560 of it; None where that is not so.
 
     In the precision that is set, of twice as many bits and more.
     """
@@ -35,6 +35,8 @@ def clustered(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> list[Mo
     below, above = stiffness.proved(law, ball.lower()), stiffness.proved(law, ball.upper())
     if below != n - 1 or above is None or above < n:
         return None
+    if not all(csc.is_finite() for csc in circular(law, ball)[1]):
+        return None  # a bar may vibrate between points at rest: they do not tell how
     for apart in _APART:
         aside = arb(2) ** -apart
         if stiffness.proved(law, w * (1 - aside)) == below and stiffness.proved(law, w * (1 + aside)) == above:
@@ -42,7 +44,7 @@ def clustered(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> list[Mo
     else:
         return None
     shapes = _shapes(stiffness, law, ball, aside, above - below)
-    return shapes and [Mode(stiffness, ball, points) for points in shapes]
+    return [Mode(stiffness, ball, points) for points in shapes]
 
 
 def met(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> arb | None:
@@ -51,7 +53,7 @@ def met(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> arb | None
     force[root] = arb(1)
     for _ in range(_NEWTON):
         cot, csc = circular(law, w)
-        moved = _moved(stiffness, *law.matrix(w, cot, csc), force)
+        moved = stiffness.solved(*law.matrix(w, cot, csc), force)
         better = (w * w + moved[root] / moved_mass(law, w, moved, stiffness.parents, cot, csc)).sqrt().mid()
         if not better.is_finite():
             return None
@@ -59,19 +61,6 @@ def met(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> arb | None
         if off < w * arb(2) ** -(WIDE // 2 + 8):  # it squares
             return w
     return None
-
-
-def _moved(stiffness: Stiffness, diagonal: list[arb], up: Sequence[arb], forces: Sequence[arb]) -> list[arb]:
-    """How far rows move under forces on them."""
-    pivots, carried = stiffness.pivots(diagonal, up), list(forces)
-    for row, parent in enumerate(stiffness.parents):
-        if parent is not None:
-            carried[parent] -= up[row] * carried[row] / pivots[row]
-    for row in reversed(range(len(pivots))):
-        parent = stiffness.parents[row]
-        beyond = carried[row] if parent is None else carried[row] - up[row] * carried[parent]
-        carried[row] = beyond / pivots[row]
-    return carried
 
 
 def _yielded(stiffness: Stiffness, diagonal: list[arb], up: Sequence[arb]) -> list[arb]:
@@ -86,7 +75,7 @@ def _yielded(stiffness: Stiffness, diagonal: list[arb], up: Sequence[arb]) -> li
     return made
 
 
-def _shapes(stiffness: Stiffness, law: HarmonicLaw, w: arb, aside: arb, count: int) -> list[list[arb]] | None:
+def _shapes(stiffness: Stiffness, law: HarmonicLaw, w: arb, aside: arb, count: int) -> list[list[arb]]:
     """`count` shapes at right angles; other frequencies are `aside` of w or more away from it, relative to it."""
     v = (w * (1 + aside * arb(2) ** -_BETWEEN)).mid()
     square = w * w - v * v
@@ -104,12 +93,12 @@ def _shapes(stiffness: Stiffness, law: HarmonicLaw, w: arb, aside: arb, count: i
         row = max(range(len(left)), key=lambda k: float(left[k].mid()))
         force = [arb(0)] * len(left)
         force[row] = square
-        column = _moved(stiffness, list(near[0]), near[1], force)
+        column = stiffness.solved(list(near[0]), near[1], force)
         column = [q + arb(0, (others * c * calm[row]).upper()) for q, c in zip(column, calm, strict=True)]
         for shape in shapes:
             column = [q - s * shape[row] for q, s in zip(column, shape, strict=True)]
         if not left[row] > 0:
-            return None
+            return []
         scale = column[row].rsqrt()
         shapes.append([q * scale for q in column])
         left = [each - q * q for each, q in zip(left, shapes[-1], strict=True)]

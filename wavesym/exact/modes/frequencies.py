@@ -16,7 +16,7 @@ from wavesym.mechanics.network import Network
 
 _BITS = 192
 _BITS_A_ROW = 6  # of which determinants in balls take about 4
-_TIMES = (1, 6)  # as many bits
+_TIMES = (1, 4, 8)  # as many bits; the most for those that are together
 _BISECTIONS = 64
 _NEWTON = 6
 _TOGETHER = 2.0**-40
@@ -47,8 +47,8 @@ def frequencies(network: Network, count: int) -> tuple[arb, ...]:
     """The first `count` angular frequencies of an undamped network in balls, ascending; none is missed.
 
     Per unit of its time. Ends that move as they are told are at rest. A chain that nothing holds begins with 0.
-    Of several that are equal each is one. UnservedError where it is damped, has contacts, or has frequencies that nearly
-    coincide and whose modes cannot be told apart.
+    Of several that are equal each is one. UnservedError where it is damped or has contacts, and for frequencies that
+    nearly coincide and whose modes cannot be told apart.
 
     >>> from wavesym import Scene
     >>> from wavesym.scene import lower
@@ -109,7 +109,7 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
                 made = [_still(stiffness, free)]
         else:
             # one that may be several is not tried as one alone
-            tried = laws[1:] if together[max(n - 2, 0) : n].any() else laws
+            tried = laws[2:] if together[max(n - 2, 0) : n].any() else laws
             found = (_proved(stiffness, law, n, float(guesses[n - 1]), roots[n - 1], bits) for bits, law in tried)
             made = next((modes for modes in found if modes), [])
         if not made:
@@ -135,8 +135,8 @@ def _proved(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: 
     """The n-th mode, in which row `root` moves much, and those that no bits tell from it; none where more bits may."""
     with ctx.workprec(bits):
         if bits > 2 * WIDE:
-            for w in _nearer(stiffness, law, n, guess, root):
-                if (made := clustered(stiffness, law, n, w)) and all(map(_sharp, made)):
+            for near in _nearer(stiffness, law, n, guess, root):
+                if (made := clustered(stiffness, law, n, near)) and all(map(_sharp, made)):
                     return made
         w = _polished(stiffness, law, n, guess, root, bits) or _bisected(stiffness, law, n, guess, bits // 3)
         if w is None or not _is(stiffness, law, n, w):

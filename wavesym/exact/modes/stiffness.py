@@ -172,6 +172,18 @@ class Stiffness:
                 diagonal[parent] = diagonal[parent] - up[row] * up[row] / diagonal[row]
         return diagonal
 
+    def solved(self, diagonal: list[Quantity], up: Sequence[Quantity], forces: Sequence[Quantity]) -> list[Quantity]:
+        """How far rows move under forces on them, `diagonal` eliminated in place."""
+        pivots, moved = self.pivots(diagonal, up), list(forces)
+        for row, parent in enumerate(self.parents):
+            if parent is not None:
+                moved[parent] = moved[parent] - up[row] * moved[row] / pivots[row]
+        for row in reversed(range(len(pivots))):
+            parent = self.parents[row]
+            beyond = moved[row] if parent is None else moved[row] - up[row] * moved[parent]
+            moved[row] = beyond / pivots[row]
+        return moved
+
     @cached_property
     def _doubles(self) -> HarmonicLaw:
         return self.law(nearest)
@@ -234,7 +246,7 @@ def _turns(angle: Vector, sine: Vector) -> NDArray[np.int64]:
     return nearest_turn - (np.where(nearest_turn % 2, -sine, sine) < 0)
 
 
-def circular(law: HarmonicLaw, w: arb) -> tuple[list[arb], list[arb]]:
+def circular(law: HarmonicLaw, w: Quantity) -> tuple[list[Quantity], list[Quantity]]:
     """cot and 1/sin of w times each delay."""
     pairs = [(w * delay).sin_cos() for delay in law.delays]
     return [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs]
