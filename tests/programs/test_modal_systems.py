@@ -17,10 +17,10 @@ from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.damping import Damping
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.modes import system as made_by
 from wavesym.programs.modes.roughness import Roughness, roughness
 from wavesym.programs.modes.rounding import rounded
-from wavesym.programs.modes.system import modal_system
+from wavesym.programs.modes.swinging import SwingingChain
+from wavesym.programs.modes.system import ModalModes, modal_system
 from wavesym.programs.modes.tables import scheme_tables
 from wavesym.programs.schemes.modes import ModesScheme
 from wavesym.scene import Scene, lower
@@ -86,11 +86,11 @@ def rounding(model, made):
 
 def with_modes(model, count):
     """The first `count` modes, and what the others can add."""
-    built = made_by._Chain(model)
+    built = SwingingChain(model)
     known = built.shares(count)
     errors = built.errors(known, count)
     rest = np.zeros(count)
-    return made_by.ModalModes(built.system(known, count), built.sources, built.loads, errors, errors, known.w, rest)
+    return ModalModes(built.system(known, count), built.sources, built.loads, errors, errors, known.w, rest)
 
 
 @pytest.mark.parametrize("name", UNDAMPED)
@@ -348,7 +348,7 @@ def test_kinks_in_step_are_not_underestimated(count):
 def test_roughness_is_that_of_the_load():
     """Changes of slope at their times: of 0, 2, 1, then constant in steps of 1/2."""
     model = building(["1", "1"], [{"spacing": "1/2", "samples": [0, 2, 1]}])
-    (rough,) = roughness(made_by._Chain(model).loads)
+    (rough,) = roughness(SwingingChain(model).loads)
     assert rough.times.tolist() == [0, 0.5, 1]
     assert rough.kinks.tolist() == [4, -6, 2]
     assert (rough.steps, rough.steepest) == ((0, 1, 2), 4)

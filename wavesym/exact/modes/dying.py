@@ -32,6 +32,7 @@ _BITS = 224
 _BITS_A_ROW = 8
 _BALL = 80  # bits
 _NEWTON = 8
+_BESIDE = 1e-9
 _SHARP = arb(2) ** -60  # shapes
 _OFF = 2.0**-30  # a frequency itself tells less of its mode than one near it
 _STRAIGHT = 1e-9  # of what creeps, which has no real part
@@ -46,11 +47,13 @@ _I = acb(0, 1)
 def undamped(network: Network) -> Network:
     """The same chain without its dashpots."""
     points = tuple(replace(point, damping=point.damping * 0) for point in network.points)
-    return replace(network, points=points, links=tuple(replace(link, damping=link.damping * 0) for link in network.links))
+    return replace(
+        network, points=points, links=tuple(replace(link, damping=link.damping * 0) for link in network.links)
+    )
 
 
 def dying(pieces: Cut, count: int) -> list[Mode]:
-    """About the first `count` modes, by the absolute values of their frequencies, none of which has a negative real part.
+    """About the first `count` modes, by the absolute values of their frequencies, those with a real part of at least 0.
 
     Of a mode that creeps the real part is exactly 0. Shapes have mass 1 as `Trial` counts it.
     """
@@ -152,12 +155,10 @@ def _proved(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: int) -
 
 
 def _apart(modes: Sequence[Mode]) -> list[Mode]:
-    """Each mode once."""
-    kept: list[Mode] = []
-    for mode in sorted(modes, key=lambda mode: float(abs(mode.frequency).mid())):
-        near = reversed(kept)
-        size = float(abs(mode.frequency).mid())
-        beside = takewhile(lambda other: float(abs(other.frequency).mid()) > size * (1 - 1e-9), near)
-        if not any(mode.frequency.overlaps(other.frequency) for other in beside):
-            kept.append(mode)
-    return kept
+    """Each mode once, in their order."""
+    kept: list[tuple[float, Mode]] = []
+    for size, mode in sorted(((abs(complex(mode.frequency)), mode) for mode in modes), key=lambda pair: pair[0]):
+        beside = takewhile(lambda pair, least=size * (1 - _BESIDE): pair[0] > least, reversed(kept))
+        if not any(mode.frequency.overlaps(other.frequency) for _, other in beside):
+            kept.append((size, mode))
+    return [mode for _, mode in kept]

@@ -31,7 +31,7 @@ class CoincidenceError(ArithmeticError):
 def refuse_damped(network: Network) -> None:
     """UnservedError for what has no real modes, or is no one chain: dashpots, absorbing ends, contacts."""
     for point in network.points:
-        if point.damping != 0:
+        if point.damping != 0 and point.motion is None:
             raise UnservedError(
                 f"system: a dashpot or an absorbing end at {point.name or point.place} given, none expected in modes "
                 "(pieces and march serve it)"

@@ -125,12 +125,12 @@ class _Answer:
                 for here, there in ((bar.left, bar.right), (bar.right, bar.left)):
                     forces[there] += across * told if here == driver.point else zero
             for link in network.links:
-                across = _modular(link.ratio * link.stiffness)
+                across = _modular(link.ratio * link.stiffness) + _I * _W * _modular(link.ratio * link.damping)
                 for here, there in ((link.left, link.right), (link.right, link.left)):
                     forces[there] += across * told if here == driver.point else zero
         law = self._stiffness.law(_modular)
         pairs = [self._circular[delay] for delay in sorted(self._circular)]
-        matrix = law.matrix(_W, [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs])
+        matrix = law.matrix(_W, [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs], _I * _W)
         found = self._stiffness.solved(*matrix, [forces[point] for point in self._stiffness.points])
         for point, q in zip(self._stiffness.points, found, strict=True):
             moved[point] = q

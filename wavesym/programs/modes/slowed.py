@@ -1,0 +1,237 @@
+"""Modes of a chain with dashpots: each swings and dies away, or creeps; and what is left out, by its energy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from flint import acb, arb, ctx, fmpq, fmpq_mat
+
+from wavesym.errors import UnservedError
+from wavesym.exact.modes.cuts import Cut, cut
+from wavesym.exact.modes.dying import dying
+from wavesym.exact.modes.shape import Mode
+from wavesym.exact.modes.stiffness import Quantity, Stiffness
+from wavesym.mechanics.network import Network
+from wavesym.numbers.doubles import nearest
+from wavesym.programs.modes.chain import Chain
+from wavesym.programs.modes.dissipation import POWERS, Complex, Started, Taken, left
+from wavesym.programs.modes.modal import ModalSystem, Numbers
+from wavesym.programs.modes.ports import TERMS, Dashpot, Port, Slowly, dashpots, series
+from wavesym.programs.modes.shares import share
+from wavesym.programs.modes.watched import Driver, Seen, places
+
+_BITS = 320
+_STILL = 2.0**-80  # of a frequency: what dies away more slowly does not in doubles
+_MORE = 1 + 1e-12
+
+
+@dataclass(frozen=True)
+class SlowedShares:
+    """Modes by columns, their rates (of exp(rate tau)), what outputs and loads are of them.
+
+    `slow` (outputs, loads, 3) is what outputs have of second integrals, integrals and loads where all changes slowly.
+
+    `left` (outputs and then loads, powers, modes + 1) is what their states have without the first modes.
+    """
+
+    rates: Complex
+    seen: Complex
+    shares: Complex
+    slow: Numbers
+    left: Numbers
+
+    @property
+    def w(self) -> Numbers:
+        """The absolute values of their frequencies."""
+        return np.abs(self.rates)
+
+    @cached_property
+    def pushed(self) -> Complex:
+        """What loads do to modes, z' = rate z + this; the real part of what outputs are of them counts."""
+        twice = np.where(self.rates.imag != 0, 2.0, 1.0)  # for what is conjugate to it
+        return np.asarray(self.shares * twice / (2 * self.rates))
+
+    @property
+    def parts(self) -> Complex:
+        """What outputs have of loads in each mode: (outputs, loads, modes)."""
+        return np.asarray(self.seen[:, None] * self.pushed)
+
+
+@dataclass(frozen=True)
+class SlowedChain(Chain[SlowedShares]):
+    """Its modes, and what those that are left out can add (dissipation.py)."""
+
+    MOST = 1000
+    WORK = 20_000
+
+    @property
+    def least(self) -> int:
+        """As many modes as are taken at least."""
+        return 1
+
+    @cached_property
+    def cut(self) -> Cut:
+        """The network with points wherever outputs are."""
+        return cut(self.model.network, places(self.model))
+
+    def shares(self, count: int) -> SlowedShares:
+        """The first modes. UnservedError for what modes do not serve."""
+        self.refuse()
+        network = self.model.network
+        network.refuse_contacts()
+        refuse_absorbing(network)
+        found = dying(self.cut, count)
+        with ctx.workprec(_BITS), series():
+            return slowed_shares(found, self.cut, self.seen, self.drivers)
+
+    def errors(self, known: SlowedShares, count: int) -> Numbers:
+        """What the modes after the first `count` can add to each output."""
+        taken = min(count, len(known.rates))
+        made = np.zeros(len(self.model.probes))
+        for o, output in enumerate(self.seen):
+            powers = range(3 - output.order + 1)
+            for j, rough in enumerate(self.rough):
+                ports = known.left[o], known.left[len(self.seen) + j]
+                size = min(ports[0][p, taken] * ports[1][3 - output.order - p, taken] for p in powers)
+                made[o] += (rough.in_step + rough.steepest) * size
+        return np.where(self.silent, 0.0, _MORE * made)
+
+    def system(self, known: SlowedShares, count: int) -> ModalSystem:
+        """The system of the first `count` modes."""
+        rates, parts = known.rates[:count], known.parts[:, :, :count]
+        orders = np.array([output.order for output in self.seen])
+        direct = np.zeros((*known.slow.shape[:2], 3))
+        for o, order in enumerate(orders.tolist()):
+            for k in range(3 - order):
+                direct[o, :, 2 - order - k] += known.slow[o, :, k]
+            direct[o, :, 0] += np.real(parts[o] * rates ** (order - 1)).sum(axis=1)
+        # a mode is rate z + loads; of one load, z = y' - conj(rate) y, y an oscillator's
+        read = known.seen[:, :count] * rates ** orders[:, None]
+        pushed = known.pushed[:, :count]
+        phase = pushed[np.abs(pushed).argmax(axis=0), np.arange(len(rates))]
+        phase = np.where(phase != 0, phase / np.where(phase != 0, np.abs(phase), 1.0), 1.0)
+        pushed, read = pushed / phase, read * phase
+        mixed = np.flatnonzero(np.abs(pushed.imag).max(axis=0) > 2.0**-50 * np.abs(pushed).max(axis=0))
+        every = np.append(np.arange(len(rates)), mixed)
+        pushes = np.append(pushed.real, pushed.imag[:, mixed], axis=1)
+        read = np.append(read, 1j * read[:, mixed], axis=1)
+        w, heard = np.abs(rates[every]), ~np.array(self.silent)
+        return ModalSystem(
+            w,
+            np.clip(-rates[every].real / w, 0.0, 1.0),
+            pushes.T.copy(),
+            -np.real(read * rates[every].conj()) * heard[:, None],
+            np.real(read) * heard[:, None],
+            direct * heard[:, None, None],
+        )
+
+
+def refuse_absorbing(network: Network) -> None:
+    """UnservedError where dashpots swallow waves of some kind altogether: these have no modes.
+
+    Waves that arrive where there is no mass are sent back changed by 2 Z (Z + C)^-1 - 1, with the impedances Z and the
+    dashpots C; nothing is sent back where Z - C takes something to 0.
+    """
+    for joint in network.joints:
+        light = [p for p in joint.points if network.points[p].motion is None and network.points[p].mass == 0]
+        place = {point: k for k, point in enumerate(light)}
+        rows = [[fmpq(0)] * len(light) for _ in light]
+        for end, point in joint.ends:
+            if point in place:
+                rows[place[point]][place[point]] += (
+                    network.bars[end.bar].impedance * network.bars[end.bar].ratios[end.side] ** 2
+                )
+        for point, k in place.items():
+            rows[k][k] -= network.points[point].damping
+        for link in network.links:
+            if link.damping != 0:
+                weights = {place[p]: n for p, n in ((link.left, link.ratio), (link.right, fmpq(-1))) if p in place}
+                for a, n in weights.items():
+                    for b, m in weights.items():
+                        rows[a][b] -= n * m * link.damping
+        if light and fmpq_mat(rows).det() == 0:
+            at = network.points[light[0]].name or network.points[light[0]].place
+            raise UnservedError(
+                f"system: dashpots as large as the impedance at {at} given, larger or smaller ones expected in modes, as "
+                "nothing returns from these (pieces and march serve it)"
+            )
+
+
+def slowed_shares(
+    found: Sequence[Mode], pieces: Cut, outputs: Sequence[Seen], drivers: Sequence[Driver]
+) -> SlowedShares:
+    """Those of the modes of a network that is cut, in the precision and with the power series that are set."""
+    network = pieces.network
+    slowly, losing = Slowly(Stiffness(network)), dashpots(network)
+    loads = [slowly.driver(driver) for driver in drivers]
+    ports = [*map(slowly.output, outputs), *loads]
+    seen = _complex([[output.of(mode) for mode in found] for output in outputs], len(found))
+    shares = _complex([[share(network, driver, mode) for mode in found] for driver in drivers], len(found))
+    extended = [[_sum(dashpot, mode.points) for mode in found] for dashpot in losing]
+    still = [not mode.frequency.imag > abs(mode.frequency) * _STILL for mode in found]
+    w = [complex(mode.frequency) for mode in found]
+    taken = Taken(
+        rates=np.array([complex(0.0 if s else -each.imag, each.real) for s, each in zip(still, w, strict=True)]),
+        energy=np.array([_energy(k, mode, losing, extended, still[k]) for k, mode in enumerate(found)]),
+        size=np.array([nearest(dashpot.size) for dashpot in losing]),
+        extended=_complex(extended, len(found)),
+    )
+    started = [_started(port, b, losing, taken) for port, b in zip(ports, [*seen, *shares], strict=True)]
+    slow = np.zeros((len(outputs), len(loads), 3))
+    for o, output in enumerate(outputs):
+        for j, port in enumerate(loads):
+            read = slowly.read(output, port.moved)
+            for k in range(port.told + 1):
+                slow[o, j, 2 - port.told + k] = float(read[k])
+    return SlowedShares(taken.rates, seen, shares, slow, left(taken, started))
+
+
+def _energy(k: int, mode: Mode, losing: Sequence[Dashpot], extended: Sequence[Sequence[acb]], still: bool) -> float:
+    """Twice that of exp(rate tau) times its shape: from what dashpots take while it dies away; or from its mass."""
+    square = abs(mode.frequency) ** 2
+    if still:
+        return float(2 * square)
+    taken = sum((abs(rows[k]) ** 2 * dashpot.size for rows, dashpot in zip(extended, losing, strict=True)), arb(0))
+    return float(square * taken / mode.frequency.imag)
+
+
+def _started(port: Port, shares: Complex, losing: Sequence[Dashpot], taken: Taken) -> Started:
+    """What a port starts."""
+    moved = [[_sum(dashpot, [q[k] for q in port.moved]) for dashpot in losing] for k in range(TERMS)]
+    sizes = [arb(dashpot.size) for dashpot in losing]
+
+    def fast(q: int) -> list[arb]:
+        """How fast dashpots are extended by A^-q of what it starts."""
+        k = q - 2 + port.told
+        return [-each for each in moved[k]] if k >= 0 else [arb(0)] * len(losing)
+
+    def resisted(p: int, q: int) -> arb:
+        return 2 * sum((c * a * b for c, a, b in zip(sizes, fast(p), fast(q), strict=True)), arb(0))
+
+    energies = []
+    for q in range(POWERS):
+        if port.told:
+            both = sum((c * a * b for c, a, b in zip(sizes, moved[0], moved[2 * q + 1], strict=True)), arb(0))
+            energy = port.reads[2 * q + 2] - 2 * both
+        else:
+            energy = -port.reads[2 * q - 2] if q else port.begun
+        for j in range(q - 1, -1, -1):
+            energy = -resisted(q + j + 1, q - j) - energy
+        energies.append(float(energy))
+    shift = np.zeros(len(taken.rates), complex)
+    if port.told:
+        shift = 2 * (taken.size * np.array([float(each) for each in moved[0]])) @ taken.extended.conj()
+    rows = np.array([[float(each) for each in fast(q)] for q in range(POWERS)]).reshape(POWERS, len(losing))
+    return Started(shares, rows, np.array(energies), port.least, shift)
+
+
+def _sum(dashpot: Dashpot, points: Sequence[Quantity]) -> Quantity:
+    """How far a dashpot is extended."""
+    return sum((points[point] * weight for point, weight in dashpot.points.items()), arb(0))
+
+
+def _complex(rows: Sequence[Sequence[Quantity]], columns: int) -> Complex:
+    return np.array([[complex(value) for value in row] for row in rows], complex).reshape(len(rows), columns)
