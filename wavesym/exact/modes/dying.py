@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import takewhile
 
 import numpy as np
 from flint import acb, arb, ctx
@@ -32,7 +31,7 @@ _BITS = 224
 _BITS_A_ROW = 8
 _BALL = 80  # bits
 _NEWTON = 8
-_BESIDE = 1e-9
+_BESIDE, _FEW = 1e-9, 64  # modes that are so near each other, and at most how many
 _SHARP = arb(2) ** -60  # shapes
 _OFF = 2.0**-30  # a frequency itself tells less of its mode than one near it
 _STRAIGHT = 1e-9  # of what creeps, which has no real part
@@ -156,9 +155,10 @@ def _proved(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: int) -
 
 def _apart(modes: Sequence[Mode]) -> list[Mode]:
     """Each mode once, in their order."""
-    kept: list[tuple[float, Mode]] = []
-    for size, mode in sorted(((abs(complex(mode.frequency)), mode) for mode in modes), key=lambda pair: pair[0]):
-        beside = takewhile(lambda pair, least=size * (1 - _BESIDE): pair[0] > least, reversed(kept))
-        if not any(mode.frequency.overlaps(other.frequency) for _, other in beside):
-            kept.append((size, mode))
-    return [mode for _, mode in kept]
+    sizes = np.array([abs(complex(mode.frequency)) for mode in modes])
+    kept: list[int] = []
+    for k in np.argsort(sizes, kind="stable").tolist():
+        beside = [j for j in kept[-_FEW:] if sizes[j] > sizes[k] * (1 - _BESIDE)]
+        if not any(modes[k].frequency.overlaps(modes[j].frequency) for j in beside):
+            kept.append(k)
+    return [modes[k] for k in kept]

@@ -25,7 +25,7 @@ from wavesym.programs.modes.watched import Driver, Seen, driven, seen
 from wavesym.programs.schemes.modes import ModesScheme
 
 
-class Known(Protocol):
+class KnownModes(Protocol):
     """What modes are of loads and outputs, by columns."""
 
     @property
@@ -33,11 +33,11 @@ class Known(Protocol):
         """The absolute values of their frequencies, ascending."""
 
 
-K = TypeVar("K", bound=Known)
+K = TypeVar("K", bound=KnownModes)
 
 
 @dataclass(frozen=True)
-class Chain(ABC, Generic[K]):
+class ModalChain(ABC, Generic[K]):
     """What is the same for any number of modes: at most `MOST`, and as many that they are `WORK` times bars."""
 
     model: Model

@@ -54,7 +54,7 @@ def dashpots(network: Network) -> list[Dashpot]:
 
 
 @dataclass(frozen=True)
-class Port:
+class SlowPort:
     """How points move under it, and what it reads of this; `told` is 2 where it is an acceleration, twice integrated.
 
     `least` is the power of 1/s from which on what it starts has a finite energy, and that energy (in 1/s^0) `begun`.
@@ -134,7 +134,7 @@ class Slowly:
             return self.slope(moved, end) * arb(weight)
         return sum((moved[point] * arb(weight) for point, weight in output.points.items()), arb_series([0]))
 
-    def output(self, output: Seen) -> Port:
+    def output(self, output: Seen) -> SlowPort:
         """The port that an output is."""
         network, zero, one = self._network, arb(0), arb_series([1])
         if output.slope:
@@ -147,18 +147,18 @@ class Slowly:
             forces[here] = forces.get(here, arb_series([0])) - pulled * (sign * arb(bar.ratios[end.side]))
             moved = self._under(forces)
             reads = self.read(output, moved) - pulled * (arb(weight * weight) / arb(bar.impedance))
-            return Port(moved, reads, 0, 2, zero)
+            return SlowPort(moved, reads, 0, 2, zero)
         free = {point: weight for point, weight in output.points.items() if network.points[point].motion is None}
         moved = self._under({point: one * arb(weight) for point, weight in free.items()})
         reads = sum((moved[point] * arb(weight) for point, weight in free.items()), arb_series([0]))
-        return Port(moved, reads, 0, *self._begun(free))
+        return SlowPort(moved, reads, 0, *self._begun(free))
 
-    def driver(self, driver: Driver) -> Port:
+    def driver(self, driver: Driver) -> SlowPort:
         """The port that a load is."""
         network, gain, one = self._network, arb(driver.gain), arb_series([1])
         if network.points[driver.point].motion is None:
             moved = self._under({driver.point: one * gain})
-            return Port(moved, moved[driver.point] * gain, 0, *self._begun({driver.point: driver.gain}))
+            return SlowPort(moved, moved[driver.point] * gain, 0, *self._begun({driver.point: driver.gain}))
         held, forces = arb_series([0]), dict[int, Series]()
         for bar in network.bars:
             pulled, shared = self._bars[bar.delay]
@@ -178,7 +178,7 @@ class Slowly:
         moved = [q * gain for q in self._under(forces)]
         pull = sum((forces[point] * moved[point] for point in forces if network.points[point].motion is None), one * 0)
         moved[driver.point] = one * gain
-        return Port(moved, (held * gain - pull) * gain, 2, 0, arb(0))
+        return SlowPort(moved, (held * gain - pull) * gain, 2, 0, arb(0))
 
     def _begun(self, weights: Mapping[int, fmpq]) -> tuple[int, arb]:
         """Of a force the first power whose energy is finite, and that of its impulse: where there are masses, both."""

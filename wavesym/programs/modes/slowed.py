@@ -16,10 +16,10 @@ from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Quantity, Stiffness
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.modes.chain import Chain
+from wavesym.programs.modes.chain import ModalChain
 from wavesym.programs.modes.dissipation import POWERS, Complex, Started, Taken, left
 from wavesym.programs.modes.modal import ModalSystem, Numbers
-from wavesym.programs.modes.ports import TERMS, Dashpot, Port, Slowly, dashpots, series
+from wavesym.programs.modes.ports import TERMS, Dashpot, Slowly, SlowPort, dashpots, series
 from wavesym.programs.modes.shares import share
 from wavesym.programs.modes.watched import Driver, Seen, places
 
@@ -61,7 +61,7 @@ class SlowedShares:
 
 
 @dataclass(frozen=True)
-class SlowedChain(Chain[SlowedShares]):
+class SlowedChain(ModalChain[SlowedShares]):
     """Its modes, and what those that are left out can add (dissipation.py)."""
 
     MOST = 1000
@@ -155,8 +155,8 @@ def refuse_absorbing(network: Network) -> None:
         if light and fmpq_mat(rows).det() == 0:
             at = network.points[light[0]].name or network.points[light[0]].place
             raise UnservedError(
-                f"system: dashpots as large as the impedance at {at} given, larger or smaller ones expected in modes, as "
-                "nothing returns from these (pieces and march serve it)"
+                f"system: dashpots as large as the impedance at {at} given, larger or smaller ones expected in modes, "
+                "as nothing returns from these (pieces and march serve it)"
             )
 
 
@@ -198,7 +198,7 @@ def _energy(k: int, mode: Mode, losing: Sequence[Dashpot], extended: Sequence[Se
     return float(square * taken / mode.frequency.imag)
 
 
-def _started(port: Port, shares: Complex, losing: Sequence[Dashpot], taken: Taken) -> Started:
+def _started(port: SlowPort, shares: Complex, losing: Sequence[Dashpot], taken: Taken) -> Started:
     """What a port starts."""
     moved = [[_sum(dashpot, [q[k] for q in port.moved]) for dashpot in losing] for k in range(TERMS)]
     sizes = [arb(dashpot.size) for dashpot in losing]

@@ -9,7 +9,7 @@ import numpy as np
 
 from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.frequencies import Spectrum
-from wavesym.programs.modes.chain import Chain
+from wavesym.programs.modes.chain import ModalChain
 from wavesym.programs.modes.damped import Damped, damped
 from wavesym.programs.modes.modal import ModalSystem, Numbers
 from wavesym.programs.modes.shares import Shares, shares
@@ -18,7 +18,7 @@ from wavesym.programs.modes.watched import places
 
 
 @dataclass(frozen=True)
-class SwingingChain(Chain[Shares]):
+class SwingingChain(ModalChain[Shares]):
     """Its modes, and what those that are left out can add (tail.py)."""
 
     @cached_property

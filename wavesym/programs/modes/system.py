@@ -11,7 +11,7 @@ import numpy as np
 from wavesym.errors import ToleranceError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.modes.chain import Chain, K
+from wavesym.programs.modes.chain import K, ModalChain
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.modes.modal import ModalSystem, Numbers
 from wavesym.programs.modes.slowed import SlowedChain
@@ -60,7 +60,7 @@ def modal_system(model: Model) -> ModalModes:
     return _enough(model, SwingingChain(model))
 
 
-def _enough(model: Model, chain: Chain[K]) -> ModalModes:
+def _enough(model: Model, chain: ModalChain[K]) -> ModalModes:
     tolerance = nearest(model.tolerance) / 2
     count, largest = chain.fewest, np.zeros(len(model.probes))
     while True:
@@ -98,7 +98,7 @@ def _enough(model: Model, chain: Chain[K]) -> ModalModes:
     )
 
 
-def _unmet(model: Model, chain: Chain[K], errors: Numbers, largest: Numbers, better: float) -> ToleranceError:
+def _unmet(model: Model, chain: ModalChain[K], errors: Numbers, largest: Numbers, better: float) -> ToleranceError:
     bounds = _relative(errors, largest)
     worst = int(np.argmax(bounds))
     name = model.probes[worst].name
