@@ -1,18 +1,7 @@
-"""What is left of loads and outputs without the modes that are taken, where dashpots take energy: proved.
+"""What modes have of each other, and of what ports start, where dashpots take energy: in balls (left.py has the laws).
 
-A state x is how far all points move and how fast, its norm the square root of twice its energy. x' = A x; as energy
-only falls, exp(A tau) makes no norm larger, and no sum over k of d_k exp(A (tau - t_k)) makes one more than `in_step`
-times as large (von Neumann's inequality). A load starts B; an output is the product with what a load in its place would
-start, L. So of a load that is linear between instants, beyond what it would do if it did not change, an output has at
-most
-
-    (in_step + steepest) |A^-p (1 - P) L| |A^-q (1 - P) B|,      p + q = 3 - (order of its derivative),
-
-where 1 - P takes away the modes that are taken. It needs none of the others, nor that they are all.
-
-Their energies are known without integrals: that of x and y, <A x, y> + <x, A y> is minus twice what dashpots take of
-their velocities. So modes X with X' = r X have <X, Y> = -2 sum c v_X conj(v_Y)/(r_X + conj(r_Y)), and with A g_q =
-g_(q - 1), g_0 = B, so follow <g_q, X> from <g_(q-1), X>, and <g_q, g_q> from what the load's own point does to it.
+Most of what is started is in few slow modes. These are taken away in balls, so that what is left is not lost in the
+rounding of what is not.
 """
 
 from __future__ import annotations
@@ -21,88 +10,161 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from flint import acb, acb_mat, arb
 
+from wavesym.exact.modes.shape import Mode
+from wavesym.exact.modes.stiffness import Quantity
+from wavesym.numbers.doubles import nearest
+from wavesym.programs.modes.left import POWERS, Complex, Started, Taken, left
 from wavesym.programs.modes.modal import Numbers
+from wavesym.programs.modes.ports import TERMS, Dashpot, SlowPort
 
-Complex = NDArray[np.complex128]
-
-POWERS = 4
-"""p and q are less."""
-_UNIT = 2.0**-53
-
-
-@dataclass(frozen=True)
-class Taken:
-    """Modes by columns: their `rates`, twice their energies, how far dashpots of `size` are `extended` by them.
-
-    Those that swing stand for themselves and their conjugates, and count twice.
-    """
-
-    rates: Complex
-    energy: Numbers
-    size: Numbers
-    extended: Complex
-
-    @property
-    def twice(self) -> Numbers:
-        """How often each counts."""
-        return np.where(self.rates.imag != 0, 2.0, 1.0)
-
-    def products(self) -> tuple[Complex, Complex, Numbers]:
-        """<X, Y> of all modes, <X, conj Y>, and in how many roundings they are wrong."""
-        moved = self.rates * self.extended
-        weighted = self.size[:, None] * moved
-        rates = self.rates
-        with np.errstate(divide="ignore", invalid="ignore"):
-            same = -2 * (weighted.T @ moved.conj()) / (rates[:, None] + rates.conj())
-            other = -2 * (weighted.T @ moved) / (rates[:, None] + rates)
-            far = np.abs(rates)[:, None] + np.abs(rates)
-            off = (
-                16 + len(self.size) + far / np.abs(rates[:, None] + rates.conj()) + far / np.abs(rates[:, None] + rates)
-            )
-        np.fill_diagonal(same, self.energy)
-        np.fill_diagonal(off, 16 + len(self.size) + 2 * np.abs(rates) / np.abs(2 * rates))
-        return same, other, off
+_STILL = 2.0**-80  # of a frequency: what dies away more slowly does not in doubles
+_SLOW = 32  # modes that are taken away in balls
+_ABOVE = 1 + 2.0**-50
 
 
 @dataclass(frozen=True)
-class Started:
-    """What a port starts: its shares in the modes, how far dashpots are extended by it (powers, dashpots), and the
-    energies of A^-q B; those below the `least` power are infinite. `shift` is what a moving end adds to <B, X>.
-    """
+class Response:
+    """What a port starts: its shares in modes, |A^-q B|^2 for each q, and <A^-q B, X> of all modes."""
 
-    shares: Complex
-    extended: Numbers
-    energies: Numbers
+    shares: Sequence[acb]
+    energies: Sequence[arb]
+    known: Sequence[Sequence[acb]]
     least: int
-    shift: Complex
+
+    def rounded(self, first: int) -> Started:
+        """In doubles, without the first modes."""
+        return Started(
+            np.array([complex(b) for b in self.shares[first:]], complex),
+            np.array([max(float(each.upper()) * _ABOVE, 0.0) for each in self.energies]),
+            np.array([[complex(h) for h in row[first:]] for row in self.known], complex),
+            self.least,
+        )
 
 
-def left(taken: Taken, ports: Sequence[Started]) -> Numbers:
-    """|A^-q (1 - P) B| for q = 0, 1, ..., once the first 0, 1, 2, ... modes are taken: (ports, POWERS, modes + 1)."""
-    count = len(taken.rates)
-    same, other, off = taken.products()
-    made = np.full((len(ports), POWERS, count + 1), np.inf)
-    lower, lower2 = np.tril(same, -1), np.tril(other, -1)
-    rough = (np.abs(lower) + np.abs(lower2)) * np.tril(off, -1)
-    own = np.abs(same.diagonal()) + np.abs(other.diagonal())
-    for port, row in zip(ports, made, strict=True):
-        known = np.conj(taken.rates * port.shares) + port.shift
-        size = np.abs(known)
+class Dissipation:
+    """Modes that die away: their rates, how far dashpots are extended in them, and twice their energies."""
+
+    def __init__(self, modes: Sequence[Mode], dashpots: Sequence[Dashpot]) -> None:
+        self._dashpots, self._sizes = dashpots, [arb(dashpot.size) for dashpot in dashpots]
+        self.rates = [_rate(mode.frequency) for mode in modes]
+        self._extended = [[_sum(dashpot, mode.points) for dashpot in dashpots] for mode in modes]
+        self._fast = [[rate * e for e in row] for rate, row in zip(self.rates, self._extended, strict=True)]
+        self._energies = [self._energy(rate, fast) for rate, fast in zip(self.rates, self._fast, strict=True)]
+
+    def left(self, ports: Sequence[SlowPort], shares: Sequence[Sequence[acb]]) -> Numbers:
+        """What is left of ports once the first 0, 1, 2, ... modes are taken: (ports, POWERS, modes + 1)."""
+        responses = [self._response(port, row) for port, row in zip(ports, shares, strict=True)]
+        taken = self._rounded()
+        made = left(taken, [response.rounded(0) for response in responses])
+        slow = min(_SLOW, len(self.rates))
+        deflated = [response.rounded(slow) for response in self._without(responses, slow)]
+        made[:, :, slow:] = np.minimum(made[:, :, slow:], left(taken.after(slow), deflated))
+        return made
+
+    def _energy(self, rate: acb, fast: Sequence[acb]) -> arb:
+        if not rate.real < 0:
+            return 2 * abs(rate) ** 2  # that of a mass of 1
+        return arb(-self._taken(fast, fast).real / rate.real)
+
+    def _taken(self, one: Sequence[Quantity], other: Sequence[Quantity]) -> Quantity:
+        """What dashpots take of two states."""
+        return sum((c * a * b.conjugate() for c, a, b in zip(self._sizes, one, other, strict=True)), acb(0))
+
+    def _product(self, k: int, n: int, conjugate: bool) -> acb:
+        """That of a mode, or its conjugate, and another one."""
+        if k == n and not conjugate:
+            return acb(self._energies[k])
+        rate, fast = self.rates[k], self._fast[k]
+        if conjugate:
+            rate, fast = rate.conjugate(), [v.conjugate() for v in fast]
+        return acb(-2 * self._taken(fast, self._fast[n]) / (rate + self.rates[n].conjugate()))
+
+    def _response(self, port: SlowPort, shares: Sequence[acb]) -> Response:
+        moved = [[acb(_sum(dashpot, [q[k] for q in port.moved])) for dashpot in self._dashpots] for k in range(TERMS)]
+        zero = [acb(0)] * len(self._dashpots)
+
+        def fast(q: int) -> list[acb]:
+            """How fast dashpots are extended by A^-q of what it starts."""
+            k = q - 2 + port.told
+            return [-each for each in moved[k]] if k >= 0 else zero
+
+        energies = []
         for q in range(POWERS):
-            if q:
-                slowed = 2 * (taken.size * port.extended[q]) @ np.conj(taken.rates * taken.extended)
-                size = (size + np.abs(slowed)) / np.abs(taken.rates)
-                known = -(known + slowed) / np.conj(taken.rates)
-            if q < port.least:
-                continue
-            x = taken.twice * port.shares / (2 * taken.rates ** (q + 1))
-            met = np.real(np.conj(x) * known)
-            pairs = np.real(x * (lower @ x.conj() + lower2 @ x))
-            alone = np.real(np.abs(x) ** 2 * same.diagonal() + x * x * other.diagonal()) / 2
-            squares = port.energies[q] + np.cumsum(np.append(0.0, alone + pairs - 2 * met))
-            terms = np.abs(x) * (rough @ np.abs(x)) + 32 * np.abs(x) ** 2 * own + 64 * np.abs(x) * size
-            wrong = _UNIT * (2 * count + 64) * (port.energies[q] + np.cumsum(np.append(0.0, terms)))
-            row[q] = np.sqrt(np.maximum(squares, 0.0) + wrong)
-    return made
+            if port.told:
+                energy = port.reads[2 * q + 2] - 2 * self._taken(moved[0], moved[2 * q + 1]).real
+            else:
+                energy = -port.reads[2 * q - 2] if q else port.begun
+            for j in range(q - 1, -1, -1):
+                energy = -2 * self._taken(fast(q + j + 1), fast(q - j)).real - energy
+            energies.append(energy)
+        known = [(rate * b).conjugate() for rate, b in zip(self.rates, shares, strict=True)]
+        if port.told:
+            known = [h + 2 * self._taken(moved[0], e) for h, e in zip(known, self._extended, strict=True)]
+        rows = [known]
+        for q in range(1, POWERS):
+            acting = fast(q)
+            pairs = zip(known, self._fast, self.rates, strict=True)
+            known = [-(h + 2 * self._taken(acting, v)) / rate.conjugate() for h, v, rate in pairs]
+            rows.append(known)
+        return Response(shares, energies, rows, port.least)
+
+    def _without(self, responses: Sequence[Response], slow: int) -> list[Response]:
+        """What ports start but for their parts in the first modes."""
+        if not slow:
+            return list(responses)
+        columns = [
+            [_part(rate, b) / rate ** (q + 1) for rate, b in zip(self.rates[:slow], each.shares, strict=False)]
+            for each in responses
+            for q in range(POWERS)
+        ]
+        both = [
+            [*(self._product(k, n, False) for k in range(slow)), *(self._product(k, n, True) for k in range(slow))]
+            for n in range(len(self.rates))
+        ]
+        halves = acb_mat([[x / 2 for x in column] + [x.conjugate() / 2 for x in column] for column in columns])
+        parts = acb_mat(both) * halves.transpose()
+        made, column = [], 0
+        for each in responses:
+            energies, rows = [], []
+            for q in range(POWERS):
+                row = [h - parts[n, column] for n, h in enumerate(each.known[q])]
+                mixed = zip(columns[column], each.known[q], row, strict=False)
+                taken = sum(((x.conjugate() * (h + rest)).real for x, h, rest in mixed), arb(0))
+                energies.append(each.energies[q] - taken)
+                rows.append(row)
+                column += 1
+            made.append(Response(each.shares, energies, rows, each.least))
+        return made
+
+    def _rounded(self) -> Taken:
+        rates = np.array([complex(rate) for rate in self.rates], complex)
+        return Taken(
+            rates=rates,
+            finer=np.array([float(a.imag - b.imag) for a, b in zip(self.rates, rates.tolist(), strict=True)]),
+            energy=np.array([float(energy) for energy in self._energies]),
+            size=np.array([nearest(dashpot.size) for dashpot in self._dashpots]),
+            extended=complexes([list(row) for row in zip(*self._fast, strict=True)], len(rates)),
+        )
+
+
+def complexes(rows: Sequence[Sequence[Quantity]], columns: int) -> Complex:
+    """Balls rounded to doubles."""
+    return np.array([[complex(value) for value in row] for row in rows], complex).reshape(len(rows), columns)
+
+
+def _rate(frequency: acb) -> acb:
+    """That of exp(rate tau). It is 0 but for its imaginary part where that dies away too slowly to be seen."""
+    fades = frequency.imag > abs(frequency) * _STILL
+    return acb(-frequency.imag if fades else 0, frequency.real)
+
+
+def _part(rate: acb, share: acb) -> acb:
+    """A share over twice its rate, the conjugate included."""
+    return share if rate.imag != 0 else share / 2
+
+
+def _sum(dashpot: Dashpot, points: Sequence[Quantity]) -> Quantity:
+    """How far a dashpot is extended."""
+    return sum((points[point] * weight for point, weight in dashpot.points.items()), arb(0))

@@ -7,24 +7,23 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from flint import acb, arb, ctx, fmpq, fmpq_mat
+from flint import acb, ctx, fmpq, fmpq_mat
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut, cut
 from wavesym.exact.modes.dying import dying
 from wavesym.exact.modes.shape import Mode
-from wavesym.exact.modes.stiffness import Quantity, Stiffness
+from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Network
-from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.chain import ModalChain
-from wavesym.programs.modes.dissipation import POWERS, Complex, Started, Taken, left
+from wavesym.programs.modes.dissipation import Dissipation, complexes
+from wavesym.programs.modes.left import Complex
 from wavesym.programs.modes.modal import ModalSystem, Numbers
-from wavesym.programs.modes.ports import TERMS, Dashpot, Slowly, SlowPort, dashpots, series
+from wavesym.programs.modes.ports import Slowly, dashpots, series
 from wavesym.programs.modes.shares import share
 from wavesym.programs.modes.watched import Driver, Seen, places
 
 _BITS = 320
-_STILL = 2.0**-80  # of a frequency: what dies away more slowly does not in doubles
 _MORE = 1 + 1e-12
 
 
@@ -165,73 +164,20 @@ def slowed_shares(
 ) -> SlowedShares:
     """Those of the modes of a network that is cut, in the precision and with the power series that are set."""
     network = pieces.network
-    slowly, losing = Slowly(Stiffness(network)), dashpots(network)
+    slowly, losing = Slowly(Stiffness(network)), Dissipation(found, dashpots(network))
     loads = [slowly.driver(driver) for driver in drivers]
-    ports = [*map(slowly.output, outputs), *loads]
-    seen = _complex([[output.of(mode) for mode in found] for output in outputs], len(found))
-    shares = _complex([[share(network, driver, mode) for mode in found] for driver in drivers], len(found))
-    extended = [[_sum(dashpot, mode.points) for mode in found] for dashpot in losing]
-    still = [not mode.frequency.imag > abs(mode.frequency) * _STILL for mode in found]
-    w = [complex(mode.frequency) for mode in found]
-    taken = Taken(
-        rates=np.array([complex(0.0 if s else -each.imag, each.real) for s, each in zip(still, w, strict=True)]),
-        energy=np.array([_energy(k, mode, losing, extended, still[k]) for k, mode in enumerate(found)]),
-        size=np.array([nearest(dashpot.size) for dashpot in losing]),
-        extended=_complex(extended, len(found)),
-    )
-    started = [_started(port, b, losing, taken) for port, b in zip(ports, [*seen, *shares], strict=True)]
+    seen = [[acb(output.of(mode)) for mode in found] for output in outputs]
+    shares = [[acb(share(network, driver, mode)) for mode in found] for driver in drivers]
     slow = np.zeros((len(outputs), len(loads), 3))
     for o, output in enumerate(outputs):
         for j, port in enumerate(loads):
             read = slowly.read(output, port.moved)
             for k in range(port.told + 1):
                 slow[o, j, 2 - port.told + k] = float(read[k])
-    return SlowedShares(taken.rates, seen, shares, slow, left(taken, started))
-
-
-def _energy(k: int, mode: Mode, losing: Sequence[Dashpot], extended: Sequence[Sequence[acb]], still: bool) -> float:
-    """Twice that of exp(rate tau) times its shape: from what dashpots take while it dies away; or from its mass."""
-    square = abs(mode.frequency) ** 2
-    if still:
-        return float(2 * square)
-    taken = sum((abs(rows[k]) ** 2 * dashpot.size for rows, dashpot in zip(extended, losing, strict=True)), arb(0))
-    return float(square * taken / mode.frequency.imag)
-
-
-def _started(port: SlowPort, shares: Complex, losing: Sequence[Dashpot], taken: Taken) -> Started:
-    """What a port starts."""
-    moved = [[_sum(dashpot, [q[k] for q in port.moved]) for dashpot in losing] for k in range(TERMS)]
-    sizes = [arb(dashpot.size) for dashpot in losing]
-
-    def fast(q: int) -> list[arb]:
-        """How fast dashpots are extended by A^-q of what it starts."""
-        k = q - 2 + port.told
-        return [-each for each in moved[k]] if k >= 0 else [arb(0)] * len(losing)
-
-    def resisted(p: int, q: int) -> arb:
-        return 2 * sum((c * a * b for c, a, b in zip(sizes, fast(p), fast(q), strict=True)), arb(0))
-
-    energies = []
-    for q in range(POWERS):
-        if port.told:
-            both = sum((c * a * b for c, a, b in zip(sizes, moved[0], moved[2 * q + 1], strict=True)), arb(0))
-            energy = port.reads[2 * q + 2] - 2 * both
-        else:
-            energy = -port.reads[2 * q - 2] if q else port.begun
-        for j in range(q - 1, -1, -1):
-            energy = -resisted(q + j + 1, q - j) - energy
-        energies.append(float(energy))
-    shift = np.zeros(len(taken.rates), complex)
-    if port.told:
-        shift = 2 * (taken.size * np.array([float(each) for each in moved[0]])) @ taken.extended.conj()
-    rows = np.array([[float(each) for each in fast(q)] for q in range(POWERS)]).reshape(POWERS, len(losing))
-    return Started(shares, rows, np.array(energies), port.least, shift)
-
-
-def _sum(dashpot: Dashpot, points: Sequence[Quantity]) -> Quantity:
-    """How far a dashpot is extended."""
-    return sum((points[point] * weight for point, weight in dashpot.points.items()), arb(0))
-
-
-def _complex(rows: Sequence[Sequence[Quantity]], columns: int) -> Complex:
-    return np.array([[complex(value) for value in row] for row in rows], complex).reshape(len(rows), columns)
+    return SlowedShares(
+        rates=np.array([complex(rate) for rate in losing.rates], complex),
+        seen=complexes(seen, len(found)),
+        shares=complexes(shares, len(found)),
+        slow=slow,
+        left=losing.left([*map(slowly.output, outputs), *loads], [*seen, *shares]),
+    )
