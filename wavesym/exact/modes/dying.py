@@ -79,7 +79,8 @@ def sought(stiffness: Stiffness, count: int) -> Complex:
     for _ in range(_ROUNDS):
         apart = w[moving, None] - w
         apart[np.arange(len(moving)), moving] = np.inf
-        step = 1 / (_pull(stiffness, w[moving]) - (1 / apart).sum(axis=1))
+        with np.errstate(all="ignore"):
+            step = 1 / (_pull(stiffness, w[moving]) - (1 / apart).sum(axis=1))
         step = np.where(np.isfinite(step), step, 0.1 * draw.normal(size=len(step)))
         size = np.abs(step)
         step *= np.minimum(1.0, 2.0 / float(stiffness.delay) / np.maximum(size, 1e-300))
