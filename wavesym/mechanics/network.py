@@ -150,6 +150,12 @@ class Network:
             link.damping != 0 and not link.contact and free & {link.left, link.right} for link in self.links
         )
 
+    @property
+    def bridged(self) -> frozenset[int]:
+        """The bars that springs or dashpots lie beside, between the same two points."""
+        pairs = {frozenset((k.left, k.right)) for k in self.links if k.stiffness != 0 or k.damping != 0}
+        return frozenset(n for n, bar in enumerate(self.bars) if frozenset((bar.left, bar.right)) in pairs)
+
     @cached_property
     def joint_of(self) -> Mapping[int, int]:
         """The number of each point's joint."""

@@ -16,10 +16,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from flint import acb, arb, ctx
+from flint import acb, arb, ctx, fmpq
 from numpy.typing import NDArray
 
-from wavesym.exact.modes.cuts import Cut
+from wavesym.errors import UnservedError
+from wavesym.exact.modes.cuts import Cut, cut
 from wavesym.exact.modes.frequencies import searched
 from wavesym.exact.modes.shape import Mode, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
@@ -31,6 +32,7 @@ _BITS = 224
 _BITS_A_ROW = 8
 _BALL = 80  # bits
 _NEWTON = 8
+_MEETING = 1e-5  # frequencies that no step tells apart
 _BESIDE, _FEW = 1e-9, 64  # modes that are so near each other, and at most how many
 _SHARP = arb(2) ** -60  # shapes
 _OFF = 2.0**-30  # a frequency itself tells less of its mode than one near it
@@ -51,19 +53,45 @@ def undamped(network: Network) -> Network:
     )
 
 
-def dying(pieces: Cut, count: int) -> list[Mode]:
-    """About the first `count` modes, by the absolute values of their frequencies, those with a real part of at least 0.
+class DyingSpectrum:
+    """The modes of a network with dashpots that is cut at places (bar, part of it)."""
 
-    Of a mode that creeps the real part is exactly 0. Shapes have mass 1 as `Trial` counts it.
-    """
-    stiffness = Stiffness(pieces.network)
-    guesses = sought(stiffness, count)
-    with ctx.workprec(_BITS + _BITS_A_ROW * len(stiffness.points)):
-        law = stiffness.law(arb)
-        near = guesses * (1 + _OFF)
-        roots = stiffness.yielding(near, 1j * near).tolist()
-        found = (_proved(stiffness, law, *each) for each in zip(guesses.tolist(), roots, strict=True))
+    def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
+        self._cuts = [cut(network, places)]
+        if not network.bridged:  # where cuts would make rings
+            self._cuts.append(cut(network, places, aside=True))
+
+    @property
+    def cut(self) -> Cut:
+        """The network as it is cut."""
+        return self._cuts[0]
+
+    def first(self, count: int) -> list[Mode]:
+        """About the first `count` modes, by the absolute values of their frequencies, with real parts of at least 0.
+
+        Of a mode that creeps the real part is exactly 0. Shapes have mass 1 as `Trial` counts it. UnservedError where
+        frequencies coincide, as of equal branches.
+        """
+        stiffness = Stiffness(self.cut.network)
+        guesses = sought(stiffness, count) if stiffness.points else np.zeros(1, complex)
+        found = _all_proved(stiffness, guesses) if stiffness.points else [None]
+        for k in (k for k, mode in enumerate(found) if mode is None):
+            if self._cuts[1:]:  # all points may be at rest
+                del self._cuts[0]
+                return self.first(count)
+            if np.count_nonzero(np.abs(guesses - guesses[k]) < _MEETING * abs(guesses[k])) > 1:
+                raise UnservedError(
+                    f"system: two frequencies meet near {abs(guesses[k]):.6g}, frequencies that differ expected in "
+                    "modes with dashpots (pieces and march serve it)"
+                )
         return _apart([mode for mode in found if mode])
+
+
+def _all_proved(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
+    with ctx.workprec(_BITS + _BITS_A_ROW * len(stiffness.points)):
+        law, near = stiffness.law(arb), guesses * (1 + _OFF)
+        roots = stiffness.yielding(near, 1j * near).tolist()
+        return [_proved(stiffness, law, *each) for each in zip(guesses.tolist(), roots, strict=True)]
 
 
 def sought(stiffness: Stiffness, count: int) -> Complex:

@@ -10,8 +10,8 @@ import numpy as np
 from flint import acb, ctx, fmpq, fmpq_mat
 
 from wavesym.errors import UnservedError
-from wavesym.exact.modes.cuts import Cut, cut
-from wavesym.exact.modes.dying import dying
+from wavesym.exact.modes.cuts import Cut
+from wavesym.exact.modes.dying import DyingSpectrum
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Network
@@ -72,9 +72,14 @@ class SlowedChain(ModalChain[SlowedShares]):
         return 1
 
     @cached_property
+    def spectrum(self) -> DyingSpectrum:
+        """Its modes."""
+        return DyingSpectrum(self.model.network, places(self.model))
+
+    @property
     def cut(self) -> Cut:
         """The network with points wherever outputs are."""
-        return cut(self.model.network, places(self.model))
+        return self.spectrum.cut
 
     def shares(self, count: int) -> SlowedShares:
         """The first modes. UnservedError for what modes do not serve."""
@@ -82,7 +87,7 @@ class SlowedChain(ModalChain[SlowedShares]):
         network = self.model.network
         network.refuse_contacts()
         refuse_absorbing(network)
-        found = dying(self.cut, count)
+        found = self.spectrum.first(count)
         with ctx.workprec(_BITS), series():
             return slowed_shares(found, self.cut, self.seen, self.drivers)
 

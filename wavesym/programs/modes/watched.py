@@ -90,7 +90,13 @@ def _felt(point: Point, coefficients: Sequence[fmpq]) -> list[fmpq]:
 
 
 def places(model: Model) -> tuple[tuple[int, fmpq], ...]:
-    """Where bars are to be cut so that all outputs are at points."""
+    """Where bars are to be cut so that all outputs are at points. UnservedError where that makes a ring."""
+    for probe in model.probes:
+        if 0 < probe.place < 1 and probe.rod - 1 in model.network.bridged:
+            raise UnservedError(
+                f"output: {probe.name} inside a rod with a spring or dashpot beside it given, a place at its ends "
+                "expected in modes (pieces and march serve it)"
+            )
     return tuple((probe.rod - 1, probe.place) for probe in model.probes if probe.rod)
 
 
