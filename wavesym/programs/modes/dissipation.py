@@ -25,7 +25,7 @@ _ABOVE = 1 + 2.0**-50
 
 
 @dataclass(frozen=True)
-class Response:
+class StartedInBalls:
     """What a port starts: its shares in modes, |A^-q B|^2 for each q, and <A^-q B, X> of all modes."""
 
     shares: Sequence[acb]
@@ -81,7 +81,7 @@ class Dissipation:
             rate, fast = rate.conjugate(), [v.conjugate() for v in fast]
         return acb(-2 * self._taken(fast, self._fast[n]) / (rate + self.rates[n].conjugate()))
 
-    def _response(self, port: SlowPort, shares: Sequence[acb]) -> Response:
+    def _response(self, port: SlowPort, shares: Sequence[acb]) -> StartedInBalls:
         moved = [[acb(_sum(dashpot, [q[k] for q in port.moved])) for dashpot in self._dashpots] for k in range(TERMS)]
         zero = [acb(0)] * len(self._dashpots)
 
@@ -108,9 +108,9 @@ class Dissipation:
             pairs = zip(known, self._fast, self.rates, strict=True)
             known = [-(h + 2 * self._taken(acting, v)) / rate.conjugate() for h, v, rate in pairs]
             rows.append(known)
-        return Response(shares, energies, rows, port.least)
+        return StartedInBalls(shares, energies, rows, port.least)
 
-    def _without(self, responses: Sequence[Response], slow: int) -> list[Response]:
+    def _without(self, responses: Sequence[StartedInBalls], slow: int) -> list[StartedInBalls]:
         """What ports start but for their parts in the first modes."""
         if not slow:
             return list(responses)
@@ -135,7 +135,7 @@ class Dissipation:
                 energies.append(each.energies[q] - taken)
                 rows.append(row)
                 column += 1
-            made.append(Response(each.shares, energies, rows, each.least))
+            made.append(StartedInBalls(each.shares, energies, rows, each.least))
         return made
 
     def _rounded(self) -> Taken:
