@@ -263,7 +263,9 @@ def test_equal_frequencies_are_damped_alike_or_refused():
         modal_system(replace(model, damping=Damping((fmpq(1, 20), fmpq(1, 20), fmpq(1, 10)))))
 
 
-@pytest.mark.parametrize("name", ["a ratio", "a list", "Rayleigh"])
+@pytest.mark.parametrize(
+    "name", ["a ratio", *(pytest.param(name, marks=pytest.mark.slow) for name in ("a list", "Rayleigh"))]
+)
 def test_damped_modes_move_before_a_wave_arrives(name):
     """A horizon that ends when the first wave arrives has the values of one that ends later."""
     watched = {"displacement": [1, 2], "drift": [2], "relative": [2]}

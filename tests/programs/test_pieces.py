@@ -63,7 +63,7 @@ def test_waves_on_windows_and_exact_tables_agree_to_30_digits(drawn, random):
                 assert difference.rad() <= size * arb(fmpq(1, 10**30))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(scenes(), st.sampled_from(["double", "single"]), st.randoms(use_true_random=False))
 def test_no_error_is_above_the_bound(drawn, precision, random):
     if precision == "single":

@@ -12,6 +12,7 @@ from wavesym.programs.program import Program
 from wavesym.targets import TARGETS
 from wavesym.targets.description import describe
 from wavesym.targets.manifest import manifest
+from wavesym.targets.package import package
 from wavesym.targets.target import Target
 
 MARKS = (b": made by wavesym", b'"generator": "wavesym"')
@@ -24,12 +25,17 @@ def is_ours(path: Path) -> bool:
     return any(mark in start for mark in MARKS)
 
 
-def files(program: Program, language: str = "c") -> dict[str, str]:
-    """What `generate` writes of a program, by file name: sources in a language, or in "all", and the manifest."""
+def files(program: Program, language: str = "c", *, packaged: bool = False) -> dict[str, str]:
+    """What `generate` writes of a program, by file name: sources in a language, or in "all", and the manifest.
+
+    `packaged` C comes with what builds, tests and installs it.
+    """
     description = describe(program)
     made = {f"{description.name}.json": manifest(description, program)}
     for name in TARGETS if language == "all" else (language,):
         made |= _target(name).files(description, program)
+    if packaged:
+        made |= package(description, program)
     return dict(sorted(made.items()))
 
 
