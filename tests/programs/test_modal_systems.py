@@ -248,6 +248,21 @@ def test_outputs_that_are_nearly_0_have_a_bound(loads):
     assert made.largest[0] > 1e-5
 
 
+def test_what_no_number_of_modes_tells_from_0_is_refused_early(monkeypatch):
+    """Of loads that nearly cancel: not after thousands of modes, but after the first."""
+    model = chain(SYMMETRIC, both("-1.0000000001"), velocity=["c"], until=9, tolerance="1e-3")
+    counts, every = [], SwingingChain.shares
+
+    def counted(built, count):
+        counts.append(count)
+        return every(built, count)
+
+    monkeypatch.setattr(SwingingChain, "shares", counted)
+    with pytest.raises(ToleranceError, match="would not tell the largest value of velocity@c from 0"):
+        modal_system(model)
+    assert max(counts) < 200
+
+
 def test_equal_frequencies_are_damped_alike_or_refused():
     """Two branches that are the same, against exact waves; a list of ratios does not say which mode it means."""
     same = [{"from": "g", "name": name, "parts": [{"rod": 1}, {"mass": 1, "name": f"m{name}"}]} for name in "ab"]

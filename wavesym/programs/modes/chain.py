@@ -131,8 +131,7 @@ class ModalChain(ABC, Generic[K]):
         raise CostError(f"system.m: {rods} rods in modes, at most {most} expected (fewer rods or march helps)")
 
     def reached(self, known: K, count: int) -> Numbers:
-        """What each output reaches at least, in spite of what is left out."""
+        """What each output reaches, but for what is left out."""
         system, until = self.system(known, count), self.model.horizon()
         scheme = ModesScheme(scheme_tables(system, self.loads, DOUBLE), {"loads": len(self.drivers)}, until, np.float64)
-        values = rounded(system, self.loads, scheme, until, DOUBLE).largest
-        return np.maximum(values - self.errors(known, count), 0.0)
+        return rounded(system, self.loads, scheme, until, DOUBLE).largest

@@ -18,6 +18,8 @@ from wavesym.programs.modes.slowed import SlowedChain
 from wavesym.programs.modes.swinging import SwingingChain
 
 _REASONABLE = 0.1  # error relative to what a bound of the largest value may be read from
+_FAST = 2.0  # the power of the number of modes with which errors of strains fall
+_FAR = 64.0  # times the tolerance: what is not tried
 
 
 @dataclass(frozen=True)
@@ -63,12 +65,14 @@ def modal_system(model: Model) -> ModalModes:
 def _enough(model: Model, chain: ModalChain[K]) -> ModalModes:
     tolerance = nearest(model.tolerance) / 2
     count, largest = chain.fewest, np.zeros(len(model.probes))
+    about = largest
     while True:
         known = chain.shares(count)
         errors = chain.errors(known, count)
         # an output that no mode has a part in may have no error at all, and has a largest value
         if np.any(errors > _REASONABLE * largest) or not largest.any():
-            largest = np.maximum(largest, chain.reached(known, count))
+            about = chain.reached(known, count)
+            largest = np.maximum(largest, about - errors)
         worst = _relative(errors, largest).max(initial=0.0)
         if worst <= tolerance:
             break
@@ -77,7 +81,11 @@ def _enough(model: Model, chain: ModalChain[K]) -> ModalModes:
         before = _relative(chain.errors(known, half), largest).max(initial=0.0)
         power = max(log(before / worst) / log(count / half), 1.0) if worst < before < inf else 1.0
         more = (worst / tolerance) ** (1 / power) if worst < inf else 4.0
-        if count == chain.most or (worst < _REASONABLE and count * more > 4 * chain.most):
+        hopeless = worst < _REASONABLE and count * more > 4 * chain.most
+        if worst >= _REASONABLE:  # of values, be they right or not, and if errors fall as fast as they may
+            left = _relative(errors, about).max() * (count / chain.most) ** max(power, _FAST)
+            hopeless = left > _FAR * tolerance
+        if count == chain.most or hopeless:
             raise _unmet(model, chain, errors, largest, (chain.most / count) ** power)
         count = min(ceil(count * min(max(1.05 * more, 1.2), 8.0)), chain.most)
     # of these as few as will do
@@ -105,7 +113,7 @@ def _unmet(model: Model, chain: ModalChain[K], errors: Numbers, largest: Numbers
     if bounds[worst] < inf:
         what = f"leave a bound of about {2 * bounds[worst] / better:.2g} for {name}"
     else:
-        what = f"do not tell the largest value of {name} from 0 (without it the others may do)"
+        what = f"would not tell the largest value of {name} from 0 (without it the others may do)"
     return ToleranceError(
         f"output.tolerance: {nearest(model.tolerance):g} cannot be met: modes: {chain.most} modes, the most that are "
         f"taken, {what}"
