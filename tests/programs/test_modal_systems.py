@@ -250,7 +250,7 @@ def test_outputs_that_are_nearly_0_have_a_bound(loads):
 
 def test_what_no_number_of_modes_tells_from_0_is_refused_early(monkeypatch):
     """Of loads that nearly cancel: not after thousands of modes, but after the first."""
-    model = chain(SYMMETRIC, both("-1.0000000001"), velocity=["c"], until=9, tolerance="1e-3")
+    model = chain(SYMMETRIC, both(-1.0000000001), velocity=["c"], until=9, tolerance="1e-3")
     counts, every = [], SwingingChain.shares
 
     def counted(built, count):
