@@ -222,7 +222,13 @@ def both(sign, late="1"):
     return [{"at": "l", "times": [0, 1, 2], "ramps": [1, -2, 1]}, {"at": "r", **right}]
 
 
-@pytest.mark.parametrize("damping", [None, Damping((fmpq(1, 20),)), Damping((fmpq(1, 20),), (1, 2))])
+@pytest.mark.parametrize(
+    "damping",
+    [
+        Damping((fmpq(1, 20),)),
+        *(pytest.param(d, marks=pytest.mark.slow) for d in (None, Damping((fmpq(1, 20),), (1, 2)))),
+    ],
+)
 def test_outputs_that_are_0_by_symmetry_are_exactly_0(damping):
     """In the middle, under opposite loads; strain there under equal ones; at one of equal branches. Elsewhere not."""
     watched = {"velocity": ["c", "1/3"], "displacement": ["c"], "acceleration": ["c"], "until": 20, "tolerance": "1e-2"}
@@ -240,7 +246,9 @@ def test_outputs_that_are_0_by_symmetry_are_exactly_0(damping):
     assert (modal_system(replace(star, damping=damping)).bounds > 0).tolist() == [False, True, False]
 
 
-@pytest.mark.parametrize("loads", [both(-1, "999/1000"), both(-2), both(1)])
+@pytest.mark.parametrize(
+    "loads", [both(-1, "999/1000"), *(pytest.param(both(sign), marks=pytest.mark.slow) for sign in (-2, 1))]
+)
 def test_outputs_that_are_nearly_0_have_a_bound(loads):
     model = chain(SYMMETRIC, loads, velocity=["c"], until=9, tolerance="1/10")
     made = modal_system(replace(model, damping=Damping((fmpq(1, 20),))))
