@@ -262,3 +262,14 @@ def test_programs_are_made_of_it(tmp_path):
     taus = np.linspace(0, 8, 33)
     right = exact(model, taus)
     assert np.all(np.abs(program.evaluate(taus) - right).max(axis=1) <= 1e-2 * np.abs(right).max(axis=1))
+
+
+def test_what_hardly_moves_keeps_its_digits():
+    """A dashpot a million times the impedance: the static shape and a creeping mode have 1e6 as much in common."""
+    end = {"joint": True, "name": "n", "dashpot": "1e6"}
+    model = chain(["fixed", {"rod": 1}, end], [PUSH], displacement=["n"], until=6, tolerance="1e-2")
+    taus = np.linspace(0, 6, 31)
+    right, made = exact(model, taus), modal_system(model)
+    error = np.abs(values(model, made, taus) - right).max(axis=1)
+    assert np.all(error <= made.errors + rounding(model, made))
+    assert np.all(made.errors < 1e-9 * np.abs(right).max(axis=1))

@@ -115,7 +115,7 @@ class Dissipation:
         if not slow:
             return list(responses)
         columns = [
-            [_part(rate, b) / rate ** (q + 1) for rate, b in zip(self.rates[:slow], each.shares, strict=False)]
+            [part(rate, b) / rate ** (q + 1) for rate, b in zip(self.rates[:slow], each.shares, strict=False)]
             for each in responses
             for q in range(POWERS)
         ]
@@ -160,8 +160,8 @@ def _rate(frequency: acb) -> acb:
     return acb(-frequency.imag if fades else 0, frequency.real)
 
 
-def _part(rate: acb, share: acb) -> acb:
-    """A share over twice its rate, the conjugate included."""
+def part(rate: acb, share: acb) -> acb:
+    """A share of one mode of a pair, or of one alone, so that a share over its rate counts for all of it."""
     return share if rate.imag != 0 else share / 2
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 
 import numpy as np
-from flint import acb, ctx, fmpq, fmpq_mat
+from flint import acb, arb, ctx, fmpq, fmpq_mat
 
 from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut
@@ -16,7 +17,7 @@ from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.network import Network
 from wavesym.programs.modes.chain import ModalChain
-from wavesym.programs.modes.dissipation import Dissipation, complexes
+from wavesym.programs.modes.dissipation import Dissipation, complexes, part
 from wavesym.programs.modes.left import Complex
 from wavesym.programs.modes.modal import ModalSystem, Numbers
 from wavesym.programs.modes.ports import Slowly, dashpots, series
@@ -31,7 +32,8 @@ _MORE = 1 + 1e-12
 class SlowedShares:
     """Modes by columns, their rates (of exp(rate tau)), what outputs and loads are of them.
 
-    `slow` (outputs, loads, 3) is what outputs have of second integrals, integrals and loads where all changes slowly.
+    `slow` (outputs, loads, 3) is what outputs have of second integrals, integrals and loads where all changes slowly;
+    `beside` (outputs, loads, modes + 1) what they have of loads beside the first 0, 1, 2, ... modes.
 
     `left` (outputs and then loads, powers, modes + 1) is what their states have without the first modes.
     """
@@ -40,6 +42,7 @@ class SlowedShares:
     seen: Complex
     shares: Complex
     slow: Numbers
+    beside: Numbers
     left: Numbers
 
     @property
@@ -52,11 +55,6 @@ class SlowedShares:
         """What loads do to modes, z' = rate z + this; the real part of what outputs are of them counts."""
         twice = np.where(self.rates.imag != 0, 2.0, 1.0)  # for what is conjugate to it
         return np.asarray(self.shares * twice / (2 * self.rates))
-
-    @property
-    def parts(self) -> Complex:
-        """What outputs have of loads in each mode: (outputs, loads, modes)."""
-        return np.asarray(self.seen[:, None] * self.pushed)
 
 
 @dataclass(frozen=True)
@@ -105,13 +103,12 @@ class SlowedChain(ModalChain[SlowedShares]):
 
     def system(self, known: SlowedShares, count: int) -> ModalSystem:
         """The system of the first `count` modes."""
-        rates, parts = known.rates[:count], known.parts[:, :, :count]
+        rates = known.rates[:count]
         orders = np.array([output.order for output in self.seen])
         direct = np.zeros((*known.slow.shape[:2], 3))
         for o, order in enumerate(orders.tolist()):
-            for k in range(3 - order):
-                direct[o, :, 2 - order - k] += known.slow[o, :, k]
-            direct[o, :, 0] += np.real(parts[o] * rates ** (order - 1)).sum(axis=1)
+            direct[o, :, 1 : 3 - order] = known.slow[o, :, : 2 - order][:, ::-1]
+            direct[o, :, 0] = known.beside[o, :, min(count, len(known.rates))]
         # a mode is rate z + loads; of one load, z = y' - conj(rate) y, y an oscillator's
         read = known.seen[:, :count] * rates ** orders[:, None]
         pushed = known.pushed[:, :count]
@@ -174,15 +171,20 @@ def slowed_shares(
     seen = [[acb(output.of(mode)) for mode in found] for output in outputs]
     shares = [[acb(share(network, driver, mode)) for mode in found] for driver in drivers]
     slow = np.zeros((len(outputs), len(loads), 3))
+    beside = np.zeros((len(outputs), len(loads), len(found) + 1))
     for o, output in enumerate(outputs):
         for j, port in enumerate(loads):
             read = slowly.read(output, port.moved)
-            for k in range(port.told + 1):
-                slow[o, j, 2 - port.told + k] = float(read[k])
+            felt = [arb(0)] * (2 - port.told) + [read[k] for k in range(port.told + 1)]
+            slow[o, j] = [float(each) for each in felt]
+            parts = zip(losing.rates, seen[o], shares[j], strict=True)
+            each = [(part(rate, b) * a * rate ** (output.order - 2)).real for rate, a, b in parts]
+            beside[o, j] = [float(total) for total in accumulate(each, initial=felt[2 - output.order])]
     return SlowedShares(
         rates=np.array([complex(rate) for rate in losing.rates], complex),
         seen=complexes(seen, len(found)),
         shares=complexes(shares, len(found)),
         slow=slow,
+        beside=beside,
         left=losing.left([*map(slowly.output, outputs), *loads], [*seen, *shares]),
     )
