@@ -93,7 +93,7 @@ class Program:
 
     `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "hats",
     that of one hat of each record, in NumPy alone, "modes", "runtime": a march whose parameters come at run time, by
-    its `laws`, or "stream": one whose loads do. The last two are C alone.
+    its `laws`, "joints": that of a chain, or "stream": one whose loads do. The last three are C alone.
     `tables` are flat, by name, each number as it is written: indices are ints, all else floats of the format; which
     there are, assembly.py says, of rings rings/tables.py, of hats hats/evaluator.py, of modes modes/tables.py, of
     streams stream/tables.py.
@@ -123,7 +123,7 @@ class Program:
     @property
     def evaluator(self) -> str:
         """What a user calls its kind."""
-        return "march" if self.kind in ("rings", "hats") else self.kind
+        return {"rings": "march", "hats": "march", "joints": "runtime"}.get(self.kind, self.kind)
 
     @property
     def error_bound(self) -> float:

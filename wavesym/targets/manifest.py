@@ -84,7 +84,12 @@ def _runtime(program: Program) -> dict[str, object]:
         field.name: {label: str(value) for label, value in zip(field.labels, field.values, strict=True)}
         for field in program.laws.fields
     }
-    return {"runtime": given, "degree": program.constants["degree"]}
+    units = {
+        field.name: [unit.text for unit in field.units]
+        for field in program.laws.fields
+        if any(unit.text for unit in field.units)
+    }
+    return {"runtime": given, **({"runtime_units": units} if units else {}), "degree": program.constants["degree"]}
 
 
 def _events(description: Description) -> dict[str, object]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import isqrt
@@ -102,8 +103,8 @@ class ModalChain(ABC, Generic[K]):
         """The first modes. UnservedError for what modes do not serve."""
 
     @abstractmethod
-    def errors(self, known: K, count: int) -> Numbers:
-        """What the modes after the first `count` can add to each output."""
+    def errors(self, known: K, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
+        """What the modes after the first `count` can add to each output, under its own or other `loads`."""
 
     @abstractmethod
     def system(self, known: K, count: int) -> ModalSystem:

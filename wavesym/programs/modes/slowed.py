@@ -21,6 +21,7 @@ from wavesym.programs.modes.dissipation import Dissipation, complexes, part
 from wavesym.programs.modes.left import Complex
 from wavesym.programs.modes.modal import ModalSystem, Numbers
 from wavesym.programs.modes.ports import Slowly, dashpots, series
+from wavesym.programs.modes.roughness import Roughness
 from wavesym.programs.modes.shares import share
 from wavesym.programs.modes.watched import Driver, Seen, places
 
@@ -89,13 +90,13 @@ class SlowedChain(ModalChain[SlowedShares]):
         with ctx.workprec(_BITS), series():
             return slowed_shares(found, self.cut, self.seen, self.drivers)
 
-    def errors(self, known: SlowedShares, count: int) -> Numbers:
-        """What the modes after the first `count` can add to each output."""
+    def errors(self, known: SlowedShares, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
+        """What the modes after the first `count` can add to each output, under its own or other `loads`."""
         taken = min(count, len(known.rates))
         made = np.zeros(len(self.model.probes))
         for o, output in enumerate(self.seen):
             powers = range(3 - output.order + 1)
-            for j, rough in enumerate(self.rough):
+            for j, rough in enumerate(self.rough if loads is None else loads):
                 ports = known.left[o], known.left[len(self.seen) + j]
                 size = min(ports[0][p, taken] * ports[1][3 - output.order - p, taken] for p in powers)
                 made[o] += (rough.in_step + rough.steepest) * size

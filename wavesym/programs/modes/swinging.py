@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,6 +13,7 @@ from wavesym.exact.modes.frequencies import Spectrum
 from wavesym.programs.modes.chain import ModalChain
 from wavesym.programs.modes.damped import Damped, damped
 from wavesym.programs.modes.modal import ModalSystem, Numbers
+from wavesym.programs.modes.roughness import Roughness
 from wavesym.programs.modes.shares import Shares, shares
 from wavesym.programs.modes.tail import LeftOut
 from wavesym.programs.modes.watched import places
@@ -51,12 +53,12 @@ class SwingingChain(ModalChain[Shares]):
         taken = known.w[:count]
         return LeftOut(self.rule(known), float(np.nextafter(taken[-1], 0.0)), int(np.count_nonzero(taken)))
 
-    def errors(self, known: Shares, count: int) -> Numbers:
-        """What the modes after the first `count` can add to each output."""
+    def errors(self, known: Shares, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
+        """What the modes after the first `count` can add to each output, under its own or other `loads`."""
         tail, rest = self.tail(known, count), known.rest(count)
         left = [rows[:, count] for rows in known.spare]
         made = np.zeros(len(self.model.probes))
-        for j, rough in enumerate(self.rough):
+        for j, rough in enumerate(self.rough if loads is None else loads):
             declines = tail.declines(rough)
             for o, output in enumerate(self.seen):
                 decline = declines[output.order]

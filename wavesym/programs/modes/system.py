@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, inf, log
+from typing import Any
 
 import numpy as np
 
@@ -57,9 +58,12 @@ def modal_system(model: Model) -> ModalModes:
 
     UnservedError for what modes do not serve, ToleranceError where too many would be needed.
     """
-    if model.network.loses:
-        return _enough(model, SlowedChain(model))
-    return _enough(model, SwingingChain(model))
+    return _enough(model, modal_chain(model))
+
+
+def modal_chain(model: Model) -> ModalChain[Any]:
+    """A model as modes: with dashpots they die away."""
+    return SlowedChain(model) if model.network.loses else SwingingChain(model)
 
 
 def _enough(model: Model, chain: ModalChain[K]) -> ModalModes:
