@@ -18,7 +18,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.records import RecordResponse
 from wavesym.programs.modes.roughness import Roughness, scaled
-from wavesym.programs.modes.system import ModalChain
+from wavesym.programs.modes.system import modal_chain
 
 Numbers = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -61,7 +61,7 @@ def recorded_extremes(model: Model, records: ManyRecords) -> RecordedExtremes:
 
     UnservedError for what modes do not serve, ToleranceError as for `modal_system`.
     """
-    chain, tolerance = ModalChain(model), nearest(model.tolerance)
+    chain, tolerance = modal_chain(model), nearest(model.tolerance)
     count = chain.fewest
     for attempt in range(_ATTEMPTS):
         known = chain.shares(count)
