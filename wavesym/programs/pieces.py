@@ -190,7 +190,7 @@ class _Fits:
         if self._bits > _MOST_BITS:
             raise CostError(
                 f"output.until: {self._bits} bits would be needed for pieces to tau = {self._tau_max:g}, at most "
-                f"{_MOST_BITS} expected (a shorter horizon, or smaller kappa, helps)"
+                f"{_MOST_BITS} expected (a shorter horizon, or heavier bodies, helps)"
             )
 
     @cached_property

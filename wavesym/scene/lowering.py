@@ -91,6 +91,11 @@ def amplitudes(scene: Scene) -> tuple[tuple[str, Applied], ...]:
     return tuple(found)
 
 
+def sources(scene: Scene) -> tuple[str, ...]:
+    """What its loads are steps of, in the order of the scene; each once."""
+    return tuple(dict.fromkeys(load.sources[0] for load in scene.load))
+
+
 def _when(scene: Scene, tau: Fraction) -> str:
     return f"t = {scene.scale.clock.told(rational(tau))}" if scene.scale else f"tau = {tau}"
 

@@ -55,7 +55,7 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Axis:
+class SweepAxis:
     """Columns that are run through side by side: one, but where a sweep zips them."""
 
     name: str

@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 from wavesym.errors import SceneError
 from wavesym.fields.numbers import exact
 from wavesym.records.recording import recorded
-from wavesym.scene.physical.loads import read
+from wavesym.scene.physical.loads import Acts, read
 from wavesym.sweeps.dimension import Column
 
 
@@ -36,19 +36,19 @@ def found(patterns: Sequence[str], folder: str) -> list[str]:
     return every
 
 
-def record_column(path: str, files: Sequence[str], folder: str, load: Mapping[str, Any], physical: bool) -> Column:
+def record_column(path: str, files: Sequence[str], folder: str, load: Mapping[str, Any], acts: Acts | None) -> Column:
     """The records of files as values of a load's field, as they are dumped; a coordinate of names."""
     names = tuple(PurePath(os.path.relpath(file, folder or ".")).as_posix() for file in files)
-    return Column(path, tuple(_content(file, load, physical) for file in files), names, names)
+    return Column(path, tuple(_content(file, load, acts) for file in files), names, names)
 
 
-def _content(file: str, load: Mapping[str, Any], physical: bool) -> dict[str, Any] | Unreadable:
+def _content(file: str, load: Mapping[str, Any], acts: Acts | None) -> dict[str, Any] | Unreadable:
     """What a scene makes of a record, for a load that says the rest."""
     try:
-        if physical:
-            given = read({**load, "record": file})
+        if acts is not None:
+            given = read({**load, "record": file}, acts)
             assert isinstance(given, Mapping)  # as the load
-            return dict(given["record"])
+            return dict(given["record"].model_dump(exclude_defaults=True))
         spacing = load.get("spacing")
         told = None if spacing is None else exact(spacing)
         return recorded(file, load.get("column"), lambda _: told).model_dump(exclude_defaults=True)

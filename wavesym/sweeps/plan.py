@@ -18,8 +18,9 @@ from wavesym import __version__
 from wavesym.errors import SceneError
 from wavesym.fields.table import shown
 from wavesym.scene.paths import changed, steps
+from wavesym.scene.physical.scene import acts
 from wavesym.scene.scene import Scene
-from wavesym.sweeps.dimension import Axis, Column, count_of, spread
+from wavesym.sweeps.dimension import Column, SweepAxis, count_of, spread
 from wavesym.sweeps.measured import Unreadable, found, record_column
 from wavesym.sweeps.request import SweepRequest
 
@@ -41,7 +42,7 @@ class SweepPlan:
 
     name: str
     fields: dict[str, Any]
-    dimensions: tuple[Axis, ...]
+    dimensions: tuple[SweepAxis, ...]
     summary: tuple[str, ...]
     histories: int | None
     outputs: tuple[str, ...]
@@ -141,11 +142,11 @@ def _planned(request: SweepRequest) -> SweepPlan:
     base = request.base()
     fields = json.loads(json.dumps(base.model_dump(), default=str))
     columns = [_column(request, base, fields, path) for path in request.vary]
-    dimensions = [Axis(column.path, (column,)) for column in columns]
+    dimensions = [SweepAxis(column.path, (column,)) for column in columns]
     if request.zip:
-        dimensions = [Axis(CASE, tuple(columns))] if columns else []
+        dimensions = [SweepAxis(CASE, tuple(columns))] if columns else []
     if files:
-        dimensions.append(Axis(RECORD, (_records(request, base, fields, files),)))
+        dimensions.append(SweepAxis(RECORD, (_records(request, base, fields, files),)))
     for dimension in dimensions:
         dimension.refuse_duplicates("vary" if dimension.name == CASE else f"vary.{dimension.name}")
     _refuse_overlap([column.path for dimension in dimensions for column in dimension.columns])
@@ -187,7 +188,9 @@ def _column(request: SweepRequest, base: Scene, fields: dict[str, Any], path: st
             raise SceneError('a whole table given, a field in it such as "output.until" expected')
         if way[:1] == ["load"] and way[2:] == ["record"] and all(isinstance(value, str) for value in values):
             files = [each for value in values for each in found([str(value)], request.folder)]
-            return record_column(path, files, request.folder, fields["load"][way[1]], base.scale is not None)
+            return record_column(
+                path, files, request.folder, fields["load"][way[1]], acts(fields) if base.scale else None
+            )
         column = Column.of(path, values)
     except SceneError as error:
         raise SceneError(error.what, at) from None
@@ -209,7 +212,7 @@ def _records(request: SweepRequest, base: Scene, fields: dict[str, Any], files: 
     if len(loads) != 1:
         raise SceneError(f"{len(loads)} loads with a record in the scene, 1 expected", "records")
     path = f"load[{loads[0]}].record"
-    return record_column(path, files, request.folder, fields["load"][loads[0]], base.scale is not None)
+    return record_column(path, files, request.folder, fields["load"][loads[0]], acts(fields) if base.scale else None)
 
 
 def _refuse_overlap(paths: list[str]) -> None:
@@ -220,7 +223,7 @@ def _refuse_overlap(paths: list[str]) -> None:
                 raise SceneError(f"given beside {shown(other)}, fields that lie apart expected", f"vary.{shown(path)}")
 
 
-def _watched(base: Scene, fields: dict[str, Any], dimensions: list[Axis]) -> dict[str, str]:
+def _watched(base: Scene, fields: dict[str, Any], dimensions: list[SweepAxis]) -> dict[str, str]:
     """The outputs of all cases, in order, with their units."""
 
     def told(scene: Scene) -> dict[str, str]:
@@ -241,7 +244,7 @@ def _makes_outputs(column: Column) -> bool:
     return way[0] == "output" and (way[1:2] == [] or way[1] not in _UNCHANGED)
 
 
-def _scenes(fields: dict[str, Any], dimensions: list[Axis]) -> Iterator[Scene]:
+def _scenes(fields: dict[str, Any], dimensions: list[SweepAxis]) -> Iterator[Scene]:
     for place in product(*(range(len(dimension)) for dimension in dimensions)):
         made = fields
         for dimension, k in zip(dimensions, place, strict=True):

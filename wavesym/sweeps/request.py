@@ -13,8 +13,8 @@ from wavesym.errors import SceneError
 from wavesym.fields.numbers import Integer
 from wavesym.fields.table import SceneTable, first_error, key_path, listed, shown, wrong
 from wavesym.reading import read_text
-from wavesym.scene.reading import builtin_names, parsed
 from wavesym.scene.scene import Scene
+from wavesym.scene.scene_file import builtin_names, parsed
 
 STATISTICS = ("min", "max", "tau_min", "tau_max", "arrival")
 _USUAL = STATISTICS[:4]

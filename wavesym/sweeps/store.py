@@ -19,7 +19,7 @@ import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches
-from wavesym.sweeps.dimension import Axis
+from wavesym.sweeps.dimension import SweepAxis
 from wavesym.sweeps.plan import CASE, OUTPUT, SAMPLE, SweepPlan
 from wavesym.sweeps.values import BatchValues, kept_arrays, sizes
 
@@ -108,7 +108,7 @@ class Store:
         return made
 
 
-def _coordinates(group: Any, dimension: Axis) -> None:
+def _coordinates(group: Any, dimension: SweepAxis) -> None:
     """What is varied along a dimension: its own coordinate, or of columns that are zipped one of each."""
     if dimension.name == CASE:
         _plain(group, CASE, CASE, np.arange(len(dimension)))

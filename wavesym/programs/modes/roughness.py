@@ -152,9 +152,8 @@ def _in_steps(times: list[fmpq]) -> tuple[int, ...] | None:
     """Times as multiples of their common measure (but for where they begin); None where those are too many."""
     if len(times) < 2:
         return None
-    gaps = {time - times[0] for time in times[1:]}
-    over = lcm(*(int(gap.q) for gap in gaps))
-    step = fmpq(gcd(*(int(gap * over) for gap in gaps)), over)
-    if (times[-1] - times[0]) / step >= _LONGEST:
+    since = [time - times[0] for time in times]
+    over = lcm(*{int(gap.q) for gap in since})
+    if int(since[-1] * over) >= _LONGEST * (common := gcd(*(int(gap * over) for gap in since))):
         return None
-    return tuple(int((time - times[0]) / step) for time in times)
+    return tuple(int(gap * over) // common for gap in since)

@@ -147,7 +147,7 @@ class ModalChain:
 
     @cached_property
     def loads(self) -> LinearLoads:
-        return linear_loads(self.model.loads, self.sources, self.model.until)
+        return linear_loads(self.model.loads, self.sources, self.model.until, self.model.told)
 
     @cached_property
     def rough(self) -> tuple[Roughness, ...]:

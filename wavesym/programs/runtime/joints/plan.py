@@ -84,7 +84,7 @@ def _pushes(plan: RingPlan, model: Model, loads: Sequence[Applied], acting: Sequ
         load = loads[number]
         window = int((load.time / plan.step).floor())
         panel = places[load.time - window * plan.step]
-        for force, point in enumerate(model.network.points[k] for k in plan.loaded):
+        for force, point in enumerate(model.network.points[k] for k in plan.pushed):
             for unit in point.loads:
                 for power, coefficient in enumerate(unit.coefficients):
                     if unit.source == load.source and coefficient != 0:
