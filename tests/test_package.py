@@ -114,6 +114,7 @@ def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return copy
 
 
+@pytest.mark.slow
 def test_a_checkout_finds_its_templates_and_scenes(checkout: Path, here: dict[str, str], tmp_path: Path) -> None:
     found = python("-c", "import wavesym; print(wavesym.__file__)", cwd=tmp_path, path=(checkout,))
     assert Path(found.strip()).is_relative_to(checkout)

@@ -71,7 +71,11 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return given(tmp_path_factory.mktemp("plain") / "here", PLAIN)
 
 
-@pytest.mark.parametrize("changes", OTHERS, ids=lambda changes: changes["PYTHONHASHSEED"])
+@pytest.mark.parametrize(
+    "changes",
+    [pytest.param(each, marks=pytest.mark.slow) if k else each for k, each in enumerate(OTHERS)],
+    ids=lambda changes: changes["PYTHONHASHSEED"],
+)
 def test_the_environment_leaves_no_trace(plain: dict[str, bytes], tmp_path: Path, changes: dict[str, str]) -> None:
     other = given(tmp_path / "another folder" / "\u00e9", changes)
     assert other.keys() == plain.keys()

@@ -17,10 +17,10 @@ verification/ and papers/, what is measured by lab/. The heavy libraries load wh
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
-from functools import partial
-from itertools import islice
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,7 +30,6 @@ from wavesym.difference import Difference
 from wavesym.documents.summary import summary_text as told
 from wavesym.documents.tables import symbolic_lines, table_lines
 from wavesym.errors import SceneError, UnservedError, WavesymError
-from wavesym.exact.contact import contact_ends
 from wavesym.exact.network_table import NetworkTable, network_table
 from wavesym.exact.rate_letters import in_rates
 from wavesym.exact.symbolic_cost import refuse_costly
@@ -38,15 +37,18 @@ from wavesym.exact.table import Row, Table, full_table
 from wavesym.fields.loads import SampledLoad
 from wavesym.fields.table import shown
 from wavesym.mechanics.symbolic import generic, symbolic
-from wavesym.numbers.doubles import fraction, nearest, not_below, rational
+from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
 from wavesym.records.load import RecordedLoad
 from wavesym.results.peaks import table_of_peaks
 from wavesym.results.response import Response
+from wavesym.results.rows import SAMPLES, csv_lines, grid
 from wavesym.results.summary import Summary, summarised
+from wavesym.results.unexpected import event_lines, outside, unexpected, without_load
+from wavesym.running.model import RuntimeModel
 from wavesym.scene import Scene, lower
-from wavesym.scene.lowering import amplitudes, drifts
+from wavesym.scene.lowering import amplitudes, drifts, sources
 from wavesym.targets import LANGUAGES
 from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
@@ -57,12 +59,10 @@ if TYPE_CHECKING:
     from wavesym.mechanics.node import System
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
-    from wavesym.running.sets import RuntimeModel
+    from wavesym.sweeps.status import SweepStatus
 
 
 _UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
-_AT_ONCE = 5000  # tau of `run`
-SAMPLES = 1001  # of `run`, where it is not told how many
 MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
 
 
@@ -136,6 +136,62 @@ def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Any:
     several = not isinstance(scenes, Scene)
     found = [summary(scene, at_samples=at_samples) for scene in ([scenes] if isinstance(scenes, Scene) else scenes)]
     return table_of_peaks(found, several)
+
+
+def sweep(
+    source: str | PathLike[str] | Mapping[str, Any],
+    folder: str | PathLike[str],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    retry_failed: bool = False,
+) -> Any:
+    """Compute many scenes into a folder, as `wavesym sweep` does; what is there goes on where it was.
+
+    `source` is a file of TOML or the same fields: `scene` (a Scene, or a path), `vary`, `records`, `keep`. By
+    `workers` processes of this machine (in a program under `if __name__ == "__main__":`, as these import it), those of
+    a Dask `scheduler`, or whoever is best. An xarray.Dataset: extremes over the varied paths, `record` and `output`,
+    NaN for a case that failed. SceneError for a request that is wrong, WavesymError for the folder of another sweep.
+
+    >>> import wavesym
+    >>> request = {"scene": "drive_m1", "vary": {"output.until": [4, 5], "system.kappa[0]": ["1/2", 1, 2]}}
+    >>> wavesym.sweep(request, "stiffnesses")["max"].dims
+    ('output.until', 'system.kappa[0]', 'output')
+    """
+    from wavesym.sweeps.store import needed, opened
+
+    needed("xarray", "zarr")
+    run_sweep(source, folder, workers, scheduler, retry_failed)
+    return opened(folder)
+
+
+def run_sweep(
+    source: str | PathLike[str] | Mapping[str, Any],
+    folder: str | PathLike[str],
+    workers: int | None,
+    scheduler: str | None,
+    retry_failed: bool,
+    watch: Callable[[int, int, int], object] = lambda *_: None,
+) -> int:
+    """Compute what is left of a sweep; how many of its cases have failed. `watch` is told of all cases, and of those
+    that are done and were done before."""
+    from wavesym.sweeps.running import Computing, run
+
+    return run(source, folder, Computing(workers, scheduler), retry_failed, watch)
+
+
+def sweep_status(folder: Path) -> SweepStatus:
+    """How many cases of the sweep in a folder are done, have failed and are left. WavesymError where there is none."""
+    from wavesym.sweeps.status import status
+
+    return status(folder)
+
+
+def sweep_table(folder: Path, path: Path) -> None:
+    """Write the results of a sweep as .csv or .parquet, a row for each case."""
+    from wavesym.sweeps.table import write_table
+
+    write_table(folder, path)
 
 
 def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
@@ -237,8 +293,8 @@ def _named(model: Model, option: str, command: str) -> Chain:
     model.refuse_damping()
     if model.chain is None:
         raise UnservedError(
-            f"system.type: chain given with {option}, collision, drive or building expected (`{command}` without "
-            f"{option} serves a chain)"
+            f"system.type: {model.labels.type} given with {option}, collision, drive or building expected "
+            f"(`{command}` without {option} serves a chain)"
         )
     return model.chain
 
@@ -253,14 +309,19 @@ def generate(
     optimize: str | None = None,
     runtime: Sequence[str] = (),
     *,
+    stream: bool = False,
+    step: Fraction | None = None,
+    package: bool = False,
     force: bool = False,
 ) -> tuple[Path, ...]:
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
 
     `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
     "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters that C takes when it
-    runs: "kappa", "inertia", "velocity", "load". Files that wavesym did not write are replaced only by
-    `force`; WavesymError else, and for a language, evaluator, precision or aim that there is not.
+    runs: "kappa", "inertia", "velocity", "load". A `stream` takes the loads sample by sample, at any time, or best at
+    multiples of `step`, in tau. `package` adds what CMake builds, tests and installs C with. Files that wavesym did not
+    write are replaced only by `force`; WavesymError else, and for a language, evaluator, precision or aim that there is
+    not.
 
     >>> import wavesym
     >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):
@@ -268,7 +329,8 @@ def generate(
     drive/drive_m1.json
     drive/drive_m1.py
     """
-    made = _written(scene, directory, language, Request(evaluator, precision, windows, optimize, tuple(runtime)))
+    request = _request(evaluator, precision, windows, optimize, runtime, stream, step)
+    made = _written(scene, directory, language, request, package)
     for path in made:
         if not force and path.is_file() and not is_ours(path):
             raise WavesymError(f"{path}: exists and was not written by wavesym; --force replaces it")
@@ -286,29 +348,59 @@ def check(
     optimize: str | None = None,
     source: str = "SCENE",
     runtime: Sequence[str] = (),
+    *,
+    stream: bool = False,
+    step: Fraction | None = None,
+    package: bool = False,
 ) -> str:
     """The difference between what stands in `directory` and what `generate` would write; empty where there is none.
 
     Each file that is changed, missing or orphaned is named, with a diff; so is what a process that was killed left. The
     last line is the command that mends them, with the scene as it is given by `source`.
     """
-    request = Request(evaluator, precision, windows, optimize, tuple(runtime))
-    made = _written(scene, directory, language, request)
+    request = _request(evaluator, precision, windows, optimize, runtime, stream, step)
+    made = _written(scene, directory, language, request, package)
     folder = Path(directory or scene.name)
     found = [path for path in folder.glob(f"{scene.name}*") if path.is_file()]
     left = [path for path, place in traces(folder) if place.name.startswith(scene.name)]
     difference = Difference(made, [*found, *left])
-    options = ["--language", language, *request.options.split()]
+    options = ["--language", language, *request.options.split(), *(["--package"] if package else [])]
     return difference.report(["wavesym", "generate", source, "-o", str(folder), *options])
 
 
-def _written(scene: Scene, directory: str | Path | None, language: str, request: Request) -> dict[Path, str]:
+def _request(
+    evaluator: str,
+    precision: str,
+    windows: int | None,
+    optimize: str | None,
+    runtime: Sequence[str],
+    stream: bool,
+    step: Fraction | None,
+) -> Request:
+    """The options of `generate` as one value. WavesymError for a step without a stream."""
+    if step is not None and not stream:
+        raise WavesymError(f"--step: {step} given without --stream, nothing expected")
+    if step is not None and evaluator == "modes":
+        raise WavesymError(f"--step: {step} given with --evaluator modes, nothing expected (loads say what it is)")
+    every = None if step is None else rational(step)
+    return Request(evaluator, precision, windows, optimize, tuple(runtime), stream, every)
+
+
+def _written(
+    scene: Scene, directory: str | Path | None, language: str, request: Request, package: bool
+) -> dict[Path, str]:
     """The text of every file of a scene, by path."""
     folder = Path(directory or scene.name)
     refuse_unknown("language", language, LANGUAGES)
     request.refuse_unknown()
+    if package and language not in ("c", "all"):
+        raise WavesymError(f"package: language {language} given, c or all expected, since CMake builds C")
     model = lower(scene)
-    if request.runtime:
+    if request.stream and request.evaluator != "modes":
+        if language != "c":
+            raise WavesymError(f"language: {language} given with --stream, c expected")
+        program = stream_program(scene, request, tested=True)
+    elif request.runtime:
         from wavesym.programs.runtime.making import runtime_program
 
         if language != "c":
@@ -317,16 +409,37 @@ def _written(scene: Scene, directory: str | Path | None, language: str, request:
         program = runtime_program(model, request, given, tested=True)
     else:
         program = make(model, request, tested=tested(language))
-    return {folder / name: text for name, text in files(program, language).items()}
+    return {folder / name: text for name, text in files(program, language, packaged=package).items()}
 
 
-def runtime_model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
-    """A scene whose parameters `runtime` are given when it runs, compiled. CompilerError without a C compiler."""
+def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
+    """A scene whose parameters are given when it runs, for one set of them or for a million.
+
+    `runtime` names them: "kappa", "inertia", "velocity", "load", or of a chain that is written out "mass", "dashpot",
+    "spring", "impedance", "velocity", "load", those that the scene has. It is compiled once, where there is a C
+    compiler; elsewhere NumPy computes the same, more slowly, but not for such chains (CompilerError). WavesymError for
+    a scene that has not got these parameters, UnservedError and CostError for one that no such program serves.
+
+    >>> import wavesym
+    >>> model = wavesym.model(wavesym.Scene.from_toml("drive_m1"), runtime=["kappa"])
+    >>> model.run(kappa=[[0.5], [1], [2]], tau=[2.0, 4.0]).shape  # sets, outputs, then the shape of tau
+    (3, 5, 2)
+    >>> model.peaks(kappa=[[0.5], [1], [2]]).max.shape
+    (3, 5)
+    """
     from wavesym.programs.runtime.making import runtime_program
-    from wavesym.running.sets import RuntimeModel
 
     given = amplitudes(scene) if "load" in runtime else ()
     return RuntimeModel(runtime_program(lower(scene), Request(runtime=tuple(runtime)), given))
+
+
+def stream_program(scene: Scene, request: Request, *, tested: bool = False) -> Program:
+    """The program of a scene whose loads are given while it runs; its sources are the inputs, in order."""
+    from wavesym.programs.stream import making
+    from wavesym.programs.stream.plan import inputs_of
+
+    model = replace(lower(scene), endless=True)
+    return making.stream_program(model, request, inputs_of(model, sources(scene)), tested=tested)
 
 
 def run(
@@ -334,105 +447,30 @@ def run(
 ) -> Iterator[str]:
     """The outputs as CSV lines, as they are computed: at `at`, or at `samples` equally spaced tau of the horizon.
 
-    Of a physical scene `at` are times in the unit of results, and so is the first column. Where values are not right to
-    the last bit, `tell` is told of which program they are, and its bound. ToleranceError or CostError where there is
-    none that will do, before there is a line.
+    `tell` is told, before the first line, what a user might not expect, when contacts open and close, and, where values
+    are not right to the last bit, of which program they are, and its bound. ToleranceError or CostError where there is
+    none that will do, or where it would take minutes to know what contacts do.
     """
     model = lower(scene)
     response = Response(model)
-    blocks = iter(partial(_rows, response, _instants(model, samples, at)), [])
-    first = next(blocks, [])  # what goes wrong does so before the header
+    for line in (*outside(model, at or ()), *unexpected(model), *event_lines(response)):
+        tell(line)
+    lines = csv_lines(response, samples, at)
     if made := response.program:
-        tell(f"values of {made.evaluator}, not right to the last bit: {_trusted(made)}")
-    return _csv(_columns(model), first, blocks)
+        said = "proved bound" if made.proved else "estimate"
+        trusted = f"{said} of the error {made.error_bound:g} of an output's largest value"
+        tell(f"values of {made.evaluator}, not right to the last bit: {trusted}")
+    return lines
 
 
-def _trusted(made: Program) -> str:
-    said = "proved bound" if made.proved else "estimate"
-    return f"{said} of the error {made.error_bound:g} of an output's largest value"
-
-
-def _columns(model: Model) -> list[str]:
-    """The header of CSV, with units where there are any."""
-    names = [probe.told for probe in model.probes]
-    clock = model.clock
-    return ["tau" if clock is None else "time" if clock.unit == "s" else f"time [{clock.unit}]", *names]
-
-
-def _instants(model: Model, samples: int, at: Sequence[float] | None) -> Iterator[tuple[float, float]]:
-    """What stands in the first column, and the tau that it is."""
-    clock, until = model.clock, model.until
-    if clock is None:
-        yield from ((tau, tau) for tau in (at if at is not None else grid(model, samples)))
-    elif at is not None:
-        yield from ((time, clock.tau(time, until)) for time in at)
-    else:
-        taus = (until * k / max(samples - 1, 1) for k in range(samples))
-        yield from ((clock.time(tau), not_below(tau)) for tau in taus)
-
-
-def _csv(names: Sequence[str], first: Iterable[str], blocks: Iterable[Iterable[str]]) -> Iterator[str]:
-    yield ",".join(names) + "\n"
-    yield from first
-    for block in blocks:
-        yield from block
-
-
-def _rows(response: Response, instants: Iterator[tuple[float, float]]) -> list[str]:
-    """The lines of the next instants, none where there are no more."""
-    some = list(islice(instants, _AT_ONCE))
-    values = np.vstack([np.asarray([first for first, _ in some]), response([tau for _, tau in some])]).T
-    return [",".join(map(repr, row)) + "\n" for row in values.tolist()]
-
-
-def grid(model: Model, samples: int) -> Iterator[float]:
-    """`samples` equally spaced tau, each rounded once; the last one is the end of the horizon."""
-    yield from (nearest(model.until * k / (samples - 1)) for k in range(samples - 1))
-    yield model.horizon() if samples > 1 else 0.0
-
-
-def events(scene: Scene) -> list[str]:
-    """A line for each time that a contact opens or closes. CostError where that would take minutes to know."""
-    model = lower(scene)
-    return [
-        f"contact at x = {each.x} {each.kind} at tau = {each.digits}{_in_time(model, each.double)}"
-        for each in Response(model).events
-    ]
-
-
-def _in_time(model: Model, tau: float) -> str:
-    """The same instant in the unit of a physical scene, to stand behind a tau."""
-    return f", {model.clock.told(rational(tau))}" if model.clock else ""
-
-
-def warnings(scene: Scene, taus: Sequence[float] = ()) -> list[str]:
-    """What a user might not expect: no load, tau out of range, contacts that open early enough to matter."""
-    model = lower(scene)
-    last, clock = model.horizon(), model.clock
-    outside = sum(not 0 <= tau <= last for _, tau in _instants(model, 0, taus))
-    what, end = ("times", clock.told(model.until)) if clock else ("tau", str(scene.output.until))
-    lines = [f"{outside} of {len(taus)} {what} are outside 0 to {end}, where values are nan"] * bool(outside)
-    return [*_no_load(model), *lines, *_contact_warnings(model)]
+def warnings(scene: Scene) -> list[str]:
+    """What a user might not expect: no load, contacts that open early enough to matter."""
+    return unexpected(lower(scene))
 
 
 def no_load(scene: Scene) -> list[str]:
     """A line for a scene in which nothing happens."""
-    return _no_load(lower(scene))
-
-
-def _no_load(model: Model) -> list[str]:
-    network = model.network
-    moving = any(bar.velocity or bar.strain for bar in network.bars) or any(point.velocity for point in network.points)
-    return [] if model.loads or moving else ["no load, so that all outputs are 0"]
-
-
-def _contact_warnings(model: Model) -> list[str]:
-    """A line for every contact that opens early enough to matter to an output."""
-    return [
-        f"contact at x = {end.x} opens at tau = {end.digits}{_in_time(model, end.double)}: what that can reach is "
-        "computed as if it stayed closed"
-        for end in contact_ends(model)
-    ]
+    return without_load(lower(scene))
 
 
 def plot(scene: Scene, path: Path, kind: str = "history") -> list[str]:
@@ -487,15 +525,17 @@ def report(scene: Scene, path: Path) -> None:
 def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[list[str], list[str]]:
     """Response spectra as CSV lines, and what to say of them; drawn at `path`, too, where there is one.
 
-    SceneError for a scene without outputs of quantity acceleration; ToleranceError, CostError as in `spectra`.
+    WavesymError for a scene without outputs of quantity acceleration; ToleranceError, CostError as in `spectra`.
     """
     from wavesym.results.spectrum import spectra
+    from wavesym.results.stepping import apart
 
     if path is not None:
         from wavesym.report.saving import picture_format
 
         picture_format(path)
-    found = spectra(lower(scene), damping)
+    model = lower(scene)
+    found = spectra(model, damping)
     if path is not None:
         from wavesym.report.saving import save
         from wavesym.report.spectra import draw
@@ -504,10 +544,8 @@ def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[li
     names = [f"{name} [{unit}]" if unit else name for name, unit in zip(found.names, found.units, strict=True)]
     header = ",".join(["period" if found.time_unit is None else f"period [{found.time_unit}]", *names]) + "\n"
     rows = (",".join(map(repr, row)) + "\n" for row in np.vstack([found.periods, found.values]).T.tolist())
-    said = (
-        f"damping {damping:g}, values {found.step:g} tau apart; with half as many spectra change by {found.change:.1e}"
-    )
-    return [header, *rows], [*warnings(scene), said]
+    said = f"damping {damping:g}, values {apart(model, found.step)}; with half as many spectra change by"
+    return [header, *rows], [*unexpected(model), f"{said} {found.change:.1e}"]
 
 
 def advise(scene: Scene, tolerance: float = 0.01, format: str = "text") -> str:

@@ -26,6 +26,10 @@
 extern "C" {
 #endif
 
+/* The version of what is declared here, and the SHA-256 of the scene in canonical JSON: that of building_m2.json. */
+#define BUILDING_M2_API_VERSION 1
+#define BUILDING_M2_SCENE_SHA256 "6217eeb7a4044eddf817e79a73b7b70f5ccf68c9191d85c831b684ae171fdae0"
+
 enum { BUILDING_M2_OUTPUTS = 6 };
 
 /* The outputs by name: strains, velocities, displacements, each as listed in the scene. */

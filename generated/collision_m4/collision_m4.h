@@ -29,6 +29,10 @@
 extern "C" {
 #endif
 
+/* The version of what is declared here, and the SHA-256 of the scene in canonical JSON: that of collision_m4.json. */
+#define COLLISION_M4_API_VERSION 1
+#define COLLISION_M4_SCENE_SHA256 "0b7b463512c83fd4e5ac84a99aeaa12931aaa66e65100103a505bf6b2447b359"
+
 enum { COLLISION_M4_OUTPUTS = 10 };
 
 /* The outputs by name: strains, velocities, displacements, each as listed in the scene. */

@@ -26,6 +26,10 @@
 extern "C" {
 #endif
 
+/* The version of what is declared here, and the SHA-256 of the scene in canonical JSON: that of drive_m1.json. */
+#define DRIVE_M1_API_VERSION 1
+#define DRIVE_M1_SCENE_SHA256 "2da5d3741e3b87516d6b7b00204d91938546dc4a5497000fa03218649a2f366d"
+
 enum { DRIVE_M1_OUTPUTS = 5 };
 
 /* The outputs by name: strains, velocities, displacements, each as listed in the scene. */

@@ -186,6 +186,7 @@ def test_a_hundred_thousand_mutants(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         assert statuses.total() == len(part)
 
 
+@pytest.mark.slow
 def test_the_hunt_finds_what_is_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     good = Answer(2, "", "bad.toml: system.m: 0 given, an integer of at least 1 expected\n", 0.1)
@@ -337,6 +338,7 @@ def test_payloads_in_a_good_scene_stay_what_they_are(
     assert not list(tmp_path.parent.rglob("PWNED"))
 
 
+@pytest.mark.slow
 def test_payloads_in_the_environment_change_nothing(tmp_path: Path) -> None:
     """Nothing of wavesym's reads the environment."""
     code = "import sys; from wavesym.cli import main; sys.exit(main(['tables', 'drive_m1', '--intervals', '2']))"

@@ -159,7 +159,7 @@ def test_it_is_quiet_where_there_is_no_terminal(soon: None, capsys: pytest.Captu
         (["run", "collision_m4", "--samples", "3"], "run collision_m4"),
         (["tables", "drive_m1", "--symbolic"], "tables drive_m1"),
         (["derive", "drive"], "derive drive"),
-        (["verify", "drive_m1"], "verify: drive_m1, 1 of 1"),
+        pytest.param(["verify", "drive_m1"], "verify: drive_m1, 1 of 1", marks=pytest.mark.slow),
         (["verify", "--published"], "verify: "),
         (["plot", "drive_m1", "-o", "made.svg"], "plot drive_m1"),
     ],

@@ -12,6 +12,7 @@ import wavesym
 from tests.cli.test_cli import SCENE, folder, refused
 from wavesym import compiler
 from wavesym.cli import main
+from wavesym.results import rows
 from wavesym.scene import builtin_names, lower
 
 __all__ = ["folder"]
@@ -40,16 +41,16 @@ def test_many_samples_come_while_they_are_computed(monkeypatch: pytest.MonkeyPat
     """The reader of the first lines does not wait for the last ones."""
     scene = wavesym.Scene.from_toml("drive_m1")
     asked = []
-    rows = compiler._rows
-    monkeypatch.setattr(compiler, "_rows", lambda *of: asked.append(1) or rows(*of))
+    made = rows._rows
+    monkeypatch.setattr(rows, "_rows", lambda *of: asked.append(1) or made(*of))
     lines = compiler.run(scene, 10**7)
     assert next(lines).startswith("tau,")
     assert next(lines).startswith("0.0,")
     assert asked == [1]
-    whole = list(compiler.run(scene, 2 * compiler._AT_ONCE + 3))
-    assert len(whole) == 2 * compiler._AT_ONCE + 4
+    whole = list(compiler.run(scene, 2 * rows._AT_ONCE + 3))
+    assert len(whole) == 2 * rows._AT_ONCE + 4
     assert whole[-1].startswith("10.0,")
-    assert list(compiler.run(scene, 101)) == list(compiler.run(scene, 101, list(compiler.grid(lower(scene), 101))))
+    assert list(compiler.run(scene, 101)) == list(compiler.run(scene, 101, list(rows.grid(lower(scene), 101))))
 
 
 def test_a_byte_order_mark_is_no_part_of_a_scene() -> None:

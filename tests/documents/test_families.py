@@ -167,6 +167,7 @@ def wrong(line):
     return replace(line, divisor=2 * line.divisor)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("system", "m"), [(COLLISION, 4), (DRIVE, 2), (BUILDING_FORCE, 2)])
 def test_every_line_matters(system, m):
     """A wrong divisor in any line of the list of the first pattern changes the tables."""

@@ -20,7 +20,7 @@ from wavesym.exact.increments import Increment, add, start, trimmed
 from wavesym.exact.motion import Motion
 from wavesym.exact.signal import Signal, signals
 from wavesym.exact.silence import silent
-from wavesym.mechanics import reading
+from wavesym.mechanics import gauge
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
@@ -202,10 +202,10 @@ def test_contacts_included() -> None:
 )
 def test_a_wrong_factor_is_seen(part: tuple[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
     right, wrong = part
-    text = open(reading.__file__, encoding="utf-8").read()  # noqa: SIM115
+    text = open(gauge.__file__, encoding="utf-8").read()  # noqa: SIM115
     assert text.count(right) == 1
-    changed: dict[str, Any] = {"__name__": reading.__name__}
-    exec(compile(text.replace(right, wrong), reading.__file__, "exec"), changed)
+    changed: dict[str, Any] = {"__name__": gauge.__name__}
+    exec(compile(text.replace(right, wrong), gauge.__file__, "exec"), changed)
     monkeypatch.setattr("wavesym.mechanics.model.readings", changed["readings"])
     assert not agree(accelerated(ALL))
 

@@ -80,7 +80,7 @@ def exact(chain, intervals):
     return {row[:-1]: row.value for row in full_table(chain, intervals, NOWHERE).rows()}
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=30)
 @given(chains())
 def test_numbers_in_place_of_symbols_give_the_exact_table(chain):
     expected = exact(chain, 4)

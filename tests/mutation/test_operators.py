@@ -109,6 +109,7 @@ def test_known_mutants_can_still_be_made():
     assert not known().keys() - {mutant.names for place in places() for mutant in place}
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="processes are limited and ended in another way there")
 def test_a_wrong_value_kills(tmp_path):
     """An arrival between two doubles counts from the nearer one."""

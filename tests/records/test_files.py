@@ -16,8 +16,9 @@ from hypothesis import strategies as st
 
 import wavesym
 from wavesym.errors import SceneError
+from wavesym.fields.numbers import decimal_text
 from wavesym.records.read import read_record
-from wavesym.records.record_file import as_decimal, decimal
+from wavesym.records.record_file import decimal
 
 ROOT = Path(wavesym.__file__).parents[1]
 EL_CENTRO = ROOT / "examples" / "records" / "elcentro_1940_ns_peknold"
@@ -299,6 +300,55 @@ def test_no_text_does_more_than_be_refused(place, text):
 
 @given(st.fractions(max_denominator=10**6))
 def test_a_decimal_reads_back(number):
-    text = as_decimal(number)
+    text = decimal_text(number)
     assert Fraction(text) == number
     assert "/" in text or decimal(text) == number
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "time_s;accel_g\n0,00;0,1\n0,02;-5e-1\n0,04;3\n",
+        "time_s\taccel_g\n0,00\t0,1\n0,02\t-0,5\n0,04\t3\n",
+        '"time_s","accel_g"\n"0.00","0.1"\n"0.02", "-0.5"\n"0.04",3\n',
+        '"time_s";"accel_g" # quoted\n"0,00";"0,1"\n"0,02";"-0,5"\n"0,04";"3"\n',
+        "\ufefftime_s,accel_g\r\n0.00,0.1\r\n0.02,-0.5\r\n0.04,3\r\n",
+    ],
+)
+def test_cells_are_read_as_spreadsheets_write_them(tmp_path, text):
+    read = read_record(made(tmp_path, text))
+    assert (read.samples, read.even()) == ((Fraction(1, 10), Fraction(-1, 2), 3), Fraction(1, 50))
+    assert (read.unit, read.clock) == ("g", "s")
+    assert read.written[0] == "0.1"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        # what may mean two things: a comma that parts thousands, or columns
+        (
+            "time_s;accel_g\n0.00;0.1\n0.02;1,234\n",
+            'line 3: 1,234 given, a decimal with "." as before expected (accel_g)',
+        ),
+        ("time_s;accel_g\n0.00;0,1\n", 'line 2: 0,1 given, a decimal with "." as before expected (accel_g)'),
+        ("time_s;accel_g\n0,0;1.234,5\n", "line 2: 1.234,5 given, a decimal expected (accel_g)"),
+        ("time_s;accel_g\n0,0;1,234,5\n", "line 2: 1,234,5 given, a decimal expected (accel_g)"),
+        ('time_s,accel_g\n"0,0","1,5"\n', "line 2: 0,0 given, a decimal expected (time_s)"),
+        ("accel_g\n1,5\n", "line 2: 1,5 given, a decimal expected (accel_g)"),
+        ("0,0;1,5\n0,1;2,5\n", "line 1: 0,0;1,5 given, a header line expected"),
+        ('time_s,accel_g\n0,"1\n', 'line 2: 0,"1 given, quotes around whole cells expected'),
+        ('time_s,accel_g\n0,1"2"\n', 'line 2: 1"2" given, a decimal expected (accel_g)'),
+    ],
+)
+def test_a_comma_that_may_mean_two_things_is_refused(tmp_path, text, said):
+    path = made(tmp_path, text)
+    with pytest.raises(SceneError) as error:
+        read_record(path)
+    assert str(error.value).startswith(f"{path}: {said}")
+
+
+def test_what_parts_columns_may_stand_in_the_name_of_one(tmp_path):
+    read = read_record(made(tmp_path, "time,acc; filtered (g)\n0,1\n1,2\n"))
+    assert (read.samples, read.unit) == ((1, 2), "g")
+    read = read_record(made(tmp_path, 'time,"a, north # 1"\n0,1\n1,2\n'))
+    assert (read.samples, read.kind) == ((1, 2), "CSV, a, north # 1")

@@ -17,8 +17,11 @@ _SECONDS = 60
 _REPORTED = re.compile(r'<pre id="reported">(.*?)</pre>', re.DOTALL)
 
 
-def reported(page: str, script: str, folder: Path) -> object:
-    """What a script says of a page: it is run at the end, and calls `report(value)` once."""
+def reported(page: str, script: str, folder: Path, address: str = "") -> object:
+    """What a script says of a page: it is run at the end, and calls `report(value)` once.
+
+    The page is a file in `folder`, or what a server of that folder gives at `address`.
+    """
     browser = next(filter(None, map(shutil.which, _NAMES)), None)
     if browser is None:
         pytest.skip("no Chromium (Debian: apt install chromium)")
@@ -30,7 +33,13 @@ def reported(page: str, script: str, folder: Path) -> object:
     file.write_text(page.replace("</body>", f"<script>{tell}\n{script}</script></body>"), encoding="utf-8")
     options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder / 'profile'}"]
     shown = subprocess.run(
-        [browser, *options, "--virtual-time-budget=20000", "--dump-dom", file.as_uri()],
+        [
+            browser,
+            *options,
+            "--virtual-time-budget=20000",
+            "--dump-dom",
+            f"{address}/{file.name}" if address else file.as_uri(),
+        ],
         capture_output=True,
         text=True,
         timeout=_SECONDS,

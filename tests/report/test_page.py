@@ -16,8 +16,11 @@ import pytest
 import wavesym
 from tests.report.browser import axe, reported
 from wavesym.cli import main
+from wavesym.report.page import small
 from wavesym.report.page.curves import HEIGHT, Grid
 from wavesym.report.page.document import page
+from wavesym.report.page.said import SaidTable
+from wavesym.report.page.small import LARGEST, first_rows, first_text, fitting
 from wavesym.report.page.structure import structure
 from wavesym.scene import Scene, builtin_text, lower
 
@@ -93,6 +96,42 @@ def test_the_page_is_whole_and_needs_nothing_from_outside(building: str) -> None
     assert len(building.encode()) < 400_000
     assert not re.search(r"https?://(?!www\.w3\.org)", building)
     assert "@import" not in building
+
+
+def test_a_page_is_thinned_until_it_is_small() -> None:
+    drawn = []
+    assert fitting(lambda columns: columns, lambda columns: drawn.append(columns) or "x" * (1000 * columns), 1200)
+    assert drawn == [1200, 600, 300]
+    assert len(fitting(lambda columns: columns, lambda columns: "\u2212" * LARGEST, 100).encode()) > LARGEST
+    assert first_text("a" * 40_000 + "b" * 5).endswith("aa\n... and 5 characters more, left out to keep the page small")
+    assert first_text("ab") == "ab"
+    table = SaidTable(("Output",), tuple((str(k),) for k in range(300)), ("How",))
+    assert first_rows(table).rows == table.rows[:250]
+    assert first_rows(table).notes[1].startswith("The first 250 of 300 outputs")
+
+
+@pytest.mark.slow
+def test_a_page_of_many_outputs_and_fronts_stays_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its curves get fewer columns, its tables fewer rows, its scene is cut; it says so, and is whole."""
+    scene = Scene.from_toml("building_m2").with_(
+        {
+            "load": [{"times": list(range(40)), "a": [(-1) ** k * (k % 7) for k in range(40)]}],
+            "output.until": 40,
+            "output.strain": [f"{k}/20" for k in range(1, 20)],
+        }
+    )
+    monkeypatch.setattr(small, "_ROWS", 7)
+    monkeypatch.setattr(small, "_TEXT", 100)
+    usual = page(scene)
+    assert "Curves have" not in usual
+    monkeypatch.setattr(small, "LARGEST", len(usual.encode()) * 3 // 4)
+    less = page(scene)
+    assert len(less.encode()) <= small.LARGEST < len(usual.encode()) < 400_000
+    (columns,) = re.findall(r"Curves have ([0-9]+) columns of time", less)
+    assert f'max="{columns}"' in less
+    assert re.search("The first 7 of [0-9]+ outputs", less)
+    assert "characters more, left out" in less
+    assert faults(less) == []
 
 
 def test_what_is_missing_is_seen(building: str) -> None:

@@ -15,7 +15,7 @@ import wavesym
 from wavesym.cli import main
 from wavesym.results import spectrum
 from wavesym.results.spectrum import PER_DECADE, _peaks, spectra
-from wavesym.scene import Scene, lower
+from wavesym.scene import Scene, builtin_text, lower
 
 PERIODS = np.array([0.5, 1.0, 1.7, 4.0, 11.0])
 
@@ -173,8 +173,16 @@ def test_a_wrong_request_is_one_line(arguments, said, capsys):
 
 
 def test_too_short_a_horizon_is_refused():
-    with pytest.raises(wavesym.SceneError, match="3 given, at least 4"):
+    with pytest.raises(wavesym.WavesymError, match=r"^output.until: 3 tau given, at least 4.* tau expected"):
         spectra(lower(floor(3)), 0.05)
+
+
+def test_a_scene_without_accelerations_is_refused_by_its_file(tmp_path, capsys):
+    file = tmp_path / "mine.toml"
+    file.write_text(builtin_text("building_m2"))
+    assert main(["spectrum", str(file)]) == 2
+    expected = "output.acceleration: none given, at least one expected for a response spectrum"
+    assert capsys.readouterr().err == f"{file}: {expected}\n"
 
 
 def test_undamped_oscillators_swing_on():

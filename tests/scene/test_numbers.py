@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic_core import PydanticCustomError
 
@@ -124,6 +124,7 @@ def test_text_is_a_fraction_or_refused(text: str) -> None:
     assert number == Fraction(text)
 
 
+@settings(max_examples=40)
 @given(st.recursive(st.none() | st.integers() | st.text() | st.floats(), st.lists))
 def test_any_value_can_be_shown_on_a_line(value: object) -> None:
     assert shown(value).isprintable()

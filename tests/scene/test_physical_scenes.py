@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -13,6 +14,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+import numpy as np
 import pytest
 from flint import fmpq
 from hypothesis import given, settings
@@ -22,12 +24,14 @@ import wavesym
 from wavesym import compiler
 from wavesym.cli import main
 from wavesym.documents.inspection.units import remarks
-from wavesym.errors import SceneError
+from wavesym.errors import SceneError, UnservedError
+from wavesym.fields.numbers import decimal_text
+from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import fraction
 from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text
-from wavesym.scene.physical.rounding import decimal, decimal_text, polar_moment, root, rounded_root
+from wavesym.scene.physical.rounding import decimal, polar_moment, root, rounded_root
 from wavesym.scene.physical.scene import physical
 
 FRAMES = Path(wavesym.__file__).parents[1] / "examples" / "frames"
@@ -39,6 +43,21 @@ BUILDING = {
     "load": [{"times": ["0 s", "20 ms"], "a": ["0.1 g", "-0.1 g"], "b": ["0 g/s", "0.5 g/s"]}],
     "output": {"until": "50 ms", "velocity": [2], "force": [0], "drift": [1]},
 }
+FRAME = """name = "frame"
+[units]
+[system]
+type = "building"
+base = "ground"
+[[system.storey]]
+count = 2
+height = "3.5 m"
+stiffness = "678 MN/m"
+column_mass = "10.871 t"
+floor_mass = "350 t"
+[[load]]
+times = ["0 s"]
+a = ["0.3 g"]
+"""
 SHAFT = {"length": "1.2 m", "diameter": "50 mm", "G": "80 GPa", "rho": "7850 kg/m^3"}
 DRIVE = {
     "units": {},
@@ -276,6 +295,36 @@ def test_a_building_written_out_is_the_same_building(other: dict[str, str], base
         system["foundation_mass"] = "500 t"
     one, other = both_ways(changed(BUILDING, "system", system), tmp_path)
     assert one == other
+
+
+@pytest.mark.parametrize("base", ["ground", "force"])
+def test_a_building_of_unequal_storeys_is_a_building(base: str) -> None:
+    """It says so, and knows its foundation: where storeys hardly differ, it moves as the one where they do not."""
+    system: dict[str, Any] = {"type": "building", "base": base, "storey": [STOREY, STOREY]}
+    if base == "force":
+        system["foundation_mass"] = "500 t"
+    output = {"until": "50 ms", "displacement": [0, 2], "relative": [1, 2], "drift": [1, 2]}
+    equal = Scene(**(BUILDING | {"system": system, "output": output}))
+    hardly = STOREY | {"stiffness": "678000000.001 N/m"}
+    unequal = Scene(**(BUILDING | {"system": system | {"storey": [STOREY, hardly]}, "output": output}))
+    models = lower(equal), lower(unequal)
+    assert models[1].chain is None
+    assert {model.labels.system["type"] for model in models} == {unequal.system.type} == {"building"}
+    taus = np.linspace(0, models[1].horizon(), 9)
+    one, other = (wavesym.evaluator(scene)(taus) for scene in (equal, unequal))
+    assert np.abs(one - other).max() < 1e-9 * np.abs(one).max() < np.abs(one[2]).max()
+    np.testing.assert_allclose(other[5], other[1] - other[0], atol=1e-15)  # relative@2, the roof less the foundation
+
+
+@pytest.mark.parametrize("name", ["drive", "collision"])
+def test_others_of_unequal_rods_are_still_what_they_are(name: str) -> None:
+    path = "system.shaft.1.length" if name == "drive" else "system.body.0.left.length"
+    scene = Scene(**changed(ALL[name], path, "0.9 m"))
+    assert (lower(scene).chain, lower(scene).labels.system["type"]) == (None, name)
+    with pytest.raises(UnservedError, match=f"system.type: {name} of rods that differ, which is a chain, given"):
+        _ = lower(scene).named
+    with pytest.raises(SceneError, match=r"output.relative\[0\]: 1 given, a building or a chain expected"):
+        scene.with_({"output.relative": [1]})
 
 
 @pytest.mark.parametrize("name", ["drive", "collision"])
@@ -594,6 +643,31 @@ def test_remarks_are_made_of_what_is_odd() -> None:
     assert not list(remarks(physical(BUILDING)))
 
 
+def test_what_is_refused_later_speaks_of_seconds_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Engines know only tau; who gave seconds and g reads of these."""
+    file = tmp_path / "frame.toml"
+    file.write_text(FRAME + '[output]\nuntil = "2000 s"\ndrift = [1]\n')
+    said = []
+    for evaluator in ("pieces", "modes"):
+        assert main(["generate", str(file), "--evaluator", evaluator, "--check"]) == 2
+        said.append(capsys.readouterr().err)
+    assert re.search(r"3 nodes times [0-9.e+]+ units of tau \(2000 s\) are", said[0])
+    assert "load: a jumps by 2.94199 m/s^2 at 0 s, no jump expected in modes" in said[1]
+    file.write_text(file.read_text().replace("10.871 t", "1e200 kg").replace("350 t", "1e-200 kg"))
+    assert main(["run", str(file)]) == 2
+    assert capsys.readouterr().err.startswith(f"{file}: system: its quantities make kappa[0]: a number of about 400")
+
+
+def test_taus_in_a_message_have_their_times_beside_them() -> None:
+    clock = Clock(fmpq(1, 8), fmpq(125), "ms")
+    assert clock.beside("a bound to tau = 1.6e+1 for x") == "a bound to tau = 1.6e+1 (2000 ms) for x"
+    assert clock.beside("by tau = 58.5, at most 3 expected.") == "by tau = 58.5 (7312.5 ms), at most 3 expected."
+    assert clock.beside("from tau = 4. 3 nodes times 8 units of tau") == (
+        "from tau = 4 (500 ms). 3 nodes times 8 units of tau (1000 ms)"
+    )
+    assert clock.beside("a tau that is no number") == "a tau that is no number"
+
+
 def test_places_of_pictures_have_units() -> None:
     pytest.importorskip("matplotlib")
     from matplotlib.figure import Figure
@@ -606,6 +680,21 @@ def test_places_of_pictures_have_units() -> None:
     assert axes.get_xlabel() == "arm:x in mm"
     for x, label in zip(axes.get_xticks(), axes.get_xticklabels(), strict=True):
         assert float(label.get_text()) == pytest.approx(x * 1200, abs=1e-9)
+
+
+@pytest.mark.parametrize(("rods", "whole"), [(1, 1.2), (3, 0.7), (3, 0.6), (5, 2.4), (9, 3.0), (55, 3.5)])
+def test_a_picture_has_a_tick_at_its_end(rods: int, whole: float) -> None:
+    """Where that is a round length, whatever doubles make of so many rods of a part of it."""
+    pytest.importorskip("matplotlib")
+    from matplotlib.figure import Figure
+
+    from wavesym.report.xt import _lengths
+
+    axes = Figure().add_subplot()
+    axes.set_xlim(0, rods)
+    _lengths(axes, "x in m", whole / rods)
+    assert (axes.get_xticks()[-1], axes.get_xticklabels()[-1].get_text()) == (rods, f"{whole:g}")
+    assert axes.get_xlim() == (0, rods)
 
 
 @pytest.mark.slow

@@ -17,7 +17,8 @@ from wavesym.running.compiled import FLAGS, compiled, imported
 from wavesym.running.toolchain import at_hand
 from wavesym.scene import Scene, lower
 
-COMPILERS = at_hand()
+# the first compiler always, the others when there is time
+COMPILERS = [pytest.param(each, marks=pytest.mark.slow) if k else each for k, each in enumerate(at_hand())]
 
 
 def scene(system, load=(), until=9, **outputs):

@@ -206,7 +206,7 @@ def scenes(draw):
     )
 
 
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(scenes())
 def test_agreement_with_the_reference(scene):
     for outcome in checks.integration(known(lower(scene))):

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 from flint import fmpq
 
+from wavesym.mechanics.gauge import Sum, Weighted, readings
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.probe import Probe
-from wavesym.mechanics.reading import Sum, Weighted, readings
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks, contacts
 from wavesym.verification.reference import known

@@ -135,6 +135,7 @@ def leading(
                 yield row, function, n, power, int(polynomial[power + 1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("system", [BUILDING_FORCE, BUILDING_GROUND], ids=lambda system: system.name)
 def test_leading_coefficients_between_equal_floors_count_walks(system):
     family = POWERS[system.name][1]
@@ -169,6 +170,7 @@ def test_leading_coefficients_between_equal_discs_count_walks():
     assert told > 500
 
 
+@pytest.mark.slow
 def test_leading_coefficients_between_equal_bodies_count_walks():
     family = POWERS["collision"][-1]
     for m in (6, 8, 10):

@@ -90,7 +90,7 @@ def check_generated(scene):
         assert outcome.passed, outcome
 
 
-@settings(max_examples=6)
+@settings(max_examples=4)
 @given(scenes())
 def test_generated_code_is_within_its_bound(scene):
     check_generated(scene)
@@ -103,7 +103,7 @@ def test_generated_code_is_within_its_bound_in_many_systems(scene):
     check_generated(scene)
 
 
-@settings(max_examples=10)
+@settings(max_examples=7)
 @given(loaded(), st.data())
 def test_loads_superpose(drawn, data):
     system, one = drawn
@@ -111,7 +111,7 @@ def test_loads_superpose(drawn, data):
     assert_same(tables(made(system, one + other)), windows(made(system, one)), windows(made(system, other)))
 
 
-@settings(max_examples=10)
+@settings(max_examples=7)
 @given(loaded(), st.sampled_from([Fraction(2), Fraction(-1, 4), Fraction(8)]))
 def test_loads_scale(drawn, factor):
     system, load = drawn
@@ -119,7 +119,7 @@ def test_loads_scale(drawn, factor):
     np.testing.assert_array_equal(scaled, float(factor) * windows(made(system, load)))
 
 
-@settings(max_examples=10)
+@settings(max_examples=7)
 @given(loaded(), st.sampled_from([Fraction(1, 4), Fraction(9, 16), Fraction(1), Fraction(5, 2)]))
 def test_later_loads_do_the_same_later(drawn, shift):
     system, load = drawn
@@ -130,7 +130,7 @@ def test_later_loads_do_the_same_later(drawn, shift):
     np.testing.assert_array_equal(found[:, waiting:], windows(made(system, load))[:, : len(TAUS) - waiting])
 
 
-@settings(max_examples=10)
+@settings(max_examples=7)
 @given(systems(kinds=("building", "drive"), largest=3))
 def test_a_ramp_does_what_a_step_has_done(system):
     """A ramp is the integral of a step: velocities under the one are displacements under the other."""
@@ -153,7 +153,7 @@ def test_the_ground_is_followed_at_once(system):
     np.testing.assert_allclose(displacement, tau**2 / 2 + tau**3 / 12 - 1.5 * after**2, rtol=0, atol=1e-14)
 
 
-@settings(max_examples=10)
+@settings(max_examples=7)
 @given(systems(kinds=("collision",)))
 def test_a_collision_in_the_mirror(system):
     """Places, velocities and displacements turn round, so strains stay."""
@@ -166,7 +166,7 @@ def test_a_collision_in_the_mirror(system):
     np.testing.assert_array_equal(found, np.repeat([1, -1, -1], 3)[:, np.newaxis] * expected)
 
 
-@settings(max_examples=10)
+@settings(max_examples=7)
 @given(loaded(kinds=("drive",)))
 def test_a_drive_in_the_mirror(drawn):
     """J_0i = kappa_i J_i; moments are in units of the first shaft's, and that on the last body counts against it."""
@@ -184,7 +184,7 @@ def test_a_drive_in_the_mirror(drawn):
     np.testing.assert_array_equal(found, np.repeat([-1, 1, 1], 3)[:, np.newaxis] * expected)
 
 
-@settings(max_examples=10)
+@settings(max_examples=7)
 @given(systems(kinds=("drive",)), st.data())
 def test_reciprocity(system, data):
     """A moment at A turns B as it would turn A at B; all are in the same units, and the last has another sign."""
@@ -198,7 +198,7 @@ def test_reciprocity(system, data):
     np.testing.assert_array_equal(tables(turning(a, b)), windows(turning(b, a)))
 
 
-@settings(max_examples=10)
+@settings(max_examples=7)
 @given(systems(kinds=("drive",)), st.sampled_from([Fraction(2), Fraction(1, 3)]))
 def test_only_ratios_of_inertia_matter(system, factor):
     load = [{"body": 1, "times": [0], "steps": [1]}]
@@ -206,7 +206,7 @@ def test_only_ratios_of_inertia_matter(system, factor):
     np.testing.assert_array_equal(tables(made(scaled, load)), windows(made(system, load)))
 
 
-@settings(max_examples=10)
+@settings(max_examples=7)
 @given(systems(kinds=("collision",)), st.sampled_from([Fraction(3, 2), Fraction(-1)]))
 def test_a_moving_observer_sees_the_same_collision(system, speed):
     moving = {**system, "velocity": [v + speed for v in system["velocity"]]}
@@ -226,7 +226,7 @@ def test_bodies_that_move_as_one_do_not_collide(data):
     np.testing.assert_array_equal(displacement, 0.5 * np.array(TAUS))
 
 
-@settings(max_examples=10)
+@settings(max_examples=7)
 @given(systems(kinds=("drive",), largest=3), st.sampled_from([Fraction(1, 2), Fraction(7)]))
 def test_nothing_is_felt_before_it_arrives(system, factor):
     """What is done at the first disc is felt at x from tau = x on, and what the disc at m is like from 2 m - x on."""
@@ -245,7 +245,7 @@ def test_nothing_is_felt_before_it_arrives(system, factor):
         assert (found[:, late] != other[:, late]).all()
 
 
-@settings(max_examples=10)
+@settings(max_examples=7)
 @given(ratios(2), st.sampled_from(["force", "ground"]))
 def test_nearly_equal_storeys_move_nearly_alike(kappa, base):
     """Rates that merge are the limit of rates that do not: the tables differ altogether, the motion by the gap."""

@@ -37,13 +37,14 @@ class SceneParameter(click.ParamType[Any]):
 
         if isinstance(value, Scene):
             return value
+        scene = Scene.from_toml(value)
         file = "<stdin>" if value == "-" else value
         if ctx is not None and param is not None and param.nargs == 1:
             ctx.meta[_ARGUMENT] = value
-            ctx.with_resource(_blamed(file))
+            ctx.with_resource(_blamed(scene, file))
         elif ctx is not None:
             ctx.meta.setdefault(_FILES, []).append(file)
-        return Scene.from_toml(value)
+        return scene
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
         """Built-in scenes and files of TOML, and folders where there are none of these."""
@@ -57,14 +58,16 @@ class SceneParameter(click.ParamType[Any]):
 
 
 @contextmanager
-def _blamed(file: str) -> Iterator[None]:
+def _blamed(scene: Scene, file: str) -> Iterator[None]:
+    """What is wrong with a scene names its file, and says in the scene's own unit, too, when that is."""
     try:
         yield
     except SceneError:  # has its file
         raise
     except WavesymError as error:
+        what = scene.scale.clock.beside(str(error)) if scene.scale else str(error)
         # keeps its class, and so its exit status
-        raise type(error)(str(SceneError(str(error), file=file))) from None
+        raise type(error)(str(SceneError(what, file=file))) from None
 
 
 def scene_argument() -> str:
@@ -96,7 +99,7 @@ def each_blamed(scenes: Iterable[Scene], stack: ExitStack) -> Iterator[Scene]:
     """The scenes that a command was given; what is found wrong in `stack` with the one just taken names its file."""
     for scene, file in zip(scenes, click.get_current_context().meta[_FILES], strict=True):
         stack.pop_all()
-        stack.enter_context(_blamed(file))
+        stack.enter_context(_blamed(scene, file))
         yield scene
 
 

@@ -55,12 +55,12 @@ def run(scene: Scene, samples: int | None, at: Path | None, out: Path | None) ->
     if out is not None:
         refuse_scene(out)
     with progress(f"run {scene.name}"):
-        warnings = [*compiler.warnings(scene, taus or ()), *compiler.events(scene)]
-        lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus, warnings.append)
+        said: list[str] = []
+        lines = compiler.run(scene, samples or DEFAULT_SAMPLES, taus, said.append)
         if out is not None:
             write_whole({out: lines})
-    for warning in warnings:
-        click.echo(f"{scene.name}: {warning}", err=True)
+    for line in said:
+        click.echo(f"{scene.name}: {line}", err=True)
     if out is None:
         put(lines)
 

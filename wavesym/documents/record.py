@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from wavesym.records.record_file import RecordFile, as_decimal
+from wavesym.fields.numbers import decimal_text
+from wavesym.records.record_file import RecordFile
 
 AFTER = "0: in a straight line within one step, and for good"
 
@@ -46,7 +47,7 @@ class RecordFacts:
 
     def when(self, time: Fraction) -> str:
         """A time with its unit."""
-        return f"{as_decimal(time)} {self.clock}".rstrip()
+        return f"{decimal_text(time)} {self.clock}".rstrip()
 
     def peaked(self) -> str:
         """The peak with the file's digits, and when."""

@@ -22,9 +22,9 @@ from wavesym.errors import CostError
 from wavesym.exact.events import scheduled
 from wavesym.exact.joint import SWING, JointLaw
 from wavesym.exact.schedule import Schedule
+from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.reading import Gauge, Sum
 
 MOST_KNOTS = 20_000
 

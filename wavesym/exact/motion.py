@@ -16,10 +16,10 @@ from wavesym.exact.knots import Knots
 from wavesym.exact.network_waves import Acting, NetworkWaves, Waves, later
 from wavesym.exact.silence import smooth_starts
 from wavesym.exact.touching_waves import replayed
+from wavesym.mechanics.gauge import Weighted
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
 from wavesym.mechanics.probe import Probe
-from wavesym.mechanics.reading import Weighted
 
 MOST_STRETCHES = 20_000
 # with those that loads begin: a quarter of a minute, and as long again for the values of a self-test

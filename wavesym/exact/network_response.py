@@ -20,10 +20,10 @@ from wavesym.exact.network_joints import START, NetworkJoints, unit_at
 from wavesym.exact.node_rules import joint_rule
 from wavesym.exact.table import Function, Part
 from wavesym.exact.table_size import refuse_size
+from wavesym.mechanics.gauge import Gauge, readings
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import End, Network
 from wavesym.mechanics.probe import Probe
-from wavesym.mechanics.reading import Gauge, readings
 
 POINT = "q"
 """The letter of a point's velocity among wave functions; its number stands for that of a rod."""

@@ -23,11 +23,11 @@ from wavesym.exact.network_response import RuledNetwork
 from wavesym.exact.table import Function, Part, Rules, unit_response
 from wavesym.exact.table_size import refuse_large
 from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.gauge import Gauge, readings
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network, network_of
 from wavesym.mechanics.probe import Probe
-from wavesym.mechanics.reading import Gauge, readings
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 

@@ -23,9 +23,9 @@ from flint import fmpq, fmpz_mod_ctx, fmpz_mod_mat
 
 from wavesym.exact.joint import JointLaw
 from wavesym.exact.node_rules import joint_rule
+from wavesym.mechanics.gauge import Gauge
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
-from wavesym.mechanics.reading import Gauge
 
 _PRIME = 2**127 - 1
 _FIELD = fmpz_mod_ctx(_PRIME)

@@ -102,7 +102,7 @@ def refuse_large(
     refuse_size(table_size(chain, interval, wanted, sources), asked, most)
 
 
-def refuse_size(size: Size, asked: str, most: float = inf, parts: str = "smaller m") -> None:
+def refuse_size(size: Size, asked: str, most: float = inf, parts: str = "fewer rods") -> None:
     """The same for a size that is known, of a chain with less to work on where it has fewer `parts`."""
     fewer = "a shorter horizon" if asked == "output.until" else "fewer intervals"
     if size.bytes > LARGEST:

@@ -136,7 +136,7 @@ class SampledLoad(Load):
 
 
 def linear(
-    start: Fraction, spacing: Fraction, samples: Sequence[Fraction], sources: tuple[str, str]
+    start: Fraction, spacing: Fraction, samples: Sequence[Fraction | fmpq], sources: tuple[str, str]
 ) -> Iterator[Applied]:
     """Straight lines through samples, constant after the last: a step to the first, then the changes of slope."""
     step, ramp = sources

@@ -18,6 +18,9 @@ LARGEST_EXPONENT = 300
 _LARGEST = Fraction(10) ** LARGEST_EXPONENT
 _SMALLEST = 1 / _LARGEST
 _MOST_BITS = 2048  # above what LONGEST and LARGEST_EXPONENT let through
+_MODERATE_BITS = 996  # of numerator and denominator: 2^996 is less than 10^LARGEST_EXPONENT
+
+_MOST_DIGITS = 40  # behind the point of a decimal that is written out
 
 _DECIMAL = re.compile(r"([+-]?[0-9]+)(?:\.([0-9]+))?(?:[eE]([+-]?[0-9]+))?")
 _RATIO = re.compile(r"([+-]?[0-9]+)/([0-9]+)")
@@ -45,6 +48,8 @@ def exact(value: object) -> Fraction:
 
     Raises (as does every validator here) the error of `table.wrong`.
     """
+    if type(value) is Fraction and max(n.bit_length() for n in value.as_integer_ratio()) <= _MODERATE_BITS:
+        return value  # as the many samples of a record are
     text = written(value)
     if text is not None:
         number = _parsed(text, value)
@@ -79,6 +84,16 @@ def _parsed(text: str, value: object) -> Fraction:
             raise wrong(f"{shown(value)} given, an exponent from -{LARGEST_EXPONENT} to {LARGEST_EXPONENT} expected")
         return int(whole + digits) * Fraction(10) ** (exponent - len(digits))
     raise wrong(f'{shown(value)} given, a number expected (an integer, a decimal or "p/q")')
+
+
+def decimal_text(value: Fraction) -> str:
+    """A number as a decimal where it is one, else as a ratio."""
+    digits = next((k for k in range(_MOST_DIGITS) if 10**k % value.denominator == 0), 0)
+    if value.denominator > 1 and not digits:
+        return str(value)
+    scaled = str(abs(value.numerator) * 10**digits // value.denominator).zfill(digits + 1)
+    sign, cut = "-" if value < 0 else "", len(scaled) - digits
+    return f"{sign}{scaled[:cut]}{(digits and '.') or ''}{scaled[cut:]}"
 
 
 def _positive(value: object) -> Fraction:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from fractions import Fraction
 
 from flint import fmpq
 
 from wavesym.numbers.doubles import nearest, not_below, rational
+
+_TAU = re.compile(r"(?<!w)tau = ([0-9]+(?:\.[0-9]+)?(?:e[+-]?[0-9]+)?)|([0-9][0-9.e+-]*) units of tau")
 
 
 @dataclass(frozen=True)
@@ -26,6 +29,11 @@ class Clock:
     def told(self, tau: fmpq) -> str:
         """A tau in the unit, for people."""
         return f"{self.time(tau):.9g} {self.unit}"
+
+    def beside(self, text: str) -> str:
+        """A message that speaks of tau, with what that is in the unit behind each."""
+        per_tau = nearest(self.per_tau)
+        return _TAU.sub(lambda found: f"{found[0]} ({float(found[1] or found[2]) * per_tau:.5g} {self.unit})", text)
 
     def tau(self, time: float, until: fmpq) -> float:
         """The smallest double of tau not below a time, which stands for the shortest decimal that reads back to it.

@@ -8,8 +8,8 @@ from dataclasses import fields
 from flint import fmpq
 
 from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.gauge import Gauge
 from wavesym.mechanics.node import Parameters
-from wavesym.mechanics.reading import Gauge
 
 
 def light_cone(chain: Chain, watched: Iterable[Gauge], until: fmpq) -> range:

@@ -12,11 +12,12 @@ from wavesym.errors import UnservedError
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping
+from wavesym.mechanics.gauge import Gauge, Sum, readings
 from wavesym.mechanics.light_cone import felt, light_cone
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.probe import Probe
-from wavesym.mechanics.reading import Gauge, Sum, readings
+from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE, Real
 
 
@@ -31,6 +32,12 @@ class Labels:
     loads: tuple[str, ...]
     sha256: str
 
+    @property
+    def type(self) -> str:
+        """Of a chain that is written out, also where it is a named system: that has rods that differ then."""
+        type = self.system["type"]
+        return type if type == "chain" else f"{type} of rods that differ, which is a chain,"
+
 
 @dataclass(frozen=True)
 class Model:
@@ -39,7 +46,8 @@ class Model:
     `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
     `tolerance` is relative to an output's largest value. Loads are sorted by time; where they have samples, the closest
     are `spacing` apart. The `clock` is that of a physical scene, the `damping` that of its modes; `inputs` says of the
-    sources of its loads what 1 is in the unit of results, and that unit.
+    sources of its loads, and of the numbers of its parts by name, what 1 is in a unit, and that unit. An `endless` one
+    goes on after that tau.
     """
 
     name: str
@@ -54,6 +62,7 @@ class Model:
     damping: Damping | None = None
     spacing: fmpq | None = None
     inputs: Mapping[str, tuple[fmpq, str]] = field(default_factory=dict)
+    endless: bool = False
 
     @property
     def named(self) -> Chain:
@@ -61,10 +70,16 @@ class Model:
         if self.chain is None:
             self.network.refuse_contacts()
             raise UnservedError(
-                "system.type: chain given, collision, drive or building expected "
+                f"system.type: {self.labels.type} given, collision, drive or building expected "
                 "(a chain has pieces, a march and `run`)"
             )
         return self.chain
+
+    def told(self, load: Applied) -> str:
+        """A step of a load, in units where there are any: how much, and when."""
+        factor, unit = self.inputs.get(load.source, (fmpq(1), ""))
+        when = self.clock.told(load.time) if self.clock else f"tau = {nearest(load.time):g}"
+        return f"{load.source} jumps by {nearest(load.weight * factor):g}{unit and ' '}{unit} at {when}"
 
     @cached_property
     def sums(self) -> Mapping[Probe, Sum]:
@@ -90,6 +105,11 @@ class Model:
         """Whether a mode is damped, so that the whole chain can influence an output from the first instant on."""
         return self.damping is not None and self.damping.acts
 
+    @property
+    def whole(self) -> bool:
+        """Whether nothing of the chain can be left out."""
+        return self.damped or self.endless
+
     def horizon(self, real: Real = DOUBLE) -> float:
         """The last tau in `real` numbers: the smallest of them that is not below `until`."""
         return real.not_below(self.until)
@@ -100,7 +120,7 @@ class Model:
 
     def light_cone(self, until: fmpq) -> range:
         """The numbers of the nodes that can influence an output by then."""
-        return range(self.named.m + 1) if self.damped else light_cone(self.named, self.watched, until)
+        return range(self.named.m + 1) if self.whole else light_cone(self.named, self.watched, until)
 
     def reached(self, until: fmpq) -> dict[int, fmpq]:
         """The joints of the network that can influence an output by then, and until when each can.
@@ -126,7 +146,7 @@ class Model:
         return {
             joint: max(until - distance, fmpq(0))
             for joint, distance in sorted(distances.items())
-            if self.damped or distance <= until or joint in beside
+            if self.whole or distance <= until or joint in beside
         }
 
     @cached_property
@@ -134,7 +154,7 @@ class Model:
         """The parameters that can matter to an output within the horizon, by name and index."""
         if self.chain is None:
             return {}
-        crossing = self.chain.m + 1 if self.damped else 0
+        crossing = self.chain.m + 1 if self.whole else 0
         return felt(self.chain, self.watched, self.until + crossing)
 
     def shortened(self, until: fmpq) -> Model:

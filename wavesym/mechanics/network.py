@@ -26,7 +26,7 @@ class Point:
     """What moves as one: a rigid mass, or none; a dashpot and a spring to the ground; its velocity at tau = 0.
 
     A `motion` is prescribed by the loads on the point: its velocity, or its acceleration. What is fixed has no loads.
-    `place` is where a scene would say that it is.
+    `place` is where a scene would say that it is. What is `absorbing` has the dashpot that its rod asks for.
     """
 
     mass: fmpq
@@ -37,6 +37,7 @@ class Point:
     loads: tuple[UnitLoad, ...] = ()
     name: str = ""
     place: str = field(default="", compare=False)
+    absorbing: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -141,6 +142,20 @@ class Network:
                 f"system: the contact at {self.links[number].place} opens and closes, none that does expected (pieces "
                 "and `run` serve it, not tables, closed form or march)"
             )
+
+    @property
+    def loses(self) -> bool:
+        """Whether dashpots take energy from it: any but those between points that move as they are told."""
+        free = {number for number, point in enumerate(self.points) if point.motion is None}
+        return any(self.points[number].damping != 0 for number in free) or any(
+            link.damping != 0 and not link.contact and free & {link.left, link.right} for link in self.links
+        )
+
+    @property
+    def bridged(self) -> frozenset[int]:
+        """The bars that springs or dashpots lie beside, between the same two points."""
+        pairs = {frozenset((k.left, k.right)) for k in self.links if k.stiffness != 0 or k.damping != 0}
+        return frozenset(n for n, bar in enumerate(self.bars) if frozenset((bar.left, bar.right)) in pairs)
 
     @cached_property
     def joint_of(self) -> Mapping[int, int]:

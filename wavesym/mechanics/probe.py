@@ -14,7 +14,7 @@ class Probe:
     """An output: `quantity` on rod `rod`, `place` rod lengths from its left node (0 <= place <= 1).
 
     A `point` that no rod shows is watched itself (`rod` is 0 then). A drift is that of the whole rod. What users get is
-    `factor` times the dimensionless value, in `unit`. What it is a sum of, reading.py says.
+    `factor` times the dimensionless value, in `unit`. What it is a sum of, gauge.py says.
     """
 
     name: str

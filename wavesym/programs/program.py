@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import ceil
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.schemes import SCHEMES, Scheme
+from wavesym.programs.schemes.hats import HatScheme
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,22 @@ class StreamedValues:
 
 
 @dataclass(frozen=True)
+class SteppedRow:
+    """A step of a stream: how long, the loads at its end, and the outputs there, unless they are not looked at."""
+
+    dtau: float
+    loads: tuple[float, ...]
+    values: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class SteppedValues:
+    """What a stream gives from its start, step by step, where steps may have any length."""
+
+    rows: tuple[SteppedRow, ...]
+
+
+@dataclass(frozen=True)
 class Driven:
     """What holds of a march that is driven by hand for `windows`: each output's error per unit of a load."""
 
@@ -73,14 +91,16 @@ class Driven:
 class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
-    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "modes", or
-    "runtime": a march whose parameters come at run time, by its `laws`, in C alone.
-    `tables`
-    are flat, by name, each number as it is written: indices are ints, all else floats of the format; which there are,
-    assembly.py says, of rings rings/tables.py, of modes modes/tables.py. `constants` are single numbers.
-    `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march and of modes, `sources` are the
-    names of loads that it can be given; a march is `whole` where no node was left out. Its error is `proved`, or an
-    estimate.
+    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "hats",
+    that of one hat of each record, in NumPy alone, "modes", "runtime": a march whose parameters come at run time, by
+    its `laws`, "joints": that of a chain, or "stream": one whose loads do. The last three are C alone.
+    `tables` are flat, by name, each number as it is written: indices are ints, all else floats of the format; which
+    there are, assembly.py says, of rings rings/tables.py, of hats hats/evaluator.py, of modes modes/tables.py, of
+    streams stream/tables.py.
+    `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march,
+    modes and a stream, `sources` are the names of loads that it can be given; a march is `whole` where no node was left
+    out. Its error is `proved`, or an estimate. Of a stream `direct` has for each output the sources that act on it at
+    once. `numpy_only` says why there is no C of it, and what helps.
     """
 
     kind: str
@@ -91,17 +111,19 @@ class Program:
     constants: dict[str, float]
     bytes: int
     provenance: Provenance
-    reference: ReferenceValues | StreamedValues | None = None
+    reference: ReferenceValues | StreamedValues | SteppedValues | None = None
     sources: tuple[str, ...] = ()
     whole: bool = True
     driven: Driven | None = None
     proved: bool = True
     laws: RuntimeLaws | None = None
+    direct: tuple[tuple[int, ...], ...] = ()
+    numpy_only: str = ""
 
     @property
     def evaluator(self) -> str:
         """What a user calls its kind."""
-        return "march" if self.kind == "rings" else self.kind
+        return {"rings": "march", "hats": "march", "joints": "runtime"}.get(self.kind, self.kind)
 
     @property
     def error_bound(self) -> float:
@@ -114,6 +136,19 @@ class Program:
         Bit for bit what the generated NumPy gives. ArithmeticError where a march sees that its degree is too low.
         """
         return self._scheme.evaluate(tau)
+
+    def each(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Each output at instants of its own: tau and values are (outputs, n)."""
+        if isinstance(self._scheme, HatScheme):
+            return self._scheme.each(tau)
+        flat, back = np.unique(tau, return_inverse=True)
+        return np.take_along_axis(self.evaluate(flat), back.reshape(tau.shape), axis=1)
+
+    def instants(self, step: float) -> NDArray[np.float64]:
+        """Instants of the horizon no more than `step` apart, both its ends included, where values are had soonest."""
+        if isinstance(self._scheme, HatScheme):
+            return self._scheme.evenly(step)
+        return np.linspace(0.0, self.tau_max, ceil(self.tau_max / step) + 1)
 
     @cached_property
     def _scheme(self) -> Scheme:

@@ -42,9 +42,15 @@ def at2(file: str, lines: Sequence[str]) -> RecordFile:
     if len(samples) < count:
         what = f"the file ends after {len(samples)} numbers, the {count} of NPTS on line {_HEADER} expected"
         raise damaged(file, places[-1] if places else _HEADER, what)
-    units = (_KNOWN.get(word.upper()) for word in _UNITS.findall(" ".join(lines[: _HEADER - 1])))
-    unit = next(filter(None, units), "")
-    return RecordFile(file, "AT2", tuple(samples), tuple(written), tuple(places), unit, "s", step)
+    units = (
+        (_KNOWN.get(word.upper(), ""), number)
+        for number, line in enumerate(lines[: _HEADER - 1], 1)
+        for word in _UNITS.findall(line)
+    )
+    unit, head = next((said for said in units if said[0]), ("", _HEADER - 1))
+    return RecordFile(
+        file, "AT2", tuple(samples), tuple(written), tuple(places), unit, clock="s", spacing=step, head=head
+    )
 
 
 def _counted(file: str, lines: Sequence[str]) -> tuple[int, Fraction]:

@@ -2,19 +2,26 @@
 
 The unit of a column stands behind its name in brackets, `accel [m/s^2]` or `acc (g)`, or, where the name is a plain
 word for a quantity, after an underscore: `time_s`, `accel_g`. (a_g is the acceleration of the ground.)
+
+Columns stand apart by tabs, semicolons or commas; cells may be quoted. A decimal comma is read where no comma parts
+columns, and all numbers have it that have a fraction.
 """
 
 from __future__ import annotations
 
+import csv
 import re
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from itertools import chain, islice
 from typing import NamedTuple
 
 from wavesym.records.record_file import RecordFile, bare, damaged, decimal
 
 _TIMES = ("time", "t", "tau")
 _QUANTITIES = "acc|accel|acceleration|velocity|displacement|force|moment|torque"
+_MARKS = "\t;,"
+_QUOTING = re.compile(r'(?:[^"#]|"[^"]*("|$))*')
 _BRACKETS = re.compile(r"(.*\S)\s*(?:\[(.*)\]|\((.*)\))")
 _SUFFIX = re.compile(rf"(time|t|{_QUANTITIES})_([a-z].*)", re.IGNORECASE)
 
@@ -31,47 +38,91 @@ class _Column(NamedTuple):
 def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
     """The samples in the column `wanted`, or in the only one that is no time. SceneError, which names the line."""
     rows = _rows(lines)
-    at, head = next(rows, (1, ""))
-    mark = next((mark for mark in ",;\t" if mark in head), None)
-    named = [_column(place, cell.strip()) for place, cell in enumerate(head.split(mark) if mark else [head])]
-    if all(decimal(column.header) is not None for column in named):
+    top = list(islice(rows, 2))
+    at, head = top[0] if top else (1, "")
+    mark = _mark(file, top)
+    named = [_column(place, cell) for place, cell in enumerate(_cells(file, at, head, mark))]
+    if all(decimal(column.header.replace(",", ".")) is not None for column in named):
         raise damaged(file, at, f"{bare(head)} given, a header line expected, such as time,acceleration")
     clock = next((column for column in named if column.name.casefold() in _TIMES), None)
     column = _chosen(file, at, named, clock, wanted)
+    decimals = _Decimals(file, mark is not None and mark != ",")
+    times: list[Fraction] = []
+    samples: list[Fraction] = []
     written: list[str] = []
-    found: dict[_Column, list[Fraction]] = {each: [] for each in (clock, column) if each}
     places: list[int] = []
-    for number, row in rows:
-        cells = row.split(mark) if mark else [row]
+    for number, row in chain(top[1:], rows):
+        cells = _cells(file, number, row, mark)
         if len(cells) != len(named):
             raise damaged(file, number, f"{len(cells)} columns given, the {len(named)} of the header expected")
-        for each, numbers in found.items():
-            word = cells[each.place].strip()
-            value = decimal(word)
-            if value is None:
-                raise damaged(file, number, f"{bare(word)} given, a decimal expected ({bare(each.header)})")
-            numbers.append(value)
-        written.append(cells[column.place].strip())
+        if clock:
+            times.append(decimals.read(cells[clock.place], number, clock.header)[0])
+        sample, word = decimals.read(cells[column.place], number, column.header)
+        samples.append(sample)
+        written.append(word)
         places.append(number)
     if not places:
         raise damaged(file, at, "the file ends after its header, a row of numbers expected")
     return RecordFile(
         file,
         f"CSV, {bare(column.header)}",
-        tuple(found[column]),
+        tuple(samples),
         tuple(written),
         tuple(places),
         column.unit,
         clock.unit if clock else "",
-        times=tuple(found[clock]) if clock else None,
+        times=tuple(times) if clock else None,
+        head=at,
     )
 
 
 def _rows(lines: Sequence[str]) -> Iterator[tuple[int, str]]:
     """The lines that say something, with their numbers, without comments."""
     for number, line in enumerate(lines, 1):
-        if row := line.partition("#")[0].strip():
+        if row := (_QUOTING.match(line)[0] if '"' in line else line.partition("#")[0]).strip():  # type: ignore[index]
             yield number, row
+
+
+def _mark(file: str, top: Sequence[tuple[int, str]]) -> str | None:
+    """What columns stand apart by: what makes as many of the header as of the row after it; None where nothing does."""
+    there = [mark for mark in _MARKS if top and mark in top[0][1]]
+    for mark in there:
+        if len({len(_cells(file, number, row, mark)) for number, row in top}) == 1:
+            return mark
+    return next(iter(there), None)
+
+
+def _cells(file: str, number: int, row: str, mark: str | None) -> list[str]:
+    """The cells of a row, without quotes and without what is empty around them."""
+    if '"' not in row:
+        return [cell.strip() for cell in row.split(mark)] if mark else [row]
+    try:
+        (cells,) = csv.reader([row], delimiter=mark or ",", skipinitialspace=True, strict=True)
+    except csv.Error:
+        raise damaged(file, number, f"{bare(row)} given, quotes around whole cells expected") from None
+    return [cell.strip() for cell in cells]
+
+
+class _Decimals:
+    """The numbers of a file, exact; with a decimal comma where it `may` be one and every other number has it."""
+
+    def __init__(self, file: str, may: bool) -> None:
+        self._file, self._may = file, may
+        self._mark: str | None = None  # once there was one
+
+    def read(self, word: str, line: int, header: str) -> tuple[Fraction, str]:
+        """A number, and how it is written, with a point."""
+        mark = "." if "." in word else "," if self._may and "," in word else None
+        plain = word.replace(",", ".") if mark == "," else word
+        value = decimal(plain)
+        if value is None:
+            raise damaged(self._file, line, f"{bare(word)} given, a decimal expected ({bare(header)})")
+        if mark is not None and mark != self._mark:
+            if self._mark is not None:
+                expected = f'a decimal with "{self._mark}" as before expected ({bare(header)})'
+                raise damaged(self._file, line, f"{bare(word)} given, {expected}")
+            self._mark = mark
+        return value, plain
 
 
 def _column(place: int, header: str) -> _Column:

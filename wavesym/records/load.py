@@ -10,13 +10,14 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Annotated, Self
 
+from flint import fmpq
 from pydantic import Field, PlainValidator, model_validator
 
 from wavesym.fields.loads import Load, linear
-from wavesym.fields.numbers import Exact, Positive
+from wavesym.fields.numbers import Exact, Positive, decimal_text
 from wavesym.fields.table import shown, wrong
 from wavesym.mechanics.loads import Applied
-from wavesym.records.record_file import as_decimal
+from wavesym.numbers.doubles import rational
 from wavesym.records.recording import Recorded
 
 
@@ -48,14 +49,14 @@ class RecordedLoad(Load):
         if self.spacing is None and self.record.spacing is None:
             raise wrong("missing, the time between samples expected (the file does not say it)", "spacing")
         if self.begin != 0 and self.begin < self.step:
-            steps = f"{as_decimal(self.begin / self.step)} steps"
+            steps = f"{decimal_text(self.begin / self.step)} steps"
             key = "record" if self.start is None else "start"
             raise wrong(f"a first sample after {steps} given, at 0 or after at least 1 expected (it comes from 0)", key)
         return self
 
     def _once(self, key: str, here: Fraction | None, there: Fraction | None) -> None:
         if here is not None and there is not None and here != there:
-            raise wrong(f"{as_decimal(here)} given, {as_decimal(there)} expected, as in the file, or none", key)
+            raise wrong(f"{decimal_text(here)} given, {decimal_text(there)} expected, as in the file, or none", key)
 
     @property
     def step(self) -> Fraction:
@@ -71,10 +72,11 @@ class RecordedLoad(Load):
 
     def units(self) -> Iterator[Applied]:
         """The load as unit responses: steps and ramps."""
-        samples = [self.scale * sample for sample in self.record.samples]
+        scale, end = rational(self.scale), fmpq(0)
+        samples = [scale * rational(sample) for sample in self.record.samples]
         if self.begin == 0:
-            return linear(Fraction(0), self.step, [*samples, Fraction(0)], self.sources)
-        return linear(self.begin - self.step, self.step, [Fraction(0), *samples, Fraction(0)], self.sources)
+            return linear(Fraction(0), self.step, [*samples, end], self.sources)
+        return linear(self.begin - self.step, self.step, [end, *samples, end], self.sources)
 
     @property
     def told(self) -> str:

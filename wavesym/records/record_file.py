@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from math import lcm
 
 from wavesym.errors import SceneError
-from wavesym.fields.numbers import LARGEST_EXPONENT, LONGEST
+from wavesym.fields.numbers import LARGEST_EXPONENT, LONGEST, decimal_text
 from wavesym.fields.table import Written, shown
 
 # as Fortran writes them, too: .0200, 5., -.1234E-02, 1.5D+00
@@ -23,7 +25,8 @@ class RecordFile:
     """The samples of a file, exact, and as they are `written` there; `lines` says on which line each of them is.
 
     What the file does not say is None, or empty: `unit` is that of the samples, `clock` that of times. `times` are
-    those of a time column, one for each sample; `spacing` is what a file without one says in its header.
+    those of a time column, one for each sample; `spacing` is what a file without one says in its header. `head` is the
+    line that says units.
     """
 
     file: str
@@ -35,6 +38,7 @@ class RecordFile:
     clock: str = ""
     spacing: Fraction | None = None
     times: tuple[Fraction, ...] | None = None
+    head: int = 1
 
     def even(self, told: Fraction | None = None) -> Fraction | None:
         """The time between two samples, in the file's unit; None where neither the file nor `told` says it.
@@ -47,23 +51,33 @@ class RecordFile:
         if told is None and len(times) < 2:
             return None
         step = times[1] - times[0] if told is None else told
+        if told is None and step > 0 and _in_step(times):
+            return step
         for k, (before, time) in enumerate(pairwise(times), 1):
             if (since := time - before) <= 0:
-                what = f"the time {as_decimal(time)} given, more than the {as_decimal(before)} before it expected"
+                what = f"the time {decimal_text(time)} given, more than the {decimal_text(before)} before it expected"
                 raise damaged(self.file, self.lines[k], what)
             if since == step and told is None:  # as up to here
                 continue
             expected = times[0] + k * step
             if told is None or abs(time - expected) > _NEAR * step:
-                what = f"the time {as_decimal(time)} given, {as_decimal(expected)} expected ({_even(step, told)})"
+                what = f"the time {decimal_text(time)} given, {decimal_text(expected)} expected ({_even(step, told)})"
                 raise damaged(self.file, self.lines[k], what)
         return step
 
 
+def _in_step(times: Sequence[Fraction]) -> bool:
+    """Whether times are as far apart as the first two: in integers, as there may be many."""
+    over = lcm(*{time.denominator for time in times})
+    ticks = [time.numerator * (over // time.denominator) for time in times]
+    first, step = ticks[0], ticks[1] - ticks[0]
+    return ticks == list(range(first, first + len(ticks) * step, step))
+
+
 def _even(step: Fraction, told: Fraction | None) -> str:
     if told is not None:
-        return f"samples {as_decimal(step)} apart, as `spacing` says"
-    return f"samples {as_decimal(step)} apart, as the first two; of rounded times `spacing` in the scene says it"
+        return f"samples {decimal_text(step)} apart, as `spacing` says"
+    return f"samples {decimal_text(step)} apart, as the first two; of rounded times `spacing` in the scene says it"
 
 
 def damaged(file: str, line: int, what: str) -> SceneError:
@@ -83,16 +97,6 @@ def decimal(text: str) -> Fraction | None:
     number = int(f"{found[1]}{whole}{part}")
     value = Fraction(number, 10**below) if below > 0 else Fraction(number * 10**-below)
     return value if not (number and power) or _SMALLEST <= abs(value) <= _LARGEST else None
-
-
-def as_decimal(value: Fraction) -> str:
-    """A number as a decimal where it ends as one, else as a fraction."""
-    places = next((k for k in range(LONGEST) if 10**k % value.denominator == 0), None)
-    if places is None:
-        return str(value)
-    digits = str(abs(value.numerator) * 10**places // value.denominator).rjust(places + 1, "0")
-    whole, part = digits[: len(digits) - places], digits[len(digits) - places :]
-    return f"{'-' * (value < 0)}{whole}{part and '.'}{part}"
 
 
 def bare(text: str) -> str:

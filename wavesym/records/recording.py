@@ -13,6 +13,7 @@ from wavesym.errors import SceneError
 from wavesym.fields.numbers import Exact, Numbers, Positive
 from wavesym.fields.table import SceneTable, first_error, shown, wrong
 from wavesym.records.read import read_record
+from wavesym.records.record_file import RecordFile
 
 
 class Recording(SceneTable):
@@ -25,12 +26,10 @@ class Recording(SceneTable):
     clock: str = ""
 
 
-def recorded(
-    path: str | PathLike[str], column: str | None, told: Callable[[str], Fraction | None] = lambda _: None
-) -> Recording:
+def recorded(path: str | PathLike[str], column: str | None, told: Callable[[RecordFile], Fraction | None]) -> Recording:
     """What the file at `path` says; `told` is the spacing that a scene says, in the file's unit of time. SceneError."""
     said = read_record(path, column)
-    spacing = told(said.clock)
+    spacing = told(said)
     even = said.even(spacing)
     return Recording(
         samples=said.samples,

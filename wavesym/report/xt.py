@@ -108,8 +108,9 @@ def _named(quantity: str, units: Scale) -> str:
 def _lengths(axes: Axes, label: str, length: float) -> None:
     """Places that are lengths, one of x being so long; named systems go on counting rods."""
     low, high = axes.get_xlim()
-    places = [x for x in MaxNLocator(len(axes.get_xticks())).tick_values(0, high * length) if x <= high * length]
-    axes.set_xticks([place / length for place in places], [f"{place:g}" for place in places])
+    end = high * length * (1 + 1e-9)  # rounding must not take the tick at the end
+    places = [x for x in MaxNLocator(len(axes.get_xticks())).tick_values(0, high * length) if x <= end]
+    axes.set_xticks([min(place / length, high) for place in places], [f"{place:g}" for place in places])
     axes.set_xlim(low, high)
     axes.set_xlabel(label, fontsize=_FONT)
 

@@ -25,9 +25,10 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import CostError, SceneError
+from wavesym.errors import CostError, WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
+from wavesym.programs.hats.split import rest_of
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
 from wavesym.results.stepping import jumps, just_before, sampled
@@ -66,12 +67,12 @@ class Spectra:
 def spectra(model: Model, damping: float) -> Spectra:
     """The spectra of the outputs of quantity acceleration.
 
-    SceneError where there is none, or the horizon is too short; CostError for too many steps; ToleranceError, CostError
-    where nothing could be generated either.
+    WavesymError where there is none, or the horizon is too short; CostError for too many steps; ToleranceError,
+    CostError where nothing could be generated either.
     """
     probes = tuple(probe for probe in model.probes if probe.quantity == "acceleration")
     if not probes:
-        raise SceneError("none given, at least one expected for a response spectrum", "output.acceleration", model.name)
+        raise WavesymError("output.acceleration: none given, at least one expected for a response spectrum")
     watched = model.watching(probes).tolerating(max(model.tolerance, _TOLERANCE))
     per_tau = 1.0 if model.clock is None else nearest(model.clock.per_tau)
     periods = _periods(model, per_tau)
@@ -109,18 +110,17 @@ def _periods(model: Model, per_tau: float) -> Numbers:
     longest = nearest(model.until) * per_tau / 2
     first, last = ceil(PER_DECADE * log10(shortest)), floor(PER_DECADE * log10(longest))
     if first > last:
-        raise SceneError(
-            f"{nearest(model.until):g} given, at least {2 * 10 ** (first / PER_DECADE) / per_tau:.5g} expected for a "
-            "response spectrum (in tau)",
-            "output.until",
-            model.name,
+        told, unit = nearest(model.until) * per_tau, model.clock.unit if model.clock else "tau"
+        raise WavesymError(
+            f"output.until: {told:.6g} {unit} given, at least {2 * 10 ** (first / PER_DECADE):.5g} {unit} expected for "
+            "a response spectrum"
         )
     return np.asarray(10.0 ** (np.arange(first, last + 1) / PER_DECADE))
 
 
 def _stretches(model: Model, program: Program, step: float) -> list[tuple[Numbers, Numbers]]:
     """Stretches without jumps, each of an even number of equal steps: instants, and the outputs there."""
-    if program.kind == "modes":
+    if program.kind == "modes" or (program.kind == "hats" and not jumps(rest_of(model))):
         taus, values = sampled(model, program, step)  # nothing jumps; steps of panels of one length are equal
         steps = np.diff(taus)
         cuts = np.flatnonzero(np.abs(np.diff(steps)) > 1e-6 * steps[:-1]) + 1

@@ -19,7 +19,7 @@ from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.programs.making import make
 from wavesym.results.response import Response
 from wavesym.results.sampled import sampled_extremes
-from wavesym.results.stepping import sampled, spacing
+from wavesym.results.stepping import apart, sampled, spacing
 
 Numbers = NDArray[np.float64]
 
@@ -190,8 +190,8 @@ def _searched(model: Model) -> _Found:
             f"at most {_MOST_SAMPLES // len(model.probes):.1e} expected (a shorter horizon or fewer outputs help)"
         )
     taus, values = sampled(model, program, step)
-    ranges = _ranges(*sampled_extremes(taus, values, program.evaluate))
-    how = f"{program.evaluator} at {taus.size} samples, {step:g} tau apart, then refined"
+    ranges = _ranges(*sampled_extremes(taus, values, program.each))
+    how = f"{program.evaluator} at {taus.size} samples, {apart(model, step)}, then refined"
     return _Found(ranges, program.error_bound, False, how, program.kind == "modes")
 
 

@@ -8,10 +8,10 @@ from typing import Generic, TypeVar
 import numpy as np
 from flint import fmpq
 
+from wavesym.mechanics.gauge import Gauge, Sum, Weighted
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Point
 from wavesym.mechanics.probe import Probe
-from wavesym.mechanics.reading import Gauge, Sum, Weighted
 from wavesym.numbers.doubles import nearest
 from wavesym.rivals.problem import Array, Evaluate, Rival
 

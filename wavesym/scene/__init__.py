@@ -3,8 +3,8 @@
 from wavesym.errors import SceneError
 from wavesym.scene.lowering import lower
 from wavesym.scene.outputs import Observable, Output
-from wavesym.scene.reading import builtin_names, builtin_text, first_text
 from wavesym.scene.scene import Scene
+from wavesym.scene.scene_file import builtin_names, builtin_text, first_text
 
 __all__ = [
     "Observable",

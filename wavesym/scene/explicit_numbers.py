@@ -8,9 +8,9 @@ from fractions import Fraction
 
 from flint import fmpq
 
+from wavesym.fields.numbers import decimal_text
 from wavesym.mechanics.network import Bar, Network
 from wavesym.numbers.doubles import fraction
-from wavesym.scene.physical.rounding import decimal_text
 from wavesym.scene.physical.scale import Scale
 from wavesym.systems.place import Position
 

@@ -84,19 +84,32 @@ def amplitudes(scene: Scene) -> tuple[tuple[str, Applied], ...]:
         if not isinstance(load, TimedLoad):
             raise UnservedError(f"load[{number}]: samples given with --runtime load, times expected")
         found += [
-            (f"{name}[{k}] of load {number}, tau = {load.times[k]}", unit)
+            (f"{name}[{k}] of load {number}, {_when(scene, load.times[k])}", unit)
             for name, units in load.by_list()
             for k, unit in enumerate(units)
         ]
     return tuple(found)
 
 
+def sources(scene: Scene) -> tuple[str, ...]:
+    """What its loads are steps of, in the order of the scene; each once."""
+    return tuple(dict.fromkeys(load.sources[0] for load in scene.load))
+
+
+def _when(scene: Scene, tau: Fraction) -> str:
+    return f"t = {scene.scale.clock.told(rational(tau))}" if scene.scale else f"tau = {tau}"
+
+
 def _inputs(scene: Scene) -> dict[str, tuple[fmpq, str]]:
     given = scene.physical.inputs if scene.physical else ()
+    parts = scene.scale.parts if scene.scale else {}
     return {
-        source: (rational(factor), unit)
-        for load, (factor, unit) in zip(scene.load, given, strict=False)
-        for source in load.sources
+        **{name: (rational(size), unit) for name, (size, unit) in parts.items()},
+        **{
+            source: (rational(factor), unit)
+            for load, (factor, unit) in zip(scene.load, given, strict=False)
+            for source in load.sources
+        },
     }
 
 

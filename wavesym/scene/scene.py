@@ -31,7 +31,7 @@ from wavesym.scene.paths import changed
 from wavesym.scene.physical.measured import placed
 from wavesym.scene.physical.scale import Scale, UnitsTable
 from wavesym.scene.physical.scene import PhysicalScene, physical
-from wavesym.scene.reading import read_toml
+from wavesym.scene.scene_file import read_toml
 from wavesym.systems import SYSTEMS, ExplicitChain, Preset, SystemTable
 
 

@@ -7,8 +7,19 @@ from wavesym.systems.collision import Collision
 from wavesym.systems.drive import Drive
 from wavesym.systems.explicit import ExplicitChain
 from wavesym.systems.preset import Preset
+from wavesym.systems.written_out import WrittenOut
 
-__all__ = ["SYSTEMS", "Building", "Collision", "Drive", "ExplicitChain", "Preset", "SystemTable", "presets"]
+__all__ = [
+    "SYSTEMS",
+    "Building",
+    "Collision",
+    "Drive",
+    "ExplicitChain",
+    "Preset",
+    "SystemTable",
+    "WrittenOut",
+    "presets",
+]
 
 SystemTable = Preset | ExplicitChain
 SYSTEMS: dict[str, type[SystemTable]] = {

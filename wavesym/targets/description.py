@@ -17,6 +17,8 @@ from wavesym.targets.literals import c_literal, literal
 from wavesym.targets.number_format import number_format
 
 _WIDTH = 110
+API_VERSION = 1
+"""Of what headers declare: one more whenever a program that was written for one of them would not work any more."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,7 @@ class NamedEvent:
 class Description:
     """Strings for the templates. `prefix` is the name in capitals, `model` the scene in lines of text.
 
+    `api` is the version of what generated C declares, `sha256` that of the scene in canonical JSON.
     `name_size` is what the longest name of an output takes in C; `command` makes the same file again.
     `real` and `numpy_real` are the type of all values in C and in NumPy; numbers that C reads have its suffix.
     Of a scene with units `seconds` is what one tau is, in Python, and `c_seconds` in C; else these are empty.
@@ -66,6 +69,8 @@ class Description:
 
     name: str
     prefix: str
+    api: str
+    sha256: str
     command: str
     model: tuple[str, ...]
     real: str
@@ -99,6 +104,8 @@ def describe(program: Program) -> Description:
     return Description(
         name=model.name,
         prefix=model.name.upper(),
+        api=str(API_VERSION),
+        sha256=model.labels.sha256,
         command=f"wavesym generate {model.name}.toml{origin.options}",
         model=tuple(line for part in _model(model) for line in wrap(part, _WIDTH, subsequent_indent="  ")),
         real=called.c_type,
@@ -179,7 +186,9 @@ def _event(event: ContactEvent, real: Real) -> NamedEvent:
 
 def _model(model: Model) -> list[str]:
     kind, *choices = model.labels.system.items()
-    lines = [f"{kind[1]}, as far as the light cone of the outputs reaches"]
+    lines = [
+        f"{kind[1]}, all of it" if model.endless else f"{kind[1]}, as far as the light cone of the outputs reaches"
+    ]
     lines += [f"{key} = {value}" for key, value in choices]
     for name, numbers in model.felt.items():
         if numbers:

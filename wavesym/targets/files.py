@@ -12,6 +12,7 @@ from wavesym.programs.program import Program
 from wavesym.targets import TARGETS
 from wavesym.targets.description import describe
 from wavesym.targets.manifest import manifest
+from wavesym.targets.package import package
 from wavesym.targets.target import Target
 
 MARKS = (b": made by wavesym", b'"generator": "wavesym"')
@@ -24,12 +25,17 @@ def is_ours(path: Path) -> bool:
     return any(mark in start for mark in MARKS)
 
 
-def files(program: Program, language: str = "c") -> dict[str, str]:
-    """What `generate` writes of a program, by file name: sources in a language, or in "all", and the manifest."""
+def files(program: Program, language: str = "c", *, packaged: bool = False) -> dict[str, str]:
+    """What `generate` writes of a program, by file name: sources in a language, or in "all", and the manifest.
+
+    `packaged` C comes with what builds, tests and installs it.
+    """
     description = describe(program)
     made = {f"{description.name}.json": manifest(description, program)}
     for name in TARGETS if language == "all" else (language,):
         made |= _target(name).files(description, program)
+    if packaged:
+        made |= package(description, program)
     return dict(sorted(made.items()))
 
 
@@ -40,7 +46,7 @@ def sources(program: Program, language: str) -> dict[str, str]:
 
 def runtime_sets(program: Program) -> dict[str, str]:
     """The C of a program whose parameters come at run time, for many sets of them in one call."""
-    made: dict[str, str] = import_module("wavesym.targets.c.runtime").sets(describe(program), program)
+    made: dict[str, str] = import_module(f"wavesym.targets.c.{program.kind}").sets(describe(program), program)
     return made
 
 

@@ -92,7 +92,7 @@ def integrate(chain: Chain, loads: Sequence[Applied], until: float, steps: int) 
     if prod(shape) > MOST_DOUBLES:
         raise CostError(
             f"output.until: direct integration would hold {float(prod(shape)):.1e} doubles, at most {MOST_DOUBLES:.1e} "
-            "expected (a shorter horizon, smaller m or fewer load times help)"
+            "expected (a shorter horizon, fewer rods or fewer load times help)"
         )
     waves = np.zeros(shape)
     for x, node in enumerate(chain.nodes):  # the window before tau = 0

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from wavesym.documents.inspection.modelled import cone, kind, probes, rate
 from wavesym.documents.inspection.networked import counted, joint_laws, not_served
 from wavesym.documents.inspection.programmed import chosen, contacts
-from wavesym.documents.inspection.section import Facts, Listing, Plain, Section
+from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
 from wavesym.documents.inspection.units import in_units
 from wavesym.documents.inspection.variants import variants
 from wavesym.mechanics.model import Model
@@ -21,10 +21,11 @@ def summary(model: Model, physical: PhysicalScene | None = None) -> Iterator[Sec
     yield Facts(
         "system", "The chain, with the parameters that can matter", {**model.labels.system, **_parameters(model)}
     )
+    until = Told(str(model.until), model.clock.told(model.until)) if model.clock else str(model.until)
     yield Facts(
         "horizon",
         "How long and how exactly",
-        {"until": str(model.until), "tau_max": model.horizon(), "tolerance": str(model.tolerance)},
+        {"until": until, "tau_max": model.horizon(), "tolerance": str(model.tolerance)},
     )
     if physical:
         yield from in_units(physical, model)

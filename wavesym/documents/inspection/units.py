@@ -9,9 +9,10 @@ from flint import arb
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
 from wavesym.errors import CostError
 from wavesym.exact.modes.frequencies import frequencies
+from wavesym.fields.numbers import decimal_text
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint
-from wavesym.scene.physical.rounding import DIGITS, decimal_text
+from wavesym.scene.physical.rounding import DIGITS
 from wavesym.scene.physical.scene import PhysicalScene
 
 _PERIODS = 5

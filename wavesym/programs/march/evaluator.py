@@ -203,7 +203,7 @@ def _refuse_long(prepared: Plan, degree: int, spent: float, windows: int = 0, ma
     if degree > _HIGHEST_DEGREE:
         raise CostError(
             f"{asked}: rates to {nearest(prepared.rate):g} need polynomials of degree {degree:g} to tau = {until:g}, "
-            f"at most {_HIGHEST_DEGREE} expected in a march ({shorter}, or smaller kappa, helps)"
+            f"at most {_HIGHEST_DEGREE} expected in a march ({shorter}, or heavier bodies, helps)"
         )
     spent += work + _BOUNDING * operator_count(prepared) * degree**3
     if spent > _MOST_WORK:
@@ -214,7 +214,7 @@ def _refuse_long(prepared: Plan, degree: int, spent: float, windows: int = 0, ma
     if 8 * _state(prepared, degree) > _LARGEST_STATE:
         raise CostError(
             f"system.m: the state of a march would have {8 * _state(prepared, degree):.1e} bytes, at most "
-            f"{_LARGEST_STATE:.1e} expected (smaller m, or fewer fractional parts of load times, help)"
+            f"{_LARGEST_STATE:.1e} expected (fewer rods, or fewer fractional parts of load times, help)"
         )
     return spent
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -12,7 +12,6 @@ from flint import fmpq
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.loads import Applied
-from wavesym.numbers.doubles import nearest
 
 _STEPS_OF_ONE = 1000  # of a horizon, where there is nothing else to tell a spacing
 
@@ -33,6 +32,18 @@ class LinearLoads:
         """Of the panels between the times."""
         return tuple(after - before for before, after in pairwise(self.times))
 
+    @cached_property
+    def distinct(self) -> tuple[tuple[fmpq, ...], tuple[int, ...]]:
+        """The different lengths of panels in order, and which of them each panel has. (An fmpq is slow to hash.)"""
+        found: list[fmpq] = []
+        kind = [0] * len(self.lengths)
+        order = sorted(range(len(kind)), key=self.lengths.__getitem__)
+        for k in order:
+            if not found or self.lengths[k] != found[-1]:
+                found.append(self.lengths[k])
+            kind[k] = len(found) - 1
+        return tuple(found), tuple(kind)
+
     @property
     def largest(self) -> fmpq:
         """The largest absolute value at one of the times."""
@@ -40,7 +51,8 @@ class LinearLoads:
 
     def spacing(self, until: fmpq, told: fmpq | None = None) -> fmpq:
         """The step of a stream: `told`, where all times but the first lie so far apart, or their common measure."""
-        gaps = set(self.lengths if self.times[1:] and any(self.samples[1]) else self.lengths[1:])
+        lengths, kind = self.distinct
+        gaps = [lengths[k] for k in set(kind if self.times[1:] and any(self.samples[1]) else kind[1:])]
         if not gaps:
             return told or until / _STEPS_OF_ONE
         over = lcm(*(int(gap.q) for gap in gaps))
@@ -48,30 +60,28 @@ class LinearLoads:
         return told if told and (common / told).q == 1 else common
 
 
-def linear_loads(loads: Sequence[Applied], sources: Sequence[tuple[str, str]], until: fmpq) -> LinearLoads:
+def linear_loads(
+    loads: Sequence[Applied], sources: Sequence[tuple[str, str]], until: fmpq, told: Callable[[Applied], str]
+) -> LinearLoads:
     """Loads j made of unit steps and ramps, whose names are sources[j], as far as they are felt by `until`.
 
-    UnservedError for a load that jumps.
+    UnservedError for a load that jumps; `told` is what is said of that step.
     """
-    slopes: list[dict[fmpq, fmpq]] = [{} for _ in sources]
     place: Mapping[str, int] = {ramp: j for j, (_, ramp) in enumerate(sources)}
     steps = {step for step, _ in sources}
-    for load in loads:
+    slope = [fmpq(0)] * len(sources)
+    times, samples = [fmpq(0)], [tuple(slope)]
+    for load in sorted(loads, key=lambda load: load.time):
         if load.time > until:
-            continue
+            break
         if load.source in steps:
             raise UnservedError(
-                f"load: {load.source} jumps by {nearest(load.weight):g} at tau = {nearest(load.time):g}, no jump "
-                "expected in modes (a record that starts a step later rises to its first sample)"
+                f"load: {told(load)}, no jump expected in modes (a steep ramp in place of a step, or a record that "
+                "starts a step later, has none)"
             )
-        slopes[place[load.source]][load.time] = load.weight
-    times = sorted({fmpq(0), *(time for changes in slopes for time in changes)})
-    slope = [fmpq(0)] * len(sources)
-    value = list(slope)
-    samples = []
-    for k, time in enumerate(times):
-        if k:
-            value = [v + b * (time - times[k - 1]) for v, b in zip(value, slope, strict=True)]
-        slope = [b + changes.get(time, 0) for b, changes in zip(slope, slopes, strict=True)]
-        samples.append(tuple(value))
+        if load.time != times[-1]:
+            after = load.time - times[-1]
+            samples.append(tuple(v + b * after for v, b in zip(samples[-1], slope, strict=True)))
+            times.append(load.time)
+        slope[place[load.source]] += load.weight
     return LinearLoads(tuple(times), tuple(samples), tuple(slope))

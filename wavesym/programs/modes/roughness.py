@@ -61,6 +61,49 @@ class Roughness:
         return float(np.max(total, initial=0.0) * _MORE)
 
 
+@dataclass(frozen=True)
+class ScaledRoughness(Roughness):
+    """That of a load that is `by` times another one in as many times as long steps: what both share is found once."""
+
+    unit: Roughness
+    by: float
+    apart: float
+
+    @cached_property
+    def in_step(self) -> float:
+        return self.unit.in_step * self.by * _MORE if self.kinks.any() else 0.0
+
+    def fading(self, rate: float) -> float:
+        """As of any load; here kinks are equally far apart."""
+        total, step, apart = np.abs(self.kinks), 1, self.apart
+        while step < len(total):
+            earlier = total[:-step] * np.exp(-rate * apart * step * (1 - 1e-12))
+            total[step:] += earlier
+            step *= 2
+        return float(np.max(total, initial=0.0) * _MORE)
+
+
+def of_samples(samples: Numbers) -> Roughness:
+    """Of a load that is 0 until tau = 0, has these `samples` one unit of tau apart, the first of them 0, and then 0."""
+    slopes = np.diff(samples, append=0.0)
+    kinks = np.diff(slopes, prepend=0.0, append=0.0)
+    rounding = 4 * np.finfo(float).eps * np.abs(samples).max(initial=0.0)
+    kinks += np.where(kinks == 0, 0.0, np.copysign(rounding, kinks))
+    return Roughness(
+        np.arange(float(len(kinks))), kinks, tuple(range(len(kinks))), float(np.abs(slopes).max(initial=0.0)) * _MORE
+    )
+
+
+def scaled(unit: Roughness, begin: float, spacing: float, factor: float, until: float) -> ScaledRoughness:
+    """The same load from `begin` on, `factor` times as high, its samples `spacing` apart; what is felt by `until`."""
+    by = abs(factor) / spacing * _MORE
+    times = begin + spacing * unit.times
+    felt = times <= until
+    kinks = by * unit.kinks[felt]
+    steepest = by * unit.steepest if kinks.any() else 0.0
+    return ScaledRoughness(times[felt], kinks, unit.steps, steepest, unit=unit, by=by, apart=spacing)
+
+
 def _partial(terms: Numbers) -> float:
     """The largest |sum_{k <= n} terms_k z^k| for any n and |z| = 1, or a little more.
 
@@ -109,9 +152,8 @@ def _in_steps(times: list[fmpq]) -> tuple[int, ...] | None:
     """Times as multiples of their common measure (but for where they begin); None where those are too many."""
     if len(times) < 2:
         return None
-    gaps = {time - times[0] for time in times[1:]}
-    over = lcm(*(int(gap.q) for gap in gaps))
-    step = fmpq(gcd(*(int(gap * over) for gap in gaps)), over)
-    if (times[-1] - times[0]) / step >= _LONGEST:
+    since = [time - times[0] for time in times]
+    over = lcm(*{int(gap.q) for gap in since})
+    if int(since[-1] * over) >= _LONGEST * (common := gcd(*(int(gap * over) for gap in since))):
         return None
-    return tuple(int((time - times[0]) / step) for time in times)
+    return tuple(int(gap * over) // common for gap in since)

@@ -19,8 +19,7 @@ Tables = dict[str, tuple[float, ...]]
 
 def scheme_tables(system: ModalSystem, loads: LinearLoads, real: Real) -> Tables:
     """What schemes/modes.py reads."""
-    lengths = sorted(set(loads.lengths))
-    kind = {length: number for number, length in enumerate(lengths)}
+    lengths, kind = loads.distinct
     return {
         "frequency": _as(real, system.frequency),
         "damping": _as(real, system.damping),
@@ -30,7 +29,7 @@ def scheme_tables(system: ModalSystem, loads: LinearLoads, real: Real) -> Tables
         "direct": _as(real, system.direct),
         "time": tuple(map(real.nearest, loads.times)),
         "length": tuple(map(real.nearest, lengths)),
-        "kind": tuple(kind[length] for length in loads.lengths),
+        "kind": kind,
         "sample": tuple(real.nearest(value) for row in loads.samples for value in row),
         "slope": tuple(map(real.nearest, loads.slopes)),
     }

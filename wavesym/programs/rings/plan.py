@@ -7,22 +7,24 @@ cut into the same panels everywhere, at what load times leave over of h, so that
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from math import gcd, lcm
+from typing import Any
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.errors import CostError
+from wavesym.errors import CostError, SpacingError
 from wavesym.exact.node_rules import joint_rule
+from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import End, Network
-from wavesym.mechanics.reading import Sum
+from wavesym.mechanics.network import End, Joint, Network, Point
+from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch, spacing
+from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch, common, suiting, told
 from wavesym.programs.rings.space import SHOWN, JointSpace, Port, joint_space
 
 FINEST = 64
@@ -93,6 +95,7 @@ class RingPlan:
     events: tuple[LoadEvent, ...]
     outputs: tuple[WatchedPlace, ...]
     tau_max: float
+    pushed: tuple[int, ...]  # the point of each force
 
     @property
     def windows(self) -> int:
@@ -148,8 +151,8 @@ class RingPlan:
         return tuple(found)
 
 
-def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
-    """The plan of a chain in `real` numbers.
+def ring_plan(model: Model, real: Real = DOUBLE, space: Callable[[Network, Joint], Any] = joint_space) -> RingPlan:
+    """The plan of a chain in `real` numbers; `space` makes the laws of its joints.
 
     UnservedError for contacts; CostError where the step would be too small, or load times have too many remainders.
     """
@@ -180,13 +183,13 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
     marched = []
     for number in reached:
         joint = network.joints[number]
-        space = joint_space(network, joint)
+        laws = space(network, joint)
         watched = [(k, point) for k, point in enumerate(joint.points) if point in point_of]
-        ports = (*space.ports, *(Port(k, _ZERO, _ONE, _ZERO) for k, _ in watched))
+        ports = (*laws.ports, *(Port(k, _ZERO, _ONE, _ZERO) for k, _ in watched))
         sends = (*(track_of[end] for end, _ in joint.ends), *(point_of[point] for _, point in watched))
         arrive = (*(track_of[network.beyond(end)] for end, _ in joint.ends), *(silent for _ in watched))
         forces = tuple(loads.numbers.get(point, -1) for point in joint.points)
-        marched.append(MarchedJoint(replace(space, ports=ports), arrive, sends, forces))
+        marched.append(MarchedJoint(replace(laws, ports=ports), arrive, sends, forces))
     marched += [MarchedJoint(SHOWN, (silent,), (track,), (loads.numbers[point],)) for point, track in load_of.items()]
     return RingPlan(
         model,
@@ -201,6 +204,7 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
             for probe, terms in model.sums.items()
         ),
         tau_max,
+        tuple(sorted(loads.numbers)),
     )
 
 
@@ -220,10 +224,10 @@ def _step(delays: list[fmpq]) -> fmpq:
 def _panels(times: list[fmpq], step: fmpq) -> tuple[MarchPanel, ...]:
     cuts = sorted({_ZERO, step} | {time - (time / step).floor() * step for time in times})
     if len(cuts) - 1 > MOST_PANELS:
-        raise CostError(
-            f"load: times at a spacing of {spacing(times)} leave {len(cuts) - 1} different remainders of the step "
-            f"{step}, at most {MOST_PANELS} expected in a march (modes, times in parts of {step},"
-            " or fewer samples, helps)"
+        raise SpacingError(
+            f"load: times at a spacing of {told(common(times))} leave {len(cuts) - 1} different remainders of the step "
+            f"{told(step)}, at most {MOST_PANELS} expected in a march ({suiting(times, step)}, fewer samples, modes, "
+            "or for what does not jump NumPy or run, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 
@@ -236,15 +240,10 @@ class _Loads:
         self.changes: list[tuple[fmpq, int, fmpq_poly]] = []
         for number in points:
             point = model.network.points[number]
-            units = {unit.source: fmpq_poly(list(unit.coefficients)) for unit in point.loads}
+            units = {unit.source: moved_by(point, unit) for unit in point.loads}
             for load in model.acting(until):
                 if load.source in units:
-                    polynomial = load.weight * units[load.source]
-                    if point.motion is None:
-                        polynomial *= joint_rule().load
-                    elif point.motion == "acceleration":
-                        polynomial = polynomial.integral()
-                    self.changes.append((load.time, number, polynomial))
+                    self.changes.append((load.time, number, load.weight * units[load.source]))
             if point.motion is not None and point.velocity != 0:
                 self.changes.append((_ZERO, number, fmpq_poly([point.velocity])))
         acting = {number for _, number, _ in self.changes}
@@ -264,6 +263,14 @@ class _Loads:
             now[force] = time, total
             window = int((time / step).floor())
             yield LoadEvent(window, places[time - window * step], force, _three(total))
+
+
+def moved_by(point: Point, unit: UnitLoad) -> fmpq_poly:
+    """The force that a unit load makes of itself at a point, or the velocity that it prescribes."""
+    polynomial = fmpq_poly(list(unit.coefficients))
+    if point.motion == "acceleration":
+        return polynomial.integral()
+    return polynomial if point.motion else joint_rule().load * polynomial
 
 
 def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from math import floor
 
 import numpy as np
@@ -17,6 +18,7 @@ from wavesym.report.page.svg import Svg, element
 from wavesym.report.reduction import columns_of, reduced
 
 HEIGHT = 1000
+_PER_FRONT = 4  # columns
 
 
 @dataclass(frozen=True)
@@ -60,13 +62,15 @@ class Grid:
 def drawn(history: History, grid: Grid, look: int) -> Svg:
     """A curve: between its fronts, upright where it jumps, and light where it is the formal continuation."""
     real, formal, jumps = [], [], []
-    for stretch in history.stretches:
+    # fronts that lie closer are not told apart, and one line shows as much
+    stretches = history.stretches if len(history.stretches) <= grid.columns // _PER_FRONT else (history.points,)
+    for stretch in stretches:
         late = stretch[:, 0] > history.formal
         if not late.all():
             real.append(stretch[~late])
         if late.any():
             formal.append(stretch[max(0, int(np.argmax(late)) - 1) :])
-    for before, after in zip(history.stretches, history.stretches[1:], strict=False):
+    for before, after in pairwise(stretches):
         jumps.append(np.array([(after[0, 0], before[-1, 1]), after[0]]))
     parts = [
         element("path", class_=kind, d=grid.path(paths))

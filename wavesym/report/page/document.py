@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 from wavesym import __version__
@@ -21,6 +21,7 @@ from wavesym.report.page.crossings import crossings
 from wavesym.report.page.places import along_pictures, maps
 from wavesym.report.page.plots import Shown, panel, picture
 from wavesym.report.page.said import SaidTable, advice_told, extremes_told
+from wavesym.report.page.small import first_rows, first_text, fitting
 from wavesym.report.page.structure import structure
 from wavesym.report.timescale import Timescale, timescale
 from wavesym.scene import Scene, lower
@@ -62,15 +63,20 @@ class _Context:
 
 def page(scene: Scene) -> str:
     """The page of a scene, with the text it was read from. CostError, ToleranceError as for its histories."""
-    return render("html/report.html.j2", _Context(_report(scene)))
-
-
-def _report(scene: Scene) -> Report:
     model = lower(scene)
-    scale, until = timescale(model), nearest(model.until)
     drawn = model.watching(_fair(model))
     columns = min(max(_VERTICES // (3 * len(drawn.probes)), _COLUMNS[0]), _COLUMNS[1])
-    made = histories(drawn, columns)
+    return fitting(
+        _report(scene, model, drawn, columns),
+        lambda report: render("html/report.html.j2", _Context(report)),
+        columns,
+    )
+
+
+def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[int], Report]:
+    """All of it, computed once, whose curves may be drawn with fewer columns than `most`."""
+    scale, until = timescale(model), nearest(model.until)
+    made = histories(drawn, most)
     loads = load_histories(model, scene.scale)[:_LOADS]
     stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
@@ -78,29 +84,37 @@ def _report(scene: Scene) -> Report:
     found, refused = _along(scene)
     structured = structure(model, lines)
     title = f"The structure of {model.name}"
-    return Report(
+    report = Report(
         name=model.name,
         facts=tuple(_facts(model, made, loads, scale)),
         structure=Shown(
             title, picture("structure", title, structured.told, structured.height, structured.drawn, class_="plot")
         ),
-        histories=tuple(
-            panel(f"history-{k}", each, columns, until, scale, last=k == len(stack) - 1) for k, each in enumerate(stack)
-        ),
+        histories=(),
         notes=(*_left_out(model, drawn), *notes(made)),
         until=repr(until * scale.per_tau),
         time=scale.unit,
-        columns=columns,
-        extremes=extremes_told(model, drifts(scene), scale),
-        advice=advice_told(model),
+        columns=most,
+        extremes=first_rows(extremes_told(model, drifts(scene), scale)),
+        advice=first_rows(advice_told(model)),
         maps=tuple(crossings(model, lines, scene.scale) or maps(model, found, scale)),
         along=tuple(along_pictures(model, found, scale)),
         refused=refused,
-        scene=scene.text,
+        scene=first_text(scene.text),
         command=f"wavesym report {model.name}.toml -o {model.name}.html",
         version=__version__,
         sha256=model.labels.sha256,
     )
+
+    def with_columns(columns: int) -> Report:
+        curves = (
+            panel(f"history-{k}", each, columns, until, scale, last=k == len(stack) - 1) for k, each in enumerate(stack)
+        )
+        said = f"Curves have {columns} columns of time, not {most}, so that the page stays small"
+        notes = (*report.notes, *[said] * (columns < most))
+        return replace(report, histories=tuple(curves), columns=columns, notes=notes)
+
+    return with_columns
 
 
 def _along(scene: Scene) -> tuple[tuple[Along, ...], str]:

@@ -120,7 +120,7 @@ class PhysicalBuilding(SceneTable):
     damping: Any = None
 
     def rewritten(self) -> Rewritten:
-        """As a building without units, or where storeys differ as a chain."""
+        """As a building without units, where storeys differ part by part."""
         rods, floors = self._storeys()
         foundation = self._foundation()
         scaled = Rods.of(rods)
@@ -139,7 +139,7 @@ class PhysicalBuilding(SceneTable):
                 for number, floor in enumerate(floors)
                 for part in (scaled.part(number, Fraction(1)), {"mass": floor / first.mass})
             ]
-            table = {"type": "chain", "parts": [start, *storeys]}
+            table = {"type": "building", "base": self.base, "parts": [start, *storeys]}
             # the foundation's inertia pushes against the columns
             size = unit if foundation is None else -first.stiffness * first.length / foundation
             acting = LoadUnit("acceleration", "jerk", size, {"a": "steps", "b": "ramps"}, {"at": 0})

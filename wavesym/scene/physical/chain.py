@@ -13,8 +13,8 @@ from typing import Any
 
 from pydantic import Field
 
-from wavesym.fields.numbers import exact
-from wavesym.fields.table import SceneTable, listed, wrong
+from wavesym.fields.numbers import LONGEST, exact
+from wavesym.fields.table import SceneTable, listed, shown, wrong
 from wavesym.scene.physical.chain_parts import OTHERS, RODS, LinkKeys, MotionKeys, RodKeys
 from wavesym.scene.physical.elastic import ElasticRod, Rods
 from wavesym.scene.physical.measured import measured, placed
@@ -204,6 +204,8 @@ class _Pen:
         at: object = found.name if isinstance(found, PlaceInMetres) and found.x is None else (found.line, found.x)
         unit = self.displacement / self.rods.seconds
         added = {"at": found.dimensionless(self.rods.first.length)}
+        if len(added["at"]) > LONGEST:
+            raise wrong(f"{shown(load['at'])} given, a place of fewer digits expected", "at")
         match self.moved.get(at):
             case "velocity":
                 return LoadUnit(self.names["velocity"], self.names["acceleration"], unit, {}, added)

@@ -51,7 +51,7 @@ class PhysicalCollision(SceneTable):
     contacts: Any = "closed"
 
     def rewritten(self) -> Rewritten:
-        """As a collision without units, or where rods differ, as a chain."""
+        """As a collision without units, where rods differ part by part."""
         bodies = self.body
         if len(bodies) < 2:
             raise wrong(f"{len(bodies)} given, at least 2 expected", "body")
@@ -67,7 +67,7 @@ class PhysicalCollision(SceneTable):
             table: dict[str, object] = {"type": "collision", "m": 2 * len(bodies), "kappa": kappa}
             table |= {"velocity": velocities, "contacts": self.contacts}
         else:
-            table = {"type": "chain", "parts": self._parts(rods, velocities)}
+            table = {"type": "collision", "parts": self._parts(rods, velocities)}
         return Rewritten(
             kind="longitudinal",
             rods=rods,

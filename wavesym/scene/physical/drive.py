@@ -65,7 +65,7 @@ class PhysicalDrive(SceneTable):
     damping: Any = None
 
     def rewritten(self) -> Rewritten:
-        """As a drive without units, or where a wave takes longer through one shaft than another, as a chain."""
+        """As a drive without units, where a wave takes longer through one shaft than another part by part."""
         rods = self._rods()
         first, discs = rods.first, [disc.inertia for disc in self.disc]
         kappa = tuple(rod.mass / disc for rod, disc in zip(rods.all, discs, strict=False))
@@ -76,7 +76,7 @@ class PhysicalDrive(SceneTable):
             parts: list[object] = [{"mass": discs[0] / first.mass}]
             for number, disc in enumerate(discs[1:]):
                 parts += [rods.part(number, Fraction(1)), {"mass": disc / first.mass}]
-            table, force = {"type": "chain", "parts": parts}, first.stiffness
+            table, force = {"type": "drive", "parts": parts}, first.stiffness
         if self.damping is not None:
             table["damping"] = self.damping
 

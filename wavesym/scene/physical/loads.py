@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from itertools import pairwise
 from os import PathLike
 from typing import Any
 
+from pydantic_core import PydanticCustomError
+
 from wavesym.errors import SceneError
 from wavesym.fields.dimensions import DIMENSIONS
-from wavesym.fields.numbers import exact
+from wavesym.fields.numbers import decimal_text, exact
 from wavesym.fields.quantity import unit
 from wavesym.fields.table import Written, listed, shown, wrong
-from wavesym.records.record_file import as_decimal
+from wavesym.records.record_file import RecordFile, damaged
 from wavesym.records.recording import Recording, recorded
 from wavesym.scene.physical.measured import measured, placed
 from wavesym.scene.physical.rewritten import LoadUnit
 
 _VALUES, _SLOPES = ("a", "steps"), ("b", "ramps")
+
+Acts = Callable[[Mapping[str, Any]], LoadUnit]
+"""What a load of these fields acts as."""
 
 
 def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
@@ -87,28 +92,39 @@ def _unit(load: Mapping[str, Any], acting: LoadUnit) -> Fraction:
         return unit(load["unit"], acting.dimension) / acting.size
 
 
-def read(load: object) -> object:
-    """A load whose record is what was in its file, as it is dumped. Raises the error of `table.wrong`."""
+def read(load: object, acts: Acts) -> object:
+    """A load whose record is what was in its file. Raises the error of `table.wrong`."""
     if not isinstance(load, Mapping) or not isinstance(path := load.get("record"), str | PathLike):
         return load
-    spacing = None
+    dimension, spacing = acts(load).dimension, None
     if "spacing" in load:
         with placed("spacing"):
             spacing = measured(load["spacing"], "time", 1)
     with placed("record"):
         try:
-            recording = recorded(path, load.get("column"), lambda clock: spacing and spacing / _clock(clock))
+            recording = recorded(path, load.get("column"), lambda said: _told(said, dimension, spacing))
         except SceneError as error:
             raise wrong(str(error)) from None
-    return {**load, "record": recording.model_dump(exclude_defaults=True)}
+    return {**load, "record": recording}
+
+
+def _told(said: RecordFile, dimension: str, spacing: Fraction | None) -> Fraction | None:
+    """A spacing in the file's unit of time. SceneError where its units are none of a time and of what it acts as."""
+    try:
+        if said.unit:
+            unit(said.unit, dimension)
+        clock = _clock(said.clock)
+    except PydanticCustomError as error:
+        raise damaged(said.file, said.head, (error.context or {})["what"]) from None
+    return spacing and spacing / clock
 
 
 def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
     """A record without units. What its file says may be said again, but not otherwise."""
     with placed("record"):
-        if not isinstance(load["record"], Mapping):
+        if not isinstance(load["record"], Recording | Mapping):
             raise wrong(f"{shown(load['record'])} given, the path of a file expected")
-        recording = Recording.model_validate(load["record"])
+        recording = Recording.model_validate(load["record"])  # as it is, or as it was dumped
         clock = _clock(recording.clock)
         said = unit(recording.unit, acting.dimension) / acting.size if recording.unit else None
     factor = _unit(load, acting) if said is None or "unit" in load else said
@@ -124,7 +140,7 @@ def _recorded(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> d
             with placed(key):
                 time = measured(load[key], "time", least)
                 if told is not None and time != told * clock:
-                    expected = f"{as_decimal(told)} {recording.clock or 's'} expected, as in the file, or none"
+                    expected = f"{decimal_text(told)} {recording.clock or 's'} expected, as in the file, or none"
                     raise wrong(f"{shown(load[key])} given, {expected}")
             table[key] = time / seconds
     return table

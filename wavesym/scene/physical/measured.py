@@ -73,6 +73,8 @@ def one_of(table: SceneTable, *keys: str) -> str:
 def plain(value: object) -> Any:
     """A value of a scene as TOML has it, exact: text, integers, lists and tables."""
     match value:
+        case SceneTable():
+            return plain(value.model_dump(exclude_defaults=True))
         case Mapping():
             return {str(key): plain(each) for key, each in value.items()}
         case list() | tuple():

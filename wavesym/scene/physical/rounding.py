@@ -8,7 +8,6 @@ from math import isqrt
 from flint import arb, ctx
 
 DIGITS = 17
-_MOST_DIGITS = 40  # of a decimal that is written out
 
 
 def decimal(value: Fraction) -> Fraction:
@@ -53,13 +52,3 @@ def _magnitude(value: Fraction, degree: int = 1) -> Fraction:
     while value < (power * 10 ** (DIGITS - 1)) ** degree:
         power /= 10
     return power
-
-
-def decimal_text(value: Fraction) -> str:
-    """A number as a decimal where it is one, else as a ratio."""
-    digits = next((k for k in range(_MOST_DIGITS) if 10**k % value.denominator == 0), 0)
-    if value.denominator > 1 and not digits:
-        return str(value)
-    scaled = str(abs(value.numerator) * 10**digits // value.denominator).zfill(digits + 1)
-    sign, cut = "-" if value < 0 else "", len(scaled) - digits
-    return f"{sign}{scaled[:cut]}{(digits and '.') or ''}{scaled[cut:]}"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -10,19 +11,19 @@ from typing import Any
 from pydantic_core import PydanticCustomError
 
 from wavesym.fields.numbers import exact
-from wavesym.fields.table import shown, wrong
+from wavesym.fields.table import key_path, shown, wrong
 from wavesym.scene.outputs import LONGEST_HORIZON
 from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.collision import PhysicalCollision
 from wavesym.scene.physical.drive import PhysicalDrive
-from wavesym.scene.physical.loads import dimensionless, read
+from wavesym.scene.physical.loads import Acts, dimensionless, read
 from wavesym.scene.physical.measured import measured, placed, plain, tidy
 from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
 from wavesym.scene.physical.said import words
 from wavesym.scene.physical.scale import Results, Scale, UnitsTable
-from wavesym.systems import SYSTEMS
+from wavesym.systems import SYSTEMS, ExplicitChain, SystemTable, WrittenOut
 
 _SYSTEMS: Mapping[str, type[PhysicalBuilding | PhysicalCollision | PhysicalDrive]] = {
     "collision": PhysicalCollision,
@@ -72,13 +73,13 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     found = _system(fields.get("system"), units)
     with placed("units"):
         results = Results.of(units, found.kind)
-    with placed("system"):  # before loads and places on it
-        made["system"] = SYSTEMS[str(found.system["type"])].model_validate(found.system)
+    with placed("system"), _of_quantities(fields["system"]):  # before loads and places on it
+        made["system"] = _table(found.system).model_validate(found.system)
     seconds = found.rods.seconds
     said = dict(fields)
     inputs = []
     if isinstance(loads := fields.get("load"), list | tuple):
-        said["load"] = [_read(load, k) for k, load in enumerate(loads)]
+        said["load"] = [_read(load, k, found) for k, load in enumerate(loads)]
         made["load"] = [_load(load, k, found, seconds) for k, load in enumerate(said["load"])]
         for acting in (found.acting(load) for load in said["load"] if isinstance(load, Mapping)):
             size, text = results.told(acting.dimension)
@@ -88,6 +89,30 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
             made["output"] = _output(output, found, seconds)
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
     return PhysicalScene(plain(said), made, scale, found.kappa, tuple(inputs))
+
+
+def acts(fields: Mapping[str, Any]) -> Acts:
+    """What loads of a scene with [units], whose fields are sound, act as."""
+    return _system(fields["system"], UnitsTable.model_validate(fields["units"])).acting
+
+
+@contextmanager
+def _of_quantities(said: Mapping[str, Any]) -> Iterator[None]:
+    """What is wrong with a number that nobody wrote, such as a kappa, is said of the quantities that make it."""
+    try:
+        with placed():
+            yield
+    except PydanticCustomError as error:
+        what, at = (error.context or {})["what"], (error.context or {})["at"]
+        if not at or at[0] in said:
+            raise
+        raise wrong(f"its quantities make {key_path(at)}: {what}") from None
+
+
+def _table(system: Mapping[str, object]) -> type[SystemTable]:
+    """What takes a system without units: one that is named may have been written out."""
+    known = SYSTEMS[str(system["type"])]
+    return WrittenOut if "parts" in system and known is not ExplicitChain else known
 
 
 def _system(table: object, units: UnitsTable) -> Rewritten:
@@ -109,9 +134,9 @@ def _system(table: object, units: UnitsTable) -> Rewritten:
         return _SYSTEMS[kind].model_validate(table).rewritten()
 
 
-def _read(load: object, k: int) -> object:
+def _read(load: object, k: int, found: Rewritten) -> object:
     with placed("load", k):
-        return read(load)
+        return read(load, found.acting)
 
 
 def _load(load: object, k: int, found: Rewritten, seconds: Fraction) -> object:

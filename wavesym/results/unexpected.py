@@ -1,0 +1,52 @@
+"""What a user might not expect of a scene, and what its contacts do: a line for each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from wavesym.exact.contact import contact_ends
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import rational
+from wavesym.results.response import Response
+from wavesym.results.rows import instants
+
+
+def unexpected(model: Model) -> list[str]:
+    """No load, contacts that open early enough to matter to an output."""
+    return [*without_load(model), *_formal(model)]
+
+
+def without_load(model: Model) -> list[str]:
+    """A line for a scene in which nothing happens."""
+    network = model.network
+    moving = any(bar.velocity or bar.strain for bar in network.bars) or any(point.velocity for point in network.points)
+    return [] if model.loads or moving else ["no load, so that all outputs are 0"]
+
+
+def outside(model: Model, at: Sequence[float]) -> list[str]:
+    """A line where some of the instants that are asked for are not on the horizon."""
+    last, clock = model.horizon(), model.clock
+    count = sum(not 0 <= tau <= last for _, tau in instants(model, 0, at))
+    what, end = ("times", clock.told(model.until)) if clock else ("tau", str(model.until))
+    return [f"{count} of {len(at)} {what} are outside 0 to {end}, where values are nan"] * bool(count)
+
+
+def event_lines(response: Response) -> list[str]:
+    """A line for each time that a contact opens or closes. CostError where that would take minutes to know."""
+    return [
+        f"contact at x = {each.x} {each.kind} at tau = {each.digits}{_in_time(response.model, each.double)}"
+        for each in response.events
+    ]
+
+
+def _formal(model: Model) -> list[str]:
+    return [
+        f"contact at x = {end.x} opens at tau = {end.digits}{_in_time(model, end.double)}: what that can reach is "
+        "computed as if it stayed closed"
+        for end in contact_ends(model)
+    ]
+
+
+def _in_time(model: Model, tau: float) -> str:
+    """The same instant in the unit of a physical scene, to stand behind a tau."""
+    return f", {model.clock.told(rational(tau))}" if model.clock else ""
