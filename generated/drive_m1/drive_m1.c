@@ -384,8 +384,9 @@ static lanes places(const samples *s, size_t k, real centred)
 }
 
 /* Samples k ... end - 1, all of them on one piece. Whole vectors are written: what is beyond the end is written anew by
- * the runs that follow. */
-static APART void run(int grid, int piece, const samples *s, size_t k, size_t end)
+ * the runs that follow. Returns the first sample that is left, at the end of a row. That is left to others: a call after
+ * vectors makes gcc 12 return with their upper halves in use, which slows down all that follows. */
+static APART size_t run(int grid, int piece, const samples *s, size_t k, size_t end)
 {
     const int *const rows = member + first_member[grid];
     const int members = first_member[grid + 1] - first_member[grid];
@@ -450,9 +451,7 @@ static APART void run(int grid, int piece, const samples *s, size_t k, size_t en
             *(stored *)(column + (size_t)rows[m + m3] * count) = sum3;
         }
     }
-    for (; k < end; ++k) {
-        at(grid, piece, instant(s->tau0, s->dtau, s->one, (real)k), s->out + k, count);
-    }
+    return k < end ? k : end;
 }
 
 /* Whether sample k comes before an edge, on the way that samples go. */
@@ -523,8 +522,9 @@ int drive_m1_sample(real tau0, real dtau, size_t count, real *out)
                     if (end == k) {
                         break;
                     }
-                    run(grid, begin + piece, &s, k, end);
-                    k = end;
+                    for (k = run(grid, begin + piece, &s, k, end); k < end; ++k) {
+                        at(grid, begin + piece, instant(tau0, dtau, s.one, (real)k), out + k, count);
+                    }
                 }
             } else {
                 for (int m = first_member[grid]; m < first_member[grid + 1]; ++m) {
