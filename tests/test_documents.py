@@ -5,7 +5,7 @@ toml, c     a scene or a sweep, a program in C; a later command uses the file
 csv         a record, which a scene or a command uses
 python      a program, which runs
 sh          commands, line by line
-text        all that the block before it puts out, to the character
+text        all that the block before it puts out, to the character; of what takes long only with patience
 picture     for the eye only
 others      what another test reads: those of READ_ELSEWHERE
 """
@@ -45,6 +45,7 @@ TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w.
 LONG = re.compile(r"wavesym (chart|stability|verify|sweep|plot --published)\b")  # seconds and more
 COMPILED = "wavesym.model("  # of a block of Python: it waits for a compiler
 SHELL = set("|<>;&$`*?~=")  # what a line is for a shell with, but for these two endings
+UNREAD = "..."  # what a command that takes long puts out, for whom has no patience
 TELLING = ["||", "echo", "exit status $?"]
 
 BLOCK = re.compile(r"^```(.*)\n((?:.*\n)*?)^```$\n", re.MULTILINE)
@@ -84,7 +85,7 @@ class Reader:
             shutil.copytree(ROOT / "examples", folder / "examples", ignore=shutil.ignore_patterns("*.png"))
             self.folder = folder / beside.relative_to(ROOT)
         self.unused: set[str] = set()
-        self.passed = False  # a command or a program, since it takes long: what it puts out is not compared
+        self.unread = False  # a command of this block, since it takes long
         programs = folder / "bin"
         programs.mkdir()
         program, *given = compiler().command
@@ -119,17 +120,17 @@ class Reader:
             case "csv":
                 self.unused.add(block.file)
             case "python" if COMPILED in block.text and not self.patience:
-                self.passed = True
+                return UNREAD
             case "python":
                 return self.process([sys.executable, "-c", block.text])
             case "sh":
-                self.passed = False
+                self.unread = False
                 lines = [self.line(line) for line in block.text.splitlines() if line.partition("#")[0].strip()]
-                return None if None in lines else "".join(filter(None, lines))
-            case "text" if before is None and self.passed:
-                self.passed = False
+                if None in lines:
+                    return None
+                return UNREAD if UNREAD in lines else "".join(filter(None, lines))
             case "text":
-                assert block.text == before
+                assert before == UNREAD or block.text == before
             case other if other in {"picture", *READ_ELSEWHERE}:
                 return before
             case _:
@@ -137,18 +138,18 @@ class Reader:
         return None
 
     def line(self, line: str) -> str | None:
-        """What a command puts out; None of one that is not run."""
+        """What a command puts out; None of one that is not run, UNREAD of one that takes too long."""
         self.unused -= set(re.split(r"[\s/]+", line))
         words = shlex.split(line, comments=True)
-        if self.passed and words[0] != "wavesym":  # it looks at what would have been made
-            return None
+        if self.unread and words[0] != "wavesym":  # it looks at what would have been made
+            return UNREAD
         if words[0] == "make":
             assert_made(words[1:])
             return None
         if LONG.match(line) and not self.patience:
-            assert_spelt(words)
-            self.passed = True
-            return None
+            assert_spelt(words[: words.index("|")] if "|" in words else words)
+            self.unread = True
+            return UNREAD
         told = words[-3:] == TELLING
         words = words[:-3] if told else words
         file = words.pop() if words[-2:-1] == [">"] else None
