@@ -7,12 +7,69 @@ enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0,
 
 typedef real wave_of[NAME_PANELS][NAME_NODES + 2][NAME_DEGREE + 1];
 
+/* Which waves and bodies differ from what they were at first, window by window, as march sends them: what numbers that
+ * cancel leave of outputs does not matter. */
+static int reached(const laws *law, int output)
+{
+    int lit[2][3][NAME_PANELS][NAME_NODES + 2];
+    int stirred[NAME_NODES];
+    int pushed[NAME_FORCES + 1] = {0};
+    int event = 0;
+    for (int way = LEFT; way <= LOAD; ++way) {
+        for (int panel = 0; panel < NAME_PANELS; ++panel) {
+            for (int node = 0; node < NAME_NODES + 2; ++node) {
+                lit[0][way][panel][node] = lit[1][way][panel][node] = 0;
+            }
+        }
+    }
+    for (int node = 0; node < NAME_NODES; ++node) {
+        const real alpha = magnitude(law->alpha[node]), beta = magnitude(law->beta[node]);
+        const real beside = alpha > 0 ? law->rod[node] : law->rod[node + 1];
+        stirred[node] = (alpha > 0 && beta > 0 && magnitude(law->rod[node] - law->rod[node + 1]) > 0) ||
+                        (is_body[node] && magnitude(law->motion[node] - beside) > 0);
+    }
+    for (int window = 0; window < NAME_WINDOWS; ++window) {
+        const int half = window % 2;
+        for (int panel = 0; panel < NAME_PANELS; ++panel) {
+            for (; event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel; ++event) {
+                pushed[event_force[event]] |= magnitude(law->load[event_load[event]]) > 0;
+            }
+            for (int f = 0; f < NAME_FORCES; ++f) {
+                lit[half][LOAD][panel][f] = pushed[f];
+            }
+            for (int node = 0; node < NAME_NODES; ++node) {
+                const int a = lit[!half][RIGHT][panel][node], b = lit[!half][LEFT][panel][node + 2];
+                const real alpha = law->alpha[node], beta = law->beta[node];
+                const int from_left = a && magnitude(alpha) > 0, from_right = b && magnitude(beta) > 0;
+                stirred[node] |= (force_on[node] >= 0 && pushed[force_on[node]]) ||
+                                 (is_body[node] && (from_left || from_right));
+                lit[half][LEFT][panel][node + 1] = stirred[node] || from_right || (a && magnitude(alpha - 1) > 0);
+                lit[half][RIGHT][panel][node + 1] = stirred[node] || from_left || (b && magnitude(beta - 1) > 0);
+            }
+        }
+        for (int section = 0; section < SECTIONS && (real)window + from[section] <= NAME_TAU_MAX; ++section) {
+            const int at = section * NAME_OUTPUTS + output;
+            for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+                for (int t = first_term[strand_at[k]]; t < first_term[strand_at[k] + 1]; ++t) {
+                    const int then = term_back[t] ? !half : half;
+                    if (lit[then][term_way[t]][term_panel[t]][term_sender[t]] &&
+                        magnitude(law->gain[term_heard[t]]) > 0) {
+                        return 1;
+                    }
+                }
+            }
+        }
+    }
+    return 0;
+}
+
 static int laws_within_reach(const laws *law)
 {
     int within = 1;
     for (int node = 0; node < NAME_NODES; ++node) {
         within &= finite_number(law->alpha[node]) && finite_number(law->beta[node]) && finite_number(law->rate[node]) &&
                   finite_number(law->motion[node]);
+        within &= !is_body[node] || law->rate[node] > 0;
     }
     for (int node = 0; node <= NAME_NODES; ++node) {
         within &= finite_number(law->rod[node]);
@@ -324,6 +381,7 @@ static void kept(model_of *m, const laws *law, progress *now)
     clear(all, now->degree);
     listen(m, m->waves, law->gain, m->total, now->window % 2, now->degree, all);
     look(m, all, now->degree);
+    weigh(&now->heard, all, now->degree);
     now->place += (size_t)NAME_STRANDS * (size_t)(now->degree + 2);
     now->window += 1;
 }
@@ -331,7 +389,7 @@ static void kept(model_of *m, const laws *law, progress *now)
 int name_build(name_model *model, const name_parameters *parameters)
 {
     laws law;
-    progress now = {0, LEAST, 0, 0, 0, 0};
+    progress now = {0, LEAST, 0, 0, 0, 0, 0};
     int status = begun(model, parameters, &law);
     while (status == 0 && now.window < NAME_WINDOWS) {
         status = next_window(model, &law, &now);
@@ -365,7 +423,7 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
 {
     model_of *const m = &tangent->value;
     laws law, slope;
-    progress now = {0, LEAST, 0, 0, 0, 0};
+    progress now = {0, LEAST, 0, 0, 0, 0, 0};
     int status = begun(m, parameters, &law);
     for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
         slopes_of(parameters, lane, &slope);
@@ -395,6 +453,7 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
             if (weighs) {
                 listen(m, m->waves, slope.gain, total, half, now.degree, all);
             }
+            weigh(&now.heard, all, now.degree);
         }
         if (status == 0) {
             kept(m, &law, &now);

@@ -404,11 +404,28 @@ static int window_batch(batch_of *b, int window, int degree, wide *size, wide *m
     }
 }
 
+/* As estimated, of a set. */
+static real estimated_of(const batch_of *b, const wide *missed, const name_parameters *parameters, int set)
+{
+    real worst = 0;
+    laws law;
+    laws_of(parameters, &law);
+    (void)set;
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        worst = larger(worst, relative(&law, output, LANE(missed[output], set), LANE(b->largest[output], set)));
+    }
+    return worst;
+}
+
 int name_build_batch(name_batch *batch, const name_parameters *parameters, size_t sets)
 {
-    wide size = none, missed = none, worst = none;
+    wide size = none, missed = none, heard = none;
+    wide missed_there[NAME_OUTPUTS];
     size_t place = 0;
     int degree = LEAST, event = 0, highest = 0;
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        missed_there[output] = none;
+    }
     if (begun_batch(batch, parameters, sets) > 0) {
         tabulate_batch(batch, degree);
         for (int window = 0; window < NAME_WINDOWS; ++window) {
@@ -420,7 +437,10 @@ int name_build_batch(name_batch *batch, const name_parameters *parameters, size_
             batch->degree[window] = degree;
             batch->place[window] = place;
             listen_batch(batch, window % 2, degree, batch->series + place);
-            place += (size_t)NAME_STRANDS * (size_t)(degree + 2);
+            for (const size_t end = place + (size_t)NAME_STRANDS * (size_t)(degree + 2); place < end; ++place) {
+                const wide most = (real)(4 * (degree + 2)) * batch->series[place];
+                add_magnitude(&heard, &most);
+            }
         }
         missed = 4 * missed + unit * (real)(degree + NAME_WINDOWS) * size;
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
@@ -430,20 +450,16 @@ int name_build_batch(name_batch *batch, const name_parameters *parameters, size_
                     add_magnitude(&weight, &batch->gain[k]);
                 }
             }
-            const wide relative = weight * missed / batch->largest[output];
-            const mask any = batch->largest[output] > none;
-            const wide counted = CHOSEN(any, relative, none);
-            enlarge(&worst, &counted);
+            missed_there[output] = weight * missed;
         }
     }
-    batch->estimate = worst;
     for (int set = 0; set < NAME_WIDTH; ++set) {
-        if (batch->status[set] == 0 && !(finite_number(LANE(size, set)) && finite_number(LANE(worst, set)))) {
+        if (batch->status[set] == 0 && !(finite_number(LANE(size, set)) && finite_number(LANE(missed, set)) &&
+                                         finite_number(LANE(heard, set)))) {
             batch->status[set] = 1;
         }
-        if (batch->status[set] != 0) {
-            LANE(batch->estimate, set) = not_a_number();
-        }
+        LANE(batch->estimate, set) =
+            batch->status[set] == 0 ? estimated_of(batch, missed_there, parameters + set, set) : not_a_number();
         if ((size_t)set < sets && batch->status[set] > highest) {
             highest = batch->status[set];
         }

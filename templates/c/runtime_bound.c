@@ -20,12 +20,6 @@ typedef struct {
     real output[NAME_OUTPUTS], seen[NAME_OUTPUTS];
 } wrong;
 
-static real infinity(void)
-{
-    const volatile real zero = 0;
-    return 1 / zero;
-}
-
 /* No less than the root. */
 static real root(real x)
 {
@@ -273,7 +267,7 @@ int name_error_bound(name_model *model, const name_parameters *parameters, name_
 {
     laws law;
     wrong w;
-    progress now = {0, LEAST, 0, 0, 0, 0};
+    progress now = {0, LEAST, 0, 0, 0, 0, 0};
     int status = begun(model, parameters, &law);
     if (status == 0) {
         begun_wrong(&w, &law);

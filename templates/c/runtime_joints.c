@@ -17,6 +17,15 @@ static int slot(int track, int window, int ago)
     return ring[track] + (window + turn - ago) % turn;
 }
 
+/* Ends that stay where they are cancel exactly what reaches them: of a chain an output that is 0 is taken for one that
+ * nothing has reached. */
+static int reached(const laws *law, int output)
+{
+    (void)law;
+    (void)output;
+    return 0;
+}
+
 static int states_of(int joint)
 {
     return first_state[joint + 1] - first_state[joint];
@@ -453,6 +462,7 @@ static void kept(model_of *m, const laws *law, progress *now)
     clear(all, now->degree);
     listen(m, m->waves, law->gain, m->total, now->window, now->degree, all);
     look(m, all, now->degree);
+    weigh(&now->heard, all, now->degree);
     now->place += (size_t)NAME_STRANDS * (size_t)(now->degree + 2);
     now->window += 1;
 }
@@ -460,7 +470,7 @@ static void kept(model_of *m, const laws *law, progress *now)
 int name_build(name_model *model, const name_parameters *parameters)
 {
     laws law;
-    progress now = {0, LEAST, 0, 0, 0, 0};
+    progress now = {0, LEAST, 0, 0, 0, 0, 0};
     int status = begun(model, parameters, &law);
     while (status == 0 && now.window < NAME_WINDOWS) {
         status = next_window(model, &law, &now);
@@ -494,7 +504,7 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
 {
     model_of *const m = &tangent->value;
     laws law, slope;
-    progress now = {0, LEAST, 0, 0, 0, 0};
+    progress now = {0, LEAST, 0, 0, 0, 0, 0};
     int status = begun(m, parameters, &law);
     for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
         slopes_of(parameters, lane, &slope);
@@ -521,6 +531,7 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
             if (weighs) {
                 listen(m, m->waves, slope.gain, total, now.window, now.degree, all);
             }
+            weigh(&now.heard, all, now.degree);
         }
         if (status == 0) {
             kept(m, &law, &now);

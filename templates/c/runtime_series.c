@@ -157,6 +157,32 @@ static void look(model_of *m, const real *all, int degree)
     }
 }
 
+static real infinity(void)
+{
+    const volatile real zero = 0;
+    return 1 / zero;
+}
+
+/* Add what the values of a window's series stay below while they are read; what is no finite number stays in the sum. */
+static void weigh(real *sum, const real *all, int degree)
+{
+    for (size_t k = 0; k < (size_t)NAME_STRANDS * (size_t)(degree + 2); ++k) {
+        *sum += (real)(4 * (degree + 2)) * magnitude(all[k]);
+    }
+}
+
+/* Whether anything can be felt in an output up to TAU_MAX. */
+static int reached(const laws *law, int output);
+
+/* An error relative to what is surely there of an output; of one that waves have reached that may be nothing. */
+static real relative(const laws *law, int output, real error, real largest)
+{
+    if (error < largest) {
+        return error / (largest - error);
+    }
+    return error > 0 && (largest > 0 || reached(law, output)) ? infinity() : (real)0;
+}
+
 /* Of the largest value of an output, about what `missed`, as a velocity, makes of it, at worst. */
 static real estimated(const model_of *m, const laws *law, real missed)
 {
@@ -166,9 +192,7 @@ static real estimated(const model_of *m, const laws *law, real missed)
         for (int k = 0; k < NAME_HEARD; ++k) {
             weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
         }
-        if (m->largest[output] > 0) {
-            worst = larger(worst, weight * missed / m->largest[output]);
-        }
+        worst = larger(worst, relative(law, output, weight * missed, m->largest[output]));
     }
     return worst;
 }
@@ -177,13 +201,13 @@ static real estimated(const model_of *m, const laws *law, real missed)
 typedef struct {
     int window, degree, event;
     size_t place;
-    real missed, size;
+    real missed, size, heard;
 } progress;
 
 static int ended(model_of *m, const laws *law, const progress *now)
 {
     const real missed = 4 * now->missed + unit * (real)(now->degree + NAME_WINDOWS) * now->size;
-    m->estimate = estimated(m, law, missed);
-    m->built = finite_number(now->size) && finite_number(m->estimate);
+    m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);
+    m->estimate = m->built ? estimated(m, law, missed) : not_a_number();
     return !m->built;
 }

@@ -351,10 +351,8 @@ static int sends(int joint, int point)
 /* Loads jump and bend now; what of that polynomials will miss. */
 static void bend(stream *state, const real *jump, const real *turn)
 {
+    const real whole[3] = {1, panel, panel * panel / 2};
     real blur[3];
-    if (!(state->time > 0)) {
-        return;
-    }
     blurs(state, blur);
     for (int n = 0; n < LOADED; ++n) {
         const int joint = loaded[n];
@@ -392,12 +390,14 @@ static void bend(stream *state, const real *jump, const real *turn)
             }
         }
         for (int point = 0; point < points; ++point) {
-            real sum = 0;
+            real sum = 0, due = 0;
             for (int order = 0; order < 3; ++order) {
                 sum += blur[order] * absolute(q[order][point]);
+                due += whole[order] * absolute(q[order][point]);
             }
             if (sends(joint, point)) {
                 lose(state, sum);
+                state->due = due > state->due ? due : state->due;
             }
         }
     }
@@ -477,6 +477,8 @@ void name_init(stream *state)
     state->time_low = 0;
     state->lost = 0;
     state->size = 0;
+    state->due = 0;
+    state->alarm = 0;
     state->phase = -1;
     for (int k = 0; k < NAME_PANELS; ++k) {
         state->missed[k] = 0;
@@ -529,6 +531,26 @@ static void go_on(stream *state, pair then, real done, const real *before, const
     state->time_low = then.low;
 }
 
+/* What is lost has to be small against that. */
+static real against(const stream *state)
+{
+    return state->size > 0 ? state->size : state->due;
+}
+
+/* More than the tolerance is lost, or numbers are beyond all bounds: for good, even where larger waves follow. */
+static void raise_alarm(stream *state, const real *out)
+{
+    const real most = tolerance * against(state);
+    int fine = state->lost <= most * most && is_number(most * most);
+    for (int k = 0; k < NAME_PANELS; ++k) {
+        fine &= is_number(state->missed[k]);
+    }
+    for (int output = 0; output < OUTPUTS; ++output) {
+        fine &= is_number(out[output]);
+    }
+    state->alarm |= !fine;
+}
+
 int name_step(stream *state, real dtau, const real *load, real *out)
 {
     int wrong = !(dtau == 0 || (dtau >= shortest && dtau <= longest));
@@ -575,8 +597,8 @@ int name_step(stream *state, real dtau, const real *load, real *out)
         go_on(state, then, 1, before, load);
     }
     read_now(state, out);
-    /* before the first panel is over nothing has been sent that it could be small against */
-    return state->size > 0 && state->lost > tolerance * tolerance * state->size * state->size ? 2 : 0;
+    raise_alarm(state, out);
+    return state->alarm ? 2 : 0;
 }
 
 real name_lost(const stream *state)
@@ -600,6 +622,6 @@ real name_lost(const stream *state)
         for (int k = 0; k < 6; ++k) {
             near = (near + square / near) / 2;
         }
-        return state->size > 0 ? root * near / state->size : root * near;
+        return root * near / against(state);
     }
 }

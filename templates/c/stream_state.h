@@ -6,7 +6,9 @@ typedef struct name_state {
     name_real time;      /* since the current panel began, */
     name_real time_low;  /* and what is lost of that by rounding */
     name_real lost;      /* squared: what polynomials have missed so far, on that panel of a window where it is most, */
-    name_real size;      /* and the largest wave that it is small against */
+    name_real size;      /* and the largest wave that it is small against, */
+    name_real due;       /* until there is one, what loads so far would make of it within a panel */
+    int alarm;           /* whether step has returned 2 */
     int seen;            /* how many instants of the panel are past */
     int phase;           /* which panel of a window it is */
     int at[NAME_TRACKS]; /* where a wave has the current panel */

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from wavesym.programs.runtime.arrays.bodies import ArrayBodies
+from wavesym.programs.runtime.arrays.cone import reached
 from wavesym.programs.runtime.arrays.laws import ArrayLaws, allowed, array_laws, array_slopes
 from wavesym.programs.runtime.arrays.tables import ArrayTables
 from wavesym.programs.runtime.arrays.waves import ArrayWaves
@@ -24,7 +25,12 @@ class ArrayMarch:
         laws = tables.laws
         own = np.array([float(value) for field in laws.fields for value in field.values])
         with np.errstate(all="ignore"):
-            fine = allowed(laws, given) & array_laws(laws, given).finite
+            own_laws = array_laws(laws, given)
+            fine = (
+                allowed(laws, given)
+                & own_laws.finite
+                & ~np.any((tables.ints("is_body")[:, None] > 0) & ~(own_laws.rate > 0), axis=0)
+            )
             if lanes:
                 fine &= array_slopes(laws, given).finite
         self.status = np.where(fine, 0, 1).astype(np.int32)
@@ -41,8 +47,10 @@ class ArrayMarch:
         self._missed, self._size = np.zeros((2, len(given)))
         with np.errstate(all="ignore"):  # sets that are refused on the way may grow beyond all numbers
             self.series = [self._window(window) for window in range(tables.sizes["windows"])]
-            self.estimate = self._estimated()
-        self.status[(self.status == 0) & ~np.isfinite(self.estimate)] = 1
+            heard = sum(4.0 * len(each[0]) * np.abs(each).sum(axis=(0, 1, 2)) for each in self.series)
+            missed = 4 * self._missed + tables.unit * (self._value.degree + tables.sizes["windows"]) * self._size
+            self.estimate = self._estimated(missed)
+        self.status[(self.status == 0) & ~np.isfinite(self._size + missed + heard)] = 1
         self.estimate[self.status != 0] = np.nan
 
     def _tabulate(self) -> None:
@@ -110,17 +118,24 @@ class ArrayMarch:
             value.total = total
         return found
 
-    def _estimated(self) -> Array:
-        """Of the largest value of an output, about what polynomials have missed, as a velocity, makes of it."""
+    def _estimated(self, missed: Array) -> Array:
+        """Of the largest value of an output, about what `missed`, as a velocity, makes of it: relative to what is
+        surely there, infinite where that is nothing though waves have reached it.
+        """
         tables = self._tables
-        missed = 4 * self._missed + tables.unit * (self._value.degree + tables.sizes["windows"]) * self._size
+        lost = np.zeros((tables.outputs, len(missed)), bool)
         worst = np.zeros_like(missed)
         for output in range(tables.outputs):
             weight = np.abs(self._law.gain[tables.ints("heard_output") == output]).sum(axis=0)
             parts = [tables.strands(section, output) for section in range(tables.sizes["sections"])]
             means = [np.abs(series[part, 0, 0].sum(axis=0)) for series in self.series for part in parts]
             largest = np.max(means, axis=0)
-            worst = np.maximum(worst, np.divide(weight * missed, largest, out=np.zeros_like(missed), where=largest > 0))
+            error = weight * missed
+            sure = error < largest
+            worst = np.maximum(worst, np.divide(error, largest - error, out=np.zeros_like(missed), where=sure))
+            lost[output] = ~sure & (error > 0)
+        if np.any(lost & (self.status == 0)):
+            worst[np.any(lost & reached(tables, self._law), axis=0)] = np.inf
         return worst
 
 
