@@ -69,7 +69,6 @@ static int laws_within_reach(const laws *law)
     for (int node = 0; node < NAME_NODES; ++node) {
         within &= finite_number(law->alpha[node]) && finite_number(law->beta[node]) && finite_number(law->rate[node]) &&
                   finite_number(law->motion[node]);
-        within &= !is_body[node] || law->rate[node] > 0;
     }
     for (int node = 0; node <= NAME_NODES; ++node) {
         within &= finite_number(law->rod[node]);
@@ -79,6 +78,16 @@ static int laws_within_reach(const laws *law)
     }
     for (int k = 0; k < NAME_HEARD; ++k) {
         within &= finite_number(law->gain[k]);
+    }
+    return within;
+}
+
+/* And no body has become so heavy that it is none. */
+static int laws_to_march(const laws *law)
+{
+    int within = laws_within_reach(law);
+    for (int node = 0; node < NAME_NODES; ++node) {
+        within &= !is_body[node] || law->rate[node] > 0;
     }
     return within;
 }
@@ -326,7 +335,7 @@ static int begun(model_of *m, const name_parameters *parameters, laws *law)
         return 1;
     }
     laws_of(parameters, law);
-    if (!laws_within_reach(law)) {
+    if (!laws_to_march(law)) {
         return 1;
     }
     for (int event = 0; event < NAME_EVENTS; ++event) {

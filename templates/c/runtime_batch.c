@@ -336,7 +336,7 @@ static int begun_batch(batch_of *b, const name_parameters *parameters, size_t se
         b->status[set] = 1;
         if ((size_t)set < sets && good(parameters + set)) {
             laws_of(parameters + set, &law);
-            good_one[set] = laws_within_reach(&law);
+            good_one[set] = laws_to_march(&law);
         }
         if (good_one[set]) {
             b->status[set] = 0;

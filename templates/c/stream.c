@@ -349,9 +349,10 @@ static int sends(int joint, int point)
 }
 
 /* Loads jump and bend now; what of that polynomials will miss. */
-static void bend(stream *state, const real *jump, const real *turn)
+static void bend(stream *state, real dtau, const real *jump, const real *turn)
 {
-    const real whole[3] = {1, panel, panel * panel / 2};
+    const real span = dtau > 0 && dtau < panel ? dtau : panel;
+    const real whole[3] = {1, span, span * panel}; /* a load bends for this step, and stays where it is then */
     real blur[3];
     blurs(state, blur);
     for (int n = 0; n < LOADED; ++n) {
@@ -577,7 +578,7 @@ int name_step(stream *state, real dtau, const real *load, real *out)
             turn[j] = dtau > 0 ? slope - state->slope[j] : (real)0;
             state->slope[j] += turn[j];
         }
-        bend(state, jump, turn);
+        bend(state, dtau, jump, turn);
         if (!(dtau > 0)) {
             for (int j = 0; j < LOADS; ++j) {
                 state->load[j] = load[j];
