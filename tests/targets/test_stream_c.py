@@ -513,3 +513,49 @@ def test_chains_that_are_drawn(table):
     ran = run(model, jumps, panel, panel * int(3 / panel), panel * Fraction(23, 47))
     assert max(ran.status, default=0) == 0
     assert np.max(missed(ran, scene), initial=0) < 1e-11
+
+
+PULSED = wavesym.Scene(
+    name="pulsed",
+    system={"type": "drive", "m": 2, "kappa": [1, "1/2"], "inertia": [1, 2, 1]},
+    load=[{"body": 1, "times": [0], "steps": [1]}, {"body": 3, "times": ["1/3"], "steps": [2]}],
+    output={"until": 20, "tolerance": "1e-10", "strain": ["1/2"], "velocity": [2]},
+)
+
+
+@pytest.mark.slow
+def test_the_alarm_does_not_wait_for_the_first_wave():
+    """At rest so far, a moment jumps inside of a panel and goes back: nothing has been sent, and much is lost."""
+    stream = built(PULSED).start()
+    assert stream.step(9 / 64, [0.0, 0.0])[0] == 0
+    for dtau, load in ((0.0, 100.0), *[(1 / 512, 0.0)] * 100):
+        assert stream.step(dtau, [0.0, load])[0] == 2
+    assert stream.lost > 1e-10
+    # and it stays, though so much larger a wave follows that what was lost is little beside it
+    stream.step(20 * 0.125 - 9 / 64 - 100 / 512, [0.0, 0.0])
+    stream.step(0.0, [1e12, 0.0])
+    assert stream.step(1.0, [1e12, 0.0])[0] == 2
+    assert stream.lost < 1e-10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("late", [1e-17, 1e-16])
+def test_a_clock_that_is_rounded_raises_no_alarm(late):
+    """At rest, a moment jumps so shortly before or after an edge that it cannot matter."""
+    stream = built(PULSED).start()
+    for dtau in (3 * 0.125 - 0.1, 0.1, late):
+        assert stream.step(dtau, [0.0, 0.0])[0] == 0
+    for dtau in (0.0, *[0.125] * 20):
+        assert stream.step(dtau, [0.0, 100.0])[0] == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [1e307, 1e180])
+def test_an_overflow_is_told_until_init(size):
+    stream = built(PULSED).start()
+    for k in range(20):
+        stream.step(0.1, [size * (k % 3 - 1), size])
+    assert stream.step(0.1, [1.0, 1.0])[0] == 2
+    assert stream.step(-1.0, [1.0, 1.0])[0] == 1
+    for _ in range(50):
+        assert stream.step(0.1, [1.0, 1.0])[0] == 2
