@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -45,7 +46,7 @@ from wavesym.results.rows import SAMPLES, csv_lines, grid
 from wavesym.results.summary import Summary, summarised
 from wavesym.results.unexpected import event_lines, outside, unexpected, without_load
 from wavesym.scene import Scene, lower
-from wavesym.scene.lowering import amplitudes, drifts
+from wavesym.scene.lowering import amplitudes, drifts, sources
 from wavesym.targets import LANGUAGES
 from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
@@ -249,6 +250,8 @@ def generate(
     optimize: str | None = None,
     runtime: Sequence[str] = (),
     *,
+    stream: bool = False,
+    step: Fraction | None = None,
     package: bool = False,
     force: bool = False,
 ) -> tuple[Path, ...]:
@@ -256,9 +259,10 @@ def generate(
 
     `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
     "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters that C takes when it
-    runs: "kappa", "inertia", "velocity", "load". `package` adds what CMake builds, tests
-    and installs C with. Files that wavesym did not write are replaced only by `force`; WavesymError else, and for a
-    language, evaluator, precision or aim that there is not.
+    runs: "kappa", "inertia", "velocity", "load". A `stream` takes the loads sample by sample, at any time, or best at
+    multiples of `step`, in tau. `package` adds what CMake builds, tests and installs C with. Files that wavesym did not
+    write are replaced only by `force`; WavesymError else, and for a language, evaluator, precision or aim that there is
+    not.
 
     >>> import wavesym
     >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):
@@ -266,7 +270,7 @@ def generate(
     drive/drive_m1.json
     drive/drive_m1.py
     """
-    request = Request(evaluator, precision, windows, optimize, tuple(runtime))
+    request = _request(evaluator, precision, windows, optimize, runtime, stream, step)
     made = _written(scene, directory, language, request, package)
     for path in made:
         if not force and path.is_file() and not is_ours(path):
@@ -286,6 +290,8 @@ def check(
     source: str = "SCENE",
     runtime: Sequence[str] = (),
     *,
+    stream: bool = False,
+    step: Fraction | None = None,
     package: bool = False,
 ) -> str:
     """The difference between what stands in `directory` and what `generate` would write; empty where there is none.
@@ -293,7 +299,7 @@ def check(
     Each file that is changed, missing or orphaned is named, with a diff; so is what a process that was killed left. The
     last line is the command that mends them, with the scene as it is given by `source`.
     """
-    request = Request(evaluator, precision, windows, optimize, tuple(runtime))
+    request = _request(evaluator, precision, windows, optimize, runtime, stream, step)
     made = _written(scene, directory, language, request, package)
     folder = Path(directory or scene.name)
     found = [path for path in folder.glob(f"{scene.name}*") if path.is_file()]
@@ -301,6 +307,24 @@ def check(
     difference = Difference(made, [*found, *left])
     options = ["--language", language, *request.options.split(), *(["--package"] if package else [])]
     return difference.report(["wavesym", "generate", source, "-o", str(folder), *options])
+
+
+def _request(
+    evaluator: str,
+    precision: str,
+    windows: int | None,
+    optimize: str | None,
+    runtime: Sequence[str],
+    stream: bool,
+    step: Fraction | None,
+) -> Request:
+    """The options of `generate` as one value. WavesymError for a step without a stream."""
+    if step is not None and not stream:
+        raise WavesymError(f"--step: {step} given without --stream, nothing expected")
+    if step is not None and evaluator == "modes":
+        raise WavesymError(f"--step: {step} given with --evaluator modes, nothing expected (loads say what it is)")
+    every = None if step is None else rational(step)
+    return Request(evaluator, precision, windows, optimize, tuple(runtime), stream, every)
 
 
 def _written(
@@ -313,7 +337,11 @@ def _written(
     if package and language not in ("c", "all"):
         raise WavesymError(f"package: language {language} given, c or all expected, since CMake builds C")
     model = lower(scene)
-    if request.runtime:
+    if request.stream and request.evaluator != "modes":
+        if language != "c":
+            raise WavesymError(f"language: {language} given with --stream, c expected")
+        program = stream_program(scene, request, tested=True)
+    elif request.runtime:
         from wavesym.programs.runtime.making import runtime_program
 
         if language != "c":
@@ -332,6 +360,15 @@ def runtime_model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
 
     given = amplitudes(scene) if "load" in runtime else ()
     return RuntimeModel(runtime_program(lower(scene), Request(runtime=tuple(runtime)), given))
+
+
+def stream_program(scene: Scene, request: Request, *, tested: bool = False) -> Program:
+    """The program of a scene whose loads are given while it runs; its sources are the inputs, in order."""
+    from wavesym.programs.stream import making
+    from wavesym.programs.stream.plan import inputs_of
+
+    model = replace(lower(scene), endless=True)
+    return making.stream_program(model, request, inputs_of(model, sources(scene)), tested=tested)
 
 
 def run(

@@ -22,7 +22,17 @@ COST_LIMITS = re.compile(
     r"_?(MOST|LARGEST|QUICK|MODERATE|FAST|HIGHEST|USUAL|SHORTE|FIRST|BLOCK|WORTH|EXP$|SAMPLES|OVERHEAD|BOUNDING|SETTLED)"
 )
 COSTS = {"work", "bytes", "state_bytes", "least_bytes", "stored", "operator_count", "beginning", "refuse_many"}
-COSTS |= {"_bytes", "_least", "_size", "_state", "_refuse_long", "_first_degree", "degrees"}
+COSTS |= {
+    "_bytes",
+    "_least",
+    "_size",
+    "_state",
+    "_refuse_long",
+    "refuse_long",
+    "_first_degree",
+    "first_degree",
+    "degrees",
+}
 TEXTS = {"summary", "shortfall", "options", "refuse_unknown", "check_points"}  # and where a self-test looks
 
 # what in C does not compute: comments, texts, directives, tables and sizes outside of functions

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -21,6 +21,27 @@ PRECISIONS = ["double", "single"]
 AIMS = ["speed", "size"]
 MOST_WINDOWS = 2**31 - 2
 FINEST = Fraction(1, 10**13)  # of tolerances at run time
+
+
+class StepParameter(click.ParamType[Fraction]):
+    """A positive number of tau, exact: a decimal, or p/q."""
+
+    name = "step"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Fraction:
+        """The number."""
+        from wavesym.fields.numbers import exact
+
+        try:
+            step = exact(value)
+        except ValueError:
+            step = Fraction(0)
+        if step <= 0:
+            self.fail(f"{value} given, a positive number such as 0.1 or 1/8 expected", param, ctx)
+        return step
+
+
+STEP = StepParameter()
 
 
 @click.command()
@@ -51,6 +72,13 @@ FINEST = Fraction(1, 10**13)  # of tolerances at run time
     metavar="LIST",
     help="Parameters that come at run time, a list of kappa, inertia, velocity and load with commas between.",
 )
+@click.option("--stream", is_flag=True, help="Take the loads sample by sample, from a controller, without end.")
+@click.option(
+    "--step",
+    type=STEP,
+    metavar="DTAU",
+    help="For a stream whose steps all begin at multiples of this, in tau, as 0.1 or 1/8.",
+)
 @click.option("--package", is_flag=True, help="Add what builds, tests and installs C: CMake, ctest, pkg-config.")
 @click.option("--force", is_flag=True, help="Replace files that wavesym did not write, too.")
 @click.option("--check", "only_check", is_flag=True, help="Write nothing; print a diff and exit 1 where files differ.")
@@ -63,6 +91,8 @@ def generate(
     windows: int | None,
     optimize: str | None,
     runtime: str | None,
+    stream: bool,
+    step: Fraction | None,
     package: bool,
     force: bool,
     only_check: bool,
@@ -79,17 +109,17 @@ def generate(
     given = () if runtime is None else tuple(name.strip() for name in runtime.split(","))
     if only_check:
         with progress(f"check {scene.name}"):
-            difference = compiler.check(*asked, scene_argument(), given, package=package)
+            difference = compiler.check(*asked, scene_argument(), given, stream=stream, step=step, package=package)
         if difference:
             put(difference)
         return 1 if difference else 0
     with progress(f"generate {scene.name}"):
-        written = compiler.generate(*asked, given, package=package, force=force)
+        written = compiler.generate(*asked, given, stream=stream, step=step, package=package, force=force)
     for path in written:
         click.echo(path)
     if given and scene.output.tolerance < FINEST:
         click.echo(f"{scene.name}: tolerance {float(scene.output.tolerance):g} taken as 1e-13 at run time", err=True)
-    for line in compiler.no_load(scene):
+    for line in () if stream else compiler.no_load(scene):
         click.echo(f"{scene.name}: {line}", err=True)
     for manifest in (path for path in written if path.suffix == ".json"):
         click.echo(f"{scene.name}: {json.loads(manifest.read_text(encoding='utf-8'))['reason']}", err=True)

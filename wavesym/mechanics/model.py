@@ -46,7 +46,7 @@ class Model:
     `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
     `tolerance` is relative to an output's largest value. Loads are sorted by time; where they have samples, the closest
     are `spacing` apart. The `clock` is that of a physical scene, the `damping` that of its modes; `inputs` says of the
-    sources of its loads what 1 is in the unit of results, and that unit.
+    sources of its loads what 1 is in the unit of results, and that unit. An `endless` one goes on after that tau.
     """
 
     name: str
@@ -61,6 +61,7 @@ class Model:
     damping: Damping | None = None
     spacing: fmpq | None = None
     inputs: Mapping[str, tuple[fmpq, str]] = field(default_factory=dict)
+    endless: bool = False
 
     @property
     def named(self) -> Chain:
@@ -103,6 +104,11 @@ class Model:
         """Whether a mode is damped, so that the whole chain can influence an output from the first instant on."""
         return self.damping is not None and self.damping.acts
 
+    @property
+    def whole(self) -> bool:
+        """Whether nothing of the chain can be left out."""
+        return self.damped or self.endless
+
     def horizon(self, real: Real = DOUBLE) -> float:
         """The last tau in `real` numbers: the smallest of them that is not below `until`."""
         return real.not_below(self.until)
@@ -113,7 +119,7 @@ class Model:
 
     def light_cone(self, until: fmpq) -> range:
         """The numbers of the nodes that can influence an output by then."""
-        return range(self.named.m + 1) if self.damped else light_cone(self.named, self.watched, until)
+        return range(self.named.m + 1) if self.whole else light_cone(self.named, self.watched, until)
 
     def reached(self, until: fmpq) -> dict[int, fmpq]:
         """The joints of the network that can influence an output by then, and until when each can.
@@ -139,7 +145,7 @@ class Model:
         return {
             joint: max(until - distance, fmpq(0))
             for joint, distance in sorted(distances.items())
-            if self.damped or distance <= until or joint in beside
+            if self.whole or distance <= until or joint in beside
         }
 
     @cached_property
@@ -147,7 +153,7 @@ class Model:
         """The parameters that can matter to an output within the horizon, by name and index."""
         if self.chain is None:
             return {}
-        crossing = self.chain.m + 1 if self.damped else 0
+        crossing = self.chain.m + 1 if self.whole else 0
         return felt(self.chain, self.watched, self.until + crossing)
 
     def shortened(self, until: fmpq) -> Model:

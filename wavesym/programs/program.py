@@ -62,6 +62,22 @@ class StreamedValues:
 
 
 @dataclass(frozen=True)
+class SteppedRow:
+    """A step of a stream: how long, the loads at its end, and the outputs there, unless they are not looked at."""
+
+    dtau: float
+    loads: tuple[float, ...]
+    values: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class SteppedValues:
+    """What a stream gives from its start, step by step, where steps may have any length."""
+
+    rows: tuple[SteppedRow, ...]
+
+
+@dataclass(frozen=True)
 class Driven:
     """What holds of a march that is driven by hand for `windows`: each output's error per unit of a load."""
 
@@ -73,14 +89,15 @@ class Driven:
 class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
-    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "modes", or
-    "runtime": a march whose parameters come at run time, by its `laws`, in C alone.
-    `tables`
-    are flat, by name, each number as it is written: indices are ints, all else floats of the format; which there are,
-    assembly.py says, of rings rings/tables.py, of modes modes/tables.py. `constants` are single numbers.
-    `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march and of modes, `sources` are the
-    names of loads that it can be given; a march is `whole` where no node was left out. Its error is `proved`, or an
-    estimate.
+    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "modes",
+    "runtime": a march whose parameters come at run time, by its `laws`, or "stream": one whose loads do. The last two
+    are C alone.
+    `tables` are flat, by name, each number as it is written: indices are ints, all else floats of the format; which
+    there are, assembly.py says, of rings rings/tables.py, of modes modes/tables.py, of streams stream/tables.py.
+    `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march,
+    modes and a stream, `sources` are the names of loads that it can be given; a march is `whole` where no node was left
+    out. Its error is `proved`, or an estimate. Of a stream `direct` has for each output the sources that act on it at
+    once.
     """
 
     kind: str
@@ -91,12 +108,13 @@ class Program:
     constants: dict[str, float]
     bytes: int
     provenance: Provenance
-    reference: ReferenceValues | StreamedValues | None = None
+    reference: ReferenceValues | StreamedValues | SteppedValues | None = None
     sources: tuple[str, ...] = ()
     whole: bool = True
     driven: Driven | None = None
     proved: bool = True
     laws: RuntimeLaws | None = None
+    direct: tuple[tuple[int, ...], ...] = ()
 
     @property
     def evaluator(self) -> str:

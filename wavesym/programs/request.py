@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from flint import fmpq
+
 from wavesym.errors import WavesymError
 from wavesym.numbers.reals import REALS
 
@@ -26,6 +28,8 @@ class Request:
     windows: int | None = None
     optimize: str | None = None
     runtime: tuple[str, ...] = ()
+    stream: bool = False
+    step: fmpq | None = None
 
     @property
     def options(self) -> str:
@@ -34,6 +38,8 @@ class Request:
         options += "" if self.precision == "double" else f" --precision {self.precision}"
         options += "" if self.windows is None else f" --windows {self.windows}"
         options += "" if self.optimize is None else f" --optimize {self.optimize}"
+        options += " --stream" if self.stream else ""
+        options += "" if self.step is None else f" --step {self.step}"
         return options + (f" --runtime {','.join(self.runtime)}" if self.runtime else "")
 
     def refuse_unknown(self) -> None:

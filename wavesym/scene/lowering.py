@@ -91,6 +91,11 @@ def amplitudes(scene: Scene) -> tuple[tuple[str, Applied], ...]:
     return tuple(found)
 
 
+def sources(scene: Scene) -> tuple[str, ...]:
+    """What its loads are steps of, in the order of the scene; each once."""
+    return tuple(dict.fromkeys(load.sources[0] for load in scene.load))
+
+
 def _inputs(scene: Scene) -> dict[str, tuple[fmpq, str]]:
     given = scene.physical.inputs if scene.physical else ()
     return {

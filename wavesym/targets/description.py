@@ -186,7 +186,9 @@ def _event(event: ContactEvent, real: Real) -> NamedEvent:
 
 def _model(model: Model) -> list[str]:
     kind, *choices = model.labels.system.items()
-    lines = [f"{kind[1]}, as far as the light cone of the outputs reaches"]
+    lines = [
+        f"{kind[1]}, all of it" if model.endless else f"{kind[1]}, as far as the light cone of the outputs reaches"
+    ]
     lines += [f"{key} = {value}" for key, value in choices]
     for name, numbers in model.felt.items():
         if numbers:

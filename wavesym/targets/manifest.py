@@ -10,7 +10,7 @@ from wavesym.targets.description import Description
 SCHEMA_VERSION = 2
 # What NAME.c compiles to besides its tables, with clang -Os for a Cortex-M4: no more than this; a test compiles it.
 SMALL_TARGET = "Cortex-M4, -Os"
-CODE_AT_MOST = {"closed": 1024, "pieces": 4096, "march": 8192, "rings": 8192, "modes": 4096}
+CODE_AT_MOST = {"closed": 1024, "pieces": 4096, "march": 8192, "rings": 8192, "modes": 4096, "stream": 8192}
 
 
 def manifest(description: Description, program: Program) -> str:
@@ -87,11 +87,15 @@ def _events(description: Description) -> dict[str, object]:
 
 
 def _streamed(program: Program) -> dict[str, object]:
-    """The time between samples of a stream, and its loads with the units of their samples."""
-    if program.kind != "modes":
+    """The loads of a stream with the units of their samples, and the time between these, or how long a panel is."""
+    key = {"modes": "spacing", "stream": "panel"}.get(program.kind)
+    if key is None:
         return {}
-    told = {} if program.proved else {"proved": False}
-    return {"spacing": program.constants["spacing"], "loads": list(program.sources), **told}
+    told: dict[str, object] = {} if program.proved else {"proved": False}
+    if program.kind == "stream":
+        pairs = zip(program.outputs, program.direct, strict=True)
+        told["direct"] = {output.name: [program.sources[j] for j in of] for output, of in pairs if of}
+    return {key: program.constants[key], "loads": list(program.sources), **told}
 
 
 def _driven(program: Program) -> dict[str, object]:

@@ -112,11 +112,11 @@ def ring_march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> 
         raise OverflowError(f"a number of the tables is beyond {real.name} precision")
     if degree is not None:
         return _made(plan, max(degree, _LEAST_DEGREE), real)[0]
-    degree = _first_degree(plan, real)
+    degree = first_degree(plan, real)
     before = math.inf
     spent = 0.0
     while True:
-        spent = _refuse_long(plan, degree, spent, real)
+        spent = refuse_long(plan, degree, spent, real)
         made, verdict = _made(plan, degree, real)
         if verdict.truncated <= verdict.rounded or _SETTLED * before <= made.error_bound < math.inf:
             return made
@@ -138,7 +138,7 @@ def _made(plan: RingPlan, degree: int, real: Real) -> tuple[RingMarch, Verdict]:
     return RingMarch(plan, degree, real, outputs), verdict
 
 
-def _first_degree(plan: RingPlan, real: Real) -> int:
+def first_degree(plan: RingPlan, real: Real) -> int:
     """A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved.
 
     A stiff spring adds those of a body on it.
@@ -171,7 +171,7 @@ def _multiplications(plan: RingPlan, degree: int) -> int:
     )
 
 
-def _refuse_long(plan: RingPlan, degree: int, spent: float, real: Real) -> float:
+def refuse_long(plan: RingPlan, degree: int, spent: float, real: Real) -> float:
     """What trying a degree costs, with what is `spent` already; CostError where that is too much."""
     _refuse_rings(plan, _LEAST_DEGREE, real)  # it is not the joints then
     if (size := table_bytes(plan, degree, real)) > _MOST_BYTES:

@@ -19,7 +19,8 @@ from wavesym.errors import CostError
 from wavesym.exact.node_rules import joint_rule
 from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import End, Network
+from wavesym.mechanics.network import End, Network, Point
+from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch, spacing
@@ -93,6 +94,7 @@ class RingPlan:
     events: tuple[LoadEvent, ...]
     outputs: tuple[WatchedPlace, ...]
     tau_max: float
+    pushed: tuple[int, ...]  # the point of each force
 
     @property
     def windows(self) -> int:
@@ -201,6 +203,7 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
             for probe, terms in model.sums.items()
         ),
         tau_max,
+        tuple(sorted(loads.numbers)),
     )
 
 
@@ -236,15 +239,10 @@ class _Loads:
         self.changes: list[tuple[fmpq, int, fmpq_poly]] = []
         for number in points:
             point = model.network.points[number]
-            units = {unit.source: fmpq_poly(list(unit.coefficients)) for unit in point.loads}
+            units = {unit.source: moved_by(point, unit) for unit in point.loads}
             for load in model.acting(until):
                 if load.source in units:
-                    polynomial = load.weight * units[load.source]
-                    if point.motion is None:
-                        polynomial *= joint_rule().load
-                    elif point.motion == "acceleration":
-                        polynomial = polynomial.integral()
-                    self.changes.append((load.time, number, polynomial))
+                    self.changes.append((load.time, number, load.weight * units[load.source]))
             if point.motion is not None and point.velocity != 0:
                 self.changes.append((_ZERO, number, fmpq_poly([point.velocity])))
         acting = {number for _, number, _ in self.changes}
@@ -264,6 +262,14 @@ class _Loads:
             now[force] = time, total
             window = int((time / step).floor())
             yield LoadEvent(window, places[time - window * step], force, _three(total))
+
+
+def moved_by(point: Point, unit: UnitLoad) -> fmpq_poly:
+    """The force that a unit load makes of itself at a point, or the velocity that it prescribes."""
+    polynomial = fmpq_poly(list(unit.coefficients))
+    if point.motion == "acceleration":
+        return polynomial.integral()
+    return polynomial if point.motion else joint_rule().load * polynomial
 
 
 def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:

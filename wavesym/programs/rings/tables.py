@@ -43,9 +43,6 @@ class RingTables:
         def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
             return tuple(map(real.nearest, values))
 
-        spaces = [joint.space for joint in plan.joints]
-        ports = [port for space in spaces for port in space.ports]
-        matrix, where = self._matrices()
         heard = [() if none else output.heard for output, none in zip(plan.outputs, nothing, strict=True)]
         delays = sorted({one.delay for output in plan.outputs for one in output.heard})
         stretches = [plan.stretches(delay) for delay in delays]
@@ -55,11 +52,45 @@ class RingTables:
         first = {id(group[0]) for group in stretches}
         return {
             "steps": tuple(track.steps for track in plan.tracks),
-            "ring": _firsts(track.steps + 1 for track in plan.tracks),
+            "ring": firsts(track.steps + 1 for track in plan.tracks),
             "held": reals(track.held for track in plan.tracks),
-            "first_point": _firsts(space.points for space in spaces),
-            "first_state": _firsts(space.states for space in spaces),
-            "first_port": _firsts(len(space.ports) for space in spaces),
+            **self.joints(),
+            "half_length": reals(panel.length / 2 for panel in plan.panels),
+            "since": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
+            "event_window": tuple(event.window for event in plan.events),
+            "event_panel": tuple(event.panel for event in plan.events),
+            "event_force": tuple(event.force for event in plan.events),
+            "event_power": reals(power for event in plan.events for power in event.powers),
+            "first_heard": firsts(map(len, heard)),
+            "track": tuple(one.track for of in heard for one in of),
+            "gain": reals(one.gain for of in heard for one in of),
+            "summed": tuple(int(one.summed) for of in heard for one in of),
+            "delay": tuple(delays.index(one.delay) for of in heard for one in of),
+            "begin": tuple(map(real.not_below, begins)),
+            "first_stretch": firsts(map(len, stretches)),
+            "from": tuple(real.not_below(max(start, fmpq(0))) for start in starts),
+            "start": reals(starts),
+            "excess": reals(rational(real.nearest(start)) - start for start in starts),
+            "low": reals(-stretch.start if id(stretch) in first else fmpq(0) for stretch in flat),
+            "high": reals(min(plan.panels[s.panel].length, plan.step - s.start) for s in flat),
+            "back": tuple(stretch.back for stretch in flat),
+            "panel_of": tuple(stretch.panel for stretch in flat),
+        }
+
+    def joints(self) -> dict[str, tuple[float, ...]]:
+        """Those of the joints and their ports."""
+        plan, real = self._plan, self._real
+        spaces = [joint.space for joint in plan.joints]
+        ports = [port for space in spaces for port in space.ports]
+        matrix, where = self._matrices()
+
+        def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
+            return tuple(map(real.nearest, values))
+
+        return {
+            "first_point": firsts(space.points for space in spaces),
+            "first_state": firsts(space.states for space in spaces),
+            "first_port": firsts(len(space.ports) for space in spaces),
             "answer": where,
             "matrix": matrix,
             "begun": reals(value for space in spaces for value in space.begun),
@@ -69,26 +100,6 @@ class RingTables:
             "ratio": reals(port.ratio for port in ports),
             "arrive": tuple(track for joint in plan.joints for track in joint.arrive),
             "send": tuple(track for joint in plan.joints for track in joint.sends),
-            "half_length": reals(panel.length / 2 for panel in plan.panels),
-            "since": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
-            "event_window": tuple(event.window for event in plan.events),
-            "event_panel": tuple(event.panel for event in plan.events),
-            "event_force": tuple(event.force for event in plan.events),
-            "event_power": reals(power for event in plan.events for power in event.powers),
-            "first_heard": _firsts(map(len, heard)),
-            "track": tuple(one.track for of in heard for one in of),
-            "gain": reals(one.gain for of in heard for one in of),
-            "summed": tuple(int(one.summed) for of in heard for one in of),
-            "delay": tuple(delays.index(one.delay) for of in heard for one in of),
-            "begin": tuple(map(real.not_below, begins)),
-            "first_stretch": _firsts(map(len, stretches)),
-            "from": tuple(real.not_below(max(start, fmpq(0))) for start in starts),
-            "start": reals(starts),
-            "excess": reals(rational(real.nearest(start)) - start for start in starts),
-            "low": reals(-stretch.start if id(stretch) in first else fmpq(0) for stretch in flat),
-            "high": reals(min(plan.panels[s.panel].length, plan.step - s.start) for s in flat),
-            "back": tuple(stretch.back for stretch in flat),
-            "panel_of": tuple(stretch.panel for stretch in flat),
         }
 
     def constants(self) -> dict[str, float]:
@@ -158,5 +169,5 @@ def state_bytes(plan: RingPlan, degree: int, real: Real) -> int:
     return real.bytes * slots * len(plan.panels) * (degree + 1)
 
 
-def _firsts(counts: Iterable[int]) -> tuple[int, ...]:
+def firsts(counts: Iterable[int]) -> tuple[int, ...]:
     return tuple(accumulate(counts, initial=0))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from wavesym.programs.program import Program, ReferenceValues, StreamedValues
-from wavesym.targets.c import closed, march, modes, pieces, rings, runtime
+from wavesym.programs.program import Program, ReferenceValues, SteppedValues, StreamedValues
+from wavesym.targets.c import closed, march, modes, pieces, rings, runtime, stream
 from wavesym.targets.c.header import header
 from wavesym.targets.c.selftest import selftest
 from wavesym.targets.description import Description
@@ -15,8 +15,12 @@ _SOURCES = {
     "march": march.source,
     "rings": rings.source,
     "modes": modes.source,
+    "stream": stream.source,
 }
-_MORE = {"march": march.streaming, "modes": modes.streaming}
+_MORE = {"march": march.streaming, "modes": modes.streaming, "stream": stream.streaming}
+
+# what a stream's bound of errors is for
+_UNDER = {"modes": "under the scene's loads", "stream": "under a step of each load at tau = 0"}
 
 
 class CTarget:
@@ -30,7 +34,7 @@ class CTarget:
         name = description.name
         more = _MORE[program.kind](description, program) if program.kind in _MORE else ""
         made = {
-            f"{name}.h": header(description, more, stream=program.kind == "modes"),
+            f"{name}.h": header(description, more, under=_UNDER.get(program.kind, "")),
             f"{name}.c": _SOURCES[program.kind](description, program),
         }
         match program.reference:
@@ -38,6 +42,8 @@ class CTarget:
                 made[f"{name}_selftest.c"] = selftest(description, program, program.reference)
             case StreamedValues():
                 made[f"{name}_selftest.c"] = modes.selftest(description, program, program.reference)
+            case SteppedValues():
+                made[f"{name}_selftest.c"] = stream.selftest(description, program, program.reference)
         return made
 
 

@@ -12,14 +12,14 @@ from wavesym.targets.description import Description
 class CHeader:
     """templates/c/header.h.j2; `more` is what a kind of program declares besides.
 
-    A `stream` has no functions of tau.
+    A stream has no functions of tau; its bound holds `under` certain loads.
     """
 
     scene: Description
     more: str
-    stream: bool
+    under: str
 
 
-def header(scene: Description, more: str = "", *, stream: bool = False) -> str:
+def header(scene: Description, more: str = "", *, under: str = "") -> str:
     """The interface that all programs share, and more."""
-    return render("c/header.h.j2", CHeader(scene, more, stream))
+    return render("c/header.h.j2", CHeader(scene, more, under))

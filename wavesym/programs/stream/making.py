@@ -1,0 +1,152 @@
+"""Model -> Program, for loads that come sample by sample.
+
+The degree is that of the march of the same chain on the same panels under a step of every load at tau = 0, of which
+rings/bound.py proves a bound: the least whose polynomials lose no more than the tolerance, or no more than rounding.
+Any loads that are straight on every panel are sums of such steps, earlier or later, and of their integrals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import inf, isfinite
+
+from flint import arb, fmpq
+
+from wavesym.errors import CostError, WavesymError
+from wavesym.mechanics.loads import Applied, merged
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import bound, nearest
+from wavesym.numbers.reals import REALS, Real
+from wavesym.programs.march.bound import Verdict
+from wavesym.programs.program import (
+    Program,
+    ProgramOutput,
+    Provenance,
+    ReferenceValues,
+    SteppedRow,
+    SteppedValues,
+)
+from wavesym.programs.reference_values import reference_values
+from wavesym.programs.request import Request
+from wavesym.programs.rings.bound import judge
+from wavesym.programs.rings.evaluator import first_degree, refuse_long
+from wavesym.programs.stream.plan import Input, StreamPlan, stream_plan
+from wavesym.programs.stream.tables import StreamTables
+
+_ONE = fmpq(1)
+_ROUNDINGS = 64  # no tolerance is smaller
+_SPARE = 4  # of the tolerance one step of each load takes so much less
+
+
+def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, tested: bool = False) -> Program:
+    """The program of a model whose loads are `inputs`, to be given while it runs.
+
+    WavesymError, CostError as `stream_plan` says, and where other options are given that say otherwise.
+    """
+    for option, value, usual in (
+        ("--evaluator", request.evaluator, "auto"),
+        ("--windows", request.windows, None),
+        ("--optimize", request.optimize, None),
+        ("--runtime", ",".join(request.runtime) or None, None),
+    ):
+        if value != usual:
+            raise WavesymError(f"{option}: {value} given with --stream, {usual or 'nothing'} expected")
+    real = REALS[request.precision]
+    plan = stream_plan(model, inputs, real, request.step)
+    degree, verdict = _enough(plan, model, real)
+    made = StreamTables(plan, degree, real)
+    tolerance = max(model.tolerance, _ROUNDINGS * real.roundoff)
+    program = Program(
+        "stream",
+        real,
+        plan.rings.tau_max,
+        tuple(
+            ProgramOutput(output.name, bound(arb(error)) if isfinite(error) else error, size)
+            for output, error, size in zip(plan.rings.outputs, verdict.bounds, verdict.largest, strict=True)
+        ),
+        made.tables(),
+        made.constants(nearest(tolerance)),
+        made.bytes,
+        Provenance(model, _reason(plan, degree, made), request.options),
+        sources=tuple(f"{given.name} [{given.unit}]" if given.unit else given.name for given in plan.inputs),
+        proved=False,
+        direct=plan.direct,
+    )
+    return replace(program, reference=_reference(model, plan, program)) if tested else program
+
+
+def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:
+    count = len(plan.rings.panels)
+    step = "" if plan.rings.step == 1 else f" of {plan.rings.step} tau"
+    return (
+        f"march as a stream, {count} panels a window{step}, degree {degree}, a state of about "
+        f"{-(-made.state_bytes // 1024)} KiB, {made.panel_operations} multiplications a panel"
+    )
+
+
+def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
+    """The least degree that will do, and what it is worth."""
+    degree, spent = max(first_degree(plan.rings, real) - 4, 4), 0.0
+    tolerance = nearest(max(model.tolerance, _ROUNDINGS * real.roundoff))
+    while True:
+        spent = refuse_long(plan.rings, degree, spent, real)
+        try:
+            verdict = judge(plan.rings, degree, real)
+        except OverflowError:
+            raise
+        except ArithmeticError as error:
+            raise CostError(f"system.parts: to solve the joints of a stream, {error} (softer springs help)") from None
+        worst = max(verdict.bounds)
+        # what polynomials have in it; where nothing is left of an output, what rounding has says what matters
+        share = tolerance * (verdict.truncated + verdict.rounded) / worst if 0 < worst < inf else verdict.rounded
+        if _SPARE * verdict.truncated <= share:
+            return degree, verdict
+        degree += 1
+
+
+@dataclass(frozen=True)
+class _Driven:
+    """What reference values are asked for: at these tau."""
+
+    real: Real
+    outputs: tuple[ProgramOutput, ...]
+    check_points: list[float]
+
+
+_CHECKED = 8  # longest steps of the march, at most
+_PLACES = (fmpq(3, 16), fmpq(9, 16), fmpq(15, 16))  # of a panel, where values are looked at
+
+
+def _reference(model: Model, plan: StreamPlan, program: Program) -> SteppedValues:
+    """Loads that jump at edges of panels and are held, and the exact values in between."""
+    panel, last = plan.panel, min(model.until, _CHECKED * max(plan.rings.step, _ONE))
+    count = int((last / panel).floor())
+    jumps = [(k, j, _leap(k, j)) for k in range(count) for j in range(len(plan.inputs)) if k % 5 == (2 * j) % 5]
+    applied = [Applied(plan.inputs[j].source, k * panel, rise / plan.inputs[j].size) for k, j, rise in jumps]
+    looked = [(k + _PLACES[k % len(_PLACES)]) * panel for k in range(count)]
+    taus = [nearest(tau) for tau in looked]
+    own = merged(applied) if plan.inputs else model.loads
+    found = reference_values(
+        replace(model.shortened(last), loads=own, endless=False), _Driven(program.real, program.outputs, taus)
+    )
+    assert isinstance(found, ReferenceValues)
+    columns = dict(zip(found.taus, zip(*found.values, strict=True), strict=True))
+    rows, now, time = [], [fmpq(0)] * len(plan.inputs), fmpq(0)
+    for k, (instant, tau) in enumerate(zip(looked, taus, strict=True)):
+        rows.append(_row(program.real, k * panel - time, now))
+        for _, j, rise in (jump for jump in jumps if jump[0] == k):
+            now[j] += rise
+        rows.append(_row(program.real, fmpq(0), now))
+        rows.append(replace(_row(program.real, instant - k * panel, now), values=columns.get(tau, ())))
+        time = instant
+    return SteppedValues(tuple(rows))
+
+
+def _row(real: Real, dtau: fmpq, loads: Sequence[fmpq]) -> SteppedRow:
+    return SteppedRow(real.nearest(dtau), tuple(map(real.nearest, loads)))
+
+
+def _leap(k: int, j: int) -> fmpq:
+    """Numbers from -1 to 1 that differ much from one to the next."""
+    return fmpq((7 * k * k + 3 * k + 5 * j) % 17 - 8, 8)

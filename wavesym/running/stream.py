@@ -1,0 +1,82 @@
+"""A stream, from Python: C of a scene whose loads come sample by sample, compiled and stepped."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from wavesym.errors import WavesymError
+from wavesym.programs.program import Program
+from wavesym.running.native import FAST, address, library
+from wavesym.targets.files import sources
+
+Array = NDArray[np.float64]
+
+
+class StreamModel:
+    """A scene whose loads come while it runs, in C: `start` gives as many streams of it as are wanted.
+
+    `outputs` and `loads` are the names, those of loads with their units. CompilerError without a C compiler.
+    """
+
+    def __init__(self, program: Program, flags: Sequence[str] = FAST) -> None:
+        name = program.provenance.model.name
+        files = sources(program, "c")
+        size = f"\nsize_t {name}_state_size(void);\nsize_t {name}_state_size(void) {{ return sizeof({name}_state); }}\n"
+        loaded = library(files[f"{name}.c"] + size, tuple(flags), (f"{name}.h", files[f"{name}.h"]))
+        real, where = ctypes.c_double if program.real.bytes == 8 else ctypes.c_float, ctypes.c_void_p
+        self._init, self._step, self._lost, self._size = (
+            getattr(loaded, f"{name}_{word}") for word in ("init", "step", "lost", "state_size")
+        )
+        self._init.argtypes, self._init.restype = [where], None
+        self._step.argtypes = [where, real, where, where]
+        self._lost.argtypes, self._lost.restype = [where], real
+        self._size.restype = ctypes.c_size_t
+        self.dtype = np.dtype(f"f{program.real.bytes}")
+        self.outputs = tuple(output.name for output in program.outputs)
+        self.loads = program.sources
+        self.panel = program.constants["panel"]
+
+    @property
+    def state_bytes(self) -> int:
+        """What a stream takes."""
+        return int(self._size())
+
+    def start(self) -> Stream:
+        """A stream at tau = 0, its loads 0."""
+        state = np.zeros(self.state_bytes, np.uint8)
+        self._init(address(state))
+        return Stream(self, state)
+
+
+class Stream:
+    """A stream. Its `state` is plain data: a copy goes on from where it was taken."""
+
+    def __init__(self, model: StreamModel, state: NDArray[np.uint8]) -> None:
+        self._model, self.state = model, state
+
+    def step(self, dtau: float, loads: ArrayLike) -> tuple[int, Array]:
+        """Go on by dtau while loads go straight to `loads`, or jump to them with dtau = 0: the status, and all outputs.
+
+        The status is 0, 1 where something is refused (outputs are NaN), or 2 where more than the tolerance may be lost.
+        WavesymError where there are not as many loads as the scene has.
+        """
+        model = self._model
+        given = np.array(loads, model.dtype).ravel()
+        if len(given) != len(model.loads):
+            raise WavesymError(f"loads: {len(given)} given, {len(model.loads)} expected ({', '.join(model.loads)})")
+        out = np.empty(len(model.outputs), model.dtype)
+        status = int(model._step(address(self.state), dtau, address(given), address(out)))
+        return status, out.astype(np.float64)
+
+    @property
+    def lost(self) -> float:
+        """What polynomials have lost so far, relative to the largest wave so far: an estimate."""
+        return float(self._model._lost(address(self.state)))
+
+    def copy(self) -> Stream:
+        """Another one that goes on from here."""
+        return Stream(self._model, self.state.copy())

@@ -1,0 +1,101 @@
+"""Loads at run time as C: a stream of waves, whatever the steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import accumulate
+
+from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.program import Program, SteppedValues
+from wavesym.rendering import render
+from wavesym.targets.c.kernel import kernel
+from wavesym.targets.description import Description, constants
+from wavesym.targets.literals import Lines, c_constants, c_literals, c_tables
+
+_ALLOWED = 10  # times the error bound
+
+
+@dataclass(frozen=True)
+class CStream:
+    """templates/c/stream.c.j2; every table as the lines between its braces."""
+
+    scene: Description
+    tables: dict[str, Lines]
+    constants: dict[str, str]
+    kernel: str
+
+
+@dataclass(frozen=True)
+class CStreamHeader:
+    """templates/c/stream.h.j2: the loads and their units as text, and as constants; outputs with those that act on them
+    at once.
+    """
+
+    scene: Description
+    constants: dict[str, str]
+    sources: tuple[tuple[str, str], ...]
+    direct: tuple[tuple[str, str], ...]
+    state: str
+
+
+@dataclass(frozen=True)
+class CStreamSelfTest:
+    """templates/c/stream_selftest.c.j2: `expected` by step, then by output; doubles whatever the program's type is."""
+
+    scene: Description
+    count: str
+    tables: dict[str, Lines]
+
+
+def source(scene: Description, program: Program) -> str:
+    """NAME.c."""
+    context = CStream(
+        scene=scene,
+        tables=c_tables(program.tables, program.real),
+        constants=c_constants(program.constants, program.real),
+        kernel=kernel("stream.c", scene),
+    )
+    return render("c/stream.c.j2", context)
+
+
+def streaming(scene: Description, program: Program) -> str:
+    """What NAME.h declares besides: the stream."""
+    names = [f"load@{source.partition(' ')[0]}" for source in program.sources]
+    context = CStreamHeader(
+        scene=scene,
+        constants=c_constants(program.constants, program.real),
+        sources=tuple(zip(program.sources, constants(names), strict=True)),
+        direct=tuple(
+            (output.name, ", ".join(program.sources[j] for j in of))
+            for output, of in zip(program.outputs, program.direct, strict=True)
+            if of
+        ),
+        state=kernel("stream_state.h", scene),
+    )
+    return render("c/stream.h.j2", context)
+
+
+def selftest(scene: Description, program: Program, reference: SteppedValues) -> str:
+    """The program that holds a stream against reference values."""
+    rows = reference.rows
+    sizes = [
+        max(map(abs, column), default=0.0) for column in zip(*(row.values for row in rows if row.values), strict=True)
+    ]
+    least = 2 * program.constants["tolerance"]
+    allowed = [
+        max(_ALLOWED * output.bound, least) * max(size, output.largest)
+        for output, size in zip(program.outputs, sizes, strict=True)
+    ]
+    places = accumulate((len(row.values) for row in rows), initial=0)
+    context = CStreamSelfTest(
+        scene=scene,
+        count=str(len(rows)),
+        tables={
+            "dtau": c_literals((row.dtau for row in rows), program.real),
+            "loads": c_literals((load for row in rows for load in row.loads), program.real),
+            "looked": c_literals((at if row.values else -1 for row, at in zip(rows, places, strict=False)), DOUBLE),
+            "expected": c_literals((value for row in rows for value in row.values), DOUBLE),
+            "allowed": c_literals(allowed, DOUBLE),
+        },
+    )
+    return render("c/stream_selftest.c.j2", context)
