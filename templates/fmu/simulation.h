@@ -37,7 +37,11 @@ typedef struct {
 } simulation;
 
 /* As bytes: what it belongs to, a check of what follows, and the situation. */
-enum { CHECK_PLACE = sizeof TOKEN, KEPT_PLACE = CHECK_PLACE + sizeof(uint64_t), KEPT_SIZE = KEPT_PLACE + sizeof(situation) };
+enum {
+    CHECK_PLACE = sizeof TOKEN,
+    KEPT_PLACE = CHECK_PLACE + sizeof(uint64_t),
+    KEPT_SIZE = KEPT_PLACE + sizeof(situation)
+};
 
 static int is_number(double x)
 {
@@ -140,9 +144,10 @@ static verdict march(simulation *s, double dtau)
 {
     const double count = STEPPED ? dtau / STEP_LENGTH : 0;
     const int steps = count > 0.5 && count < 1e6 ? (int)(count + 0.5) : 0;
+    const double all = steps > 0 ? steps : 1;
     double from[INPUTS + 1];
     double load[INPUTS + 1];
-    if (steps < 1 || fabs(count - steps) > 1e-6 * steps) {
+    if (steps < 1 || fabs(count - steps) > 1e-6 * all) {
         snprintf(s->said, sizeof s->said, "communicationStepSize: %.17g given, a whole multiple of %.17g expected",
                  dtau * SECONDS_PER_TAU, STEP_LENGTH * SECONDS_PER_TAU);
         return WRONG;
@@ -153,7 +158,7 @@ static verdict march(simulation *s, double dtau)
     }
     for (int k = 1; k <= steps; ++k) {
         for (int j = 0; j < INPUTS; ++j) {
-            load[j] = k < steps ? from[j] + (s->now.input[j] - from[j]) * k / steps : s->now.input[j];
+            load[j] = k < steps ? from[j] + (s->now.input[j] - from[j]) * (k / all) : s->now.input[j];
         }
         stream_step(&s->now.stream, STEP_LENGTH, load, s->now.output);
     }

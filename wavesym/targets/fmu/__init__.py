@@ -32,9 +32,9 @@ class FmuModel:
 
 @dataclass(frozen=True)
 class FmuDescription:
-    """templates/fmu/modelDescription2.xml.j2 and 3: variables in the order of their references; times of the simulator.
+    """templates/fmu/modelDescription3.xml.j2: variables in the order of their references; times of the simulator.
 
-    `about` says in a sentence what the model is and what time is; `files` are those to compile.
+    `about` says in a sentence what the model is and what time is.
     """
 
     scene: Description
@@ -44,6 +44,12 @@ class FmuDescription:
     stepped: bool
     stop: str
     step: str
+
+
+@dataclass(frozen=True)
+class FmuSourced(FmuDescription):
+    """templates/fmu/modelDescription2.xml.j2, which has the `files` to compile as well."""
+
     files: tuple[str, ...]
 
 
@@ -63,9 +69,12 @@ def fmu_files(scene: Description, program: Program, version: str) -> dict[str, s
     sources["model.h"] = render("fmu/model.h.j2", _model(scene, program))
     for file in (f"fmi{number}.c", f"fmi{number}.h", "simulation.h"):
         sources[file] = text_of(f"fmu/{file}")
+    context = _description(scene, program)
     if version == "fmu3":
         sources["buildDescription.xml"] = render("fmu/buildDescription.xml.j2", FmuBuild(scene, compiled))
-    described = render(f"fmu/modelDescription{number}.xml.j2", _description(scene, program, compiled))
+    else:
+        context = FmuSourced(**vars(context), files=compiled)
+    described = render(f"fmu/modelDescription{number}.xml.j2", context)
     return {"modelDescription.xml": described, **{f"sources/{file}": text for file, text in sorted(sources.items())}}
 
 
@@ -82,7 +91,7 @@ def _model(scene: Description, program: Program) -> FmuModel:
     )
 
 
-def _description(scene: Description, program: Program, compiled: tuple[str, ...]) -> FmuDescription:
+def _description(scene: Description, program: Program) -> FmuDescription:
     model = program.provenance.model
     found = variables(program)
     return FmuDescription(
@@ -93,7 +102,6 @@ def _description(scene: Description, program: Program, compiled: tuple[str, ...]
         stepped=_stepped(program),
         stop=_time(program, model.until),
         step=_time(program, panel(program)),
-        files=compiled,
     )
 
 

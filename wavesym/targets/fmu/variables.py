@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from flint import fmpq
 
@@ -14,9 +14,9 @@ from wavesym.targets.literals import literal
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of an FMU; its value reference is its place in the list. `kind` is that of its value: Real or Boolean.
+    """A variable of an FMU, by its value `reference`. `kind` is that of its value, "Real" or "Boolean".
 
-    `start` is empty where it is computed; `dependencies` of an output are the places of the inputs that act at once.
+    `start` is empty where it is computed; `dependencies` of an output are references of the inputs that act at once.
     """
 
     name: str
@@ -27,11 +27,34 @@ class Variable:
     unit: str = ""
     kind: str = "Real"
     dependencies: tuple[int, ...] = ()
+    reference: int = 0
+
+    @property
+    def initial(self) -> str:
+        """How its first value comes about; empty where that is clear."""
+        if self.variability == "constant":
+            return "exact"
+        return "calculated" if self.causality in ("output", "local") else ""
+
+    @property
+    def kind3(self) -> str:
+        """What FMI 3 calls its kind."""
+        return {"Real": "Float64"}.get(self.kind, self.kind)
+
+    @property
+    def place(self) -> int:
+        """Its number in FMI 2, which counts from 1."""
+        return 1 + self.reference
+
+    @property
+    def dependency_places(self) -> tuple[int, ...]:
+        """Its dependencies, so counted."""
+        return tuple(1 + reference for reference in self.dependencies)
 
 
 def variables(program: Program) -> tuple[Variable, ...]:
-    """All of them, in the order of templates/fmu/model.h.j2."""
-    return tuple(_variables(program))
+    """All of them, in the order of their references, which is that of templates/fmu/model.h.j2."""
+    return tuple(replace(one, reference=reference) for reference, one in enumerate(_variables(program)))
 
 
 def _variables(program: Program) -> Iterator[Variable]:
