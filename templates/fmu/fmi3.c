@@ -497,3 +497,78 @@ fmi3Status FMI3(fmi3GetOutputDerivatives)(fmi3Instance it, const fmi3ValueRefere
     (void)count;
     return none(it, "a derivative of an output");
 }
+
+/* What is of model exchange and of scheduled execution. */
+fmi3Status FMI3(fmi3EnterContinuousTimeMode)(fmi3Instance it)
+{
+    return none(it, "model exchange");
+}
+
+fmi3Status FMI3(fmi3CompletedIntegratorStep)(fmi3Instance it, fmi3Boolean never_back, fmi3Boolean *event,
+                                             fmi3Boolean *end)
+{
+    (void)never_back;
+    (void)event;
+    (void)end;
+    return none(it, "model exchange");
+}
+
+fmi3Status FMI3(fmi3SetTime)(fmi3Instance it, fmi3Float64 time)
+{
+    (void)time;
+    return none(it, "model exchange");
+}
+
+fmi3Status FMI3(fmi3SetContinuousStates)(fmi3Instance it, const fmi3Float64 state[], size_t count)
+{
+    (void)state;
+    (void)count;
+    return none(it, "model exchange");
+}
+
+fmi3Status FMI3(fmi3GetContinuousStateDerivatives)(fmi3Instance it, fmi3Float64 rate[], size_t count)
+{
+    (void)rate;
+    (void)count;
+    return none(it, "model exchange");
+}
+
+fmi3Status FMI3(fmi3GetEventIndicators)(fmi3Instance it, fmi3Float64 indicator[], size_t count)
+{
+    (void)indicator;
+    (void)count;
+    return none(it, "model exchange");
+}
+
+fmi3Status FMI3(fmi3GetContinuousStates)(fmi3Instance it, fmi3Float64 state[], size_t count)
+{
+    (void)state;
+    (void)count;
+    return none(it, "model exchange");
+}
+
+fmi3Status FMI3(fmi3GetNominalsOfContinuousStates)(fmi3Instance it, fmi3Float64 nominal[], size_t count)
+{
+    (void)nominal;
+    (void)count;
+    return none(it, "model exchange");
+}
+
+fmi3Status FMI3(fmi3GetNumberOfEventIndicators)(fmi3Instance it, size_t *count)
+{
+    (void)count;
+    return none(it, "model exchange");
+}
+
+fmi3Status FMI3(fmi3GetNumberOfContinuousStates)(fmi3Instance it, size_t *count)
+{
+    (void)count;
+    return none(it, "model exchange");
+}
+
+fmi3Status FMI3(fmi3ActivateModelPartition)(fmi3Instance it, fmi3ValueReference clock, fmi3Float64 time)
+{
+    (void)clock;
+    (void)time;
+    return none(it, "scheduled execution");
+}

@@ -169,6 +169,19 @@ FMI3_EXPORT fmi3Status FMI3(fmi3GetOutputDerivatives)(fmi3Instance, const fmi3Va
 FMI3_EXPORT fmi3Status FMI3(fmi3DoStep)(fmi3Instance, fmi3Float64, fmi3Float64, fmi3Boolean, fmi3Boolean *,
                                         fmi3Boolean *, fmi3Boolean *, fmi3Float64 *);
 
+/* Of model exchange and scheduled execution, which this is not for: simulators look for the names of all functions. */
+FMI3_EXPORT fmi3Status FMI3(fmi3EnterContinuousTimeMode)(fmi3Instance);
+FMI3_EXPORT fmi3Status FMI3(fmi3CompletedIntegratorStep)(fmi3Instance, fmi3Boolean, fmi3Boolean *, fmi3Boolean *);
+FMI3_EXPORT fmi3Status FMI3(fmi3SetTime)(fmi3Instance, fmi3Float64);
+FMI3_EXPORT fmi3Status FMI3(fmi3SetContinuousStates)(fmi3Instance, const fmi3Float64[], size_t);
+FMI3_EXPORT fmi3Status FMI3(fmi3GetContinuousStateDerivatives)(fmi3Instance, fmi3Float64[], size_t);
+FMI3_EXPORT fmi3Status FMI3(fmi3GetEventIndicators)(fmi3Instance, fmi3Float64[], size_t);
+FMI3_EXPORT fmi3Status FMI3(fmi3GetContinuousStates)(fmi3Instance, fmi3Float64[], size_t);
+FMI3_EXPORT fmi3Status FMI3(fmi3GetNominalsOfContinuousStates)(fmi3Instance, fmi3Float64[], size_t);
+FMI3_EXPORT fmi3Status FMI3(fmi3GetNumberOfEventIndicators)(fmi3Instance, size_t *);
+FMI3_EXPORT fmi3Status FMI3(fmi3GetNumberOfContinuousStates)(fmi3Instance, size_t *);
+FMI3_EXPORT fmi3Status FMI3(fmi3ActivateModelPartition)(fmi3Instance, fmi3ValueReference, fmi3Float64);
+
 #ifdef __cplusplus
 }
 #endif
