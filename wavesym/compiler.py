@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     from wavesym.mechanics.model import Model
     from wavesym.mechanics.node import System
     from wavesym.papers.entries import PaperEntry
+    from wavesym.programs.program import Program
     from wavesym.running.sets import RuntimeModel
 
 
@@ -273,7 +274,11 @@ def generate(
     drive/drive_m1.py
     """
     request = _request(evaluator, precision, windows, optimize, runtime, stream, step, target)
-    made = _written(scene, directory, language, request, package)
+    made: Mapping[Path, str | bytes]
+    if target:
+        made = {Path(directory or scene.name) / f"{scene.name}.fmu": _fmu(scene, language, request, package)}
+    else:
+        made = _written(scene, directory, language, request, package)
     for path in made:
         if not force and path.is_file() and not is_ours(path):
             raise WavesymError(f"{path}: exists and was not written by wavesym; --force replaces it")
@@ -302,7 +307,7 @@ def check(
     last line is the command that mends them, with the scene as it is given by `source`.
     """
     request = _request(evaluator, precision, windows, optimize, runtime, stream, step)
-    made = {path: text for path, text in _written(scene, directory, language, request, package).items()}
+    made = _written(scene, directory, language, request, package)
     folder = Path(directory or scene.name)
     found = [path for path in folder.glob(f"{scene.name}*") if path.is_file()]
     left = [path for path, place in traces(folder) if place.name.startswith(scene.name)]
@@ -333,15 +338,13 @@ def _request(
 
 def _written(
     scene: Scene, directory: str | Path | None, language: str, request: Request, package: bool
-) -> Mapping[Path, str | bytes]:
-    """What stands in every file of a scene, by path."""
+) -> dict[Path, str]:
+    """The text of every file of a scene, by path."""
     folder = Path(directory or scene.name)
     refuse_unknown("language", language, LANGUAGES)
     request.refuse_unknown()
     if package and language not in ("c", "all"):
         raise WavesymError(f"package: language {language} given, c or all expected, since CMake builds C")
-    if request.target:
-        return {folder / f"{scene.name}.fmu": _fmu(scene, language, request, package)}
     model = lower(scene)
     if request.stream and request.evaluator != "modes":
         if language != "c":

@@ -1,6 +1,7 @@
 """FMUs do in a simulator what the scene says: held against the exact values of the same loads, known in advance."""
 
 from fractions import Fraction
+from itertools import pairwise
 from random import Random
 
 import numpy as np
@@ -58,7 +59,7 @@ def missed(found: list[list[float]], taus: list[float], scene: wavesym.Scene) ->
 def stepped(instance: Instance, points: list[float], jumps: Fraction, start: float = 0.0) -> list[list[float]]:
     """The outputs at these points after the first, while loads jump at multiples of a time."""
     found = []
-    for at, then in zip(points[:-1], points[1:], strict=True):
+    for at, then in pairwise(points):
         k = int((Fraction(at - start) + Fraction(1, 10**9)) / jumps)
         instance.put({name: level(k, j) for j, name in enumerate(LOADS)})
         instance.step(at, then - at)
@@ -307,7 +308,10 @@ FAULTS = {
         "    if (!s->now.linear) {\n        stream_step(&s->now.stream, 0, s->now.input, s->now.output);\n    }\n",
         "",
     ),
-    "a first value": ("    } else {\n        stream_step(&s->now.stream, 0, s->now.input, s->now.output);\n    }", "    }"),
+    "a first value": (
+        "    } else {\n        stream_step(&s->now.stream, 0, s->now.input, s->now.output);\n    }",
+        "    }",
+    ),
     "a check": ("check != checksum(kept)", "0"),
     "a number": ("if (!is_number(value[k])) {", "if (0) {"),
     "an order": ('need(s, s->now.phase == STEPPING, "doStep") != FINE', "0"),

@@ -53,8 +53,14 @@ class Instance:
     def _logger(self) -> dict[str, Any]:
         if not self.two:
             return {"logMessage": lambda _, status, category, message: self.said.append(message.decode())}
-        from fmpy.fmi2 import calloc, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, free
-        from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+        from fmpy.fmi2 import (
+            calloc,
+            fmi2CallbackAllocateMemoryTYPE,
+            fmi2CallbackFreeMemoryTYPE,
+            fmi2CallbackFunctions,
+            fmi2CallbackLoggerTYPE,
+            free,
+        )
 
         # the text is an argument of a format that ctypes does not show: it is known that something was said
         def log(_, name, status, category, message):

@@ -191,7 +191,9 @@ def test_zig_builds_for_three_machines(tmp_path):
         assert b"fmi2DoStep" in library
         assert b"stream_step" not in library
         assert str(tmp_path).encode() not in library
-    needed = {int(word.split(b"\0")[0].split(b".")[1]) for word in linux.split(b"GLIBC_2.")[1:] for word in [b"2." + word]}
+    needed = {
+        int(word.split(b"\0")[0].split(b".")[1]) for word in linux.split(b"GLIBC_2.")[1:] for word in [b"2." + word]
+    }
     assert needed
     assert max(needed) <= 17
 

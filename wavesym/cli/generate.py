@@ -117,9 +117,10 @@ def generate(
         if difference:
             put(difference)
         return 1 if difference else 0
-    how = {"stream": stream, "step": step, "package": package, "target": target or "", "force": force}
     with progress(f"generate {scene.name}"):
-        written = compiler.generate(*asked, given, **how)
+        written = compiler.generate(
+            *asked, given, stream=stream, step=step, package=package, target=target or "", force=force
+        )
     for path in written:
         click.echo(path)
     for line in compiler.fmu_told(written[0]) if target else ():

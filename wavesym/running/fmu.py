@@ -1,4 +1,4 @@
-"""An FMU: one file of sources, descriptions and what the C compiles to, for as many machines as there is a compiler for.
+"""An FMU: one file of sources, descriptions and what the C compiles to, for as many machines as compilers know.
 
 The zig compiler, which comes as the Python package ziglang, links for all of them, on Linux for any glibc from 2.17 on.
 Without it the machine's own compiler does for that machine.
@@ -64,7 +64,7 @@ def fmu(program: Program, version: str) -> bytes:
 
 
 def told(path: Path) -> list[str]:
-    """Of a file that was made: for which machines it has binaries, how many more there could be, and why this stream."""
+    """Of a file that was made: for which machines it has binaries, what would make more, and why this stream."""
     with ZipFile(path) as archive:
         machines = [place.split("/")[1] for place in archive.namelist() if place.startswith("binaries/")]
         reason = json.loads(archive.read(f"resources/{path.stem}.json"))["reason"]
