@@ -38,11 +38,11 @@ class Compiler(SimpleNamespace):
     def __init__(self) -> None:
         super().__init__(asked=[], difference="", allowed=True)
 
-    def generate(self, scene: object, *options: object, force: bool = False) -> tuple[Path, ...]:
+    def generate(self, scene: object, *options: object, **more: object) -> tuple[Path, ...]:
         self.asked.append(options)
         return (Path("out/mine.c"), Path("out/mine.h"))
 
-    def check(self, scene: object, *options: object) -> str:
+    def check(self, scene: object, *options: object, **more: object) -> str:
         self.asked.append(options)
         return self.difference
 
@@ -138,7 +138,8 @@ def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(f"  {command} " in text for command in COMMANDS)
 
 
-LONG = ("chart", "stability")  # their examples have no use for a stand-in; tests/test_documents.py runs all as they are
+LONG = ("chart", "stability", "sweep")
+"""Their examples have no use for a stand-in; tests/test_documents.py runs all as they are."""
 
 
 def example(command: str, capsys: pytest.CaptureFixture[str]) -> list[str]:
