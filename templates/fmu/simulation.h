@@ -70,10 +70,11 @@ static double to_tau(const situation *now, double time)
     return (time - now->start) / SECONDS_PER_TAU;
 }
 
-/* Outputs as they are with the inputs of now. */
+/* Outputs as they are with the inputs of now, where these act at once; what is tried is no part of the stream. */
 static void refresh(simulation *s)
 {
-    if (s->now.stale && !STEPPED && (!s->now.linear || s->now.phase < STEPPING)) {
+    const int follows = s->now.phase < STEPPING || (DIRECT && !s->now.linear);
+    if (s->now.stale && !STEPPED && follows) {
         memcpy(&s->trial, &s->now.stream, sizeof s->trial);
         stream_step(&s->trial, 0, s->now.input, s->now.output);
     }

@@ -303,7 +303,7 @@ def test_a_full_disk(compiler: Compiler, capsys: pytest.CaptureFixture[str], mon
 
 def test_errors_of_the_compiler(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
     def failing(error: Exception) -> object:
-        def generate(*_: object, force: bool) -> None:
+        def generate(*_: object, **more: object) -> None:
             raise error
 
         return generate

@@ -234,6 +234,7 @@ def test_a_jump_inside_of_a_panel_is_told_once(gears):
     instance.end()
 
 
+STOREYS = [{"count": 3, "height": "3.5 m", "stiffness": "678 MN/m", "column_mass": "10.871 t", "floor_mass": "350 t"}]
 SHAKEN = wavesym.Scene(
     name="shaken",
     units={"length": "mm"},
@@ -241,9 +242,7 @@ SHAKEN = wavesym.Scene(
         "type": "building",
         "base": "ground",
         "damping": 0.05,
-        "storey": [
-            {"count": 3, "height": "3.5 m", "stiffness": "678 MN/m", "column_mass": "10.871 t", "floor_mass": "350 t"}
-        ],
+        "storey": STOREYS,
     },
     load=[{"spacing": "0.02 s", "samples": [0, 0.1, -0.2, 0.15, 0.3, -0.1, 0], "unit": "g"}],
     output={"until": "0.5 s", "tolerance": "1e-6", "displacement": [3], "drift": [1], "velocity": [2]},
@@ -277,8 +276,36 @@ def test_damped_modes_in_seconds_and_millimetres(version, tmp_path):
     instance.end()
 
 
+def test_undamped_waves_in_seconds(tmp_path):
+    """Loads that jump at every third panel, in steps of a panel; then a long step."""
+    scene = wavesym.Scene(
+        name="frame",
+        units={"length": "mm"},
+        system={"type": "building", "base": "ground", "storey": STOREYS},
+        load=[{"times": ["0 s"], "a": ["0.1 g"], "b": ["0 g/s"]}],
+        output={"until": "0.5 s", "tolerance": "1e-12", "displacement": [3], "drift": [1]},
+    )
+    instance = Instance(made(scene, tmp_path, "fmu2"), tmp_path / "extracted")
+    (panel,) = instance.get(["panel"])
+    instance.begin({"load@a": 0.980665})
+    names, found, times = ["displacement@3", "drift@1"], [], []
+    for k in range(8):
+        instance.step(k * panel, panel)
+        times.append((k + 1) * panel)
+        found.append(instance.get(names))
+    instance.step(8 * panel, 0.3)
+    found.append(instance.get(names))
+    times.append(8 * panel + 0.3)
+    response = wavesym.evaluator(scene)
+    assert missed(found, [time * response.tau_max / 0.5 for time in times], scene) < 1e-12
+    instance.end()
+
+
+COLLISION = wavesym.Scene.from_toml("collision_m4")
+
+
 @pytest.mark.parametrize("version", VERSIONS)
-@pytest.mark.parametrize("scene", [GEARS, TOWER, SHAKEN], ids=["gears", "tower", "shaken"])
+@pytest.mark.parametrize("scene", [GEARS, TOWER, SHAKEN, COLLISION], ids=lambda scene: scene.name)
 def test_it_is_valid_and_simulates(scene, version, tmp_path):
     """By fmpy's validation, and by its simulation, in which nobody knows of wavesym."""
     from fmpy import simulate_fmu

@@ -23,6 +23,7 @@ class FmuModel:
     scene: Description
     seconds: str
     inputs: str
+    direct: str
     linear: str
     stepped: str
     constants: tuple[str, ...]
@@ -83,6 +84,7 @@ def _model(scene: Description, program: Program) -> FmuModel:
         scene=scene,
         seconds=scene.seconds or "1.0",
         inputs=str(len(program.sources)),
+        direct=str(int(any(program.direct))),
         linear=str(int(_stepped(program))),
         stepped=str(int(_stepped(program))),
         constants=tuple(one.start for one in variables(program) if one.variability == "constant"),
