@@ -429,12 +429,12 @@ def _fmu(scene: Scene, language: str, request: Request, package: bool) -> bytes:
         ("language", language, "c"),
         ("precision", request.precision, "double"),
         ("runtime", ",".join(request.runtime), ""),
-        ("package", "it" if package else "", ""),
+        ("package", str(package), "False"),
     ):
         if given != usual:
             raise WavesymError(f"{option}: {given} given with --target, {usual or 'nothing'} expected")
     model = lower(scene)
-    if model.damping is None and request.evaluator != "modes":
+    if request.evaluator != "modes" and (model.damping is None or request.evaluator != "auto"):
         return fmu(stream_program(scene, request), request.target)
     if request.step is not None:
         raise WavesymError(f"--step: {request.step} given with modes, nothing expected (loads say what it is)")

@@ -96,6 +96,19 @@ def test_the_wrapper_compiles_without_a_warning(version, language, tmp_path):
     assert (tmp_path / "made.o").stat().st_size > 0
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("version", VERSIONS)
+def test_several_models_go_into_one_program(version, tmp_path):
+    """By a prefix to all names, as the standard has it for sources."""
+    strict(version, tmp_path)
+    number = version[-1]
+    prefix = f"-DFMI{number}_FUNCTION_PREFIX=geared_"
+    compiler().run([*LANGUAGES["c99"], *STRICT, prefix, "-c", f"fmi{number}.c", "-o", "named.o"], tmp_path)
+    named = (tmp_path / "named.o").read_bytes()
+    assert f"\0geared_fmi{number}DoStep\0".encode() in named
+    assert f"\0fmi{number}DoStep\0".encode() not in named
+
+
 @needs_fmpy
 @pytest.mark.slow
 @pytest.mark.parametrize("version", VERSIONS)
@@ -131,7 +144,7 @@ REFUSED = {
     "language": ({"language": "numpy"}, "language: numpy given with --target, c expected"),
     "precision": ({"precision": "single"}, "precision: single given with --target, double expected"),
     "runtime": ({"runtime": ["kappa"]}, "runtime: kappa given with --target, nothing expected"),
-    "package": ({"package": True}, "package: it given with --target, nothing expected"),
+    "package": ({"package": True}, "package: True given with --target, False expected"),
     "evaluator": ({"evaluator": "march"}, "--evaluator: march given with --stream, auto expected"),
     "step": ({"evaluator": "modes", "step": Fraction(1, 8)}, "--step: 1/8 given with --evaluator modes"),
     "target": ({"target": "fmu1"}, "target: fmu1 given, fmu2 or fmu3 expected"),
