@@ -276,6 +276,29 @@ def test_damped_modes_in_seconds_and_millimetres(version, tmp_path):
     instance.end()
 
 
+def test_held_loads_of_modes_add_up(tmp_path):
+    """What a load that changes does is the sum of what its changes do, each from its instant on."""
+    path = made(SHAKEN, tmp_path, "fmu2")
+    names = ["velocity@2", "displacement@3", "drift@1"]
+
+    def ran(loads, first=None, **linear):
+        instance = Instance(path, tmp_path / "extracted").begin({} if first is None else {"load@a": first}, **linear)
+        rows = []
+        for k, load in enumerate(loads):
+            instance.put({"load@a": load})
+            instance.step(k * 0.02, 0.02)
+            rows.append(instance.get(names))
+        instance.end()
+        return np.array(rows)
+
+    one = ran([1.0] * 20, linear=False)
+    assert np.array_equal(one, ran([1.0] * 20, first=1.0, linear=True))
+    both = ran([2.0] * 7 + [-1.0] * 13, linear=False)
+    both[7:] += 3 * one[:13]
+    assert np.max(np.abs(both - 2 * one)) < 1e-12 * np.max(np.abs(one))
+    assert np.max(np.abs(one[0])) > 0
+
+
 def test_undamped_waves_in_seconds(tmp_path):
     """Loads that jump at every third panel, in steps of a panel; then a long step."""
     scene = wavesym.Scene(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import shutil
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -117,9 +115,8 @@ class Instance:
 
     def end(self) -> None:
         """Free it; the library stays."""
-        self.slave.fmi2FreeInstance(self.slave.component) if self.two else self.slave.fmi3FreeInstance(
-            self.slave.component
-        )
+        free = self.slave.fmi2FreeInstance if self.two else self.slave.fmi3FreeInstance
+        free(self.slave.component)
 
 
 def broken(path: Path, folder: Path, right: str, wrong: str) -> Path:
@@ -139,15 +136,3 @@ def broken(path: Path, folder: Path, right: str, wrong: str) -> Path:
     names = [main.name, f"{library.stem}.c"]
     compiler().run(["-std=c99", "-O1", "-shared", "-fPIC", "-w", *names, "-o", str(library), "-lm"], sources)
     return path
-
-
-def copied(path: Path, name: str) -> Path:
-    """The same file by another name."""
-    return Path(shutil.copy(path, path.with_name(name)))
-
-
-def exported(header: str) -> set[str]:
-    """The functions that a header of ours declares."""
-    named = set(re.findall(r"FMI\d\((fmi\d\w+)\)\(", header)) - {"fmi3Get", "fmi3Set"}
-    typed = re.findall(r"^FMI3_(GET|SET)\((\w+)\);", header, re.MULTILINE)
-    return named | {f"fmi3{word.capitalize()}{kind}" for word, kind in typed}
