@@ -145,18 +145,27 @@ class Reader:
         words = words[:-3] if told else words
         file = words.pop() if words[-2:-1] == [">"] else None
         words = words[:-1] if file else words
+        given = ""
+        if words[0] == "sed" and words.count("|") == 1 and not self.patience:
+            at = words.index("|")
+            given, words = self.process(words[:at]), words[at + 1 :]
         if words[0] == "wavesym" and not self.patience and not SHELL & set(" ".join(words)):
-            return self.here(words[1:], file, told=told)
+            return self.here(words[1:], file, given, told=told)
         return self.process(["bash", "-c", line])
 
-    def here(self, arguments: list[str], file: str | None, *, told: bool) -> str:
+    def here(self, arguments: list[str], file: str | None, given: str, *, told: bool) -> str:
         """What a command of wavesym puts out, without the second that a process takes to start.
 
-        Standard output goes into a `file`, where there is one; a status other than 0 is wrong where it is not `told`.
+        Standard input is what is `given`. Standard output goes into a `file`, where there is one; a status other than 0
+        is wrong where it is not `told`.
         """
-        out, err = io.StringIO(), io.StringIO()
+        out, err, before = io.StringIO(), io.StringIO(), sys.stdin
         with chdir(self.folder), redirect_stdout(out), redirect_stderr(err if file else out):
-            status = main(arguments)
+            sys.stdin = io.TextIOWrapper(io.BytesIO(given.encode()))
+            try:
+                status = main(arguments)
+            finally:
+                sys.stdin = before
         assert status == 0 or told, out.getvalue() + err.getvalue()
         if file:
             (self.folder / file).write_text(out.getvalue(), encoding="utf-8")

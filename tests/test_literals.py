@@ -90,18 +90,19 @@ class Pieces:
         self.last = Fraction(math.nextafter(float(self.until), math.inf))
 
     def grids(self):
-        """Of each grid: its outputs, starts, centres, and a list of literals for every piece and output."""
+        """Of each grid: its outputs, starts, centres, and a list of literals for every piece and output.
+
+        Where an output needs fewer powers than others on the same piece, those left over are 0 and not in its list.
+        """
         first, powers = self.integer["first_power"], self.real["coefficient"]
-        polynomial = 0
         for g, (low, high) in enumerate(pairwise(self.integer["first_piece"])):
             members = self.integer["member"][slice(*self.integer["first_member"][g : g + 2])]
             rows = []
-            for _ in range(high - low):
-                ends = pairwise(first[polynomial : polynomial + len(members) + 1])
-                rows.append([powers[a:b][::-1] for a, b in ends])  # written for Horner's rule
-                polynomial += len(members)
+            for a, b in pairwise(first[low : high + 1]):
+                of_all = [powers[a:b][m :: len(members)] for m in range(len(members))]  # written for Horner's rule
+                rows.append([row[next((k for k, c in enumerate(row) if float(c)), -1) :][::-1] for row in of_all])
             yield members, self.real["start"][low + g : high + g + 1], self.real["centre"][low:high], rows
-        assert polynomial == len(first) - 1
+        assert high == len(first) - 1
 
     def cuts(self, x: Fraction) -> list[Fraction]:
         """Where pieces end, exact: the loads come at integers, so waves reach x at integers and x more or less."""

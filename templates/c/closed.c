@@ -25,7 +25,7 @@ int name_eval(real tau, real out[NAME_OUTPUTS])
 {
     const int inside = tau >= 0 && tau <= NAME_TAU_MAX;
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        out[output] = inside ? value(output, tau) : (real)NAN;
+        out[output] = inside ? value(output, tau) : not_a_number();
     }
     return !inside;
 }

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-typedef name_real real;
+#include "real.h"
 
 real exponential(real x);
 

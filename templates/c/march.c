@@ -354,7 +354,7 @@ int name_read(const march *state, real tau, real out[OUTPUTS])
     const real t = tau - (real)state->window;
     const int inside = state->within && state->window >= 0 && t >= 0 && t < 1 && tau <= last_tau;
     for (int output = 0; output < OUTPUTS; ++output) {
-        out[output] = inside ? value(state, output, t) : (real)NAN;
+        out[output] = inside ? value(state, output, t) : not_a_number();
     }
     return !inside;
 }
@@ -392,15 +392,10 @@ static int outputs_at(march *state, real tau, real out[OUTPUTS])
     return (status != 0) | name_read(state, tau, out);
 }
 
-static int in_range(real tau)
-{
-    return tau >= 0 && tau <= NAME_TAU_MAX;
-}
-
 static int refuse(real out[OUTPUTS])
 {
     for (int output = 0; output < OUTPUTS; ++output) {
-        out[output] = (real)NAN;
+        out[output] = not_a_number();
     }
     return 1;
 }
@@ -408,7 +403,7 @@ static int refuse(real out[OUTPUTS])
 int name_eval(real tau, real out[OUTPUTS])
 {
     march state;
-    if (!in_range(tau)) {
+    if (!(tau == tau && tau >= 0 && tau <= NAME_TAU_MAX)) {
         return refuse(out);
     }
     name_init(&state);
@@ -427,7 +422,11 @@ int name_sample(real tau0, real dtau, size_t count, real *out)
         const volatile real step = (real)k * dtau;
         const real tau = tau0 + step;
         real at_tau[OUTPUTS];
-        outside |= in_range(tau) ? outputs_at(&state, tau, at_tau) : refuse(at_tau);
+        if (tau == tau && tau >= 0 && tau <= NAME_TAU_MAX) {
+            outside |= outputs_at(&state, tau, at_tau);
+        } else {
+            outside |= refuse(at_tau);
+        }
         for (size_t output = 0; output < OUTPUTS; ++output) {
             out[output * count + k] = at_tau[output];
         }

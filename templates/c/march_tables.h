@@ -1,13 +1,11 @@
 /* march_tables.h: stands for what march.c.j2 writes above the text of march.c, where that is read by itself. */
 #include "name.h"
 
-#include <math.h>
-
 enum { NAME_DEGREE = 20, NAME_PANELS = 2, NAME_NODES = 3, NAME_FORCES = 1, NAME_WAYS = 3, NAME_SOURCES = 1, NAME_POINTS = 42 };
 
 #include "march_state.h"
 
-typedef name_real real;
+#include "real.h"
 typedef name_state march;
 
 enum {

@@ -85,7 +85,7 @@ int name_step(stream *state, real dtau, const real *load, real *out)
         wrong |= !is_number(load[j]);
     }
     for (int output = 0; output < OUTPUTS; ++output) {
-        out[output] = wrong ? (real)NAN : (real)0;
+        out[output] = wrong ? not_a_number() : (real)0;
     }
     if (wrong) {
         return 1;

@@ -1,13 +1,11 @@
 /* modes_tables.h: stands for what modes.c.j2 writes above the text of modes.c, where that is read by itself. */
 #include "name.h"
 
-#include <math.h>
-
 enum { NAME_MODES = 24, NAME_LOADS = 2 };
 
 #include "modes_state.h"
 
-typedef name_real real;
+#include "real.h"
 typedef name_state stream;
 
 enum { OUTPUTS = NAME_OUTPUTS, MODES = NAME_MODES, LOADS = NAME_LOADS, LANES = 8, MOVED = 2, MOVING = 1 };

@@ -1,9 +1,7 @@
 /* pieces_tables.h: stands for what pieces.c.j2 writes above the text of pieces.c, where that is read by itself. */
 #include "name.h"
 
-#include <math.h>
-
-typedef name_real real;
+#include "real.h"
 
 enum { GRIDS = 2 };
 
@@ -17,6 +15,5 @@ extern const real centre[];
 extern const int first_part[];
 extern const real scale[];
 extern const int part[];
-extern const int first_polynomial[];
 extern const int first_power[];
 extern const real coefficient[];

@@ -283,15 +283,10 @@ static void outputs_at(march *state, real tau, real out[OUTPUTS])
     read_at(state, t, out);
 }
 
-static int in_range(real tau)
-{
-    return tau >= 0 && tau <= NAME_TAU_MAX;
-}
-
 static int refuse(real out[OUTPUTS])
 {
     for (int output = 0; output < OUTPUTS; ++output) {
-        out[output] = (real)NAN;
+        out[output] = not_a_number();
     }
     return 1;
 }
@@ -299,7 +294,7 @@ static int refuse(real out[OUTPUTS])
 int name_eval(real tau, real out[OUTPUTS])
 {
     march state;
-    if (!in_range(tau)) {
+    if (!(tau == tau && tau >= 0 && tau <= NAME_TAU_MAX)) {
         return refuse(out);
     }
     begin_march(&state);
@@ -319,7 +314,7 @@ int name_sample(real tau0, real dtau, size_t count, real *out)
         const volatile real distance = (real)k * dtau;
         const real tau = tau0 + distance;
         real at_tau[OUTPUTS];
-        if (in_range(tau)) {
+        if (tau == tau && tau >= 0 && tau <= NAME_TAU_MAX) {
             outputs_at(&state, tau, at_tau);
         } else {
             outside |= refuse(at_tau);

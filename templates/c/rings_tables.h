@@ -1,9 +1,7 @@
 /* rings_tables.h: stands for what rings.c.j2 writes above the text of rings.c, where that is read by itself. */
 #include "name.h"
 
-#include <math.h>
-
-typedef name_real real;
+#include "real.h"
 
 enum {
     OUTPUTS = NAME_OUTPUTS,

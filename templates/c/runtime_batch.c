@@ -442,7 +442,7 @@ int name_build_batch(name_batch *batch, const name_parameters *parameters, size_
             batch->status[set] = 1;
         }
         if (batch->status[set] != 0) {
-            LANE(batch->estimate, set) = (real)NAN;
+            LANE(batch->estimate, set) = not_a_number();
         }
         if ((size_t)set < sets && batch->status[set] > highest) {
             highest = batch->status[set];
@@ -454,7 +454,7 @@ int name_build_batch(name_batch *batch, const name_parameters *parameters, size_
 int name_batch_model(const name_batch *batch, int set, name_model *model)
 {
     model->built = set >= 0 && set < NAME_WIDTH && batch->status[set] == 0;
-    model->estimate = model->built ? LANE(batch->estimate, set) : (real)NAN;
+    model->estimate = model->built ? LANE(batch->estimate, set) : not_a_number();
     for (int window = 0; window < NAME_WINDOWS && model->built; ++window) {
         const size_t begin = batch->place[window];
         const size_t size = (size_t)NAME_STRANDS * (size_t)(batch->degree[window] + 2);

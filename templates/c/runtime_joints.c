@@ -396,7 +396,7 @@ static void follow(name_tangent *tangent, const laws *law, const laws *slope, in
 static int begun(model_of *m, const name_parameters *parameters, laws *law)
 {
     m->built = 0;
-    m->estimate = (real)NAN;
+    m->estimate = not_a_number();
     if (!good(parameters)) {
         return 1;
     }

@@ -230,6 +230,6 @@ void name_batch_misfit(const name_batch *batch, const name_data *data, name_real
         misfit_of(batch, data, &sum);
     }
     for (int set = 0; set < NAME_WIDTH; ++set) {
-        misfit[set] = batch->status[set] == 0 ? LANE(sum, set) : (real)NAN;
+        misfit[set] = batch->status[set] == 0 ? LANE(sum, set) : not_a_number();
     }
 }

@@ -65,7 +65,7 @@ int name_model_eval(const name_model *model, name_real tau, name_real *out)
 {
     if (!inside(model, tau)) {
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
-            out[output] = (real)NAN;
+            out[output] = not_a_number();
         }
         return 1;
     }
@@ -102,27 +102,31 @@ static const real offset[BLOCK] = {
 /* A block of values of a series, added to what is there where `more`. */
 static void block(const real *c, int degree, const real *u, int more, real *out)
 {
-    real next[BLOCK], after[BLOCK];
-    const real highest = c[degree];
+    const slice *const at = (const slice *)u;
+    slice *const to = (slice *)out;
+    slice twice[SLICES], next[SLICES], after[SLICES];
     UNROLLED
-    for (int j = 0; j < BLOCK; ++j) {
-        next[j] = highest;
-        after[j] = 0;
+    for (int j = 0; j < SLICES; ++j) {
+        twice[j] = at[j] + at[j];
+        after[j] = at[j] - at[j];
+        next[j] = after[j] + c[degree];
     }
     for (int k = degree - 1; k > 0; --k) {
-        const real add = c[k];
         UNROLLED
-        for (int j = 0; j < BLOCK; ++j) {
-            const real now = u[j] * (next[j] + next[j]) + (add - after[j]);
+        for (int j = 0; j < SLICES; ++j) {
+            const slice now = twice[j] * next[j] + (c[k] - after[j]);
             after[j] = next[j];
             next[j] = now;
         }
     }
-    const real mean = c[0];
     UNROLLED
-    for (int j = 0; j < BLOCK; ++j) {
-        const real sum = u[j] * next[j] + (mean - after[j]);
-        out[j] = more ? out[j] + sum : sum;
+    for (int j = 0; j < SLICES; ++j) {
+        const slice sum = at[j] * next[j] + (c[0] - after[j]);
+        if (more) {
+            to[j] += sum;
+        } else {
+            to[j] = sum;
+        }
     }
 }
 
@@ -212,7 +216,7 @@ static int sampled(const model_of *m, const real *series, real tau0, real dtau, 
             k = end;
         } else {
             for (size_t output = 0; output < NAME_OUTPUTS; ++output) {
-                out[output * count + k] = (real)NAN;
+                out[output * count + k] = not_a_number();
             }
             outside = 1;
             ++k;

@@ -47,9 +47,7 @@ int name_data_init(
 void name_batch_misfit(const name_batch *batch, const name_data *data, name_real *misfit);
 
 #include <float.h>
-#include <math.h>
-
-typedef name_real real;
+#include "real.h"
 typedef name_model model_of;
 
 enum { LEAST = 8, LOAD_LANE = -1, STRENGTHS = 1, SECTIONS = 3, CYCLE = 1, TERMS = 6 };

@@ -536,7 +536,7 @@ int name_step(stream *state, real dtau, const real *load, real *out)
         wrong |= !is_number(load[j]);
     }
     for (int output = 0; wrong && output < OUTPUTS; ++output) {
-        out[output] = (real)NAN;
+        out[output] = not_a_number();
     }
     if (wrong) {
         return 1;

@@ -243,8 +243,8 @@ def test_values_that_are_wrong_by_two_bounds_are_seen(evaluator, tmp_path):
 @pytest.mark.parametrize(
     ("evaluator", "right", "wrong"),
     [
-        ("pieces", "sum[j] = sum[j] * w[j] + next;", "sum[j] = sum[j] * w[j] + next * (real)1.001;"),
-        ("pieces", "out[(size_t)member[m] * count + k] = (real)NAN;", "out[(size_t)member[m] * count + k] = 0;"),
+        ("pieces", "sum0 = sum0 * w + power[0];", "sum0 = sum0 * w + power[0] * (real)1.001;"),
+        ("pieces", "out[(size_t)member[m] * count + k] = not_a_number();", "out[(size_t)member[m] * count + k] = 0;"),
         ("pieces", "outside = 1;", "outside = 0;"),
         (
             "closed",

@@ -82,7 +82,7 @@ def made_with(monkeypatch, evaluator, change=lambda made: made):
     [
         ("closed.c", "sum += polynomial", "sum -= polynomial"),
         ("closed.py", "row[late] += polynomial", "row[late] -= polynomial"),
-        ("pieces.c", "tau - centre[first_piece", "tau + centre[first_piece"),
+        ("pieces.c", "tau - centre[piece]", "tau + centre[piece]"),
         ("pieces.py", "powers[:, 1:] + powers[:, :1]", "powers[:, 1:] - powers[:, :1]"),
         pytest.param("march.c", "sum += gain[k] * arrived", "sum -= gain[k] * arrived", marks=pytest.mark.slow),
         pytest.param("march.py", "total += self.gain[k]", "total -= self.gain[k]", marks=pytest.mark.slow),

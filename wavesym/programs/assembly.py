@@ -87,11 +87,11 @@ def _closed(form: ClosedForm, provenance: Provenance) -> Program:
 def _pieces(form: Pieces, provenance: Provenance) -> Program:
     """Of grid g its outputs first_member[g] ..., its pieces, and at first_piece[g] + g their starts and the last end.
 
-    Its polynomials stand piece by piece, for each of these member by member; `coefficient` has the powers of a
-    polynomial, highest first. To find tau's piece: from part[first_part[g] + int(tau * scale[g])] at most `steps` on.
+    The polynomials of piece p of all grids start at first_power[p] in `coefficient`: highest power first, of each power
+    those of all members. To find tau's piece: from part[first_part[g] + int(tau * scale[g])] at most `steps` on.
     """
     grids = form.grids
-    polynomials = [powers for grid in grids for piece in grid.powers for powers in piece]
+    pieces = [piece for grid in grids for piece in grid.powers]
     tables: dict[str, tuple[float, ...]] = {
         "first_member": _firsts(len(grid.outputs) for grid in grids),
         "member": tuple(k for grid in grids for k in grid.outputs),
@@ -101,9 +101,8 @@ def _pieces(form: Pieces, provenance: Provenance) -> Program:
         "first_part": _firsts(len(grid.first) for grid in grids),
         "scale": tuple(grid.scale for grid in grids),
         "part": tuple(piece for grid in grids for piece in grid.first),
-        "first_polynomial": _firsts(len(grid.centres) * len(grid.outputs) for grid in grids),
-        "first_power": _firsts(len(powers) for powers in polynomials),
-        "coefficient": tuple(c for powers in polynomials for c in reversed(powers)),
+        "first_power": _firsts(sum(map(len, piece)) for piece in pieces),
+        "coefficient": tuple(c for piece in pieces for power in reversed([*zip(*piece, strict=True)]) for c in power),
     }
     constants: dict[str, float] = {"steps": max(grid.steps for grid in grids)}
     return Program("pieces", form.real, form.tau_max, form.outputs, tables, constants, form.bytes, provenance)

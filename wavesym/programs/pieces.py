@@ -15,6 +15,7 @@ The proved error of a piece of degree d with powers c_k (of t) is the sum of
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -38,11 +39,11 @@ from wavesym.programs.program import ProgramOutput
 
 # A table larger than this is for the march.
 MOST_BYTES = 4 << 20
-# C evaluates so many samples at once (templates/c/pieces.c): their sums and offsets fill the vector registers of common
-# machines.
-BLOCK = 32
-# Pieces in a unit of tau: shorter ones have lower degrees, which is faster and rounds less, in larger tables.
-_USUAL = (8, 4, 2, 1)
+# The numbers from 0 on that C has for the widest vectors (templates/c/pieces.c).
+_OFFSETS = 16
+# Pieces in a unit of tau: shorter ones have lower degrees and round less, in larger tables, and fewer samples are on
+# each.
+_USUAL = (4, 2, 1)
 _SHORTER = (2, 4, 8, 16, 32)
 # A fit at so many bits takes seconds, at twice as many the better part of a minute (the terms double with the bits).
 _MOST_BITS = 1024
@@ -50,6 +51,10 @@ _MOST_BITS = 1024
 _MOST_WORK = 15_000_000
 # The fastest are taken whose tables are no larger than this.
 _FAST_BYTES = 128 << 10
+# Fast is what takes little time for three calls of `sample`, of so many samples each.
+_CALLS = (300, 1000, 10_000)
+# In multiplications of vectors, measured: what begins on a piece, and what a vector and a value of it take besides.
+_PIECE, _VECTOR, _VALUE, _LANES = 20, 3, 2, 8
 _SECOND_ORDER = arb(fmpq(1001, 1000))
 # of the largest value; far below what any tolerance asks for
 _NEGLIGIBLE = arb(2) ** -200
@@ -59,8 +64,9 @@ _NEGLIGIBLE = arb(2) ** -200
 class PieceGrid:
     """Pieces that some outputs share: piece p is for starts[p] <= tau < starts[p + 1].
 
-    `powers[p][j]` are the coefficients of output `outputs[j]` in w = tau - centres[p], lowest first. `first[b]` is the
-    piece at tau = b / scale; from there at most `steps` more are to be tried.
+    `powers[p][j]` are the coefficients of output `outputs[j]` in w = tau - centres[p], lowest first; as many for each
+    output, so that one loop is for all of them. `first[b]` is the piece at tau = b / scale; from there at most `steps`
+    more are to be tried.
     """
 
     outputs: tuple[int, ...]
@@ -96,13 +102,27 @@ class Pieces:
     @cached_property
     def bytes(self) -> int:
         """The size of the tables in C."""
-        return BLOCK * self.real.bytes + sum(_bytes(grid, self.real) for grid in self.grids)
+        return _OFFSETS * self.real.bytes + sum(_bytes(grid, self.real) for grid in self.grids)
 
     @cached_property
     def work(self) -> float:
         """About how many operations a value takes: the mean degree, and finding the place."""
         degrees = [len(powers) - 1 for grid in self.grids for piece in grid.powers for powers in piece]
         return 4 + sum(degrees) / len(degrees)
+
+    @cached_property
+    def cost(self) -> float:
+        """About how long three calls of `sample` take, of few samples, more and many."""
+        return sum(self._sampled(samples) for samples in _CALLS)
+
+    def _sampled(self, samples: int) -> float:
+        total = 0.0
+        for grid in self.grids:
+            for (start, end), polynomials in zip(pairwise(grid.starts), grid.powers, strict=True):
+                on_it = samples * (end - start) / self.tau_max
+                values = len(polynomials) * (len(polynomials[0]) - 1 + _VALUE)
+                total += min(1.0, on_it) * (_PIECE + math.ceil(on_it / _LANES) * (_VECTOR + values))
+        return total
 
     @property
     def summary(self) -> str:
@@ -132,7 +152,7 @@ def pieces(model: Model, real: Real, tolerance: fmpq, optimize: str = "speed") -
     """
     # no finer than rounding: what is asked for beyond that is not had by more bits or more pieces
     fits = _Fits(model, real, max(tolerance, real.roundoff / 8))
-    found = _smallest(fits, tolerance) if optimize == "size" else _fastest(fits)
+    found = _smallest(fits, tolerance) if optimize == "size" else _fastest(fits, tolerance)
     for shorter in _SHORTER:
         missed = rational(found.error_bound) > tolerance > real.roundoff / 8
         if shorter > found.per_unit and missed and fits.differ(shorter, found.per_unit):
@@ -153,16 +173,26 @@ def _too_large(size: int, most: int) -> _TooLarge:
     )
 
 
-def _fastest(fits: _Fits) -> Pieces:
+def _fastest(fits: _Fits, tolerance: fmpq) -> Pieces:
+    """Longer pieces as long as they are faster; the longest where the tables of others are too large."""
     *shorter, longest = _USUAL
+    best: Pieces | None = None
     for per_unit in shorter:
-        if not fits.differ(per_unit, longest):
-            break
-        with suppress(_TooLarge):
-            found = fits.fitted(per_unit, _FAST_BYTES)
-            if found.bytes <= _FAST_BYTES:
-                return found
-    return fits.fitted(longest)
+        if fits.differ(per_unit, longest):
+            with suppress(_TooLarge):
+                found = fits.fitted(per_unit, _FAST_BYTES)
+                if best and not _better(found, best, tolerance):
+                    return best
+                if found.bytes <= _FAST_BYTES:
+                    best = found
+    if best and rational(best.error_bound) > tolerance:
+        return best
+    found = fits.fitted(longest)
+    return found if not best or _better(found, best, tolerance) else best
+
+
+def _better(longer: Pieces, pieces: Pieces, tolerance: fmpq) -> bool:
+    return rational(longer.error_bound) <= tolerance and longer.cost < pieces.cost
 
 
 def _smallest(fits: _Fits, tolerance: fmpq) -> Pieces:
@@ -384,11 +414,17 @@ class _Cuts:
             tuple(outputs),
             tuple(self.starts),
             tuple(self.centres),
-            tuple(zip(*columns, strict=True)),
+            tuple(map(_as_many, zip(*columns, strict=True))),
             scale,
             tuple(first),
             steps,
         )
+
+
+def _as_many(polynomials: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
+    """Polynomials with as many powers as the longest has; a power that is 0 adds no error."""
+    most = max(map(len, polynomials))
+    return tuple(powers + (0.0,) * (most - len(powers)) for powers in polynomials)
 
 
 def _cut_off(coefficients: Sequence[arb], allowed: arb, real: Real) -> tuple[arb, list[arb]]:
@@ -420,5 +456,5 @@ def _underflow(powers: Sequence[arb], real: Real) -> arb:
 
 def _bytes(grid: PieceGrid, real: Real) -> int:
     numbers = len(grid.starts) + len(grid.centres) + sum(len(p) for piece in grid.powers for p in piece)
-    indices = len(grid.first) + len(grid.powers) * len(grid.outputs) + 1
+    indices = len(grid.first) + len(grid.powers) + 1
     return numbers * real.bytes + indices * 4

@@ -9,8 +9,8 @@ class PiecesScheme:
 
     Outputs that may jump or bend at the same times share a grid of pieces. Of grid g the outputs are
     member[first_member[g]] ... up to first_member[g + 1], and so on; the starts of its pieces start at
-    first_piece[g] + g, as there is one more, the end of the last piece. Its polynomials stand piece by piece, and for
-    each piece member by member: coefficients, highest power first.
+    first_piece[g] + g, as there is one more, the end of the last piece. The polynomials of piece p of all grids start
+    at first_power[p] among the coefficients: highest power first, of each power those of all members.
     """
 
     TABLES = (
@@ -19,7 +19,6 @@ class PiecesScheme:
         "first_piece",
         "start",
         "centre",
-        "first_polynomial",
         "first_power",
         "coefficient",
     )
@@ -33,9 +32,8 @@ class PiecesScheme:
         real: type[np.float64],
     ) -> None:
         self._tau_max, self._real = tau_max, real
-        member, first_member, first_piece, first_polynomial, first_power = (
-            [int(place) for place in tables[name]]
-            for name in ("member", "first_member", "first_piece", "first_polynomial", "first_power")
+        member, first_member, first_piece, first_power = (
+            [int(place) for place in tables[name]] for name in ("member", "first_member", "first_piece", "first_power")
         )
         start, centre, coefficient = (np.array(tables[name], real) for name in ("start", "centre", "coefficient"))
         self._outputs = len(member)
@@ -43,14 +41,13 @@ class PiecesScheme:
         for g in range(len(first_piece) - 1):
             members = member[first_member[g] : first_member[g + 1]]
             low, high = first_piece[g], first_piece[g + 1]
-            ends = first_power[first_polynomial[g] : first_polynomial[g + 1] + 1]
-            size = int(np.diff(ends).max())
-            powers = np.zeros((len(ends) - 1, size), real)
-            for row, before, after in zip(powers, ends, ends[1:], strict=False):
-                row[: after - before] = coefficient[before:after][::-1]
-            # (pieces, degree + 1, outputs), lowest power first, 0 above the degree of each
-            grid_powers = powers.reshape(high - low, len(members), size).swapaxes(1, 2)
-            self._grids.append((members, start[low + g : high + g + 1], centre[low:high], grid_powers))
+            ends = first_power[low : high + 1]
+            # (pieces, degree + 1, outputs), lowest power first, 0 above the degree of each piece
+            powers = np.zeros((high - low, int(np.diff(ends).max()) // len(members), len(members)), real)
+            for rows, before, after in zip(powers, ends, ends[1:], strict=False):
+                of_piece = coefficient[before:after].reshape(-1, len(members))
+                rows[: len(of_piece)] = of_piece[::-1]
+            self._grids.append((members, start[low + g : high + g + 1], centre[low:high], powers))
 
     def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
         """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range."""

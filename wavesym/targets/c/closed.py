@@ -19,6 +19,7 @@ class CClosed:
     scene: Description
     tables: dict[str, Lines]
     exponential: str
+    numbers: str
     kernel: str
 
 
@@ -28,6 +29,7 @@ def source(scene: Description, program: Program) -> str:
         scene=scene,
         tables=c_tables(program.tables, program.real),
         exponential=number_format(program.real).c_exponential,
+        numbers=kernel("real.h", scene),
         kernel=kernel("closed.c", scene),
     )
     return render("c/closed.c.j2", context)

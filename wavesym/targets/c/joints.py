@@ -55,6 +55,7 @@ class CRuntimeJoints:
     amplitudes: Lines
     largest: str
     loads: str
+    numbers: str
     series: str
     kernel: str
     read: str
@@ -86,6 +87,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         amplitudes=c_literals(laws.amplitudes or (0.0,), real) if own else (),
         largest=f"{LIMITS[real.name]}_MAX",
         loads="amplitude" if own else "p->load",
+        numbers=kernel("real.h", scene),
         series=kernel("runtime_series.c", scene),
         kernel=kernel("runtime_joints.c", scene),
         read=kernel("runtime_read.c", scene),

@@ -21,6 +21,7 @@ class CMarch:
     tables: dict[str, Lines]
     constants: dict[str, str]
     last_window: str
+    numbers: str
     kernel: str
 
 
@@ -47,6 +48,7 @@ def source(scene: Description, program: Program) -> str:
         tables=c_tables(program.tables, program.real),
         constants=c_constants(program.constants, program.real),
         last_window=_last_window(program),
+        numbers=kernel("real.h", scene),
         kernel=kernel("march.c", scene),
     )
     return render("c/march.c.j2", context)

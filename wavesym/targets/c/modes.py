@@ -31,6 +31,7 @@ class CModes:
     moved: str
     moving: str
     lanes: str
+    numbers: str
     kernel: str
 
 
@@ -62,6 +63,7 @@ def source(scene: Description, program: Program) -> str:
         moved=str(len(program.tables["moved_row"])),
         moving=str(len(program.tables["moving_row"])),
         lanes=str(LANES),
+        numbers=kernel("real.h", scene),
         kernel=kernel("modes.c", scene),
     )
     return render("c/modes.c.j2", context)

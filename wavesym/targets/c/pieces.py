@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from wavesym.programs.pieces import BLOCK
 from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
@@ -21,6 +20,7 @@ class CPieces:
     grids: str
     steps: str
     exact: str
+    numbers: str
     kernel: str
 
 
@@ -31,7 +31,8 @@ def source(scene: Description, program: Program) -> str:
         tables=c_tables(program.tables, program.real),
         grids=str(len(program.tables["scale"])),
         steps=str(program.constants["steps"]),
-        exact=c_literal(program.real.nearest(1 / program.real.roundoff) - BLOCK, program.real),
+        exact=c_literal(program.real.nearest(1 / program.real.roundoff), program.real),
+        numbers=kernel("real.h", scene),
         kernel=kernel("pieces.c", scene),
     )
     return render("c/pieces.c.j2", context)

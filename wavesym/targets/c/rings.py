@@ -18,6 +18,7 @@ class CRings:
     scene: Description
     tables: dict[str, Lines]
     constants: dict[str, str]
+    numbers: str
     kernel: str
 
 
@@ -27,6 +28,7 @@ def source(scene: Description, program: Program) -> str:
         scene=scene,
         tables=c_tables(program.tables, program.real),
         constants=c_constants(program.constants, program.real),
+        numbers=kernel("real.h", scene),
         kernel=kernel("rings.c", scene),
     )
     return render("c/rings.c.j2", context)

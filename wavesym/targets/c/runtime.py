@@ -63,6 +63,7 @@ class CRuntime:
     least: str
     loads: str
     series: str
+    numbers: str
     kernel: str
     read: str
     bound: str
@@ -106,6 +107,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
         loads="amplitude" if own else "p->load",
         series=kernel("runtime_series.c", scene),
+        numbers=kernel("real.h", scene),
         kernel=kernel("runtime.c", scene),
         read=kernel("runtime_read.c", scene),
         bound=kernel("runtime_bound.c", scene),

@@ -1,0 +1,16 @@
+/* real.h: the numbers of a program.
+ * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
+ * the first empty line. */
+
+#if (defined(__FAST_MATH__) || defined(_M_FP_FAST)) && !defined(NAME_ALLOW_FAST_MATH)
+#error "-ffast-math: bounds of errors no longer hold, nor NaN out of range (-DNAME_ALLOW_FAST_MATH takes it all the same)"
+#endif
+
+typedef name_real real;
+
+/* Without <math.h>, which not every machine has. */
+static real not_a_number(void)
+{
+    const volatile real zero = 0;
+    return zero / zero;
+}

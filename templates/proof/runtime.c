@@ -1,0 +1,22 @@
+/* runtime.c: a model of any parameters, read anywhere. COUNT is how many samples are asked for. */
+
+volatile name_real any_number;
+
+int main(void)
+{
+    static name_model model;
+    static name_tangent tangent;
+    static name_real rows[(NAME_LANES + 1) * NAME_OUTPUTS * COUNT + 1];
+    name_real out[NAME_OUTPUTS];
+    name_parameters parameters;
+    int status = 0;
+    for (size_t k = 0; k < sizeof parameters / sizeof(name_real); ++k) {
+        ((name_real *)&parameters)[k] = any_number;
+    }
+    status |= name_build(&model, &parameters);
+    status |= name_model_eval(&model, any_number, out);
+    status |= name_model_sample(&model, any_number, any_number, COUNT, rows);
+    status |= name_build_tangent(&tangent, &parameters);
+    status |= name_tangent_sample(&tangent, any_number, any_number, COUNT, rows);
+    return status + (name_error_estimate(&model) > 0);
+}
