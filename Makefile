@@ -28,7 +28,7 @@ install: .venv/.installed
 	@$(PIP) '.[$(subst $() ,$(COMMA),$(NEEDED))]'
 	@touch $@
 
-.venv/.test .venv/.lint: .venv/.%: .venv/.installed
+.venv/.test .venv/.lint .venv/.simulator: .venv/.%: .venv/.installed
 	@echo '== Python packages into .venv: what `make $*` needs'
 	@$(PIP) '.[$*]'
 	@touch $@
@@ -85,7 +85,7 @@ examples: install
 		( cd $$(dirname $$page) && grep '^wavesym plot' README.md | $(TOLD) sh -e ); \
 	done
 
-check-all: lint .venv/.test
+check-all: lint .venv/.test .venv/.simulator
 	$(BIN)/python -m pytest $(CORES) --run-slow
 
 # speed, as ratios within one run, and the charts of the same scenes
