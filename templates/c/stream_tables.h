@@ -1,7 +1,7 @@
 /* stream_tables.h: stands for what stream.c.j2 writes above the text of stream.c, where that is read by itself. */
 #include "name.h"
 
-#include <math.h>
+#include "real.h"
 
 enum {
     NAME_LOADS = 1,
@@ -16,7 +16,6 @@ enum {
 
 #include "stream_state.h"
 
-typedef name_real real;
 typedef name_state stream;
 
 enum {

@@ -22,6 +22,7 @@ class CStream:
     scene: Description
     tables: dict[str, Lines]
     constants: dict[str, str]
+    numbers: str
     kernel: str
 
 
@@ -53,6 +54,7 @@ def source(scene: Description, program: Program) -> str:
         scene=scene,
         tables=c_tables(program.tables, program.real),
         constants=c_constants(program.constants, program.real),
+        numbers=kernel("real.h", scene),
         kernel=kernel("stream.c", scene),
     )
     return render("c/stream.c.j2", context)
