@@ -50,6 +50,11 @@ class Subject:
         """The command that makes it, but for name and tolerance."""
         return f"generate {self.scene}{self.request.options}"
 
+    @property
+    def called(self) -> tuple[str, ...]:
+        """What the driver calls of it, without the program's name before it."""
+        return tuple(dict.fromkeys(re.findall(r"\bname_(\w+)\(", text_of(f"proof/{self.driver}.c"))))
+
     def files(self) -> dict[str, str]:
         """NAME.h, NAME.c, NAME_selftest.c."""
         return {file: text for file, text in files(self._program()).items() if not file.endswith(".json")}
