@@ -1,7 +1,7 @@
 """README.md, CONTRIBUTING.md, docs/, examples/: what they tell to type is run, and what they show is what comes out.
 
 The first word after ``` says what a block is, a second one the file that it is saved as:
-toml, c     a scene, a program in C; a later command uses the file
+toml, c     a scene or a sweep, a program in C; a later command uses the file
 csv         a record, which a scene or a command uses
 python      a program, which runs
 sh          commands, line by line
@@ -33,6 +33,8 @@ from tests.cli.test_cli import example
 from wavesym.cli import COMMANDS, cli, main
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene
+from wavesym.sweeps.plan import plan
+from wavesym.sweeps.request import SweepRequest
 
 ROOT = Path(wavesym.__file__).parents[1]
 PAGES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.md"))
@@ -105,7 +107,10 @@ class Reader:
             (self.folder / block.file).write_text(block.text, encoding="utf-8")
         match block.language:
             case "toml":
-                Scene.from_toml(self.folder / block.file)
+                if "[vary]" in block.text:
+                    plan(*reversed(SweepRequest.read(self.folder / block.file)))
+                else:
+                    Scene.from_toml(self.folder / block.file)
                 self.unused.add(block.file)
             case "c":
                 self.unused.add(block.file)

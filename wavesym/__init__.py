@@ -3,7 +3,9 @@
     Scene       what is modelled, which loads act, which outputs are wanted, for how long and how exactly
     evaluator   the outputs of a scene as a function of tau, right to the last bit
     summary     the least and the greatest value of each output, and when; `peaks` of several scenes as arrays
+    sweep       many scenes that differ in a few fields or records, into a folder of labelled arrays
     tables      the exact coefficients of its wave functions
+    model       its outputs for many sets of parameters: values, gradients, extremes
     generate    its C and NumPy programs, written to files
 
 A request that cannot be carried out raises a WavesymError: SceneError, ToleranceError, CostError or RangeError.
@@ -21,7 +23,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from wavesym.compiler import evaluator, generate, peaks, summary, tables
+    from wavesym.compiler import evaluator, generate, model, peaks, summary, sweep, tables
     from wavesym.errors import CostError, RangeError, SceneError, ToleranceError, WavesymError
     from wavesym.scene import Scene
 
@@ -35,8 +37,10 @@ __all__ = [
     "__version__",
     "evaluator",
     "generate",
+    "model",
     "peaks",
     "summary",
+    "sweep",
     "tables",
 ]
 __version__ = "0.1.0"
@@ -51,8 +55,10 @@ _HOMES = {
     "WavesymError": "wavesym.errors",
     "evaluator": "wavesym.compiler",
     "generate": "wavesym.compiler",
+    "model": "wavesym.compiler",
     "peaks": "wavesym.compiler",
     "summary": "wavesym.compiler",
+    "sweep": "wavesym.compiler",
     "tables": "wavesym.compiler",
 }
 

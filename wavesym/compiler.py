@@ -17,9 +17,10 @@ verification/ and papers/, what is measured by lab/. The heavy libraries load wh
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -57,7 +58,8 @@ if TYPE_CHECKING:
     from wavesym.mechanics.node import System
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
-    from wavesym.running.sets import RuntimeModel
+    from wavesym.running.model import RuntimeModel
+    from wavesym.sweeps.status import SweepStatus
 
 
 _UNIT = re.compile(r"[A-Za-z\u00b5\u03bc%][A-Za-z0-9_*/^%-]{0,40}")
@@ -134,6 +136,62 @@ def peaks(scenes: Scene | Iterable[Scene], *, at_samples: bool = False) -> Any:
     several = not isinstance(scenes, Scene)
     found = [summary(scene, at_samples=at_samples) for scene in ([scenes] if isinstance(scenes, Scene) else scenes)]
     return table_of_peaks(found, several)
+
+
+def sweep(
+    source: str | PathLike[str] | Mapping[str, Any],
+    folder: str | PathLike[str],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    retry_failed: bool = False,
+) -> Any:
+    """Compute many scenes into a folder, as `wavesym sweep` does; what is there goes on where it was.
+
+    `source` is a file of TOML or the same fields: `scene` (a Scene, or a path), `vary`, `records`, `keep`. By
+    `workers` processes of this machine (in a program under `if __name__ == "__main__":`, as these import it), those of
+    a Dask `scheduler`, or whoever is best. An xarray.Dataset: extremes over the varied paths, `record` and `output`,
+    NaN for a case that failed. SceneError for a request that is wrong, WavesymError for the folder of another sweep.
+
+    >>> import wavesym
+    >>> request = {"scene": "drive_m1", "vary": {"output.until": [4, 5], "system.kappa[0]": ["1/2", 1, 2]}}
+    >>> wavesym.sweep(request, "stiffnesses")["max"].dims
+    ('output.until', 'system.kappa[0]', 'output')
+    """
+    from wavesym.sweeps.store import needed, opened
+
+    needed("xarray", "zarr")
+    run_sweep(source, folder, workers, scheduler, retry_failed)
+    return opened(folder)
+
+
+def run_sweep(
+    source: str | PathLike[str] | Mapping[str, Any],
+    folder: str | PathLike[str],
+    workers: int | None,
+    scheduler: str | None,
+    retry_failed: bool,
+    watch: Callable[[int, int, int], object] = lambda *_: None,
+) -> int:
+    """Compute what is left of a sweep; how many of its cases have failed. `watch` is told of all cases, and of those
+    that are done and were done before."""
+    from wavesym.sweeps.running import Computing, run
+
+    return run(source, folder, Computing(workers, scheduler), retry_failed, watch)
+
+
+def sweep_status(folder: Path) -> SweepStatus:
+    """How many cases of the sweep in a folder are done, have failed and are left. WavesymError where there is none."""
+    from wavesym.sweeps.status import status
+
+    return status(folder)
+
+
+def sweep_table(folder: Path, path: Path) -> None:
+    """Write the results of a sweep as .csv or .parquet, a row for each case."""
+    from wavesym.sweeps.table import write_table
+
+    write_table(folder, path)
 
 
 def tables(scene: Scene, intervals: int | None = None) -> list[Row]:
@@ -354,10 +412,22 @@ def _written(
     return {folder / name: text for name, text in files(program, language, packaged=package).items()}
 
 
-def runtime_model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
-    """A scene whose parameters `runtime` are given when it runs, compiled. CompilerError without a C compiler."""
+def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
+    """A scene whose parameters are given when it runs, for one set of them or for a million.
+
+    `runtime` names them: "kappa", "inertia", "velocity", "load", those that the scene has. It is compiled once, where
+    there is a C compiler; elsewhere NumPy computes the same, more slowly. WavesymError for a scene that has not got
+    these parameters, UnservedError and CostError for one that no such program serves.
+
+    >>> import wavesym
+    >>> model = wavesym.model(wavesym.Scene.from_toml("drive_m1"), runtime=["kappa"])
+    >>> model.run(kappa=[[0.5], [1], [2]], tau=[2.0, 4.0]).shape  # sets, outputs, then the shape of tau
+    (3, 4, 2)
+    >>> model.peaks(kappa=[[0.5], [1], [2]]).max.shape
+    (3, 4)
+    """
     from wavesym.programs.runtime.making import runtime_program
-    from wavesym.running.sets import RuntimeModel
+    from wavesym.running.model import RuntimeModel
 
     given = amplitudes(scene) if "load" in runtime else ()
     return RuntimeModel(runtime_program(lower(scene), Request(runtime=tuple(runtime)), given))

@@ -73,6 +73,10 @@ class UnservedError(CostError):
     """What one method does not do for a kind of scene, whatever the cost; others may. The message says which do."""
 
 
+class SpacingError(CostError):
+    """Instants of loads that fit into no window of a march; it may be that a march of one hat serves them."""
+
+
 class RangeError(WavesymError, OverflowError):
     """A number would be beyond the largest one of its floating-point format.
 

@@ -1,81 +1,11 @@
 /* runtime.c: a march under parameters that come at run time, and its polynomials, one by one and in blocks.
  * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
  * the first empty line. */
-#include "runtime_tables.h"
+#include "runtime_series.c"
 
-/* Loops over a block of samples are unrolled, so that its values stay in registers. */
-enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0, LOSS = 1, LEAK = 2, BLOCK = 16 };
-
-#if defined(__OPTIMIZE_SIZE__)
-#define UNROLLED
-#elif defined(__clang__)
-#define UNROLLED _Pragma("clang loop unroll(full)")
-#elif defined(__GNUC__)
-#define UNROLLED _Pragma("GCC unroll 16")
-#else
-#define UNROLLED
-#endif
+enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0, LOSS = 1, LEAK = 2 };
 
 typedef real wave_of[NAME_PANELS][NAME_NODES + 2][NAME_DEGREE + 1];
-
-static real magnitude(real x)
-{
-    return x < 0 ? -x : x;
-}
-
-/* False for what is no number. */
-static int finite_number(real x)
-{
-    return x >= -largest_number && x <= largest_number;
-}
-
-/* sum of c_k T_k(u) */
-static real series_at(const real *c, int degree, real u)
-{
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = degree; k > 0; --k) {
-        const real now = (twice * next - after) + c[k];
-        after = next;
-        next = now;
-    }
-    return (u * next - after) + c[0];
-}
-
-/* The antiderivative of a series, times 1 / half the length of the panel: all c_k but the first, which is 0. */
-static void integrate(const model_of *m, const real *w, int degree, real *c)
-{
-    c[0] = 0;
-    c[1] = w[0] - (degree > 1 ? w[2] / 2 : (real)0);
-    for (int k = 2; k < degree; ++k) {
-        c[k] = (w[k - 1] - w[k + 1]) * m->inverse[k];
-    }
-    c[degree] = w[degree - 1] * m->inverse[degree];
-    c[degree + 1] = w[degree] * m->inverse[degree + 1];
-}
-
-/* The same as series_at, sooner at both ends of a panel and in its middle. */
-static real end_value(const real *c, int degree, real u)
-{
-    real some = 0;
-    real others = 0;
-    if (u >= 0 && u <= 0) {
-        for (int k = 0; k <= degree; k += 4) {
-            some += c[k];
-            others += k + 2 <= degree ? c[k + 2] : (real)0;
-        }
-        return some - others;
-    }
-    if (u > -1 && u < 1) {
-        return series_at(c, degree, u);
-    }
-    for (int k = 0; k <= degree; k += 2) {
-        some += c[k];
-        others += k + 1 <= degree ? c[k + 1] : (real)0;
-    }
-    return u < 0 ? some - others : some + others;
-}
 
 static int laws_within_reach(const laws *law)
 {
@@ -157,21 +87,6 @@ static void start_waves(wave_of (*waves)[3], const laws *law, int degree)
     }
 }
 
-/* No load, and nothing gathered yet. */
-static void start_sums(real *total, real (*load)[3], int (*since)[2])
-{
-    for (int k = 0; k < NAME_HEARD; ++k) {
-        total[k] = 0;
-    }
-    for (int f = 0; f <= NAME_FORCES; ++f) {
-        for (int power = 0; power < 3; ++power) {
-            load[f][power] = 0;
-        }
-        since[f][0] = 0;
-        since[f][1] = 0;
-    }
-}
-
 /* Series of higher degree: what they had not is 0. */
 static void lengthen(wave_of (*waves)[3], int degree, int higher)
 {
@@ -186,35 +101,6 @@ static void lengthen(wave_of (*waves)[3], int degree, int higher)
             }
         }
     }
-}
-
-/* The loads on the panels of a window, as series, after their changes there, the first of which is `event`. The first
- * one of the next window. */
-static int press(const real *change, real (*load)[3], int (*since)[2], real (*force)[NAME_FORCES + 1][3], int window,
-                 int event)
-{
-    for (int panel = 0; panel < NAME_PANELS; ++panel) {
-        while (event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel) {
-            const int f = event_force[event];
-            real *const c = load[f];
-            const real gone = (real)(window - since[f][0]) + since_panel[panel * NAME_PANELS + since[f][1]];
-            c[0] += gone * (c[1] + gone * c[2]);
-            c[1] += 2 * gone * c[2];
-            c[event_power[event]] += change[event];
-            since[f][0] = window;
-            since[f][1] = panel;
-            ++event;
-        }
-        const real half = half_length[panel];
-        for (int f = 0; f < NAME_FORCES; ++f) {
-            const real *const c = load[f];
-            const real middle = ((real)(window - since[f][0]) + since_panel[panel * NAME_PANELS + since[f][1]]) + half;
-            force[panel][f][0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2];
-            force[panel][f][1] = half * (c[1] + 2 * middle * c[2]);
-            force[panel][f][2] = half * half / 2 * c[2];
-        }
-    }
-    return event;
 }
 
 /* The velocity q of a body on a panel; `velocity` goes from its start to its end. What the polynomial misses. */
@@ -242,11 +128,6 @@ static real moved(const model_of *m, int row, int degree, const real *p, real *q
         q[k] = before;
     }
     return m->edge[row][LEAK] * magnitude(q[degree] - p[degree]);
-}
-
-static real larger(real one, real other)
-{
-    return magnitude(other) > one ? magnitude(other) : one;
 }
 
 /* One window at a degree, from the waves of the window before in the other half. What its polynomials miss; `size`
@@ -297,13 +178,6 @@ static real march(model_of *m, const laws *law, int half, int degree, real *size
     return missed;
 }
 
-static void clear(real *all, int degree)
-{
-    for (size_t k = 0; k < (size_t)NAME_STRANDS * (size_t)(degree + 2); ++k) {
-        all[k] = 0;
-    }
-}
-
 /* Add to all strands of a window what is heard of waves: each times its gain, or their integrals from tau = 0 on, of
  * which `total` is what windows before have brought. */
 static void listen(const model_of *m, wave_of (*waves)[3], const real *gains, real *total, int half, int degree,
@@ -330,21 +204,6 @@ static void listen(const model_of *m, wave_of (*waves)[3], const real *gains, re
                     c[k] += gain * w[k];
                 }
             }
-        }
-    }
-}
-
-/* Look for the largest mean of each output. */
-static void look(model_of *m, const real *all, int degree)
-{
-    for (int section = 0; section < SECTIONS; ++section) {
-        for (int output = 0; output < NAME_OUTPUTS; ++output) {
-            const int at = section * NAME_OUTPUTS + output;
-            real mean = 0;
-            for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-                mean += all[(size_t)strand_at[k] * (size_t)(degree + 2)];
-            }
-            m->largest[output] = larger(m->largest[output], mean);
         }
     }
 }
@@ -401,22 +260,6 @@ static void follow(name_tangent *tangent, const laws *law, const laws *slope, in
     }
 }
 
-/* Of the largest value of an output, about what `missed`, as a velocity, makes of it, at worst. */
-static real estimated(const model_of *m, const laws *law, real missed)
-{
-    real worst = 0;
-    for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        real weight = 0;
-        for (int k = 0; k < NAME_HEARD; ++k) {
-            weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
-        }
-        if (m->largest[output] > 0) {
-            worst = larger(worst, weight * missed / m->largest[output]);
-        }
-    }
-    return worst;
-}
-
 /* What begins a model. 0, or 1 for a bad number. */
 static int begun(model_of *m, const name_parameters *parameters, laws *law)
 {
@@ -443,13 +286,6 @@ static int begun(model_of *m, const name_parameters *parameters, laws *law)
     tabulate(m, law, LEAST);
     return 0;
 }
-
-/* How far a build has come. */
-typedef struct {
-    int window, degree, event;
-    size_t place;
-    real missed, size;
-} progress;
 
 /* The next window, at the lowest degree, raised by quarters, that misses no more than its share. */
 static int next_window(model_of *m, const laws *law, progress *now)
@@ -490,14 +326,6 @@ static void kept(model_of *m, const laws *law, progress *now)
     look(m, all, now->degree);
     now->place += (size_t)NAME_STRANDS * (size_t)(now->degree + 2);
     now->window += 1;
-}
-
-static int ended(model_of *m, const laws *law, const progress *now)
-{
-    const real missed = 4 * now->missed + unit * (real)(now->degree + NAME_WINDOWS) * now->size;
-    m->estimate = estimated(m, law, missed);
-    m->built = finite_number(now->size) && finite_number(m->estimate);
-    return !m->built;
 }
 
 int name_build(name_model *model, const name_parameters *parameters)
@@ -573,208 +401,4 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
         }
     }
     return status ? status : ended(m, &law, &now);
-}
-
-name_real name_error_estimate(const name_model *model)
-{
-    return model->estimate;
-}
-
-static int inside(const model_of *m, real tau)
-{
-    return m->built && tau >= 0 && tau <= NAME_TAU_MAX;
-}
-
-static int section_at(real t)
-{
-    int section = 0;
-    while (section + 1 < SECTIONS && t >= from[section + 1]) {
-        ++section;
-    }
-    return section;
-}
-
-/* An output on a section of a window, t after the start of that. */
-static real value(const model_of *m, int window, int section, int output, real t)
-{
-    const int at = section * NAME_OUTPUTS + output;
-    const int degree = m->degree[window];
-    real sum = 0;
-    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-        const int s = strand_at[k];
-        const real u = ((t - strand_start[s]) + strand_excess[s]) * strand_scale[s] - 1;
-        sum += series_at(m->series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u);
-    }
-    return sum;
-}
-
-int name_model_eval(const name_model *model, name_real tau, name_real *out)
-{
-    if (!inside(model, tau)) {
-        for (int output = 0; output < NAME_OUTPUTS; ++output) {
-            out[output] = not_a_number();
-        }
-        return 1;
-    }
-    const int window = (int)tau;
-    const real t = tau - (real)window;
-    const int section = section_at(t);
-    for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        out[output] = value(model, window, section, output, t);
-    }
-    return 0;
-}
-
-/* tau_k, both operations rounded. `one` is 1, which no compiler knows: so the product is rounded by itself, contracted
- * into the next operation or not. */
-static real instant(real tau0, real dtau, real one, real k)
-{
-    const real step = k * dtau;
-    return step * one + tau0;
-}
-
-/* The samples that are asked for, of a model's series or of its derivatives: `out` has `count` for each output. */
-typedef struct {
-    real tau0, dtau, one, per_tau;
-    size_t count;
-    real *out;
-    const real *series;
-} samples;
-
-static const real offset[BLOCK] = {
-    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15,
-};
-
-/* A block of values of a series, added to what is there where `more`. */
-static void block(const real *c, int degree, const real *u, int more, real *out)
-{
-    real next[BLOCK], after[BLOCK];
-    const real highest = c[degree];
-    UNROLLED
-    for (int j = 0; j < BLOCK; ++j) {
-        next[j] = highest;
-        after[j] = 0;
-    }
-    for (int k = degree - 1; k > 0; --k) {
-        const real add = c[k];
-        UNROLLED
-        for (int j = 0; j < BLOCK; ++j) {
-            const real now = u[j] * (next[j] + next[j]) + (add - after[j]);
-            after[j] = next[j];
-            next[j] = now;
-        }
-    }
-    const real mean = c[0];
-    UNROLLED
-    for (int j = 0; j < BLOCK; ++j) {
-        const real sum = u[j] * next[j] + (mean - after[j]);
-        out[j] = more ? out[j] + sum : sum;
-    }
-}
-
-/* A block of an output at t after the start of a window. */
-static void output_block(const model_of *m, const real *series, int window, int at, const real *t, real *out)
-{
-    const int degree = m->degree[window];
-    real u[BLOCK];
-    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-        const int s = strand_at[k];
-        const real begin = strand_start[s], excess = strand_excess[s], scale = strand_scale[s];
-        UNROLLED
-        for (int j = 0; j < BLOCK; ++j) {
-            u[j] = ((t[j] - begin) + excess) * scale - 1;
-        }
-        block(series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u, k > first_strand[at], out);
-    }
-    for (int j = 0; first_strand[at] == first_strand[at + 1] && j < BLOCK; ++j) {
-        out[j] = 0;
-    }
-}
-
-/* Samples k ... end - 1, all of them on one section of a window. Whole blocks are written: what is beyond the end is
- * written anew by the runs that follow. */
-static void run(const model_of *m, int window, int section, const samples *s, size_t k, size_t end)
-{
-    const real begin = (real)window;
-    real t[BLOCK], rest[BLOCK];
-    for (; k < end; k += BLOCK) {
-        const real first = (real)k, tau0 = s->tau0, dtau = s->dtau, one = s->one;
-        UNROLLED
-        for (int j = 0; j < BLOCK; ++j) {
-            t[j] = instant(tau0, dtau, one, first + offset[j]) - begin;
-        }
-        const size_t left = s->count - k;
-        for (int output = 0; output < NAME_OUTPUTS; ++output) {
-            const int at = section * NAME_OUTPUTS + output;
-            real *const row = s->out + (size_t)output * s->count + k;
-            output_block(m, s->series, window, at, t, left < BLOCK ? rest : row);
-            for (size_t j = 0; left < BLOCK && j < left; ++j) {
-                row[j] = rest[j];
-            }
-        }
-    }
-}
-
-static int on_section(const model_of *m, int window, int section, const samples *s, size_t k)
-{
-    const real tau = instant(s->tau0, s->dtau, s->one, (real)k);
-    const real t = tau - (real)window;
-    return inside(m, tau) && t >= from[section] && t < from[section + 1];
-}
-
-/* The first sample after k that is not where sample k is, or count. */
-static size_t run_end(const model_of *m, int window, int section, const samples *s, size_t k)
-{
-    const real edge = (real)window + (s->dtau < 0 ? from[section] : from[section + 1]);
-    const real reach = (edge - s->tau0) * s->per_tau; /* about where the run ends */
-    size_t end = reach < (real)s->count ? (reach > (real)k ? (size_t)reach : k) + 1 : s->count;
-    end = end > s->count ? s->count : end;
-    while (end > k + 1 && !on_section(m, window, section, s, end - 1)) {
-        --end;
-    }
-    while (end < s->count && on_section(m, window, section, s, end)) {
-        ++end;
-    }
-    return end;
-}
-
-static int sampled(const model_of *m, const real *series, real tau0, real dtau, size_t count, real *out)
-{
-    const volatile real unity = 1;
-    const samples s = {tau0, dtau, unity, dtau < 0 || dtau > 0 ? 1 / dtau : 0, count, out, series};
-    int outside = 0;
-    size_t k = 0;
-    while (k < count) {
-        const real tau = instant(tau0, dtau, s.one, (real)k);
-        if (inside(m, tau)) {
-            const int window = (int)tau;
-            const int section = section_at(tau - (real)window);
-            const size_t end = run_end(m, window, section, &s, k);
-            run(m, window, section, &s, k, end);
-            k = end;
-        } else {
-            for (size_t output = 0; output < NAME_OUTPUTS; ++output) {
-                out[output * count + k] = not_a_number();
-            }
-            outside = 1;
-            ++k;
-        }
-    }
-    return outside;
-}
-
-int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out)
-{
-    return sampled(model, model->series, tau0, dtau, count, out);
-}
-
-int name_tangent_sample(
-    const name_tangent *tangent, name_real tau0, name_real dtau, size_t count, name_real *out)
-{
-    const model_of *const m = &tangent->value;
-    int outside = sampled(m, m->series, tau0, dtau, count, out);
-    for (size_t lane = 0; lane < NAME_LANES; ++lane) {
-        outside |= sampled(m, tangent->series[lane], tau0, dtau, count, out + (lane + 1) * NAME_OUTPUTS * count);
-    }
-    return outside;
 }

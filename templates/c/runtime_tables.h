@@ -19,10 +19,13 @@ enum {
     NAME_FORCES = 1,
     NAME_HEARD = 4,
     NAME_EVENTS = 3,
-    NAME_LANES = 3
+    NAME_LANES = 3,
+    NAME_GROUPS = 6
 };
 
 #include "runtime_model.h"
+
+#include "runtime_batch.h"
 
 typedef struct {
     name_real kappa[3];
@@ -35,12 +38,19 @@ int name_model_sample(const name_model *model, name_real tau0, name_real dtau, s
 int name_build_tangent(name_tangent *tangent, const name_parameters *parameters);
 int name_tangent_sample(
     const name_tangent *tangent, name_real tau0, name_real dtau, size_t count, name_real *out);
+int name_error_bound(name_model *model, const name_parameters *parameters, name_real *bound);
+int name_build_batch(name_batch *batch, const name_parameters *parameters, size_t sets);
+int name_batch_model(const name_batch *batch, int set, name_model *model);
+size_t name_data_size(const name_real *tau, size_t count);
+int name_data_init(
+    name_data *data, name_real *numbers, const name_real *tau, const name_real *values, size_t count);
+void name_batch_misfit(const name_batch *batch, const name_data *data, name_real *misfit);
 
 #include <float.h>
 #include "real.h"
 typedef name_model model_of;
 
-enum { LEAST = 8, LOAD_LANE = -1, STRENGTHS = 1, SECTIONS = 3, TERMS = 6 };
+enum { LEAST = 8, LOAD_LANE = -1, STRENGTHS = 1, SECTIONS = 3, CYCLE = 1, TERMS = 6 };
 
 /* What parameters make of nodes, rods, loads and outputs. */
 typedef struct {
@@ -59,12 +69,18 @@ void laws_of(const name_parameters *p, laws *law);
 void slopes_of(const name_parameters *p, int lane, laws *law);
 
 extern const real largest_number;
+extern const real least_number;
 extern const real share;
 extern const real unit;
+extern const real window_length;
+extern const real span;
+extern const real roundings;
 
 extern const real half_length[];
 extern const real since_panel[];
 extern const int force_on[];
+extern const int is_body[];
+extern const int alike[];
 extern const int event_window[];
 extern const int event_panel[];
 extern const int event_force[];

@@ -138,7 +138,8 @@ def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(f"  {command} " in text for command in COMMANDS)
 
 
-LONG = ("chart", "stability")  # their examples have no use for a stand-in; tests/test_documents.py runs all as they are
+LONG = ("chart", "stability", "sweep")
+"""Their examples have no use for a stand-in; tests/test_documents.py runs all as they are."""
 
 
 def example(command: str, capsys: pytest.CaptureFixture[str]) -> list[str]:

@@ -86,7 +86,7 @@ def rounding(model, made):
 
 def with_modes(model, count):
     """The first `count` modes, and what the others can add."""
-    built = made_by._Chain(model)
+    built = made_by.ModalChain(model)
     known = built.shares(count)
     errors = built.errors(known, count)
     rest = np.zeros(count)
@@ -299,7 +299,7 @@ def test_kinks_in_step_are_not_underestimated(count):
 def test_roughness_is_that_of_the_load():
     """Changes of slope at their times: of 0, 2, 1, then constant in steps of 1/2."""
     model = building(["1", "1"], [{"spacing": "1/2", "samples": [0, 2, 1]}])
-    (rough,) = roughness(made_by._Chain(model).loads)
+    (rough,) = roughness(made_by.ModalChain(model).loads)
     assert rough.times.tolist() == [0, 0.5, 1]
     assert rough.kinks.tolist() == [4, -6, 2]
     assert (rough.steps, rough.steepest) == ((0, 1, 2), 4)

@@ -17,7 +17,7 @@ from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.modes import rounding
 from wavesym.programs.modes.loads import LinearLoads, linear_loads
 from wavesym.programs.modes.modal import ModalSystem
-from wavesym.programs.modes.records import hat_response
+from wavesym.programs.modes.records import RecordResponse
 from wavesym.programs.modes.step import Stepper, mode_step
 from wavesym.programs.schemes.modes import ModesScheme
 
@@ -118,15 +118,26 @@ def test_an_oscillator_under_el_centro_has_the_published_peak(period, at_samples
 
 def test_many_records_at_once_are_what_each_is_alone():
     system = storeys(2, 4, 0.05)
-    samples = np.random.default_rng(2).uniform(-1, 1, (3, 50)).round(6)
-    made = hat_response(system, fmpq(3, 7), 64).respond(samples)
-    for record, found in zip(samples, made, strict=True):
-        loads = uniform([0, *record.tolist()], fmpq(3, 7))
-        taus = [float(time) for time in loads.times[1:]]
-        alone = evaluator(system, loads, taus[-1]).scheme.evaluate(taus)
-        np.testing.assert_allclose(found, alone, rtol=0, atol=1e-12 * np.abs(alone).max())
-    with pytest.raises(ValueError, match="at most 64"):
-        hat_response(system, fmpq(3, 7), 64).respond(np.zeros((1, 65)))
+    samples = np.random.default_rng(2).uniform(-1, 1, (3, 150)).round(6)
+    samples[:, 0] = 0
+    response = RecordResponse(system, 3 / 7, parts=2)
+    made = response.respond(samples)
+    at, s = np.array([0, 5, 63, 64, 65, 127, 147]), np.linspace(0.0, 3 / 7, 7)
+    for number, record in enumerate(samples):
+        loads = uniform(record.tolist(), fmpq(3, 7))
+        alone = evaluator(system, loads, float(loads.times[-1])).scheme
+        size = 1e-12 * np.abs(made.values[number]).max()
+        taus = np.arange(1, 2 * 149 + 1) * (3 / 14)
+        taus[-1] = alone_end = float(loads.times[-1])
+        assert alone_end == pytest.approx(149 * 3 / 7)
+        np.testing.assert_allclose(made.values[number].T, alone.evaluate(taus), rtol=0, atol=size)
+        known = response.inside(samples[:, :, None], made.states, np.full(7, number), at)
+        between = alone.evaluate(at * 3 / 7 + s)
+        for output in range(len(between)):
+            found = response.at(known, s, np.full(7, output))
+            np.testing.assert_allclose(found, between[output], rtol=0, atol=size)
+            each = np.einsum("ck,ck->c", known, response.reads(s)[:, :, output])
+            np.testing.assert_allclose(each, between[output], rtol=0, atol=size)
 
 
 def test_loads_are_put_together_from_their_ramps():

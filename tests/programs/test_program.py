@@ -23,6 +23,7 @@ CHAIN = Scene(
     load=[{"at": "a", "times": ["1/3"], "ramps": [1]}],
     output={"until": "17/3", "tolerance": "1e-2", "strain": [2], "velocity": ["1/2"], "displacement": [1]},
 )
+RECORD = [{"at": "a", "spacing": "1/37", "samples": [0, 3, 1, 4, 1, 5, 9, 2, 6, 5, 3, 5, 8, 9, 7, 9, 3, 2, 3, 8]}]
 SCENES = {"building": scene("both", "1e-2"), "collision": COLLISION}
 each_program = pytest.mark.parametrize(("evaluator", "precision"), SOURCES)
 
@@ -71,8 +72,10 @@ def test_its_numbers_are_of_its_format(evaluator, precision):
 @pytest.mark.parametrize("kind", SCHEMES)
 def test_each_table_that_a_scheme_names_matters_to_it(kind):
     """Without one of them it is none."""
-    of_chain = {"rings": "march", "modes": "modes"}
-    model, evaluator = (lower(CHAIN), of_chain[kind]) if kind in of_chain else (lower(SCENES["building"]), kind)
+    recorded = CHAIN.with_({"load": RECORD, "system.parts[1].rod": "7/2"})
+    of_chain = {"rings": ("march", CHAIN), "hats": ("march", recorded), "modes": ("modes", CHAIN)}
+    evaluator, scene = of_chain.get(kind, (kind, SCENES["building"]))
+    model = lower(scene)
     program = making.program(model, choose(model, evaluator).evaluator)
     scheme = SCHEMES[kind]
     assert set(scheme.TABLES) <= program.tables.keys()

@@ -14,9 +14,9 @@ from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene
 
 
-def written(scene, runtime, folder, changes=()):
+def written(scene, runtime, folder, changes=(), precision="double"):
     """The files of a scene, with `changes` (old, new) in NAME.c."""
-    made = dict(_generated(scene.model_dump_json(), tuple(runtime)))
+    made = dict(_generated(scene.model_dump_json(), tuple(runtime), precision))
     for old, new in changes:
         assert old in made[f"{scene.name}.c"], old
         made[f"{scene.name}.c"] = made[f"{scene.name}.c"].replace(old, new)
@@ -25,9 +25,9 @@ def written(scene, runtime, folder, changes=()):
 
 
 @cache
-def _generated(scene, runtime):
+def _generated(scene, runtime, precision):
     with TemporaryDirectory() as folder:
-        paths = ways.generate(Scene(**json.loads(scene)), folder, runtime=runtime)
+        paths = ways.generate(Scene(**json.loads(scene)), folder, runtime=runtime, precision=precision)
         return tuple((path.name, path.read_text()) for path in paths)
 
 
@@ -52,6 +52,8 @@ class BuiltModel:
         self._build.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
         self._estimate = getattr(self.library, f"{name}_error_estimate")
         self._estimate.argtypes, self._estimate.restype = [ctypes.c_void_p], ctypes.c_double
+        self._bound = getattr(self.library, f"{name}_error_bound")
+        self._bound.argtypes = [ctypes.c_void_p] * 3
         self._eval = getattr(self.library, f"{name}_model_eval")
         self._eval.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p]
         self._sample = getattr(self.library, f"{name}_model_sample")
@@ -76,6 +78,12 @@ class BuiltModel:
     @property
     def estimate(self):
         return self._estimate(self.model.ctypes.data)
+
+    def bound(self, *parameters):
+        """What error_bound returns, and the bounds; the model is built, too."""
+        given = np.array([float(number) for number in parameters])
+        out = np.empty(self.outputs)
+        return self._bound(self.model.ctypes.data, given.ctypes.data, out.ctypes.data), out
 
     def at(self, tau):
         out = np.empty(self.outputs)

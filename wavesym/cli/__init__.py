@@ -31,6 +31,7 @@ COMMANDS = (
     "verify",
     "plot",
     "report",
+    "sweep",
     "chart",
     "stability",
 )

@@ -20,7 +20,7 @@ EVALUATORS = ["auto", "closed", "pieces", "march", "modes"]
 PRECISIONS = ["double", "single"]
 AIMS = ["speed", "size"]
 MOST_WINDOWS = 2**31 - 2
-FINEST = Fraction(1, 10**13)  # of tolerances at run time
+FINEST = {"double": Fraction(1, 10**13), "single": Fraction(1, 10**5)}  # of tolerances at run time
 
 
 class StepParameter(click.ParamType[Fraction]):
@@ -70,7 +70,8 @@ STEP = StepParameter()
 @click.option(
     "--runtime",
     metavar="LIST",
-    help="Parameters that come at run time, a list of kappa, inertia, velocity and load with commas between.",
+    help="Parameters that come at run time, with commas between: of kappa, inertia, velocity and load; of a chain that "
+    "is written out mass, dashpot, spring, impedance, velocity and load.",
 )
 @click.option("--stream", is_flag=True, help="Take the loads sample by sample, from a controller, without end.")
 @click.option(
@@ -117,8 +118,9 @@ def generate(
         written = compiler.generate(*asked, given, stream=stream, step=step, package=package, force=force)
     for path in written:
         click.echo(path)
-    if given and scene.output.tolerance < FINEST:
-        click.echo(f"{scene.name}: tolerance {float(scene.output.tolerance):g} taken as 1e-13 at run time", err=True)
+    if given and scene.output.tolerance < (finest := FINEST[precision]):
+        told = f"tolerance {float(scene.output.tolerance):g} taken as {float(finest):.0e} at run time"
+        click.echo(f"{scene.name}: {told}", err=True)
     for line in () if stream else compiler.no_load(scene):
         click.echo(f"{scene.name}: {line}", err=True)
     for manifest in (path for path in written if path.suffix == ".json"):

@@ -19,7 +19,9 @@ def stability(directory: Path) -> None:
     Of chains that are written out: lengths that are nearly equal, springs from soft to stiff, dashpots near the
     impedance, contacts after many events, and where each program refuses.
 
-    Takes about three minutes, and a C compiler; prints the paths of what it wrote.
+    Of parameters at run time: what a model says of its error itself.
+
+    Takes about four minutes, and a C compiler; prints the paths of what it wrote.
 
     \b
     Example:

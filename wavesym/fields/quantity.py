@@ -56,6 +56,14 @@ def quantity(value: object, dimension: str) -> Fraction:
     return number
 
 
+def parted(value: object) -> tuple[Fraction, str] | None:
+    """The number and the unit of a quantity, whatever the unit means; None of what is no quantity."""
+    if not isinstance(value, str) or isinstance(value, Written) or len(value) > LONGEST:
+        return None
+    found = _QUANTITY.fullmatch(value)
+    return (exact(found[1]), found[2]) if found else None
+
+
 def unit(value: object, dimension: str) -> Fraction:
     """A unit without a number, such as "mm" or "kN*m": how many SI base units it is. Raises that of `table.wrong`."""
     example = DIMENSIONS[dimension].example.partition(" ")[2]

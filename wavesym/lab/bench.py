@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from wavesym.lab import recorded, streamed
+from wavesym.lab import parameters, recorded, streamed
 from wavesym.lab.equal_degree import at_degree, fitted, ratios
 from wavesym.lab.harness import CALLS, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
 from wavesym.lab.timing import medians, ran
@@ -76,6 +76,18 @@ def report(folder: Path) -> Iterator[str]:
     yield "## Generating"
     yield ""
     yield from _table(("what", "wall s", "peak MB", "evaluator"), _generating(folder))
+    yield ""
+    yield "## Parameters at run time"
+    yield ""
+    yield f"From kappa to {parameters.SAMPLES} samples of all outputs, tolerance 1e-12, nothing left out but compiling."
+    yield "*By hand*: characteristics with exponential integration of order 4, written for the scene alone."
+    yield ""
+    yield from _table(
+        ("scene", "way", "us to coefficients", "us to samples", "error", "estimate", "proved bound"),
+        parameters.rows(folder),
+    )
+    yield ""
+    yield from _table(("many sets", "how fast"), parameters.many_rows(folder))
     yield ""
     yield "## A record"
     yield ""

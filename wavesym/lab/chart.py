@@ -75,7 +75,7 @@ def draw(scene: Scene, measured: Measured) -> Figure:
             fronts.tick_params(labelleft=False)
         _panel(away, where, curves, measured, "error_away")
         away.set_ylabel("time per value / ns")
-        _setup(figure.add_subplot(grid[1, :]), curves)
+        _setup(figure.add_subplot(grid[1, :]), curves, measured.new_parameters)
     return figure
 
 
@@ -146,10 +146,17 @@ def _panel(
     label(axes, named, _FONT)
 
 
-def _setup(axes: Axes, curves: Sequence[tuple[_Style, list[ChartRow]]]) -> None:
-    """What a new parameter set costs, from the least to the most of a curve's points."""
-    axes.set(xscale="log", ylim=(len(curves) - 0.5, -0.5))
-    for place, (style, rows) in enumerate(curves):
+def _setup(axes: Axes, curves: Sequence[tuple[_Style, list[ChartRow]]], new_parameters: float | None) -> None:
+    """What a new parameter set costs, from the least to the most of a curve's points. First, where there is one, what
+    a program costs that takes parameters when it runs: all of its samples are in that.
+    """
+    before = 0 if new_parameters is None else 1
+    axes.set(xscale="log", ylim=(len(curves) + before - 0.5, -0.5))
+    names = [style.name for style, _ in curves]
+    if new_parameters is not None:
+        axes.plot([new_parameters], [0], "*", color="black", markersize=9)
+        names = ["kappa at run time, C, with all samples", *names]
+    for place, (style, rows) in enumerate(curves, before):
         seconds = [row.setup_seconds for row in rows]
         axes.plot([min(seconds), max(seconds)], [place, place], color=style.color, linewidth=1)
         axes.plot(
@@ -160,7 +167,7 @@ def _setup(axes: Axes, curves: Sequence[tuple[_Style, list[ChartRow]]]) -> None:
             markersize=5,
             markerfacecolor=style.color if style.ours else "white",
         )
-    axes.set_yticks(range(len(curves)), [style.name for style, _ in curves])
+    axes.set_yticks(range(len(names)), names)
     axes.tick_params(axis="y", length=0)
     axes.grid(True, color="0.9", linewidth=0.5)
     axes.set_xlabel("set-up for a new parameter set / s")

@@ -5,17 +5,21 @@ from __future__ import annotations
 import csv
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, fields
-from functools import cached_property
+from functools import cached_property, partial
 from io import StringIO
 from math import isnan, nan
 
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.errors import WavesymError
 from wavesym.lab.floor import floor
 from wavesym.lab.standard import standard
-from wavesym.lab.subjects import Subject, opponents, reference, subjects
+from wavesym.lab.subjects import Subject, opponents, reference, subjects, taus
 from wavesym.lab.timing import medians
+from wavesym.programs.request import Request
+from wavesym.programs.runtime.making import runtime_program
+from wavesym.running.model import RuntimeModel
 from wavesym.scene import Scene, lower
 
 NEAR = 0.02
@@ -55,13 +59,15 @@ class ChartRow:
 class Measured:
     """A scene's chart in numbers: its points, and the nanoseconds that writing a double takes.
 
-    All errors have `known` in them, what the values that they are measured from may be wrong by.
+    All errors have `known` in them, what the values that they are measured from may be wrong by. `new_parameters` is
+    how many seconds pass from new kappa to all samples, by C that takes them when it runs; None where no C does.
     """
 
     rows: tuple[ChartRow, ...]
     floor: float
     samples: int
     known: float = 0.0
+    new_parameters: float | None = None
 
 
 def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None] = lambda _: None) -> Measured:
@@ -72,9 +78,11 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
         for subject in source(scene, samples):
             progress(" ".join((*subject.curve, subject.resolution)))
             found.append((subject, judge.errors(subject)))
+    again = _again(scene, samples)
     progress("timing")
     outputs = len(scene.outputs)
-    line, *times = medians([floor(outputs, samples), *(subject.sample for subject, _ in found)])
+    line, *times = medians([floor(outputs, samples), *(subject.sample for subject, _ in found), *again])
+    new_parameters = times.pop() if again else None
     rows = (
         ChartRow(
             name=subject.name,
@@ -90,7 +98,17 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
         )
         for (subject, (away, fronts)), seconds in zip(found, times, strict=True)
     )
-    return Measured(tuple(rows), line / (samples * outputs) * 1e9, samples, judge.known.bound)
+    return Measured(tuple(rows), line / (samples * outputs) * 1e9, samples, judge.known.bound, new_parameters)
+
+
+def _again(scene: Scene, samples: int) -> list[Callable[[], object]]:
+    """A call that gives values for new kappa, where a program takes them when it runs."""
+    try:
+        program = runtime_program(lower(scene), Request(runtime=("kappa",)), ())
+    except WavesymError:
+        return []
+    model = RuntimeModel(program)
+    return [partial(model.run, taus(model.tau_max, samples, "double"), kappa=model.parameters["kappa"])]
 
 
 def to_csv(measured: Measured) -> str:
@@ -100,6 +118,9 @@ def to_csv(measured: Measured) -> str:
     writer.writeheader()
     line = {"name": "straight line", "kind": "floor", "language": "C", "precision": "double"}
     writer.writerow(line | {"ns_per_value": f"{measured.floor:.3g}"})
+    if measured.new_parameters is not None:
+        again = {"name": "kappa at run time", "kind": "set-up", "language": "C", "precision": "double"}
+        writer.writerow(again | {"setup_seconds": _told(measured.new_parameters)})
     for row in measured.rows:
         writer.writerow({name: _told(value) for name, value in asdict(row).items()})
     return text.getvalue()

@@ -19,6 +19,7 @@ from wavesym.lab.atlas import (
     mode_counts,
     reflections,
     refusals,
+    runtime,
     spacings,
     stiffness,
 )
@@ -41,6 +42,8 @@ FAMILIES: Mapping[str, Callable[[Progress], CurveFamily]] = {
     "modes": mode_counts.family,
     "damping": damping.family,
     "spacings": spacings.family,
+    "runtime_kappa": runtime.by_kappa,
+    "runtime_reflections": runtime.by_reflections,
     "march": endurance.family,
 }
 """By name, the one that takes longest last."""

@@ -13,10 +13,11 @@ import numpy as np
 from wavesym.lab.harness import PLAIN, chosen_compiler, compilers
 from wavesym.lab.stream import stream
 from wavesym.lab.timing import medians, ran
+from wavesym.numbers.doubles import nearest
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.programs.modes.evaluator import ModesEvaluator
-from wavesym.programs.modes.records import hat_response
+from wavesym.programs.modes.records import RecordResponse
 from wavesym.programs.program import Program
 from wavesym.running.native import FAST
 from wavesym.scene import Scene, lower
@@ -90,9 +91,9 @@ def _many(made: ModesEvaluator) -> float:
     """Seconds for the peaks of all outputs under many records."""
     samples = np.random.default_rng(1).standard_normal((AT_ONCE, _SAMPLES))
     start = perf_counter()
-    response = hat_response(made.system, made.spacing, _SAMPLES)
+    response = RecordResponse(made.system, nearest(made.spacing))
     for _ in range(RECORDS // AT_ONCE):
-        np.abs(response.respond(samples)).max(axis=2)
+        np.abs(response.respond(samples).values).max(axis=1)
     return perf_counter() - start
 
 

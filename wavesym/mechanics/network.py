@@ -26,7 +26,7 @@ class Point:
     """What moves as one: a rigid mass, or none; a dashpot and a spring to the ground; its velocity at tau = 0.
 
     A `motion` is prescribed by the loads on the point: its velocity, or its acceleration. What is fixed has no loads.
-    `place` is where a scene would say that it is.
+    `place` is where a scene would say that it is. What is `absorbing` has the dashpot that its rod asks for.
     """
 
     mass: fmpq
@@ -37,6 +37,7 @@ class Point:
     loads: tuple[UnitLoad, ...] = ()
     name: str = ""
     place: str = field(default="", compare=False)
+    absorbing: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from flint import arb, ctx, fmpq
 from wavesym.numbers.doubles import middle, rational
 from wavesym.numbers.reals import Real
 from wavesym.programs.closed import ClosedForm
+from wavesym.programs.hats.evaluator import HatMarch
 from wavesym.programs.march.evaluator import MarchEvaluator
 from wavesym.programs.march.given import SMOOTH
 from wavesym.programs.march.plan import Plan, Stretch
@@ -25,7 +26,7 @@ from wavesym.programs.rings.evaluator import RingMarch
 
 
 def assemble(
-    evaluator: ClosedForm | Pieces | MarchEvaluator | RingMarch | ModesEvaluator, provenance: Provenance
+    evaluator: ClosedForm | Pieces | MarchEvaluator | RingMarch | HatMarch | ModesEvaluator, provenance: Provenance
 ) -> Program:
     """The program of an evaluator, whatever its bound."""
     match evaluator:
@@ -37,6 +38,18 @@ def assemble(
             return _march(evaluator, provenance)
         case RingMarch(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
             return Program("rings", evaluator.real, tau_max, outputs, tables, constants, evaluator.bytes, provenance)
+        case HatMarch(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
+            return Program(
+                "hats",
+                evaluator.real,
+                tau_max,
+                outputs,
+                tables,
+                constants,
+                evaluator.bytes,
+                provenance,
+                numpy_only=evaluator.refusal,
+            )
         case ModesEvaluator(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
             return Program(
                 "modes",

@@ -9,12 +9,13 @@ from typing import NamedTuple, Protocol
 
 from flint import fmpq
 
-from wavesym.errors import CostError, RangeError, ToleranceError, UnservedError, WavesymError
+from wavesym.errors import CostError, RangeError, SpacingError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.signal import refuse_many, signals
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.numbers.reals import REALS, Real
+from wavesym.numbers.reals import DOUBLE, REALS, Real
 from wavesym.programs.closed import ClosedForm, closed_form
+from wavesym.programs.hats.evaluator import HatMarch, hat_march
 from wavesym.programs.march.evaluator import MarchEvaluator, marched, unmet
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.modes.making import modes
@@ -22,7 +23,7 @@ from wavesym.programs.pieces import Pieces, pieces
 from wavesym.programs.program import ProgramOutput
 from wavesym.programs.rings.evaluator import RingMarch, ring_march
 
-Made = ClosedForm | Pieces | ModesEvaluator | MarchEvaluator | RingMarch
+Made = ClosedForm | Pieces | ModesEvaluator | MarchEvaluator | RingMarch | HatMarch
 
 _USUAL_TABLES = {"double": "speed", "single": "size"}
 # Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
@@ -183,20 +184,24 @@ def _modes(model: Model, real: Real, *_: object) -> ModesEvaluator:
     return modes(model, real)
 
 
-def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator | RingMarch:
+def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator | RingMarch | HatMarch:
     if not asked and model.tolerance < real.roundoff:
         digits, most = (-log10(nearest(each)) for each in (model.tolerance, real.roundoff))
         raise CostError(
             f"output: {digits:.0f} digits would be marched for, at most {most:.0f} expected, as many as "
             f"{real.name} precision has (a larger tolerance helps)"
         )
-    if model.chain is None:
-        if windows is not None:
-            raise UnservedError(
-                f"--windows: {model.labels.type} given, collision, drive or building expected (they take given loads)"
-            )
-        return ring_march(model, real)
-    return marched(model, real, windows=windows)
+    if model.chain is None and windows is not None:
+        raise UnservedError(
+            f"--windows: {model.labels.type} given, collision, drive or building expected (they take given loads)"
+        )
+    try:
+        return ring_march(model, real) if model.chain is None else marched(model, real, windows=windows)
+    except SpacingError as refusal:
+        hats = hat_march(model, str(refusal)) if windows is None and real is DOUBLE else None
+        if hats is None:
+            raise
+        return hats
 
 
 Maker = Callable[[Model, Real, bool, int | None, str], Made]

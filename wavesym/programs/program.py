@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import ceil
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.schemes import SCHEMES, Scheme
+from wavesym.programs.schemes.hats import HatScheme
 
 
 @dataclass(frozen=True)
@@ -89,15 +91,16 @@ class Driven:
 class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
-    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "modes",
-    "runtime": a march whose parameters come at run time, by its `laws`, or "stream": one whose loads do. The last two
-    are C alone.
+    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "hats",
+    that of one hat of each record, in NumPy alone, "modes", "runtime": a march whose parameters come at run time, by
+    its `laws`, "joints": that of a chain, or "stream": one whose loads do. The last three are C alone.
     `tables` are flat, by name, each number as it is written: indices are ints, all else floats of the format; which
-    there are, assembly.py says, of rings rings/tables.py, of modes modes/tables.py, of streams stream/tables.py.
+    there are, assembly.py says, of rings rings/tables.py, of hats hats/evaluator.py, of modes modes/tables.py, of
+    streams stream/tables.py.
     `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march,
     modes and a stream, `sources` are the names of loads that it can be given; a march is `whole` where no node was left
     out. Its error is `proved`, or an estimate. Of a stream `direct` has for each output the sources that act on it at
-    once.
+    once. `numpy_only` says why there is no C of it, and what helps.
     """
 
     kind: str
@@ -115,11 +118,12 @@ class Program:
     proved: bool = True
     laws: RuntimeLaws | None = None
     direct: tuple[tuple[int, ...], ...] = ()
+    numpy_only: str = ""
 
     @property
     def evaluator(self) -> str:
         """What a user calls its kind."""
-        return "march" if self.kind == "rings" else self.kind
+        return {"rings": "march", "hats": "march", "joints": "runtime"}.get(self.kind, self.kind)
 
     @property
     def error_bound(self) -> float:
@@ -132,6 +136,19 @@ class Program:
         Bit for bit what the generated NumPy gives. ArithmeticError where a march sees that its degree is too low.
         """
         return self._scheme.evaluate(tau)
+
+    def each(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Each output at instants of its own: tau and values are (outputs, n)."""
+        if isinstance(self._scheme, HatScheme):
+            return self._scheme.each(tau)
+        flat, back = np.unique(tau, return_inverse=True)
+        return np.take_along_axis(self.evaluate(flat), back.reshape(tau.shape), axis=1)
+
+    def instants(self, step: float) -> NDArray[np.float64]:
+        """Instants of the horizon no more than `step` apart, both its ends included, where values are had soonest."""
+        if isinstance(self._scheme, HatScheme):
+            return self._scheme.evenly(step)
+        return np.linspace(0.0, self.tau_max, ceil(self.tau_max / step) + 1)
 
     @cached_property
     def _scheme(self) -> Scheme:

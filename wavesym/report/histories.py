@@ -16,14 +16,16 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import ToleranceError, WavesymError
+from wavesym.errors import SpacingError, ToleranceError, WavesymError
 from wavesym.exact.contact import ContactEnd, contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
+from wavesym.programs.hats.split import rest_of
 from wavesym.programs.making import make
 from wavesym.programs.program import Program
 from wavesym.programs.request import Request
+from wavesym.programs.rings.plan import ring_plan
 
 Points = NDArray[np.float64]
 
@@ -89,8 +91,9 @@ def histories(model: Model, columns: int = 1) -> Histories:
     contacts = contact_ends(model)
     formal = [_formal(model, probe, contacts) for probe in model.probes]
     dense = _dense(model)
-    fronts = [[] if dense else arrivals(model, probe) for probe in model.probes]
-    taus = _instants(program.tau_max, columns, fronts, formal)
+    sudden = rest_of(model) if program.kind == "hats" else model  # records do not jump
+    fronts = [[] if dense else arrivals(sudden, probe) for probe in model.probes]
+    taus = _instants(program, columns, fronts, formal)
     values = program.evaluate(taus)
     return Histories(
         model,
@@ -106,7 +109,8 @@ def histories(model: Model, columns: int = 1) -> Histories:
 
 def drawable(model: Model) -> Program:
     """A program of a model for pictures: of those that will do that which is made most quickly."""
-    for kind, least in _QUICK.items():
+    quick = list(_QUICK.items())
+    for kind, least in quick if _fits(model) else reversed(quick):
         with suppress(WavesymError):
             return make(model.tolerating(max(model.tolerance, least)), Request(kind))
     try:
@@ -115,6 +119,17 @@ def drawable(model: Model) -> Program:
         with suppress(WavesymError):  # rounding adds up over long horizons
             return make(model.tolerating(_SEEN), Request("march"))
         raise
+
+
+def _fits(model: Model) -> bool:
+    """Whether loads fit into the windows of a march; to march one hat instead takes longer than modes."""
+    try:
+        ring_plan(model)
+    except SpacingError:
+        return False
+    except WavesymError:  # as will be said
+        return True
+    return True
 
 
 def arrivals(model: Model, probe: Probe) -> list[float]:
@@ -152,13 +167,14 @@ def _formal(model: Model, probe: Probe, contacts: tuple[ContactEnd, ...]) -> flo
     return min((end.double + abs(x - end.x) for end in contacts for x in places), default=inf)
 
 
-def _instants(until: float, columns: int, fronts: list[list[float]], formal: list[float]) -> Points:
+def _instants(program: Program, columns: int, fronts: list[list[float]], formal: list[float]) -> Points:
+    until = program.tau_max
     most = min(_MOST, max(_LEAST, _VALUES // len(formal)))
     count = columns * -(-min(max(_LEAST, int(_PER_UNIT * until)), most) // columns)
     sudden = [tau for own in fronts for tau in own]
     before = [nextafter(tau, 0) for tau in sudden]
     late = [tau for tau in formal if tau < until]
-    return np.unique(np.concatenate([np.linspace(0, until, count + 1), sudden, before, late]))
+    return np.unique(np.concatenate([program.instants(until / count), sudden, before, late]))
 
 
 def _broken(points: Points, fronts: list[float]) -> tuple[Points, ...]:

@@ -21,18 +21,18 @@ _TOPS = 3  # of an output and a side that are looked at
 _EQUAL = 1e-14  # of the largest value: rounding makes no later instant of a plateau higher
 
 
-def sampled_extremes(taus: Numbers, values: Numbers, evaluate: Evaluate | None = None) -> tuple[Numbers, Numbers]:
+def sampled_extremes(taus: Numbers, values: Numbers, each: Evaluate | None = None) -> tuple[Numbers, Numbers]:
     """Values and tau, each (outputs, 2), of the least and the greatest value; the first of equal ones.
 
-    `values` (outputs, taus) are those at `taus`, which are in order. What lies between is looked at where there is an
-    `evaluate`, which gives them for other tau.
+    `values` (outputs, taus) are those at `taus`, which are in order. What lies between is looked at where there is
+    `each`, which gives each output at instants of its own, (outputs, n).
     """
     both = np.stack([-values, values], axis=1)  # (outputs, sides, taus): greatest values are looked for in each
     equal = _EQUAL * np.abs(values).max(axis=1)[:, None]
     at = (both >= both.max(axis=2, keepdims=True) - equal[:, :, None]).argmax(axis=2)
     best, when = np.take_along_axis(both, at[:, :, None], axis=2)[:, :, 0], taus[at]
-    if evaluate is not None and taus.size > 2:
-        for found, tau in _refined(evaluate, taus, _tops(both)):
+    if each is not None and taus.size > 2:
+        for found, tau in _refined(each, taus, _tops(both)):
             better = found > best + equal
             best[better], when[better] = found[better], tau[better]
     return best * [-1.0, 1.0] + 0.0, when
@@ -46,14 +46,12 @@ def _tops(both: Numbers) -> NDArray[np.intp]:
     return np.asarray(np.argpartition(top, -kept, axis=2)[:, :, -kept:]) + 1
 
 
-def _refined(evaluate: Evaluate, taus: Numbers, tops: NDArray[np.intp]) -> Iterator[tuple[Numbers, Numbers]]:
+def _refined(each: Evaluate, taus: Numbers, tops: NDArray[np.intp]) -> Iterator[tuple[Numbers, Numbers]]:
     """Of ever finer samples around the `tops` the highest values, top by top, (outputs, sides), and their tau."""
     low, high = taus[tops - 1], taus[tops + 1]
-    rows = np.arange(len(tops))[:, None, None, None]
     for _ in range(_ROUNDS):
         finer = np.linspace(low, high, _FINER, axis=3)  # (outputs, sides, tops, finer)
-        flat, back = np.unique(finer, return_inverse=True)
-        values = evaluate(flat)[rows, back.reshape(finer.shape)] * np.array([-1.0, 1.0])[:, None, None]
+        values = each(finer.reshape(len(finer), -1)).reshape(finer.shape) * np.array([-1.0, 1.0])[:, None, None]
         place = values.argmax(axis=3)[:, :, :, None]
         found, tau = (np.take_along_axis(each, place, axis=3)[:, :, :, 0] for each in (values, finer))
         yield from ((found[:, :, k], tau[:, :, k]) for k in range(tops.shape[2]))

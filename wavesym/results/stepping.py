@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, nextafter
+from math import nextafter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from wavesym.exact.knots import Knots
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE
+from wavesym.programs.hats.split import rest_of
 from wavesym.programs.modes.panels import Panels
 from wavesym.programs.program import Program
 
@@ -39,9 +40,8 @@ def sampled(model: Model, program: Program, step: float) -> tuple[Numbers, Numbe
     """Instants no more than `step` apart, in order, with both sides of jumps, and the values of a program there."""
     if program.kind == "modes" and program.real is DOUBLE:
         return Panels.of(program).sampled(step)
-    count = ceil(program.tau_max / step)
-    fronts = jumps(model)
-    taus = np.unique([*np.linspace(0.0, program.tau_max, count + 1), *fronts, *map(just_before, fronts)])
+    fronts = jumps(rest_of(model) if program.kind == "hats" else model)  # records do not jump
+    taus = np.unique([*program.instants(step), *fronts, *map(just_before, fronts)])
     return taus, program.evaluate(taus)
 
 

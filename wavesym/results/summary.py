@@ -190,7 +190,7 @@ def _searched(model: Model) -> _Found:
             f"at most {_MOST_SAMPLES // len(model.probes):.1e} expected (a shorter horizon or fewer outputs help)"
         )
     taus, values = sampled(model, program, step)
-    ranges = _ranges(*sampled_extremes(taus, values, program.evaluate))
+    ranges = _ranges(*sampled_extremes(taus, values, program.each))
     how = f"{program.evaluator} at {taus.size} samples, {apart(model, step)}, then refined"
     return _Found(ranges, program.error_bound, False, how, program.kind == "modes")
 

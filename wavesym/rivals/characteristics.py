@@ -124,10 +124,10 @@ def _stencils(problem: Problem, step: float, points: int) -> Array:
     kernel = np.exp(-z * (1 - s)) * weights * step / inertia[:, np.newaxis]
     # the stencil starts at the step itself, so that it is inside the panel, or ends at its end
     firsts = (0, 1 - points // 2, 2 - points)
-    return np.hstack([np.exp(-z), *(kernel @ _lagrange(s, first, points) for first in firsts)])
+    return np.hstack([np.exp(-z), *(kernel @ lagrange(s, first, points) for first in firsts)])
 
 
-def _lagrange(s: Array, first: int, points: int) -> Array:
+def lagrange(s: Array, first: int, points: int) -> Array:
     """Lagrange's polynomials on the points first, first + 1, ... at s: shape (len(s), points)."""
     places = range(first, first + points)
     return np.stack(

@@ -1,80 +1,151 @@
-"""Parameters at run time, from Python: C of a scene compiled once, then run for as many sets as are given."""
+"""Programs whose parameters are given when they run, computed for as many sets as there are: in C, compiled once."""
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from wavesym.errors import WavesymError
+from wavesym.errors import UnservedError
 from wavesym.programs.program import Program
+from wavesym.programs.runtime.arrays.engine import ArraySets
+from wavesym.programs.runtime.engine import Array, Engine, FoundSets
 from wavesym.running.native import FAST, address, library
+from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.targets.files import runtime_sets
 
-Array = NDArray[np.float64]
+_MANY, _WHERE = ctypes.c_size_t, ctypes.c_void_p
+_AT_ONCE = 1 << 22  # numbers
 
 
-class RuntimeModel:
-    """A scene whose parameters are given when it runs; all dimensionless.
+def sets_engine(program: Program) -> Engine:
+    """What computes a program here: C, or NumPy where there is no compiler. CompilerError for a chain there."""
+    if program.kind == "joints":
+        return CompiledSets(program)
+    try:
+        compiler()
+    except CompilerError:
+        return ArraySets(program)
+    return BatchedSets(program)
 
-    `outputs` are the names of its outputs, `tau_max` its horizon, `parameters` how many numbers each field has.
-    CompilerError where there is no C compiler.
-    """
+
+class CompiledSets:
+    """One set after the other, in the memory of one model. CompilerError where there is no C compiler."""
 
     def __init__(self, program: Program) -> None:
-        laws, name = program.laws, program.provenance.model.name
-        assert laws is not None
+        self._name = program.provenance.model.name
         files = runtime_sets(program)
-        loaded = library(files[f"{name}.c"], FAST, (f"{name}.h", files[f"{name}.h"]))
-        size = getattr(loaded, f"{name}_model_size")
-        size.restype = ctypes.c_size_t
-        self._model = np.zeros(size(), np.uint8)
-        self._sets = getattr(loaded, f"{name}_sets")
-        many, where = ctypes.c_size_t, ctypes.c_void_p
-        self._sets.argtypes = [where, many, where, where, ctypes.c_int, many, where, where, where]
-        self._sets.restype = None
-        self._own = {field.name: np.array([float(value) for value in field.values]) for field in laws.fields}
-        self.outputs = tuple(output.name for output in program.outputs)
-        self.tau_max = program.tau_max
-        self.parameters: Mapping[str, int] = {name: len(values) for name, values in self._own.items()}
+        header = (f"{self._name}.h", files[f"{self._name}.h"])
+        self._loaded = library(files[f"{self._name}.c"], FAST, header)
+        self._outputs = len(program.outputs)
+        self._values, self._tangents = (
+            self._function(f"sets{kind}", [_WHERE, _MANY, _WHERE, _WHERE, ctypes.c_int, _MANY, _WHERE, _WHERE, _WHERE])
+            for kind in ("", "_tangents")
+        )
+        self._peaks = self._function("sets_peaks", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._size, self._tangent_size = (self._function(f"{kind}_size", [], _MANY)() for kind in ("model", "tangent"))
 
-    def run(self, tau: ArrayLike, **parameters: ArrayLike) -> tuple[Array, NDArray[np.int32], Array]:
-        """Values of shape (sets, outputs, times), the status of each set and its error estimate.
+    def _function(self, name: str, arguments: list[Any], result: Any = None) -> ctypes._NamedFuncPointer:
+        found: ctypes._NamedFuncPointer = getattr(self._loaded, f"{self._name}_{name}")
+        found.argtypes, found.restype = arguments, result
+        return found
 
-        `parameters` by name have the shape (sets, numbers), or (numbers,) for all sets; those that are not given are
-        the scene's. A set that is refused (status 1: a bad number; 2: bodies too light) has NaN throughout, as has tau
-        out of range. WavesymError for a name that was not asked for, and for other shapes.
-        """
-        given = self._given(parameters)
-        instants = np.ascontiguousarray(tau, np.float64).ravel()
-        even = len(instants) > 1 and _even(instants)
-        told = np.array([instants[0], instants[1] - instants[0]]) if even else instants
-        sets, count = len(given), len(instants)
-        status, estimate = np.zeros(sets, np.int32), np.zeros(sets)
-        out = np.zeros((sets, len(self.outputs), count))
-        places = (address(values) for values in (status, estimate, out))
-        self._sets(address(given), sets, address(self._model), address(told), even, count, *places)
-        return out, status, estimate
+    def values(self, given: Array, tau: Array) -> FoundSets:
+        """See `Engine`."""
+        return self._at(self._values, self._size, given, tau, 1)
 
-    def _given(self, parameters: Mapping[str, ArrayLike]) -> Array:
-        """All fields side by side, a row for each set."""
-        columns = dict(self._own)
-        for name, values in parameters.items():
-            if name not in columns:
-                raise WavesymError(f"{name} given, {' or '.join(columns)} expected")
-            numbers = np.asarray(values, np.float64)
-            if numbers.ndim not in (1, 2) or numbers.shape[-1] != self.parameters[name]:
-                wanted = f"(sets, {self.parameters[name]})"
-                raise WavesymError(f"{name}: an array of shape {numbers.shape} given, {wanted} expected")
-            columns[name] = numbers
-        counts = {len(values) for values in columns.values() if values.ndim == 2}
-        if len(counts) > 1:
-            raise WavesymError(f"{' and '.join(map(str, sorted(counts)))} sets given, as many of each expected")
-        sets = counts.pop() if counts else 1
-        rows = [np.broadcast_to(values, (sets, values.shape[-1])) for values in columns.values()]
-        return np.ascontiguousarray(np.concatenate(rows, axis=1))
+    def tangents(self, given: Array, tau: Array) -> FoundSets:
+        """See `Engine`."""
+        return self._at(self._tangents, self._tangent_size, given, tau, 1 + given.shape[1])
+
+    def peaks(self, given: Array) -> FoundSets:
+        """See `Engine`."""
+        return self._of_each(self._peaks, given, (self._outputs, 4))
+
+    def bounds(self, given: Array) -> FoundSets:
+        """See `Engine`."""
+        raise UnservedError(f"bounds: {len(given)} sets of a chain given, collision, drive or building expected")
+
+    def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
+        """See `Engine`; sample by sample, some sets at a time."""
+        step = max(1, _AT_ONCE // max(1, data.size))
+
+        def misfits(given: Array) -> FoundSets:
+            found = _none(len(given), ())
+            for begin in range(0, len(given), step):
+                here = slice(begin, begin + step)
+                some = self.values(given[here], tau)
+                found.status[here], found.estimate[here] = some.status, some.estimate
+                sums = np.nansum((some.values[:, 0] - data) ** 2, axis=(1, 2))
+                found.values[here] = np.where(some.status == 0, sums, np.nan)
+            return found
+
+        return misfits
+
+    def _of_each(self, function: ctypes._NamedFuncPointer, given: Array, shape: tuple[int, ...]) -> FoundSets:
+        found = _none(len(given), shape)
+        model = np.empty(self._size, np.uint8)
+        function(address(given), len(given), address(model), *_places(found))
+        return found
+
+    def _at(self, function: ctypes._NamedFuncPointer, size: int, given: Array, tau: Array, lanes: int) -> FoundSets:
+        even = len(tau) > 1 and _even(tau)
+        told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
+        found = _none(len(given), (lanes, self._outputs, len(tau)))
+        model = np.empty(size, np.uint8)  # of this call, so that several may run at once
+        function(address(given), len(given), address(model), address(told), even, len(tau), *_places(found))
+        return found
+
+
+class BatchedSets(CompiledSets):
+    """Those of the named systems: with bounds, and with misfits of several sets side by side."""
+
+    def __init__(self, program: Program) -> None:
+        super().__init__(program)
+        self._misfits = self._function("sets_misfits", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._bounds = self._function("sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._data_size = self._function("data_size", [_WHERE, _MANY], _MANY)
+        self._data = self._function("data_init", [_WHERE, _WHERE, _WHERE, _WHERE, _MANY], ctypes.c_int)
+        sizes = (_MANY * 2)()
+        self._function("sets_sizes", [_MANY * 2])(sizes)
+        self._batch_size, self._data_bytes = sizes
+
+    def bounds(self, given: Array) -> FoundSets:
+        """See `Engine`."""
+        return self._of_each(self._bounds, given, (self._outputs,))
+
+    def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
+        """See `Engine`."""
+        values = np.ascontiguousarray(data)
+        kept, numbers = np.empty(self._data_bytes, np.uint8), np.empty(self._data_size(address(tau), len(tau)))
+        self._data(address(kept), address(numbers), address(tau), address(values), len(tau))
+
+        def misfits(given: Array) -> FoundSets:
+            _ = numbers  # C reads them, so that they must live as long as this
+            found = _none(len(given), ())
+            batch = _aligned(self._batch_size)
+            self._misfits(address(given), len(given), address(batch), address(kept), *_places(found))
+            return found
+
+        return misfits
+
+
+def _aligned(size: int) -> NDArray[np.uint8]:
+    """Memory from a multiple of 64 bytes on."""
+    memory = np.empty(size + 64, np.uint8)
+    begin = -memory.ctypes.data % 64
+    return memory[begin : begin + size]
+
+
+def _none(sets: int, shape: tuple[int, ...]) -> FoundSets:
+    return FoundSets(np.empty(sets, np.int32), np.empty(sets), np.empty((sets, *shape)))
+
+
+def _places(found: FoundSets) -> tuple[int, int, int]:
+    return address(found.status), address(found.estimate), address(found.values)
 
 
 def _even(tau: Array) -> bool:

@@ -84,7 +84,7 @@ def amplitudes(scene: Scene) -> tuple[tuple[str, Applied], ...]:
         if not isinstance(load, TimedLoad):
             raise UnservedError(f"load[{number}]: samples given with --runtime load, times expected")
         found += [
-            (f"{name}[{k}] of load {number}, tau = {load.times[k]}", unit)
+            (f"{name}[{k}] of load {number}, {_when(scene, load.times[k])}", unit)
             for name, units in load.by_list()
             for k, unit in enumerate(units)
         ]
@@ -96,7 +96,13 @@ def sources(scene: Scene) -> tuple[str, ...]:
     return tuple(dict.fromkeys(load.sources[0] for load in scene.load))
 
 
+def _when(scene: Scene, tau: Fraction) -> str:
+    return f"t = {scene.scale.clock.told(rational(tau))}" if scene.scale else f"tau = {tau}"
+
+
 def _inputs(scene: Scene) -> dict[str, tuple[fmpq, str]]:
+    if scene.scale and not scene.system.load_kinds:  # its own velocities move it
+        return {"impact": (rational(scene.scale.factor("velocity", 1)), scene.scale.unit("velocity"))}
     given = scene.physical.inputs if scene.physical else ()
     return {
         source: (rational(factor), unit)

@@ -13,11 +13,12 @@ _STEP = re.compile(r"(?:^|\.)([A-Za-z_]+)|\[([0-9]{1,6})\]")
 
 def changed(fields: Mapping[str, Any], path: str, value: object) -> dict[str, Any]:
     """A copy of nested tables and lists with another value at a path. SceneError where the path leads nowhere."""
-    result: dict[str, Any] = _replaced(fields, _steps(path), value, path)
+    result: dict[str, Any] = _replaced(fields, steps(path), value, path)
     return result
 
 
-def _steps(path: str) -> list[str | int]:
+def steps(path: str) -> list[str | int]:
+    """The keys and indices that a path is made of. SceneError for what is no path."""
     found = list(_STEP.finditer(path))
     if not found or "".join(step[0] for step in found) != path:
         raise SceneError('no path, one such as "output.until" or "load[0].times[2]" expected', path)

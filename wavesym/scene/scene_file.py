@@ -37,7 +37,7 @@ def read_toml(source: str | PathLike[str]) -> tuple[str, str, dict[str, Any]]:
     `source` is a path, `-` for standard input, or the name of a built-in scene. Raises SceneError.
     """
     file, text = toml_text(source)
-    return file, text, _beside(os.path.dirname(os.fspath(source)), _parsed(file, text))
+    return file, text, _beside(os.path.dirname(os.fspath(source)), parsed(file, text))
 
 
 def toml_text(source: str | PathLike[str]) -> tuple[str, str]:
@@ -75,7 +75,8 @@ def builtin_text(name: str) -> str:
     return _builtin(name).decode()
 
 
-def _parsed(file: str, text: str) -> dict[str, Any]:
+def parsed(file: str, text: str) -> dict[str, Any]:
+    """The table in a text of TOML, decimals as they are written. SceneError, which names `file`, where it is none."""
     try:
         return tomllib.loads(text, parse_float=Written)
     except tomllib.TOMLDecodeError as error:

@@ -200,7 +200,7 @@ class _Pen:
         elif part == "absorbing":
             if not rods:
                 raise wrong('"absorbing" given, a rod beside it expected', *at)
-            self.points[point] = Point(fmpq(0), damping=rational(rods[0].impedance))
+            self.points[point] = Point(fmpq(0), damping=rational(rods[0].impedance), absorbing=True)
         name = part.name if isinstance(part, PointPart | MotionPart) else None
         if name:
             if name in self.names or name in self.lines:

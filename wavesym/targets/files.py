@@ -46,7 +46,7 @@ def sources(program: Program, language: str) -> dict[str, str]:
 
 def runtime_sets(program: Program) -> dict[str, str]:
     """The C of a program whose parameters come at run time, for many sets of them in one call."""
-    made: dict[str, str] = import_module("wavesym.targets.c.runtime").sets(describe(program), program)
+    made: dict[str, str] = import_module(f"wavesym.targets.c.{program.kind}").sets(describe(program), program)
     return made
 
 

@@ -10,7 +10,15 @@ from wavesym.targets.description import Description
 SCHEMA_VERSION = 2
 # What NAME.c compiles to besides its tables, with clang -Os for a Cortex-M4: no more than this; a test compiles it.
 SMALL_TARGET = "Cortex-M4, -Os"
-CODE_AT_MOST = {"closed": 1024, "pieces": 4096, "march": 8192, "rings": 8192, "modes": 4096, "stream": 8192}
+CODE_AT_MOST = {
+    "closed": 1024,
+    "pieces": 4096,
+    "march": 8192,
+    "rings": 8192,
+    "hats": 0,
+    "modes": 4096,
+    "stream": 8192,
+}
 
 
 def manifest(description: Description, program: Program) -> str:
@@ -76,7 +84,12 @@ def _runtime(program: Program) -> dict[str, object]:
         field.name: {label: str(value) for label, value in zip(field.labels, field.values, strict=True)}
         for field in program.laws.fields
     }
-    return {"runtime": given, "degree": program.constants["degree"]}
+    units = {
+        field.name: [unit.text for unit in field.units]
+        for field in program.laws.fields
+        if any(unit.text for unit in field.units)
+    }
+    return {"runtime": given, **({"runtime_units": units} if units else {}), "degree": program.constants["degree"]}
 
 
 def _events(description: Description) -> dict[str, object]:

@@ -8,6 +8,7 @@ from wavesym.documents.inspection.section import Listing, Plain, Told, finite
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import MAKERS, Made, Tried, attempt
 from wavesym.programs.closed import ClosedForm
+from wavesym.programs.hats.evaluator import HatMarch
 from wavesym.programs.march.evaluator import MarchEvaluator
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.pieces import Pieces
@@ -68,7 +69,7 @@ def _dear(form: Made) -> str:
             f"not tried, nor the smallest tables: to fit {form.bytes} bytes once more takes long, "
             f"at most {MOST_BYTES} expected"
         )
-    if isinstance(form, (MarchEvaluator, RingMarch)) and (marched := form.marched) > MOST_MARCHED:
+    if isinstance(form, (MarchEvaluator, RingMarch, HatMarch)) and (marched := form.marched) > MOST_MARCHED:
         return f"not tried: a march would take {marched:.1e} operations, at most {MOST_MARCHED:.1e} expected"
     return ""
 
@@ -81,7 +82,7 @@ def told_degrees(form: Made) -> Told | None:
         case Pieces():
             low, high = form.degrees
             return Told([low, high], f"{low}..{high}")
-        case MarchEvaluator() | RingMarch():
+        case MarchEvaluator() | RingMarch() | HatMarch():
             return Told([form.degree, form.degree], str(form.degree))
 
 

@@ -4,32 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
-from typing import NamedTuple
 
 import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.exact.reference import Reference
 from wavesym.lab.atlas import shaken
-from wavesym.lab.atlas.attempts import Array
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint, nearest, rational
-from wavesym.programs.making import make
+from wavesym.programs.hats.evaluator import hat_march
+from wavesym.programs.making import make, program
+from wavesym.programs.march.evaluator import marched
+from wavesym.programs.program import Program
 from wavesym.programs.request import Request
 from wavesym.scene import lower
-from wavesym.verification.hat import at_samples
 
 PARTS = (1, 2, 4, 8, 16, 32, 200, 10**3, 10**6, 10**9, 10**12)
 SAMPLES = 18  # two more than a march has panels
 TOLERANCE = Fraction(1, 10**6)
-
-
-class _Found(NamedTuple):
-    """Values (outputs, samples), and how wrong the worst output may be at most, relative to its largest value."""
-
-    values: Array
-    bound: float
 
 
 def spacing(parts: int) -> Fraction:
@@ -50,13 +43,14 @@ def family(progress: Progress, counts: Sequence[int] = PARTS) -> CurveFamily:
         for name, way in WAYS.items():
             progress(f"samples 5 - 1/{parts} apart, {name}")
             try:
-                found = way(reference.model, taus, sizes)
+                made = way(reference.model)
+                values = made.evaluate(taus)
             except WavesymError as why:
                 points.append(AtlasPoint("", name, parts, float("nan"), refused=str(why)))
                 continue
-            error = shaken.worst(found.values, right, sizes)
-            refused = f"{name}: a bound of {found.bound:.1e} in all" if found.bound > TOLERANCE else ""
-            points.append(AtlasPoint("", name, parts, error, found.bound, refused))
+            error = shaken.worst(values, right, sizes)
+            refused = f"{name}: a bound of {made.error_bound:.1e} in all" if made.error_bound > TOLERANCE else ""
+            points.append(AtlasPoint("", name, parts, error, made.error_bound, refused))
     return CurveFamily(
         "spacings",
         "Samples 5 - 1/q apart: a march goes to q = 16, that of one hat far on, modes anywhere",
@@ -67,18 +61,19 @@ def family(progress: Progress, counts: Sequence[int] = PARTS) -> CurveFamily:
     )
 
 
-def _made(name: str, model: Model, taus: Array) -> _Found:
-    made = make(model, Request(evaluator=name))
-    return _Found(made.evaluate(taus), made.error_bound)
+def _modes(model: Model) -> Program:
+    return make(model, Request(evaluator="modes"))
 
 
-def _hat(model: Model, taus: Array, sizes: Array) -> _Found:
-    found = at_samples(model)
-    return _Found(found.values, float(np.max(found.allowed / sizes)))
+def _march(model: Model) -> Program:
+    """As it is, and not of one hat."""
+    return program(model, marched(model))
 
 
-WAYS: Mapping[str, Callable[[Model, Array, Array], _Found]] = {
-    "modes": lambda model, taus, _: _made("modes", model, taus),
-    "march": lambda model, taus, _: _made("march", model, taus),
-    "march of one hat": _hat,
-}
+def _hat(model: Model) -> Program:
+    made = hat_march(model)
+    assert made  # there are samples enough
+    return program(model, made)
+
+
+WAYS: Mapping[str, Callable[[Model], Program]] = {"modes": _modes, "march": _march, "march of one hat": _hat}

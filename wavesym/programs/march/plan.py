@@ -13,19 +13,21 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from functools import cached_property, reduce
 from itertools import pairwise
 from math import inf
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.errors import CostError
+from wavesym.errors import SpacingError
 from wavesym.exact.node_rules import node_rule
+from wavesym.fields.numbers import decimal_text
 from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.node import RAMPS, Node
-from wavesym.numbers.doubles import nearest, rational
+from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 
 LEFT, RIGHT, LOAD = 0, 1, 2
@@ -34,7 +36,8 @@ LEFT, RIGHT, LOAD = 0, 1, 2
 MOST_PANELS = 16
 # of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
 _ESTIMATED = 100
-_LONG = 12  # characters of a fraction that is easier to read as a decimal
+_LONG = 30  # characters of a number that nobody reads
+_NONE, _ONE = fmpq(0), fmpq(1)
 
 
 @dataclass(frozen=True)
@@ -223,21 +226,32 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
 
 
 def panels(times: Sequence[fmpq]) -> tuple[MarchPanel, ...]:
-    """The parts of every window between which loads begin or bend. CostError where there are too many."""
+    """The parts of every window between which loads begin or bend. SpacingError where there are too many."""
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     if len(cuts) - 1 > MOST_PANELS:
-        raise CostError(
-            f"load: times at a spacing of {spacing(times)} have {len(cuts) - 1} different fractional parts, at most "
-            f"{MOST_PANELS} expected in a march (modes, a spacing of p/q with q up to {MOST_PANELS}, or "
-            "fewer samples, helps)"
+        raise SpacingError(
+            f"load: times at a spacing of {told(common(times))} have {len(cuts) - 1} different fractional parts, at "
+            f"most {MOST_PANELS} expected in a march ({suiting(times)}, fewer samples, modes, or for what does not "
+            "jump NumPy or run, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 
 
-def spacing(times: Iterable[fmpq]) -> str:
-    """What all times are multiples of, to be read."""
-    exact = reduce(fmpq.gcd, times, fmpq(0))
-    return str(exact) if len(str(exact)) < _LONG else f"{nearest(exact):.9g}"
+def common(times: Iterable[fmpq]) -> fmpq:
+    """What all times are multiples of."""
+    return reduce(fmpq.gcd, times, _NONE)
+
+
+def suiting(times: Iterable[fmpq], step: fmpq = _ONE) -> str:
+    """The spacing nearest to that of some times whose multiples have few enough remainders of a step."""
+    parts = fraction(common(times) / step).limit_denominator(MOST_PANELS)
+    return f"a spacing of {told(step * rational(parts or Fraction(1, MOST_PANELS)))}"
+
+
+def told(exact: fmpq) -> str:
+    """A number to be read: all of it, or 17 digits where it is long."""
+    text = decimal_text(fraction(exact))
+    return text if len(text) < _LONG else f"{nearest(exact):.17g}"
 
 
 def _junctions(nodes: Sequence[Node]) -> Iterator[Junction]:

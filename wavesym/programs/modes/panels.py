@@ -39,7 +39,7 @@ class Panels(ModesScheme):
         out = np.empty((self._direct.shape[2], edges[-1] + 1))
         taus[-1], out[:, -1] = self._tau_max, self.evaluate(self._tau_max)
         kinds, kind = np.unique(lengths, return_inverse=True)
-        reads = lru_cache(_KEPT)(self._reads)
+        reads = lru_cache(_KEPT)(lambda s: self.reads(np.array([s]))[0])
         for first in range(0, last + 1, self.BLOCK):
             panels = np.arange(first, min(first + self.BLOCK, last + 1))
             states = self.states(first // self.BLOCK, int(panels[-1])).reshape(len(panels), -1)
@@ -57,17 +57,25 @@ class Panels(ModesScheme):
                     out[:, at] = (known @ reads(s)).T
         return taus, out
 
-    def _reads(self, s: float) -> NDArray[np.float64]:
-        """What outputs take of displacements, velocities, and of each load's slope, value and integrals, s later."""
-        p11, p12, p21, p22, one, two = (each[0][:, None] for each in self._turned(np.array([s])))
+    def turns(self, s: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        """What modes do in the times s: see `ModesScheme`."""
+        return self._turned(s)
+
+    def reads(self, s: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What outputs take of displacements, velocities, and of each load's slope, value and integrals, s later.
+
+        (times, 2 modes + 4 loads, outputs).
+        """
+        p11, p12, p21, p22, one, two = (each[:, :, None] for each in self._turned(s))
         moved, moving, push = self._moved, self._moving, self._push
         rows = [p11 * moved + p21 * moving, p12 * moved + p22 * moving]
         for k, (pushed, speed) in enumerate(((two, one), (one, p12))):
             rows.append(push @ (pushed * moved + speed * moving) + self._direct_part(k, s))
-        return np.vstack([*rows, self._direct_part(2, s), self._direct_part(3, s)])
+        made: NDArray[np.float64] = np.concatenate([*rows, self._direct_part(2, s), self._direct_part(3, s)], axis=1)
+        return made
 
-    def _direct_part(self, part: int, s: float) -> Numbers:
-        """Of a slope (0), a load (1) or its integrals (2, 3), itself and integrated on: (loads, outputs)."""
+    def _direct_part(self, part: int, s: NDArray[np.float64]) -> Numbers:
+        """Of a slope (0), a load (1) or its integrals (2, 3), itself and integrated on: (times, loads, outputs)."""
         orders = ((k, k + 1 - part) for k in range(3))
-        parts = [s**order / factorial(order) * self._direct[k] for k, order in orders if order >= 0]
+        parts = [(s**order / factorial(order))[:, None, None] * self._direct[k] for k, order in orders if order >= 0]
         return np.asarray(sum(parts))

@@ -61,6 +61,45 @@ class Roughness:
         return float(np.max(total, initial=0.0) * _MORE)
 
 
+@dataclass(frozen=True)
+class ScaledRoughness(Roughness):
+    """That of a load that is `by` times another one in as many times as long steps: what both share is found once."""
+
+    unit: Roughness
+    by: float
+
+    @cached_property
+    def in_step(self) -> float:
+        return self.unit.in_step * self.by * _MORE
+
+    def fading(self, rate: float) -> float:
+        """As of any load; here kinks are equally far apart."""
+        total, step, apart = np.abs(self.kinks), 1, float(self.times[1] - self.times[0])
+        while step < len(total):
+            earlier = total[:-step] * np.exp(-rate * apart * step * (1 - 1e-12))
+            total[step:] += earlier
+            step *= 2
+        return float(np.max(total) * _MORE)
+
+
+def of_samples(samples: Numbers) -> Roughness:
+    """Of a load that is 0 until tau = 0, has these `samples` one unit of tau apart, the first of them 0, and then 0."""
+    slopes = np.diff(samples, append=0.0)
+    kinks = np.diff(slopes, prepend=0.0, append=0.0)
+    kinks += np.copysign(4 * np.finfo(float).eps * np.abs(samples).max(initial=0.0), kinks)  # what rounding took
+    return Roughness(
+        np.arange(float(len(kinks))), kinks, tuple(range(len(kinks))), float(np.abs(slopes).max(initial=0.0)) * _MORE
+    )
+
+
+def scaled(unit: Roughness, begin: float, spacing: float, factor: float) -> ScaledRoughness:
+    """The same load from `begin` on, `factor` times as high, its samples `spacing` apart."""
+    by = abs(factor) / spacing * _MORE
+    return ScaledRoughness(
+        begin + spacing * unit.times, by * unit.kinks, unit.steps, by * unit.steepest, unit=unit, by=by
+    )
+
+
 def _partial(terms: Numbers) -> float:
     """The largest |sum_{k <= n} terms_k z^k| for any n and |z| = 1, or a little more.
 

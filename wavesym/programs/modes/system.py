@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, inf, isqrt, log
@@ -67,7 +68,7 @@ def modal_system(model: Model) -> ModalModes:
 
     UnservedError for what modes do not serve, ToleranceError where too many would be needed.
     """
-    chain = _Chain(model)
+    chain = ModalChain(model)
     tolerance = nearest(model.tolerance) / 2
     count, largest = chain.fewest, np.zeros(len(model.probes))
     while True:
@@ -105,7 +106,7 @@ def modal_system(model: Model) -> ModalModes:
     )
 
 
-def _unmet(model: Model, chain: _Chain, errors: Numbers, largest: Numbers, better: float) -> ToleranceError:
+def _unmet(model: Model, chain: ModalChain, errors: Numbers, largest: Numbers, better: float) -> ToleranceError:
     bounds = _relative(errors, largest)
     worst = int(np.argmax(bounds))
     name = model.probes[worst].name
@@ -125,7 +126,7 @@ def _relative(errors: Numbers, largest: Numbers) -> Numbers:
 
 
 @dataclass(frozen=True)
-class _Chain:
+class ModalChain:
     """What is the same for any number of modes."""
 
     model: Model
@@ -212,12 +213,12 @@ class _Chain:
         taken = known.w[:count]
         return LeftOut(self.rule(known), float(np.nextafter(taken[-1], 0.0)), int(np.count_nonzero(taken)))
 
-    def errors(self, known: Shares, count: int) -> Numbers:
-        """What the modes after the first `count` can add to each output."""
+    def errors(self, known: Shares, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
+        """What the modes after the first `count` can add to each output, under its own or other `loads`."""
         tail, rest = self.tail(known, count), known.rest(count)
         left = [rows[:, count] for rows in known.spare]
         made = np.zeros(len(self.model.probes))
-        for j, rough in enumerate(self.rough):
+        for j, rough in enumerate(self.rough if loads is None else loads):
             declines = tail.declines(rough)
             for o, output in enumerate(self.seen):
                 decline = declines[output.order]

@@ -18,7 +18,7 @@ All of it holds to first order in u, and a margin of 1 % is added for the rest.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import pi, sqrt
 
 import numpy as np
@@ -47,7 +47,19 @@ _SPARE = 24
 _ABOVE = 1 + 1e-12
 
 
-def judge(plan: RingPlan, degree: int, real: Real) -> Verdict:
+@dataclass(frozen=True)
+class RingVerdict(Verdict):
+    """What else is known of each output: what its values (`heights`) and their slopes over tau do not exceed.
+
+    True waves are polynomials of degree `smooth` on each panel, up to a tail.
+    """
+
+    smooth: int = 0
+    heights: tuple[float, ...] = ()
+    slopes: tuple[float, ...] = ()
+
+
+def judge(plan: RingPlan, degree: int, real: Real) -> RingVerdict:
     """March once over the horizon at `degree` for a program in `real` numbers, and bound its errors.
 
     All is divided by the size of what moves it, so that no square of a wave underflows here. OverflowError where waves
@@ -55,11 +67,14 @@ def judge(plan: RingPlan, degree: int, real: Real) -> Verdict:
     """
     scale = power_of_two([largest_number(plan)])
     verdict = _judge(plan.scaled(1 / scale), degree, real, scale)
-    errors, sizes = (tuple(nearest(scale) * value for value in of) for of in (verdict.errors, verdict.sizes))
-    return replace(verdict, errors=errors, sizes=sizes)
+    errors, sizes, heights, slopes = (
+        tuple(nearest(scale) * value for value in of)
+        for of in (verdict.errors, verdict.sizes, verdict.heights, verdict.slopes)
+    )
+    return replace(verdict, errors=errors, sizes=sizes, heights=heights, slopes=slopes)
 
 
-def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
+def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> RingVerdict:
     """The same for a plan whose motions are so many times as small as those of the program."""
     made = RingTables(plan, degree, DOUBLE)
     scheme = RingScheme(made.tables([False] * len(plan.outputs)), made.constants(), plan.tau_max, np.float64)
@@ -68,7 +83,9 @@ def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
     losses = Losses(plan, made, scheme, unit, smallest)
     outputs, step = len(plan.outputs), nearest(plan.step)
     truncated, rounded, summed = 0.0, losses.begun, 0.0
-    largest, reading, sums, held = (np.zeros(outputs) for _ in range(4))
+    largest, reading, sums, held, height, slope = (np.zeros(outputs) for _ in range(6))
+    shortest = min(nearest(panel.length) for panel in plan.panels)
+    one, bent = np.ones(degree + 1), 2 / shortest * np.arange(degree + 1.0) ** 2
     for block in _blocks(scheme, plan.windows):
         lost, inexact = losses.of(block)
         truncated += lost
@@ -82,6 +99,9 @@ def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
         for o, output in enumerate(plan.outputs):
             reading[o] = max(reading[o], _size(block, output.part(summed=False), reading_weights(degree, False)))
             sums[o] += block.count * _size(block, output.part(summed=True), reading_weights(degree, True))
+            direct, gathered = (_size(block, output.part(summed=summed), one) for summed in (False, True))
+            height[o] = max(height[o], direct + float(np.max(np.abs(block.totals[o]))) + step * gathered)
+            slope[o] = max(slope[o], _size(block, output.part(summed=False), bent) + gathered)
         if not np.max(np.abs(block.waves)) < reach:
             raise OverflowError(f"waves beyond {nearest(real.reach):.1g}")
     smooth = smoothness(plan, degree)
@@ -106,8 +126,9 @@ def _judge(plan: RingPlan, degree: int, real: Real, scale: fmpq) -> Verdict:
     if any(size <= error for size, error in zip(largest, errors, strict=True)):
         for o, nothing in enumerate(silent(plan.model, rational(plan.tau_max))):
             if nothing:
-                errors[o] = largest[o] = 0.0
-    return Verdict(degree, tuple(errors), tuple(map(float, largest)), truncated, rounded, True)
+                errors[o] = largest[o] = height[o] = slope[o] = 0.0
+    sizes, heights, slopes = (tuple(of.tolist()) for of in (largest, height, slope))
+    return RingVerdict(degree, tuple(errors), sizes, truncated, rounded, True, smooth.degree, heights, slopes)
 
 
 def _size(block: WindowBlock, heard: Iterable[Heard], weights: Array) -> float:

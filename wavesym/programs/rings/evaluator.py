@@ -16,9 +16,8 @@ from wavesym.errors import CostError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.bound import Verdict
 from wavesym.programs.program import ProgramOutput
-from wavesym.programs.rings.bound import judge
+from wavesym.programs.rings.bound import RingVerdict, judge
 from wavesym.programs.rings.plan import RingPlan, least_numbers, ring_plan
 from wavesym.programs.rings.tables import RingTables, state_bytes, table_bytes
 
@@ -107,11 +106,16 @@ def ring_march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> 
     UnservedError where the chain has contacts, CostError where it would be long or large. OverflowError where numbers
     would be beyond those of the format.
     """
+    return judged_march(model, real, degree)[0]
+
+
+def judged_march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> tuple[RingMarch, RingVerdict]:
+    """The same with all that is known of it."""
     plan = ring_plan(model, real)
     if any(0 < abs(value) < real.least for value in least_numbers(plan)) or plan.cycle[1] * real.roundoff > 1:
         raise OverflowError(f"a number of the tables is beyond {real.name} precision")
     if degree is not None:
-        return _made(plan, max(degree, _LEAST_DEGREE), real)[0]
+        return _made(plan, max(degree, _LEAST_DEGREE), real)
     degree = first_degree(plan, real)
     before = math.inf
     spent = 0.0
@@ -119,12 +123,12 @@ def ring_march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> 
         spent = refuse_long(plan, degree, spent, real)
         made, verdict = _made(plan, degree, real)
         if verdict.truncated <= verdict.rounded or _SETTLED * before <= made.error_bound < math.inf:
-            return made
+            return made, verdict
         before = made.error_bound
         degree += max(2, degree // 6)
 
 
-def _made(plan: RingPlan, degree: int, real: Real) -> tuple[RingMarch, Verdict]:
+def _made(plan: RingPlan, degree: int, real: Real) -> tuple[RingMarch, RingVerdict]:
     try:
         verdict = judge(plan, degree, real)
     except OverflowError:  # of the numbers' format, which costs have nothing to do with

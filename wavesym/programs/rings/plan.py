@@ -7,23 +7,24 @@ cut into the same panels everywhere, at what load times leave over of h, so that
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from math import gcd, lcm
+from typing import Any
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.errors import CostError
+from wavesym.errors import CostError, SpacingError
 from wavesym.exact.node_rules import joint_rule
 from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import End, Network, Point
+from wavesym.mechanics.network import End, Joint, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch, spacing
+from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch, common, suiting, told
 from wavesym.programs.rings.space import SHOWN, JointSpace, Port, joint_space
 
 FINEST = 64
@@ -150,8 +151,8 @@ class RingPlan:
         return tuple(found)
 
 
-def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
-    """The plan of a chain in `real` numbers.
+def ring_plan(model: Model, real: Real = DOUBLE, space: Callable[[Network, Joint], Any] = joint_space) -> RingPlan:
+    """The plan of a chain in `real` numbers; `space` makes the laws of its joints.
 
     UnservedError for contacts; CostError where the step would be too small, or load times have too many remainders.
     """
@@ -182,13 +183,13 @@ def ring_plan(model: Model, real: Real = DOUBLE) -> RingPlan:
     marched = []
     for number in reached:
         joint = network.joints[number]
-        space = joint_space(network, joint)
+        laws = space(network, joint)
         watched = [(k, point) for k, point in enumerate(joint.points) if point in point_of]
-        ports = (*space.ports, *(Port(k, _ZERO, _ONE, _ZERO) for k, _ in watched))
+        ports = (*laws.ports, *(Port(k, _ZERO, _ONE, _ZERO) for k, _ in watched))
         sends = (*(track_of[end] for end, _ in joint.ends), *(point_of[point] for _, point in watched))
         arrive = (*(track_of[network.beyond(end)] for end, _ in joint.ends), *(silent for _ in watched))
         forces = tuple(loads.numbers.get(point, -1) for point in joint.points)
-        marched.append(MarchedJoint(replace(space, ports=ports), arrive, sends, forces))
+        marched.append(MarchedJoint(replace(laws, ports=ports), arrive, sends, forces))
     marched += [MarchedJoint(SHOWN, (silent,), (track,), (loads.numbers[point],)) for point, track in load_of.items()]
     return RingPlan(
         model,
@@ -223,10 +224,10 @@ def _step(delays: list[fmpq]) -> fmpq:
 def _panels(times: list[fmpq], step: fmpq) -> tuple[MarchPanel, ...]:
     cuts = sorted({_ZERO, step} | {time - (time / step).floor() * step for time in times})
     if len(cuts) - 1 > MOST_PANELS:
-        raise CostError(
-            f"load: times at a spacing of {spacing(times)} leave {len(cuts) - 1} different remainders of the step "
-            f"{step}, at most {MOST_PANELS} expected in a march (modes, times in parts of {step},"
-            " or fewer samples, helps)"
+        raise SpacingError(
+            f"load: times at a spacing of {told(common(times))} leave {len(cuts) - 1} different remainders of the step "
+            f"{told(step)}, at most {MOST_PANELS} expected in a march ({suiting(times, step)}, fewer samples, modes, "
+            "or for what does not jump NumPy or run, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import sqrt
+from typing import Any
 
 import numpy as np
 from flint import fmpq, fmpq_mat
@@ -26,6 +27,8 @@ from wavesym.mechanics.network import Joint, Network
 from wavesym.numbers.doubles import nearest
 
 _ZERO = fmpq(0)
+
+Rows = list[list[Any]]
 
 
 @dataclass(frozen=True)
@@ -105,46 +108,80 @@ SHOWN = JointSpace(
 """A point that moves as a load says, and does nothing: where that load is read."""
 
 
+@dataclass(frozen=True)
+class JointRows:
+    """The laws of a joint as rows, of numbers or of functions of parameters; the first of its states are `masses`."""
+
+    rates: Rows
+    pushed: Rows
+    shown: Rows
+    passed: Rows
+    weights: tuple[Any, ...]
+    begun: tuple[Any, ...]
+    ports: tuple[Port, ...]
+    masses: int
+
+
 def joint_space(network: Network, joint: Joint) -> JointSpace:
     """The laws of one joint of a network."""
+    rows = joint_rows(network, joint)
+    states, points = len(rows.weights), len(joint.points)
+
+    def matrix(of: Rows, across: int) -> fmpq_mat:
+        return fmpq_mat(len(of), across, [value for row in of for value in row])
+
+    return JointSpace(
+        matrix(rows.rates, states),
+        matrix(rows.pushed, points),
+        matrix(rows.shown, states),
+        matrix(rows.passed, points),
+        rows.weights,
+        rows.begun,
+        rows.ports,
+    )
+
+
+def joint_rows(network: Network, joint: Joint) -> JointRows:
+    """The same, also where numbers of the network are functions."""
     law = JointLaw.of(network, joint)
     size = len(joint.points)
     heavy, light = law.heavy, law.light
     springs = list(_springs(network, joint, law))
     states = len(heavy) + len(springs)
     # q = shown x + passed s, one row after the other
-    shown, passed = fmpq_mat(size, states), fmpq_mat(size, size)
+    shown, passed = _zeros(size, states), _zeros(size, size)
     for n, k in enumerate(heavy):
-        shown[k, n] = fmpq(1)
+        shown[k][n] = fmpq(1)
     for k, motion in enumerate(law.given):
         if motion is not None:
-            passed[k, k] = fmpq(1)
-    pulls = [[_ZERO] * states for _ in range(size)]  # of the springs, on the points
+            passed[k][k] = fmpq(1)
+    pulls = _zeros(size, states)  # of the springs, on the points
     for n, (stiffness, row) in enumerate(springs, len(heavy)):
         for k, factor in row.items():
             pulls[k][n] += factor * stiffness
     others = [b for b in range(size) if b not in light]
+    inverses = _inverse([[law.damping[a][b] for b in light] for a in light])
     for n, k in enumerate(light):
         for m, a in enumerate(light):
-            inverse = law.inverse[n, m]
-            passed[k, a] += inverse
+            inverse = inverses[n][m]
+            passed[k][a] += inverse
             for j in range(states):
-                shown[k, j] -= inverse * (pulls[a][j] + sum((law.damping[a][b] * shown[b, j] for b in others), _ZERO))
+                shown[k][j] -= inverse * (pulls[a][j] + sum((law.damping[a][b] * shown[b][j] for b in others), _ZERO))
             for b in others:
-                passed[k, b] -= inverse * law.damping[a][b] * passed[b, b]
-    rates, pushed = fmpq_mat(states, states), fmpq_mat(states, size)
+                passed[k][b] -= inverse * law.damping[a][b] * passed[b][b]
+    rates, pushed = _zeros(states, states), _zeros(states, size)
     for n, k in enumerate(heavy):
         for j in range(states):
-            rates[n, j] = -(pulls[k][j] + _along(law.damping[k], shown, j)) / law.mass[k]
+            rates[n][j] = -(pulls[k][j] + _along(law.damping[k], shown, j)) / law.mass[k]
         for j in range(size):
             rest = _along(law.damping[k], passed, j)
-            pushed[n, j] = ((j == k) - rest) / law.mass[k]
+            pushed[n][j] = ((j == k) - rest) / law.mass[k]
     for n, (_, row) in enumerate(springs, len(heavy)):
         for j in range(states):
-            rates[n, j] = sum((factor * shown[k, j] for k, factor in row.items()), _ZERO)
+            rates[n][j] = sum((factor * shown[k][j] for k, factor in row.items()), _ZERO)
         for j in range(size):
-            pushed[n, j] = sum((factor * passed[k, j] for k, factor in row.items()), _ZERO)
-    return JointSpace(
+            pushed[n][j] = sum((factor * passed[k][j] for k, factor in row.items()), _ZERO)
+    return JointRows(
         rates,
         pushed,
         shown,
@@ -152,11 +189,30 @@ def joint_space(network: Network, joint: Joint) -> JointSpace:
         (*(law.mass[k] for k in heavy), *(stiffness for stiffness, _ in springs)),
         (*(network.points[joint.points[k]].velocity for k in heavy), *(_ZERO for _ in springs)),
         tuple(_ports(network, joint)),
+        len(heavy),
     )
 
 
-def _along(row: tuple[fmpq, ...], matrix: fmpq_mat, column: int) -> fmpq:
-    return sum((value * matrix[b, column] for b, value in enumerate(row)), _ZERO)
+def _zeros(rows: int, columns: int) -> Rows:
+    return [[_ZERO] * columns for _ in range(rows)]
+
+
+def _along(row: tuple[Any, ...], matrix: Rows, column: int) -> Any:
+    return sum((value * matrix[b][column] for b, value in enumerate(row)), _ZERO)
+
+
+def _inverse(rows: Rows) -> Rows:
+    """Of a matrix whose elimination needs no exchange of rows, as that of positive dashpots."""
+    size = len(rows)
+    wide = [[*row, *(fmpq(k == n) for n in range(size))] for k, row in enumerate(rows)]
+    for k in range(size):
+        first = 1 / wide[k][k]
+        wide[k] = [first * value for value in wide[k]]
+        for other in range(size):
+            if other != k and wide[other][k] != 0:
+                factor = wide[other][k]
+                wide[other] = [a - factor * b for a, b in zip(wide[other], wide[k], strict=True)]
+    return [row[size:] for row in wide]
 
 
 def _springs(network: Network, joint: Joint, law: JointLaw) -> Iterator[tuple[fmpq, dict[int, fmpq]]]:

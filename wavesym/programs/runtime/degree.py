@@ -14,17 +14,17 @@ from flint import fmpq
 from wavesym.errors import CostError
 from wavesym.mechanics.network import network_of
 from wavesym.numbers.doubles import nearest
-from wavesym.numbers.reals import DOUBLE
+from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import LOAD, Plan, plan
 from wavesym.programs.march.run import Run
 from wavesym.programs.runtime.plan import RuntimePlan
 
 STIFF = fmpq(100)
 LEAST = 8
-_MARGIN = 16  # outputs are often smaller than waves
+MARGIN = 16  # outputs are often smaller than waves
 _HIGHEST = 1000
 _MOST_WORK = 3e8  # nodes * coefficients * windows, for each degree
-_LARGEST_MODEL = 1 << 28  # bytes
+LARGEST_MODEL = 1 << 28  # bytes
 
 
 def raised(degree: int) -> int:
@@ -32,26 +32,26 @@ def raised(degree: int) -> int:
     return degree + degree // 4
 
 
-def share(given: RuntimePlan, tolerance: fmpq) -> float:
+def share(given: RuntimePlan, tolerance: fmpq, real: Real) -> float:
     """What a window may miss, relative to the largest wave; no less than what rounding leaves."""
-    return max(nearest(tolerance / (_MARGIN * given.plan.windows)), 2 * nearest(DOUBLE.roundoff))
+    return max(nearest(tolerance / (MARGIN * given.plan.windows)), 2 * nearest(real.roundoff))
 
 
-def degrees(given: RuntimePlan, tolerance: fmpq) -> tuple[int, int]:
+def degrees(given: RuntimePlan, tolerance: fmpq, real: Real) -> tuple[int, int]:
     """The degree to begin with, about that of the scene's own parameters, and the one that is enough.
 
     CostError where that would be beyond reason.
     """
-    allowed = share(given, tolerance)
+    allowed = share(given, tolerance, real)
     degree = _enough(_numbers(given, fmpq(0)), LEAST, allowed)
     first = max(LEAST, 4 * degree // 5)
     if any(field.positive for field in given.fields):
         degree = _enough(_numbers(given, STIFF), degree, allowed)
-    size = 8 * given.plan.windows * len(given.strands) * (degree + 2)
-    if size > _LARGEST_MODEL:
+    size = real.bytes * given.plan.windows * len(given.strands) * (degree + 2)
+    if size > LARGEST_MODEL:
         raise CostError(
             f"output.until: a model of {size:.1e} bytes would be kept to tau = {given.plan.tau_max:g}, at most "
-            f"{_LARGEST_MODEL:.1e} expected (a shorter horizon, or fewer outputs, helps)"
+            f"{LARGEST_MODEL:.1e} expected (a shorter horizon, or fewer outputs, helps)"
         )
     return first, degree
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from wavesym.programs.runtime.plan import Function
 from wavesym.programs.runtime.request import RuntimeField
+from wavesym.programs.runtime.units import Function
 
 
 @dataclass(frozen=True)

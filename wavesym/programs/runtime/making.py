@@ -12,18 +12,21 @@ from wavesym.errors import WavesymError
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.plan import LOAD
+from wavesym.numbers.reals import REALS, Real
+from wavesym.programs.march.plan import LOAD, Plan
 from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.degree import STIFF, degrees, share
+from wavesym.programs.runtime.joints.making import joints_program
 from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.plan import Function, Push, RuntimePlan, runtime_plan
+from wavesym.programs.runtime.plan import Push, RuntimePlan, runtime_plan
 from wavesym.programs.runtime.request import fields
+from wavesym.programs.runtime.roundings import most_roundings
+from wavesym.programs.runtime.units import Function
 
-FINEST = fmpq(1, 10**13)
-"""The smallest tolerance that doubles keep."""
+FINEST = {"double": fmpq(1, 10**13), "single": fmpq(1, 10**5)}
+"""The smallest tolerance that numbers keep, by precision."""
 
 
 def runtime_program(
@@ -36,36 +39,48 @@ def runtime_program(
     """
     for option, value, usual in (
         ("--evaluator", request.evaluator, "auto"),
-        ("--precision", request.precision, "double"),
         ("--windows", request.windows, None),
         ("--optimize", request.optimize, None),
     ):
         if value != usual:
             raise WavesymError(f"{option}: {value} given with --runtime, {usual or 'nothing'} expected")
+    real = REALS[request.precision]
+    tolerance = max(model.tolerance, FINEST[real.name])
+    if model.chain is None:
+        program = joints_program(model, request, amplitudes, tolerance, real)
+        return _with_reference(program) if tested else program
     given = fields(model, request.runtime, amplitudes)
     chosen = any(field.name == "load" for field in given)
     loads = [load for _, load in amplitudes] if chosen else [load for load in model.loads if load.source != "impact"]
-    made = runtime_plan(model, given, loads)
-    tolerance = max(model.tolerance, FINEST)
-    least, degree = degrees(made, tolerance)
+    made = runtime_plan(model, given, loads, real)
+    least, degree = degrees(made, tolerance, real)
     light = f" and for kappa up to {STIFF}" if any(field.positive for field in given) else ""
     reason = (
         f"march with {', '.join(request.runtime)} at run time, degrees from {least} to {degree}, enough for the "
         f"scene's own parameters{light}; errors are estimated"
     )
-    tables = _tables(made)
-    constants = {**_constants(made), "degree": degree, "least": least, "share": share(made, tolerance)}
+    tables = _tables(made, real)
+    laws = _laws(made, () if chosen else tuple(real.nearest(load.weight) for load in loads))
+    positive = [label for field in given if field.positive for label in field.labels]
+    rounded = most_roundings(laws.functions, positive)
+    constants = {
+        **_constants(made, real),
+        "roundings": rounded,
+        "degree": degree,
+        "least": least,
+        "share": share(made, tolerance, real),
+    }
     program = Program(
         "runtime",
-        DOUBLE,
+        real,
         made.plan.tau_max,
         tuple(ProgramOutput(output.name, nearest(tolerance), 0.0) for output in made.plan.outputs),
         tables,
         constants,
-        8 * sum(map(len, tables.values())),
+        real.bytes * sum(map(len, tables.values())),
         Provenance(model, reason, request.options),
         proved=False,
-        laws=_laws(made, () if chosen else tuple(nearest(load.weight) for load in loads)),
+        laws=laws,
     )
     return _with_reference(program) if tested else program
 
@@ -88,7 +103,7 @@ def _strengths(pushes: Iterable[Push]) -> tuple[Function, ...]:
     return tuple(dict.fromkeys(push.strength for push in pushes))
 
 
-def _constants(made: RuntimePlan) -> dict[str, float]:
+def _constants(made: RuntimePlan, real: Real) -> dict[str, float]:
     """Sizes."""
     plan = made.plan
     return {
@@ -102,11 +117,12 @@ def _constants(made: RuntimePlan) -> dict[str, float]:
         "strengths": len(_strengths(made.pushes)),
         "lanes": sum(len(field.values) for field in made.fields),
         "sections": len(made.sections) - 1,
-        "unit": 2 * nearest(DOUBLE.roundoff),
+        "groups": (len(made.sections) - 1) * len(plan.outputs),
+        "unit": 2 * nearest(real.roundoff),
     }
 
 
-def _tables(made: RuntimePlan) -> dict[str, tuple[float, ...]]:
+def _tables(made: RuntimePlan, real: Real) -> dict[str, tuple[float, ...]]:
     """Panels, changes of loads, sections, strands and the waves they are made of."""
     plan, pushes = made.plan, made.pushes
     strengths = _strengths(pushes)
@@ -116,23 +132,25 @@ def _tables(made: RuntimePlan) -> dict[str, tuple[float, ...]]:
     forces = {column: force for force, column in enumerate(plan.loaded)}
 
     def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
-        return tuple(map(nearest, values))
+        return tuple(map(real.nearest, values))
 
     return {
         "half_length": reals(panel.length / 2 for panel in plan.panels),
         "since_panel": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
         "force_on": tuple(forces.get(column, -1) for column in range(len(plan.junctions))),
+        "is_body": tuple(int(node.rate is not None) for node in plan.junctions),
+        "alike": _alike(plan),
         "event_window": tuple(push.window for push in pushes),
         "event_panel": tuple(push.panel for push in pushes),
         "event_force": tuple(push.force for push in pushes),
         "event_power": tuple(push.power for push in pushes),
         "event_strength": tuple(strengths.index(push.strength) for push in pushes),
         "event_load": tuple(push.load for push in pushes),
-        "from": tuple(DOUBLE.not_below(begin) for begin in made.sections),
+        "from": tuple(real.not_below(begin) for begin in made.sections),
         "first_strand": _firsts(map(len, listening)),
         "strand_at": tuple(strand for group in listening for strand in group),
         "strand_start": reals(strand.start for strand in made.strands),
-        "strand_excess": reals(rational(nearest(strand.start)) - strand.start for strand in made.strands),
+        "strand_excess": reals(rational(real.nearest(strand.start)) - strand.start for strand in made.strands),
         "strand_scale": reals(1 / strand.half for strand in made.strands),
         "first_term": _firsts(len(strand.terms) for strand in made.strands),
         "term_heard": tuple(term.heard for term in terms),
@@ -145,6 +163,12 @@ def _tables(made: RuntimePlan) -> dict[str, tuple[float, ...]]:
         "term_high": reals(term.high for term in terms),
         "heard_output": tuple(output for output, _ in made.heard),
     }
+
+
+def _alike(plan: Plan) -> tuple[int, ...]:
+    """For each node on each panel the first with the same rate, on a panel of the same length."""
+    bodies = [(node.rate, panel.length) for panel in plan.panels for node in plan.junctions]
+    return tuple(map(bodies.index, bodies))
 
 
 def _firsts(counts: Iterable[int]) -> tuple[int, ...]:

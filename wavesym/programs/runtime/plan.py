@@ -21,12 +21,11 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import network_of
 from wavesym.mechanics.node import Parameters
 from wavesym.numbers.doubles import rational
-from wavesym.numbers.ratio import Ratio, Ring
+from wavesym.numbers.ratio import Ring
+from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.plan import HeardWave, Plan, Stretch, panels, plan
 from wavesym.programs.runtime.request import RuntimeField
-
-Function = Ratio | fmpq
-"""Of the parameters."""
+from wavesym.programs.runtime.units import Function, force_kept, load_kept
 
 
 @dataclass(frozen=True)
@@ -98,12 +97,20 @@ class RuntimePlan:
         return [n for n, s in enumerate(self.strands) if s.output == output and s.begin <= at < s.end]
 
 
-def runtime_plan(model: Model, given: Sequence[RuntimeField], loads: Sequence[Applied]) -> RuntimePlan:
+def runtime_plan(
+    model: Model, given: Sequence[RuntimeField], loads: Sequence[Applied], real: Real = DOUBLE
+) -> RuntimePlan:
     """The plan of a model with the fields `given` at run time; CostError as for a march."""
     chain = model.named
     symbols = [label for field in given if field.name != "load" for label in field.labels]
     ring = Ring(tuple(symbols))
-    own = ring.symbols()
+    symbols_of = ring.symbols()
+    own = {
+        label: symbols_of[label] / unit.size
+        for field in given
+        if field.name != "load"
+        for label, unit in zip(field.labels, field.units, strict=True)
+    }
 
     def numbers(name: str) -> dict[int, Any] | None:
         values: dict[int, Any] | None = getattr(chain.parameters, name)
@@ -111,25 +118,34 @@ def runtime_plan(model: Model, given: Sequence[RuntimeField], loads: Sequence[Ap
 
     parameters = Parameters(**{name: numbers(name) for name in ("kappa", "inertia", "velocity", "dashpot")})
     free = replace(chain, parameters=parameters)
-    acting = [(load.time, number) for number, load in enumerate(loads) if load.time <= rational(model.horizon())]
+    chosen = [unit.size for field in given if field.name == "load" for unit in field.units]
+    units = chosen or [fmpq(1)] * len(loads)
+    acting = [(load.time, number) for number, load in enumerate(loads) if load.time <= rational(model.horizon(real))]
     made = replace(
-        plan(replace(model, chain=free, network=network_of(free), loads=())),
+        plan(replace(model, chain=free, network=network_of(free), loads=()), real),
         panels=panels([time for time, _ in acting]),
     )
-    heard = tuple((number, wave) for number, output in enumerate(made.outputs) for wave in output.heard)
+    kept: list[Any] = [force_kept(model, free) if probe.quantity == "force" else fmpq(1) for probe in model.probes]
+    heard = tuple(
+        (number, replace(wave, gain=wave.gain * kept[number]))
+        for number, output in enumerate(made.outputs)
+        for wave in output.heard
+    )
     return RuntimePlan(
         model,
         made,
         ring,
         tuple(given),
         tuple(loads),
-        tuple(_pushes(made, loads, [number for _, number in sorted(acting)])),
+        tuple(_pushes(made, loads, [number for _, number in sorted(acting)], units, load_kept(model, free))),
         heard,
         tuple(_strands(made, heard)),
     )
 
 
-def _pushes(made: Plan, loads: Sequence[Applied], acting: Sequence[int]) -> Iterator[Push]:
+def _pushes(
+    made: Plan, loads: Sequence[Applied], acting: Sequence[int], units: Sequence[fmpq], kept: Function
+) -> Iterator[Push]:
     places = {panel.start: number for number, panel in enumerate(made.panels)}
     nodes = made.model.named.nodes
     for number in acting:
@@ -141,7 +157,7 @@ def _pushes(made: Plan, loads: Sequence[Applied], acting: Sequence[int]) -> Iter
             for unit in node.loads:
                 for power, coefficient in enumerate(unit.coefficients):
                     if unit.source == load.source and coefficient != 0:
-                        strength = coefficient * (rule.load / rule.same)
+                        strength = coefficient * (rule.load / rule.same) * kept / units[number]
                         yield Push(window, places[load.time - window], force, power, strength, number)
 
 

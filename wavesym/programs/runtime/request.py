@@ -7,21 +7,26 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
-from wavesym.errors import UnservedError, WavesymError
+from wavesym.errors import WavesymError
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
+from wavesym.programs.runtime.units import ParameterUnit, unit_of, unit_of_load
 
 NAMES = ("kappa", "inertia", "velocity", "load")
-POSITIVE = frozenset({"kappa", "inertia"})
+POSITIVE = frozenset({"kappa", "inertia", "mass", "dashpot", "spring", "impedance"})
 
 
 @dataclass(frozen=True)
 class RuntimeField:
-    """A field of the parameters: its name, what each of its numbers is called, and what they are in the scene."""
+    """A field of the parameters: its name, what each of its numbers is called, what they are in the scene, in which
+    units (those of results, none where a scene has none), and what each is for people.
+    """
 
     name: str
     labels: tuple[str, ...]
     values: tuple[fmpq, ...]
+    units: tuple[ParameterUnit, ...]
+    told: tuple[str, ...]
 
     @property
     def positive(self) -> bool:
@@ -36,32 +41,37 @@ def fields(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, A
     UnservedError for a scene that a march of named systems does not serve, WavesymError for a name that it does not
     have.
     """
-    if model.chain is None:
-        raise UnservedError("--runtime: chain given, collision, drive or building expected, contacts closed")
-    if model.clock is not None:
-        raise UnservedError("--runtime: scene with [units] given, one without expected")
+    chain = model.named
     model.refuse_damping()
     there = {
-        name: tuple(sorted(numbers.items()))
-        for name in NAMES
-        if (numbers := getattr(model.chain.parameters, name, None))
+        name: tuple(sorted(numbers.items())) for name in NAMES if (numbers := getattr(chain.parameters, name, None))
     }
     known = [*there, *(["load"] if amplitudes or any(load.source != "impact" for load in model.loads) else [])]
+    refuse_others(names, known)
+    found = []
+    for name, of in there.items():
+        if name in names:
+            unit = unit_of(model, name)
+            found.append(field_of(name, [(f"{name}_{i}", value, unit) for i, value in of]))
+    if "load" in names:
+        found.append(field_of("load", [(told, load.weight, unit_of_load(model, load)) for told, load in amplitudes]))
+    return tuple(found)
+
+
+def field_of(name: str, numbers: Sequence[tuple[str, fmpq, ParameterUnit]], told: Sequence[str] = ()) -> RuntimeField:
+    """A field of numbers, each with its label and unit; `told` says what each is, where labels do not."""
+    labels, values, units = zip(*numbers, strict=True)
+    sized = tuple(value * unit.size for value, unit in zip(values, units, strict=True))
+    return RuntimeField(name, labels, sized, units, tuple(told) or labels)
+
+
+def refuse_others(names: Sequence[str], known: Sequence[str]) -> None:
+    """WavesymError for a name that a scene does not have, and for one that is given twice."""
     for place, name in enumerate(names):
         if name not in known:
             raise WavesymError(f"--runtime: {name or 'nothing'} given, {_one_of(known)} expected")
         if name in names[:place]:
             raise WavesymError(f"--runtime: {name} given twice, once expected")
-    found = [
-        RuntimeField(name, tuple(f"{name}_{i}" for i, _ in of), tuple(value for _, value in of))
-        for name, of in there.items()
-        if name in names
-    ]
-    if "load" in names:
-        found.append(
-            RuntimeField("load", tuple(told for told, _ in amplitudes), tuple(load.weight for _, load in amplitudes))
-        )
-    return tuple(found)
 
 
 def _one_of(names: Sequence[str]) -> str:

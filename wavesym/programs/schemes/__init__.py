@@ -8,17 +8,22 @@ np.float64 or np.float32.
 from __future__ import annotations
 
 from wavesym.programs.schemes.closed import ClosedScheme
+from wavesym.programs.schemes.hats import HatScheme
 from wavesym.programs.schemes.march import MarchScheme
 from wavesym.programs.schemes.modes import ModesScheme
 from wavesym.programs.schemes.pieces import PiecesScheme
 from wavesym.programs.schemes.rings import RingScheme
 
-Scheme = ClosedScheme | PiecesScheme | MarchScheme | RingScheme | ModesScheme
+Scheme = ClosedScheme | PiecesScheme | MarchScheme | RingScheme | HatScheme | ModesScheme
 
 SCHEMES: dict[str, type[Scheme]] = {
     "closed": ClosedScheme,
     "pieces": PiecesScheme,
     "march": MarchScheme,
     "rings": RingScheme,
+    "hats": HatScheme,
     "modes": ModesScheme,
 }
+
+PARTS: dict[str, tuple[type[Scheme], ...]] = {"hats": (RingScheme,)}
+"""What a scheme is made of."""

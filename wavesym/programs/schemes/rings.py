@@ -157,6 +157,8 @@ class WindowBlock:
         self._scheme, self.first, self.count, self.waves = scheme, first, len(starts), waves
         self.starts, self.acting = starts, acting
         self.totals = np.repeat(totals[:, None], self.count + 1, axis=1)
+        self._integrals: dict[int, list[NDArray[np.float64]]] = {}
+        self._limits: dict[tuple[int, int], tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
         n = np.arange(self.count)
         for output in range(scheme.outputs):
             if np.any(scheme.summed[self._heard(output)]):
@@ -164,16 +166,26 @@ class WindowBlock:
 
     def read(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
         """All outputs at some tau in these windows."""
+        return self.at(*self._scheme.places(tau))
+
+    def at(
+        self,
+        window: NDArray[np.int_],
+        phase: NDArray[np.int_],
+        t: NDArray[np.float64],
+        outputs: range | None = None,
+    ) -> NDArray[np.float64]:
+        """The same where `places` are known; all outputs, or some."""
         scheme = self._scheme
-        window, phase, t = scheme.places(tau)
         n = window - self.first
-        out = np.zeros((scheme.outputs, len(tau)), scheme.real)
-        for output in range(scheme.outputs):
+        chosen = range(scheme.outputs) if outputs is None else outputs
+        out = np.zeros((len(chosen), len(t)), scheme.real)
+        for row, output in zip(out, chosen, strict=True):
             summed = scheme.summed[self._heard(output)]
             if np.any(summed):
-                out[output] = self.totals[output, n] + self._gathered(output, n, phase, t)
+                row[:] = self.totals[output, n] + self._gathered(output, n, phase, t)
             if not np.all(summed):
-                out[output] += self._arrived(output, n, phase, t)
+                row += self._arrived(output, n, phase, t)
         return out
 
     def _heard(self, output: int) -> slice:
@@ -201,6 +213,28 @@ class WindowBlock:
             total += gain * _series(np.ascontiguousarray(c), u)
         return total
 
+    def _integral(self, track: int) -> list[NDArray[np.float64]]:
+        """Of a track, on each panel, the antiderivatives on all windows, (k, windows)."""
+        if track not in self._integrals:
+            until = self._scheme.deepest + self.count
+            self._integrals[track] = [
+                _antiderivative(self.waves[:until, track, panel].T) for panel in range(self._scheme.panels)
+            ]
+        return self._integrals[track]
+
+    def _ends(self, track: int, stretch: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The antiderivatives where a stretch begins and where it ends, on all windows."""
+        scheme = self._scheme
+        if (track, stretch) not in self._limits:
+            panel = scheme.panel_of[stretch]
+            c, half = self._integral(track)[panel], scheme.half_length[panel]
+            low, high = (
+                _series(c, np.full(c.shape[1], each[stretch] / half - 1, scheme.real))
+                for each in (scheme.low, scheme.high)
+            )
+            self._limits[track, stretch] = low, high
+        return self._limits[track, stretch]
+
     def _gathered(
         self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64] | None
     ) -> NDArray[np.float64]:
@@ -210,27 +244,27 @@ class WindowBlock:
         for track, gain, delay in self._tracks(output, summed=True):
             first, end = scheme.first_stretch[delay], scheme.first_stretch[delay + 1]
             for s in range(first, end):
-                here, panel = np.arange(n.size), scheme.panel_of[s]
-                high = np.full(n.shape, scheme.high[s], scheme.real)
-                if t is not None:
-                    if s > first:
-                        here = np.flatnonzero(t >= scheme.counts_from[s, phase])
-                    within = (t - scheme.start[s, phase]) + scheme.excess[s, phase]
-                    over = t >= scheme.counts_from[s + 1, phase] if s + 1 < end else np.zeros(t.shape, bool)
-                    high = np.where(over, high, within)
+                panel, window = scheme.panel_of[s], scheme.deepest + n - scheme.back[s]
                 half = scheme.half_length[panel]
-                c = _antiderivative(self.waves[scheme.deepest + n[here] - scheme.back[s], track, panel].T)
-                low = np.full(here.shape, scheme.low[s], scheme.real)
-                total[here] += gain * (half * (_series(c, high[here] / half - 1) - _series(c, low / half - 1)))
+                low, high = self._ends(track, s)
+                over = np.ones(n.shape, bool)
+                if t is not None:
+                    over = t >= scheme.counts_from[s + 1, phase] if s + 1 < end else ~over
+                    begun = ~over if s == first else ~over & (t >= scheme.counts_from[s, phase])
+                    here = np.flatnonzero(begun)
+                    within = (t[here] - scheme.start[s, phase[here]]) + scheme.excess[s, phase[here]]
+                    c = self._integral(track)[panel][:, window[here]]
+                    total[here] += gain * (half * (_series(c, within / half - 1) - low[window[here]]))
+                total[over] += gain * (half * (high[window[over]] - low[window[over]]))
         return total
 
 
 class MarchingRings:
     """A march on its way."""
 
-    def __init__(self, scheme: RingScheme) -> None:
+    def __init__(self, scheme: RingScheme, most: int | None = None) -> None:
         tracks, size = len(scheme.held), scheme.degree + 1
-        self.most = max(1, min(256, 2_000_000 // (tracks * scheme.panels * size)))
+        self.most = most or max(1, min(256, 2_000_000 // (tracks * scheme.panels * size)))
         """So many windows at once."""
         self._scheme = scheme
         self._waves = np.zeros((scheme.deepest + self.most, tracks, scheme.panels, size), scheme.real)

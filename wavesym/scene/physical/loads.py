@@ -22,6 +22,9 @@ from wavesym.scene.physical.rewritten import LoadUnit
 
 _VALUES, _SLOPES = ("a", "steps"), ("b", "ramps")
 
+Acts = Callable[[Mapping[str, Any]], LoadUnit]
+"""What a load of these fields acts as."""
+
 
 def dimensionless(load: Mapping[str, Any], acting: LoadUnit, seconds: Fraction) -> dict[str, Any]:
     """A load's table. Raises the error of `table.wrong`."""
@@ -89,7 +92,7 @@ def _unit(load: Mapping[str, Any], acting: LoadUnit) -> Fraction:
         return unit(load["unit"], acting.dimension) / acting.size
 
 
-def read(load: object, acts: Callable[[Mapping[str, Any]], LoadUnit]) -> object:
+def read(load: object, acts: Acts) -> object:
     """A load whose record is what was in its file. Raises the error of `table.wrong`."""
     if not isinstance(load, Mapping) or not isinstance(path := load.get("record"), str | PathLike):
         return load

@@ -17,7 +17,7 @@ from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
 from wavesym.scene.physical.collision import PhysicalCollision
 from wavesym.scene.physical.drive import PhysicalDrive
-from wavesym.scene.physical.loads import dimensionless, read
+from wavesym.scene.physical.loads import Acts, dimensionless, read
 from wavesym.scene.physical.measured import measured, placed, plain, tidy
 from wavesym.scene.physical.places import place
 from wavesym.scene.physical.rewritten import Rewritten
@@ -89,6 +89,11 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
             made["output"] = _output(output, found, seconds)
     scale = Scale(found.kind, seconds, found.displacement, found.force, found.lengths, results, found.rods)
     return PhysicalScene(plain(said), made, scale, found.kappa, tuple(inputs))
+
+
+def acts(fields: Mapping[str, Any]) -> Acts:
+    """What loads of a scene with [units], whose fields are sound, act as."""
+    return _system(fields["system"], UnitsTable.model_validate(fields["units"])).acting
 
 
 @contextmanager

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from wavesym.errors import UnservedError
 from wavesym.programs.program import Program, ReferenceValues, SteppedValues, StreamedValues
-from wavesym.targets.c import closed, march, modes, pieces, rings, runtime, stream
+from wavesym.targets.c import closed, joints, march, modes, pieces, rings, runtime, stream
 from wavesym.targets.c.header import header
 from wavesym.targets.c.selftest import selftest
 from wavesym.targets.description import Description
@@ -17,6 +18,7 @@ _SOURCES = {
     "modes": modes.source,
     "stream": stream.source,
 }
+_AT_RUN_TIME = {"runtime": runtime.files, "joints": joints.files}
 _MORE = {"march": march.streaming, "modes": modes.streaming, "stream": stream.streaming}
 
 # what a stream's bound of errors is for
@@ -29,8 +31,10 @@ class CTarget:
     tested = True
 
     def files(self, description: Description, program: Program) -> dict[str, str]:
-        if program.kind == "runtime":
-            return runtime.files(description, program)
+        if program.numpy_only:
+            raise UnservedError(program.numpy_only)
+        if program.kind in _AT_RUN_TIME:
+            return _AT_RUN_TIME[program.kind](description, program)
         name = description.name
         more = _MORE[program.kind](description, program) if program.kind in _MORE else ""
         made = {

@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 from flint import fmpq, fmpq_mpoly
 
-from wavesym.numbers.doubles import nearest
 from wavesym.numbers.ratio import Ratio
-from wavesym.numbers.reals import DOUBLE
+from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.plan import Function
+from wavesym.programs.runtime.units import Function, ParameterUnit
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_constants, c_literal, c_literals, c_tables
 
-_SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard", "events", "lanes")
+_SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard", "events", "lanes", "groups")
+LIMITS = {"double": "DBL", "single": "FLT"}
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,7 @@ class CRuntimeHeader:
     fields: tuple[CRuntimeField, ...]
     sizes: tuple[tuple[str, str], ...]
     model: str
+    batch: str
 
 
 @dataclass(frozen=True)
@@ -58,9 +59,16 @@ class CRuntime:
     tables: dict[str, Lines]
     constants: dict[str, str]
     amplitudes: Lines
+    largest: str
+    least: str
     loads: str
     numbers: str
+    series: str
     kernel: str
+    read: str
+    bound: str
+    batch: str
+    misfit: str
 
 
 @dataclass(frozen=True)
@@ -76,7 +84,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     """The files of a program, by name."""
     laws = program.laws
     assert laws is not None
-    fields = tuple(_fields(laws))
+    fields = tuple(parameter_fields(laws, program.real))
     constants = c_constants(program.constants, program.real)
     own = not any(field.name == "load" for field in fields)
     header = CRuntimeHeader(
@@ -84,26 +92,34 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         fields=fields,
         sizes=tuple((name.upper(), constants[name]) for name in _SIZES),
         model=kernel("runtime_model.h", scene),
+        batch=kernel("runtime_batch.h", scene),
     )
     context = CRuntime(
         scene=scene,
         fields=fields,
-        laws=tuple(_assigned(laws, laws.functions)),
-        slopes=tuple(_slopes(laws)),
-        load_lane=_load_lane(laws),
+        laws=tuple(assigned(laws, laws.functions, program.real)),
+        slopes=tuple(slopes(laws, program.real)),
+        largest=f"{LIMITS[program.real.name]}_MAX",
+        least=f"{LIMITS[program.real.name]}_MIN",
+        load_lane=load_lane(laws),
         tables=c_tables(program.tables, program.real),
         constants=constants,
         amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
         loads="amplitude" if own else "p->load",
         numbers=kernel("real.h", scene),
+        series=kernel("runtime_series.c", scene),
         kernel=kernel("runtime.c", scene),
+        read=kernel("runtime_read.c", scene),
+        bound=kernel("runtime_bound.c", scene),
+        batch=kernel("runtime_batch.c", scene),
+        misfit=kernel("runtime_misfit.c", scene),
     )
     made = {
         f"{scene.name}.h": render("c/runtime.h.j2", header),
         f"{scene.name}.c": render("c/runtime.c.j2", context),
     }
     if isinstance(program.reference, ReferenceValues):
-        made[f"{scene.name}_selftest.c"] = _selftest(scene, program, program.reference)
+        made[f"{scene.name}_selftest.c"] = runtime_selftest(scene, program, program.reference)
     return made
 
 
@@ -111,10 +127,12 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what runs many sets of parameters in NAME.c."""
     made = files(scene, program)
     name = f"{scene.name}.c"
-    return made | {name: f"{made[name]}\n{kernel('runtime_sets.c', scene)}\n"}
+    more = "\n\n".join(kernel(file, scene) for file in ("runtime_peaks.c", "runtime_sets.c", "runtime_sets_batch.c"))
+    return made | {name: f"{made[name]}\n{more}\n"}
 
 
-def _selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:
+def runtime_selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:
+    """What compares values of the scene's own parameters with reference values."""
     # errors are estimated: ten times the tolerance is what no program that is right comes near to
     allowed = [10 * output.bound * output.largest for output in program.outputs]
     context = CRuntimeSelfTest(
@@ -129,31 +147,37 @@ def _selftest(scene: Description, program: Program, reference: ReferenceValues) 
     return render("c/runtime_selftest.c.j2", context)
 
 
-def _fields(laws: RuntimeLaws) -> Iterator[CRuntimeField]:
+def parameter_fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:
+    """The fields of the parameters, as C tells them."""
     for field in laws.fields:
         yield CRuntimeField(
             name=field.name,
             constant=field.name.upper(),
             count=str(len(field.values)),
             check="positive_number" if field.positive else "finite_number",
-            labels=field.labels,
-            values=c_literals(map(nearest, field.values), DOUBLE),
+            labels=tuple(map(_told, field.told, field.units)),
+            values=c_literals(map(real.nearest, field.values), real),
         )
 
 
-def _assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]]) -> Iterator[tuple[str, str]]:
+def _told(label: str, unit: ParameterUnit) -> str:
+    return f"{label} [{unit.text}]" if unit.text else label
+
+
+def assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: Real) -> Iterator[tuple[str, str]]:
+    """What is assigned, with the expression."""
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
     for array, functions in arrays.items():
         for k, function in enumerate(functions):
-            yield f"{array}[{k}]", expression(function, places)
+            yield f"{array}[{k}]", expression(function, places, real)
 
 
-def _slopes(laws: RuntimeLaws) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
+def slopes(laws: RuntimeLaws, real: Real) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
     """The derivatives that are not 0, by the number of the parameter."""
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
     for lane, label in enumerate(places):
         found = [
-            (f"{array}[{k}]", expression(slope, places))
+            (f"{array}[{k}]", expression(slope, places, real))
             for array, functions in laws.functions.items()
             for k, function in enumerate(functions)
             if isinstance(function, Ratio) and label in function.ring.names
@@ -164,7 +188,8 @@ def _slopes(laws: RuntimeLaws) -> Iterator[tuple[str, tuple[tuple[str, str], ...
             yield str(lane), tuple(found)
 
 
-def _load_lane(laws: RuntimeLaws) -> str:
+def load_lane(laws: RuntimeLaws) -> str:
+    """The number of the first load among all parameters, -1 where loads are none."""
     before = 0
     for field in laws.fields:
         if field.name == "load":
@@ -173,27 +198,27 @@ def _load_lane(laws: RuntimeLaws) -> str:
     return "-1"
 
 
-def expression(function: Function, places: Mapping[str, str]) -> str:
+def expression(function: Function, places: Mapping[str, str], real: Real) -> str:
     """A rational function in C, with `places` for its symbols; one product over another, sums multiplied out."""
     if not isinstance(function, Ratio):
-        return c_literal(nearest(function), DOUBLE)
+        return c_literal(real.nearest(function), real)
     names = [places[name] for name in function.ring.names]
-    above = _sum(function.numerator, names)
+    above = _sum(function.numerator, names, real)
     below = [
         factor
         for form, power in sorted(function.denominator.items())
-        for factor in [_sum(function.ring.forms[form], names)] * power
+        for factor in [_sum(function.ring.forms[form], names, real)] * power
     ]
     return f"{above} / ({' * '.join(below)})" if below else above
 
 
-def _sum(polynomial: fmpq_mpoly, names: list[str]) -> str:
-    terms = [_term(fmpq(value), powers, names) for powers, value in polynomial.to_dict().items()]
-    return terms[0] if len(terms) == 1 else f"({' + '.join(terms)})" if terms else "0.0"
+def _sum(polynomial: fmpq_mpoly, names: list[str], real: Real) -> str:
+    terms = [_term(fmpq(value), powers, names, real) for powers, value in polynomial.to_dict().items()]
+    return terms[0] if len(terms) == 1 else f"({' + '.join(terms)})" if terms else c_literal(0.0, real)
 
 
-def _term(value: fmpq, powers: tuple[int, ...], names: list[str]) -> str:
+def _term(value: fmpq, powers: tuple[int, ...], names: list[str], real: Real) -> str:
     factors = [name for name, power in zip(names, powers, strict=True) for _ in range(int(power))]
     if value == -1 and factors:
         return f"-{' * '.join(factors)}"
-    return " * ".join(([] if value == 1 and factors else [c_literal(nearest(value), DOUBLE)]) + factors)
+    return " * ".join(([] if value == 1 and factors else [c_literal(real.nearest(value), real)]) + factors)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from wavesym.programs.program import Program
-from wavesym.programs.schemes import SCHEMES, Scheme
+from wavesym.programs.schemes import PARTS, SCHEMES, Scheme
 from wavesym.rendering import render
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, lines, literal
@@ -37,7 +37,7 @@ def source(scene: Description, program: Program) -> str:
         scene=scene,
         tables={name: lines(written(program.tables[name]), _WIDTH) for name in scheme.TABLES},
         constants=dict(zip(scheme.CONSTANTS, written(program.constants[n] for n in scheme.CONSTANTS), strict=True)),
-        scheme=_text(scheme),
+        scheme="\n\n\n".join(map(_text, (*PARTS.get(program.kind, ()), scheme))),
         scheme_name=scheme.__name__,
     )
     return render("numpy/program.py.j2", context)

@@ -1,0 +1,182 @@
+/* runtime_series.c: what marches under parameters that come at run time share: series, loads, the size of outputs.
+ * Plain C of a program of a scene called `name`; it stands below the first empty line in NAME.c, above the march. */
+#ifndef NAME_JOINTED
+#include "runtime_tables.h"
+#endif
+
+/* Loops over a block of samples are unrolled, so that its values stay in registers. */
+#if defined(__OPTIMIZE_SIZE__)
+#define UNROLLED
+#elif defined(__clang__)
+#define UNROLLED _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define UNROLLED _Pragma("GCC unroll 16")
+#else
+#define UNROLLED
+#endif
+
+enum { BLOCK = 16 };
+
+static real magnitude(real x)
+{
+    return x < 0 ? -x : x;
+}
+
+/* False for what is no number. */
+static int finite_number(real x)
+{
+    return x >= -largest_number && x <= largest_number;
+}
+
+/* sum of c_k T_k(u) */
+static real series_at(const real *c, int degree, real u)
+{
+    const real twice = u + u;
+    real next = 0;
+    real after = 0;
+    for (int k = degree; k > 0; --k) {
+        const real now = (twice * next - after) + c[k];
+        after = next;
+        next = now;
+    }
+    return (u * next - after) + c[0];
+}
+
+/* The antiderivative of a series, times 1 / half the length of the panel: all c_k but the first, which is 0. */
+static void integrate(const model_of *m, const real *w, int degree, real *c)
+{
+    c[0] = 0;
+    c[1] = w[0] - (degree > 1 ? w[2] / 2 : (real)0);
+    for (int k = 2; k < degree; ++k) {
+        c[k] = (w[k - 1] - w[k + 1]) * m->inverse[k];
+    }
+    c[degree] = w[degree - 1] * m->inverse[degree];
+    c[degree + 1] = w[degree] * m->inverse[degree + 1];
+}
+
+/* The same as series_at, sooner at both ends of a panel and in its middle. */
+static real end_value(const real *c, int degree, real u)
+{
+    real some = 0;
+    real others = 0;
+    if (u >= 0 && u <= 0) {
+        for (int k = 0; k <= degree; k += 4) {
+            some += c[k];
+            others += k + 2 <= degree ? c[k + 2] : (real)0;
+        }
+        return some - others;
+    }
+    if (u > -1 && u < 1) {
+        return series_at(c, degree, u);
+    }
+    for (int k = 0; k <= degree; k += 2) {
+        some += c[k];
+        others += k + 1 <= degree ? c[k + 1] : (real)0;
+    }
+    return u < 0 ? some - others : some + others;
+}
+
+static real larger(real one, real other)
+{
+    return magnitude(other) > one ? magnitude(other) : one;
+}
+
+/* No load, and nothing gathered yet. */
+static void start_sums(real *total, real (*load)[3], int (*since)[2])
+{
+    for (int k = 0; k < NAME_HEARD; ++k) {
+        total[k] = 0;
+    }
+    for (int f = 0; f <= NAME_FORCES; ++f) {
+        for (int power = 0; power < 3; ++power) {
+            load[f][power] = 0;
+        }
+        since[f][0] = 0;
+        since[f][1] = 0;
+    }
+}
+
+/* The loads on the panels of a window, as series, after their changes there, the first of which is `event`. The first
+ * one of the next window. */
+static int press(const real *change, real (*load)[3], int (*since)[2], real (*force)[NAME_FORCES + 1][3], int window,
+                 int event)
+{
+    for (int panel = 0; panel < NAME_PANELS; ++panel) {
+        while (event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel) {
+            const int f = event_force[event];
+            real *const c = load[f];
+            const real gone =
+                (real)(window - since[f][0]) * window_length + since_panel[panel * NAME_PANELS + since[f][1]];
+            c[0] += gone * (c[1] + gone * c[2]);
+            c[1] += 2 * gone * c[2];
+            c[event_power[event]] += change[event];
+            since[f][0] = window;
+            since[f][1] = panel;
+            ++event;
+        }
+        const real half = half_length[panel];
+        for (int f = 0; f < NAME_FORCES; ++f) {
+            const real *const c = load[f];
+            const real gone =
+                (real)(window - since[f][0]) * window_length + since_panel[panel * NAME_PANELS + since[f][1]];
+            const real middle = gone + half;
+            force[panel][f][0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2];
+            force[panel][f][1] = half * (c[1] + 2 * middle * c[2]);
+            force[panel][f][2] = half * half / 2 * c[2];
+        }
+    }
+    return event;
+}
+
+static void clear(real *all, int degree)
+{
+    for (size_t k = 0; k < (size_t)NAME_STRANDS * (size_t)(degree + 2); ++k) {
+        all[k] = 0;
+    }
+}
+
+/* Look for the largest mean of each output. */
+static void look(model_of *m, const real *all, int degree)
+{
+    for (int section = 0; section < SECTIONS; ++section) {
+        for (int output = 0; output < NAME_OUTPUTS; ++output) {
+            const int at = section * NAME_OUTPUTS + output;
+            real mean = 0;
+            for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+                mean += all[(size_t)strand_at[k] * (size_t)(degree + 2)];
+            }
+            m->largest[output] = larger(m->largest[output], mean);
+        }
+    }
+}
+
+/* Of the largest value of an output, about what `missed`, as a velocity, makes of it, at worst. */
+static real estimated(const model_of *m, const laws *law, real missed)
+{
+    real worst = 0;
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        real weight = 0;
+        for (int k = 0; k < NAME_HEARD; ++k) {
+            weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
+        }
+        if (m->largest[output] > 0) {
+            worst = larger(worst, weight * missed / m->largest[output]);
+        }
+    }
+    return worst;
+}
+
+/* How far a build has come. */
+typedef struct {
+    int window, degree, event;
+    size_t place;
+    real missed, size;
+} progress;
+
+static int ended(model_of *m, const laws *law, const progress *now)
+{
+    const real missed = 4 * now->missed + unit * (real)(now->degree + NAME_WINDOWS) * now->size;
+    m->estimate = estimated(m, law, missed);
+    m->built = finite_number(now->size) && finite_number(m->estimate);
+    return !m->built;
+}

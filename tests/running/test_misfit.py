@@ -1,0 +1,76 @@
+"""Sums of squares from coefficients: those of values at the data, one by one."""
+
+import numpy as np
+import pytest
+
+import wavesym
+from tests.support.without_compiler import without_compiler
+from wavesym.errors import UnservedError, WavesymError
+
+SCENE = wavesym.Scene.from_toml("drive_equal").with_(
+    {"output.until": 6, "output.tolerance": "1e-11", "load[1].times": ["5/2"]}
+)
+KAPPA = np.array([[1, 1, 1], [0.5, 2, 0.25], [100, 1e-3, 20], *np.linspace([0.2, 0.3, 0.4], [3, 2, 1], 16)])
+RANDOM = np.random.default_rng(14)
+TAUS = {
+    "even": np.linspace(0, 6, 101),
+    "none": np.empty(0),
+    "few": np.array([6.0, 0.25, 3.999]),
+    "at one instant": np.full(30, 2.5),
+    "crowded": 1.3 + np.concatenate([1e-9 * np.arange(12), [1e-3, 0.1, 0.15, -0.2]]),
+    "any": RANDOM.uniform(0, 6, 300),
+}
+
+
+@pytest.fixture(scope="module")
+def model():
+    return wavesym.model(SCENE, runtime=["kappa"])
+
+
+@pytest.mark.parametrize("where", TAUS)
+def test_sums_of_squares_are_those_of_values(model, where):
+    tau = TAUS[where]
+    data = RANDOM.normal(size=(len(model.outputs), len(tau)))
+    data[:, RANDOM.random(len(tau)) < 0.2] = np.nan
+    found = model.misfit(tau, data)(kappa=KAPPA)
+    expected = np.nansum((model.run(kappa=KAPPA, tau=tau) - data) ** 2, axis=(1, 2))
+    assert found == pytest.approx(expected, rel=1e-11, abs=0)
+
+
+def test_data_that_fit_are_missed_by_nothing(model):
+    tau = TAUS["even"]
+    (data,) = model.run(kappa=KAPPA[1], tau=tau)
+    found = model.misfit(tau, data)(kappa=KAPPA)
+    assert found[1] < 1e-24 * np.sum(data**2)
+    assert np.all(np.delete(found, 1) > 1e-3 * np.sum(data**2))
+
+
+def test_a_refused_set_is_nan_and_no_other(model):
+    tau = TAUS["any"]
+    misfit = model.misfit(tau, np.zeros((len(model.outputs), len(tau))))
+    kappa = KAPPA.copy()
+    alone = misfit(kappa=kappa)
+    kappa[[3, 12]], kappa[5] = -1, 1e9
+    assert list(model.check(kappa=kappa).status[[3, 5, 12]]) == [1, 2, 1]
+    assert np.flatnonzero(np.isnan(misfit(kappa=kappa))).tolist() == [3, 5, 12]
+    others = np.delete(np.arange(len(kappa)), [3, 5, 12])
+    assert misfit(kappa=kappa)[others] == pytest.approx(alone[others], rel=1e-11)
+
+
+def test_other_data_are_refused(model):
+    with pytest.raises(WavesymError, match=r"data: an array of shape \(2,\) given, \(\d, 2\) expected"):
+        model.misfit([0, 1], [1, 2])
+    with pytest.raises(WavesymError, match="tau: 0 to 6 expected"):
+        model.misfit([7.0], np.zeros((len(model.outputs), 1)))
+
+
+def test_numpy_finds_the_same(model):
+    with without_compiler():
+        other = wavesym.model(SCENE, runtime=["kappa"])
+    kappa = np.array([*KAPPA[:3], [1, -1, 1]])
+    tau, data = TAUS["few"], np.ones((len(model.outputs), 3))
+    data[0, 1] = np.nan
+    expected = model.misfit(tau, data)(kappa=kappa)
+    assert other.misfit(tau, data)(kappa=kappa) == pytest.approx(expected, rel=1e-9, nan_ok=True)
+    with pytest.raises(UnservedError, match="bounds: 4 sets given without a C compiler"):
+        other.bounds(kappa=kappa)

@@ -1,0 +1,134 @@
+"""Many sets of parameters at once, from Python: each is what the exact outputs of its own scene are."""
+
+from contextlib import nullcontext
+from functools import cache
+
+import numpy as np
+import pytest
+
+import wavesym
+from tests.support.without_compiler import without_compiler
+from wavesym.errors import WavesymError
+from wavesym.programs.runtime.arrays.engine import ArraySets
+
+SCENE = wavesym.Scene.from_toml("drive_equal").with_(
+    {"output.until": 4, "output.tolerance": "1e-11", "load[1].times": ["3/2"]}
+)
+KAPPA = np.array([[1, 1, 1], [0.5, 2, 0.25], [3, 0.125, 3], [1, 1.0000001, 1], [1e-3, 1e-3, 1e-3], [100, 1e-3, 20]])
+
+
+@pytest.fixture(scope="module", params=["C", "NumPy"])
+def model(request):
+    with without_compiler() if request.param == "NumPy" else nullcontext():
+        return wavesym.model(SCENE, runtime=["kappa", "load"])
+
+
+def scene(kappa):
+    return SCENE.with_({"system.kappa": list(kappa)})
+
+
+@cache
+def exact():
+    """Of each set of KAPPA its outputs, and their extremes."""
+    scenes = [scene(kappa) for kappa in KAPPA]
+    return [(wavesym.evaluator(each), wavesym.summary(each).outputs) for each in scenes]
+
+
+@pytest.mark.parametrize("tau", [np.linspace(0, 4, 25), np.array([0.0, 0.3, 3.9, 3.0, 4.0])], ids=["even", "uneven"])
+def test_each_set_is_its_scene(model, tau):
+    true = np.array([response(tau) for response, _ in exact()])
+    largest = np.max(np.abs(true), axis=2, keepdims=True)
+    error = np.max(np.abs(model.run(kappa=KAPPA, tau=tau) - true) / largest, axis=(1, 2))
+    estimate = model.check(kappa=KAPPA).estimate
+    # the largest value of an output may lie between these instants, so the estimate is of something larger
+    assert np.all(error <= np.maximum(2 * estimate, 1e-11))
+    assert np.all(estimate < 1e-9)
+
+
+def test_extremes_are_those_of_the_exact_outputs(model):
+    found = model.peaks(kappa=KAPPA)
+    for (response, outputs), *rows in zip(exact(), found.min, found.tau_min, found.max, found.tau_max, strict=True):
+        size = max(abs(extreme.value) for output in outputs for extreme in (output.min, output.max))
+        for place, output in enumerate(outputs):
+            least, tau_least, greatest, tau_greatest = (row[place] for row in rows)
+            true = response([tau_least, tau_greatest])[place]  # other instants may do as well
+            errors = [least - output.min.value, greatest - output.max.value, least - true[0], greatest - true[1]]
+            assert np.max(np.abs(errors)) < 1e-11 * size
+
+
+def test_derivatives_are_those_of_the_exact_outputs(model):
+    tau, kappa, h = np.linspace(0, 4, 13), np.array([0.5, 2, 0.25]), 1e-5
+    found = model.gradients(kappa=kappa, tau=tau)
+    assert np.allclose(found.values, model.run(kappa=kappa, tau=tau), rtol=0, atol=1e-15)
+    for place in range(3):
+        step = h * np.eye(3)[place]
+        both = [wavesym.evaluator(scene(kappa + side * step))(tau) for side in (1, -1)]
+        # central differences: of the third derivative, of order 1 here, times h^2/6
+        assert np.allclose(found.by["kappa"][0, place], (both[0] - both[1]) / (2 * h), rtol=0, atol=1e-9)
+    # outputs are linear in loads
+    sums = np.einsum("nlot,l->not", found.by["load"], model.parameters["load"])
+    assert np.allclose(sums, found.values, rtol=0, atol=1e-13)
+
+
+def test_extremes_are_not_those_of_samples_alone(model, monkeypatch):
+    full = model.peaks(kappa=KAPPA)
+    if isinstance(model._engine, ArraySets):
+        monkeypatch.setattr("wavesym.programs.runtime.arrays.peaks._Summit.climb", lambda *_: None)
+        assert np.max(full.max - model.peaks(kappa=KAPPA).max) > 1e-6
+    samples = model.run(kappa=KAPPA, tau=np.linspace(0, 4, 1001))
+    # those at jumps aside, no sample is beyond the extremes, and one is near
+    assert np.all(samples.max(axis=2) <= full.max + 1e-12)
+    assert np.all(samples.min(axis=2) >= full.min - 1e-12)
+    assert 1e-9 < np.max(full.max - samples.max(axis=2)) < 1e-2
+
+
+def test_what_is_not_given_is_the_scenes(model):
+    tau = np.linspace(0, 4, 7)
+    (own,) = model.run(tau)
+    values = model.run(tau, load=[[1, 0.5], [2, 1]])
+    assert np.allclose(values[0], own, rtol=0, atol=1e-15)
+    assert np.allclose(values[1], 2 * own, rtol=1e-14)
+    assert model.labels["kappa"] == ("kappa_1", "kappa_2", "kappa_3")
+
+
+def test_a_refused_set_is_nan_and_no_other(model):
+    kappa = [[1, 1, 1], [1, -1, 1], [1e5, 1, 1]]
+    found = model.check(kappa=kappa)
+    assert found.status.tolist() == [0, 1, 2]
+    assert found.why[0] == ""
+    assert "not finite" in found.why[1]
+    assert "too light" in found.why[2]
+    assert np.isnan(found.estimate).tolist() == [False, True, True]
+    values = model.run(kappa=kappa, tau=[[0.0, 1.0, 7.0]])
+    assert values.shape == (3, 3, 1, 3)
+    assert np.isnan(values[1:]).all()
+    assert np.isnan(values[0]).any(axis=(0, 1)).tolist() == [False, False, True]
+    assert np.isnan(model.peaks(kappa=kappa).max).all(axis=1).tolist() == [False, True, True]
+    assert np.isnan(model.gradients(kappa=kappa, tau=[1.0]).by["load"]).all(axis=(1, 2, 3)).tolist() == [
+        False,
+        True,
+        True,
+    ]
+
+
+def test_no_set_and_no_instant_are_empty(model):
+    assert model.run(kappa=np.empty((0, 3)), tau=[1.0]).shape == (0, 3, 1)
+    assert model.run(tau=[]).shape == (1, 3, 0)
+    assert model.run(tau=2.0).shape == (1, 3)
+    assert model.peaks(kappa=np.empty((0, 3))).min.shape == (0, 3)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        ({"inertia": [1, 1, 1, 1]}, "inertia given, kappa or load expected"),
+        ({"kappa": [1, 2]}, r"kappa: an array of shape \(2,\) given, \(sets, 3\) expected"),
+        ({"kappa": 1}, r"kappa: an array of shape \(\) given, \(sets, 3\) expected"),
+        ({"kappa": ["a", "b", "c"]}, "kappa: an array of numbers expected"),
+        ({"kappa": [[1, 1, 1]] * 2, "load": [[1, 1]] * 3}, "2 and 3 sets given"),
+    ],
+)
+def test_other_arrays_are_refused(model, parameters, message):
+    with pytest.raises(WavesymError, match=message) as error:
+        model.run([0.0], **parameters)
+    assert "\n" not in str(error.value)

@@ -1,0 +1,89 @@
+"""Parameters of scenes with units: what is given anew is what a scene with these numbers says."""
+
+from copy import deepcopy
+
+import numpy as np
+import pytest
+
+import wavesym
+from tests.scene.test_physical_scenes import BUILDING, COLLISION, DRIVE
+from tests.support.without_compiler import without_compiler
+from wavesym.programs.runtime import plan
+
+
+def drive():
+    """Another shaft, other discs and other moments."""
+    first = deepcopy(DRIVE)
+    first["output"] = {"until": "3 ms", "tolerance": "1e-11", "velocity": [2], "force": ["1/2"], "strain": ["3/2"]}
+    first["load"] = [{"body": 1, "times": ["0 s", "1 ms"], "steps": ["15 N*m", "0 N*m"], "ramps": ["1 kN*m/s"] * 2}]
+    other = deepcopy(first)
+    other["system"]["disc"] = [{"inertia": f"{inertia} kg*m^2"} for inertia in (0.5, 0.2, 0.7)]
+    other["system"]["shaft"] = [shaft | {"diameter": "70 mm"} for shaft in DRIVE["system"]["shaft"]]
+    other["load"][0] |= {"steps": ["11 N*m", "3 N*m"], "ramps": ["0.5 N*m/ms", "250 N*m/s"]}
+    shaft = np.pi / 32 * 0.07**4 * 7850 * 1.2
+    return first, other, {"kappa": [shaft / 0.5, shaft / 0.2], "inertia": [0.5, 0.2, 0.7], "load": [11, 3, 500, 250]}
+
+
+def building(base):
+    """Lighter floors and other accelerations."""
+    first = deepcopy(BUILDING)
+    first["system"] |= {"base": base} | ({"foundation_mass": "100 t"} if base == "force" else {})
+    first["output"] = {"until": "200 ms", "tolerance": "1e-11", "velocity": [2], "force": [0, "3/2"], "drift": [1]}
+    other = deepcopy(first)
+    (storey,) = other["system"]["storey"]
+    other["system"]["storey"] = [storey | {"count": 1, "floor_mass": f"{mass} t"} for mass in (100, 50)]
+    other["load"][0] |= {"a": ["1 m/s^2", "2 m/s^2"], "b": ["3 m/s^3", "0.5 g/s"]}
+    below = 10.871 / (100 if base == "force" else 350)
+    return first, other, {"kappa": [below, 0.10871, 0.21742], "load": [1, 2, 3, 4.903325]}
+
+
+def collision():
+    """A lighter body, and one that comes from the other side."""
+    first = deepcopy(COLLISION)
+    first["output"] = {"until": "2 ms", "tolerance": "1e-11", "velocity": [1], "force": [2], "displacement": [1]}
+    other = deepcopy(first)
+    other["system"]["body"][0]["mass"] = "3 kg"
+    other["system"]["body"][1]["velocity"] = "-2 m/s"
+    rod = 1.2 * 8e-4 * 7850
+    return first, other, {"kappa": [rod / 3, rod / 12], "velocity": [5, -2]}
+
+
+CASES = {
+    "drive": (drive, {"kappa": "", "inertia": "kg*m^2", "load": "N*m"}),
+    "ground": (lambda: building("ground"), {"kappa": "", "load": "m/s^2"}),
+    "force": (lambda: building("force"), {"kappa": "", "load": "m/s^2"}),
+    "collision": (collision, {"kappa": "", "velocity": "m/s"}),
+}
+
+
+def missed(case):
+    """The largest error of any output, relative to its largest value, of the other scene; and the model."""
+    first, other, numbers = CASES[case][0]()
+    with without_compiler():
+        model = wavesym.model(wavesym.Scene(**first), runtime=list(numbers))
+    tau = np.linspace(0, model.tau_max, 41)
+    true = wavesym.evaluator(wavesym.Scene(**other))(tau)
+    errors = np.abs(model.run(tau, **numbers)[0] - true)
+    return np.max(errors / np.max(np.abs(true), axis=1, keepdims=True)), model
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_another_set_is_another_scene(case):
+    error, model = missed(case)
+    assert error < 1e-10
+    assert {name: units[0] for name, units in model.units.items()} == CASES[case][1]
+
+
+@pytest.mark.parametrize("rule", ["load_kept", "force_kept"])
+def test_loads_and_forces_that_change_with_discs_are_seen(rule, monkeypatch):
+    monkeypatch.setattr(plan, rule, lambda model, free: 1)
+    assert missed("drive")[0] > 1e-3
+
+
+def test_the_header_has_units_and_the_clock(tmp_path):
+    first, _, _ = drive()
+    wavesym.generate(wavesym.Scene(**first), tmp_path, runtime=["inertia", "load"])
+    header = (tmp_path / "good.h").read_text()
+    assert "#define GOOD_SECONDS_PER_TAU" in header
+    assert "[1] steps[1] of load 0, t = 0.001 s [N*m]" in header
+    assert "[2] inertia_3 [kg*m^2]" in header

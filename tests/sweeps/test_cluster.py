@@ -1,0 +1,209 @@
+"""What clusters do to sweeps: processes are killed, and what comes of it is what comes of an undisturbed run.
+
+A real scheduler and real workers on this machine. Each worker says which batches it computes.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("distributed", reason="the extra `sweep` is not installed")
+
+from wavesym.sweeps.marks import Marks
+from wavesym.sweeps.running import run
+from wavesym.sweeps.status import status
+
+pytestmark = pytest.mark.slow
+
+ROOT = Path(__file__).parents[2]
+BATCHES = 16
+SWEEP = f"""
+scene = "drive_m1"
+[vary]
+"output.until" = {{ from = 4, to = 12, count = {BATCHES} }}
+"""
+_PATIENCE = 180  # seconds
+
+
+def until(done: Callable[[], object]) -> None:
+    end = time.monotonic() + _PATIENCE
+    while not done():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.05)
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    """All that a sweep leaves, to the byte."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+class Lab:
+    """A scheduler, workers and clients in a folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.log, self.out = folder, folder / "log", folder / "out"
+        self.sweep = folder / "sweep.toml"
+        self.sweep.write_text(SWEEP)
+        self.log.touch()
+        self.running: list[subprocess.Popen[str]] = []
+        self.environment = os.environ | {
+            "PYTHONPATH": str(ROOT),
+            "SPIED_LOG": str(self.log),
+            "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s",
+        }
+
+    def start(self, *command: str, **environment: str) -> subprocess.Popen[str]:
+        process = subprocess.Popen(
+            [sys.executable, "-m", *command],
+            cwd=self.folder,
+            env=self.environment | environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT if command[0] == "dask" else subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+        self.running.append(process)
+        return process
+
+    def scheduler(self, number: int = 0) -> subprocess.Popen[str]:
+        self.address_file = self.folder / f"scheduler{number}.json"
+        options = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(self.address_file)]
+        process = self.start("dask", "scheduler", *options)
+        until(lambda: self.address_file.exists() and self.address_file.read_text().endswith("}"))
+        return process
+
+    def worker(self, *options: str, **environment: str) -> subprocess.Popen[str]:
+        given = ["--nthreads", "1", "--no-dashboard", "--scheduler-file", str(self.address_file), *options]
+        return self.start("dask", "worker", "--preload", "tests.support.spied_worker", *given, **environment)
+
+    def client(self, *options: str, **environment: str) -> subprocess.Popen[str]:
+        if not options:
+            options = ("--scheduler", json.loads(self.address_file.read_text())["address"])
+        return self.start("wavesym", "sweep", str(self.sweep), "-o", str(self.out), *options, **environment)
+
+    def computed(self) -> list[int]:
+        """The batches that workers have begun, in order."""
+        return [int(line.split()[0]) for line in self.log.read_text().splitlines()]
+
+    def marks(self) -> int:
+        return len(Marks(self.out).names())
+
+    def undisturbed(self) -> dict[str, bytes]:
+        run(self.sweep, self.folder / "alone")
+        return files(self.folder / "alone")
+
+
+@pytest.fixture
+def lab(tmp_path: Path) -> Iterator[Lab]:
+    made = Lab(tmp_path)
+    yield made
+    for process in made.running:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+
+
+def finished(client: subprocess.Popen[str]) -> tuple[int, str]:
+    _, err = client.communicate(timeout=_PATIENCE)
+    return client.returncode, err
+
+
+def test_workers_that_nobody_disturbs_compute_each_batch_once(lab: Lab) -> None:
+    lab.scheduler()
+    lab.worker(), lab.worker()
+    assert finished(lab.client()) == (0, f"{lab.out}: {BATCHES} cases: {BATCHES} done, 0 failed, 0 left\n")
+    assert sorted(lab.computed()) == list(range(BATCHES))
+    assert files(lab.out) == lab.undisturbed()
+
+
+def test_a_worker_that_is_killed_takes_nothing_with_it(lab: Lab) -> None:
+    lab.scheduler()
+    workers = [lab.worker("--no-nanny", SPIED_SECONDS="0.3") for _ in range(2)]
+    client = lab.client()
+    until(lambda: lab.marks() >= 4)
+    workers[0].kill()
+    code, err = finished(client)
+    assert code == 0, err
+    assert set(lab.computed()) == set(range(BATCHES))
+    assert len(lab.computed()) <= BATCHES + 1  # what the worker was at
+    assert files(lab.out) == lab.undisturbed()
+
+
+def test_a_client_that_is_killed_goes_on_where_it_was(lab: Lab) -> None:
+    lab.scheduler()
+    lab.worker(SPIED_SECONDS="0.3"), lab.worker(SPIED_SECONDS="0.3")
+    client = lab.client()
+    until(lambda: lab.marks() >= 4)
+    client.kill()
+    client.wait()
+    done = status(lab.out).done
+    assert 4 <= done < BATCHES
+    before = len(lab.computed())
+    again, err = finished(lab.client())
+    assert again == 0, err
+    assert set(lab.computed()) == set(range(BATCHES))
+    assert len(lab.computed()) - before <= BATCHES - done + 2  # what was under way for the first client
+    assert files(lab.out) == lab.undisturbed()
+
+
+def test_a_scheduler_that_is_killed_ends_the_command_and_nothing_else(lab: Lab) -> None:
+    scheduler = lab.scheduler()
+    workers = [lab.worker(SPIED_SECONDS="0.3") for _ in range(2)]
+    client = lab.client()
+    until(lambda: lab.marks() >= 4)
+    scheduler.kill()
+    code, err = finished(client)
+    assert code == 1, err
+    assert err.count("\n") == 1, err
+    assert "goes on" in err
+    for worker in workers:
+        os.killpg(worker.pid, signal.SIGKILL)
+    done, before = status(lab.out).done, len(lab.computed())
+    assert 4 <= done < BATCHES
+    lab.scheduler(1)
+    lab.worker(), lab.worker()
+    again, err = finished(lab.client())
+    assert again == 0, err
+    assert len(lab.computed()) - before == BATCHES - done
+    assert files(lab.out) == lab.undisturbed()
+
+
+def test_a_case_that_kills_its_worker_is_the_only_one_that_fails(lab: Lab) -> None:
+    preload = {"DASK_DISTRIBUTED__WORKER__PRELOAD": "tests.support.spied_worker", "SPIED_CRASH": "5"}
+    code, err = finished(lab.client("--workers", "2", **preload))
+    assert code == 1, err
+    found = status(lab.out)
+    assert (found.done, found.failed, found.left) == (BATCHES - 1, 1, 0)
+    (failure,) = found.reasons
+    assert failure["case"] == 5
+    assert "died" in failure["reason"]
+    code, err = finished(lab.client("--workers", "2", "--retry-failed"))
+    assert code == 0, err
+    assert files(lab.out) == lab.undisturbed()
+
+
+def test_a_case_that_fills_its_worker_s_memory_is_the_only_one_that_fails(lab: Lab) -> None:
+    lab.scheduler()
+    for _ in range(2):
+        lab.worker("--memory-limit", "700 MB", SPIED_EAT="3")
+    code, err = finished(lab.client())
+    assert code == 1, err
+    found = status(lab.out)
+    assert (found.done, found.failed, found.left) == (BATCHES - 1, 1, 0)
+    assert found.reasons[0]["case"] == 3
+
+
+def test_an_address_where_nobody_listens_is_said(lab: Lab) -> None:
+    code, err = finished(lab.client("--scheduler", "tcp://127.0.0.1:9"))
+    assert code == 1
+    assert "tcp://127.0.0.1:9 given" in err
+    assert err.count("\n") == 1

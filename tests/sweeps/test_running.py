@@ -1,0 +1,221 @@
+"""A sweep in this process: labelled arrays that are what each scene's summary is, and nothing lost or done twice."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
+
+from tests.sweeps.test_cluster import files
+from wavesym import Scene, compiler
+from wavesym.cli import main
+from wavesym.errors import SceneError, WavesymError
+from wavesym.sweeps import running
+from wavesym.sweeps.running import run
+from wavesym.sweeps.status import status
+
+SWEEP: dict[str, Any] = {
+    "scene": "drive_m1",
+    "vary": {"output.until": [4, 5], "system.kappa[0]": {"from": "1/4", "to": 1, "count": 3}},
+}
+BATCHES = 6
+
+
+@pytest.fixture
+def computed(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[int]]:
+    """The batches that are computed here, in order."""
+    done: list[int] = []
+    compute = running.compute
+
+    def counted(plan: Any, batches: Any, batch: int) -> Any:
+        done.append(batch)
+        return compute(plan, batches, batch)
+
+    monkeypatch.setattr(running, "compute", counted)
+    return done
+
+
+@pytest.mark.slow
+def test_a_sweep_that_is_done_is_not_done_again(tmp_path: Path, computed: list[int]) -> None:
+    assert run(SWEEP, tmp_path / "a") == 0
+    assert computed == list(range(BATCHES))
+    before = files(tmp_path / "a")
+    assert run(SWEEP, tmp_path / "a") == 0
+    assert len(computed) == BATCHES
+    assert files(tmp_path / "a") == before
+    chunk = tmp_path / "a" / "results.zarr" / "max" / "0.1.0"
+    *kept, last = chunk.read_bytes()
+    chunk.write_bytes(bytes([*kept, last ^ 1]))  # a bit of a disk that rots
+    (tmp_path / "a" / "results.zarr" / "min" / "1.0.0").unlink()
+    mark = next((tmp_path / "a" / "done").iterdir())
+    mark.write_text(mark.read_text()[:40])  # of a disk that lost its power
+    torn = int(json.loads(before[f"done/{mark.name}"])["batch"])
+    assert run(SWEEP, tmp_path / "a") == 0
+    assert sorted(computed[BATCHES:]) == sorted({1, 3, torn})
+    assert files(tmp_path / "a") == before
+
+
+@pytest.mark.slow
+def test_the_folder_of_another_sweep_is_refused(tmp_path: Path, computed: list[int]) -> None:
+    run(SWEEP, tmp_path)
+    before = files(tmp_path)
+    with pytest.raises(WavesymError, match=r"the folder of another sweep given .*, its own or a new one expected"):
+        run({**SWEEP, "keep": {"summary": ["max"]}}, tmp_path)
+    assert files(tmp_path) == before
+
+
+@pytest.mark.slow
+def test_labelled_arrays_are_the_summaries_of_their_scenes(tmp_path: Path) -> None:
+    keep = {"summary": ["min", "max", "tau_max", "arrival"], "histories": 11}
+    found = compiler.sweep({**SWEEP, "keep": keep}, tmp_path)
+    assert dict(found.sizes) == {"output.until": 2, "system.kappa[0]": 3, "output": 5, "sample": 11}
+    for until in (4, 5):
+        for kappa in (0.25, 0.625, 1.0):
+            scene = Scene.from_toml("drive_m1").with_({"output.until": until, "system.kappa[0]": kappa})
+            case = found.sel({"output.until": until, "system.kappa[0]": kappa})
+            told = compiler.summary(scene)
+            values = compiler.evaluator(scene)(np.linspace(0, until, 11))
+            np.testing.assert_allclose(case["history"], values, rtol=0, atol=1e-15 * np.abs(values).max())
+            assert case["until"] == until
+            for output in told.outputs:
+                row = case.sel(output=output.name)
+                assert (row["min"], row["max"]) == (output.min.value, output.max.value)
+                assert row["tau_max"] == output.max.at.tau
+                assert row["arrival"] == output.arrival.tau
+
+
+@pytest.mark.slow
+def test_a_case_that_refuses_leaves_its_reason_and_the_others_go_on(tmp_path: Path, capsys: Any) -> None:
+    sweep = tmp_path / "sweep.toml"
+    sweep.write_text('scene = "drive_m1"\n[vary]\n"system.kappa[0]" = [1, -1, "1/2"]\n')
+    out = str(tmp_path / "out")
+    assert main(["sweep", str(sweep), "-o", out]) == 1
+    assert main(["sweep", out, "--status", "--format", "json"]) == 0
+    told = capsys.readouterr()
+    assert json.loads(told.out) == {
+        "cases": 3,
+        "done": 2,
+        "failed": 1,
+        "left": 0,
+        "reasons": [
+            {
+                "case": 1,
+                "values": {"system.kappa[0]": "-1"},
+                "reason": "scene: system.kappa[0]: -1 given, a positive number expected",
+            }
+        ],
+    }
+    assert main(["sweep", str(sweep), "-o", out]) == 1
+    assert main(["sweep", str(sweep), "-o", out, "--retry-failed"]) == 1
+    for name in ("t.csv", "t.parquet"):
+        assert main(["sweep", out, "--table", str(tmp_path / name)]) == 0
+    header, *rows = (tmp_path / "t.csv").read_text().splitlines()
+    assert header.startswith("system.kappa[0],strain@0.min,strain@0.max,strain@0.tau_min,strain@0.tau_max,")
+    assert [row.split(",")[0] for row in rows] == ["1.0", "-1.0", "0.5"]
+    assert set(rows[1].split(",")[1:]) == {""}
+    import pandas
+
+    table = pandas.read_parquet(tmp_path / "t.parquet")
+    again = pandas.read_csv(tmp_path / "t.csv")
+    assert list(table) == header.split(",")
+    np.testing.assert_array_equal(table.to_numpy(), again.to_numpy())
+    strain = compiler.summary(Scene.from_toml("drive_m1")).outputs[0]
+    assert table["strain@0.max"][0] == strain.max.value
+
+
+@pytest.mark.slow
+def test_zipped_cases_have_one_dimension(tmp_path: Path) -> None:
+    found = compiler.sweep(
+        {**SWEEP, "zip": True, "vary": {"output.until": [4, 5], "system.kappa[0]": [1, 2]}}, tmp_path
+    )
+    assert found["max"].dims == ("case", "output")
+    assert found["output.until"].values.tolist() == [4, 5]
+    compiler.sweep_table(tmp_path, tmp_path / "t.csv")
+    assert (tmp_path / "t.csv").read_text().startswith("output.until,system.kappa[0],strain@0.min,")
+
+
+@pytest.mark.slow
+def test_outputs_may_differ_from_case_to_case(tmp_path: Path) -> None:
+    found = compiler.sweep({"scene": "drive_m1", "vary": {"output.strain[0]": ["1/4", "3/4"]}}, tmp_path)
+    assert {"strain@1/4", "strain@3/4", "strain@1"} < set(found["output"].values.tolist())
+    missing = np.isnan(found["max"].sel(output="strain@1/4"))
+    assert missing.values.tolist() == [False, True]
+
+
+@pytest.mark.slow
+def test_a_read_only_folder_is_refused_before_the_work(tmp_path: Path) -> None:
+    sweep = tmp_path / "sweep.toml"
+    sweep.write_text('scene = "drive_m1"\n[vary]\n"system.kappa[0]" = [1, 2]\n')
+    if shutil.which("unshare") is None:
+        pytest.skip("no unshare here, which makes folders read-only for everybody")
+    (tmp_path / "out").mkdir()
+    done = in_namespace(
+        tmp_path, f"mount --bind out out && mount -o remount,bind,ro out && {command('sweep.toml', 'out')}"
+    )
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.count("\n") == 1
+    assert "ead-only" in done.stderr or "ermission" in done.stderr
+
+
+@pytest.mark.slow
+def test_a_full_disk_loses_nothing(tmp_path: Path) -> None:
+    """A disk of 300 kB: what fits stays, the command says why it ends, and goes on when there is more."""
+    sweep = tmp_path / "sweep.toml"
+    sweep.write_text('scene = "drive_m1"\n[vary]\n"output.until" = [4, 5, 6, 7, 8, 9]\n[keep]\nhistories = 2001\n')
+    run(sweep, tmp_path / "alone")
+    (tmp_path / "small").mkdir()
+    go = command("sweep.toml", "small/out")
+    done = in_namespace(
+        tmp_path,
+        f"mount -t tmpfs -o size=360k none small && {go}; echo exit $?; {command('small/out', None)}; "
+        f"mount -o remount,size=20m small && {go}; echo exit $?; cp -r small/out kept",
+    )
+    assert "exit 2\n" in done.stdout, done
+    assert "No space left" in done.stderr
+    assert "exit 0\n" in done.stdout
+    assert " 0 failed" in done.stdout
+    assert "6 done" not in done.stdout.partition("exit 0")[0]
+    assert files(tmp_path / "kept") == files(tmp_path / "alone")
+
+
+def command(source: str, out: str | None) -> str:
+    import sys
+
+    options = f"-o {out}" if out else "--status"
+    return f"{sys.executable} -m wavesym sweep {source} {options}"
+
+
+def in_namespace(folder: Path, script: str) -> subprocess.CompletedProcess[str]:
+    """A script where mounts are its own; skips where that is not allowed."""
+    import os
+
+    own = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c"]
+    try:
+        allowed = subprocess.run([*own, "mount -t tmpfs none /mnt"], capture_output=True, check=False).returncode == 0
+    except FileNotFoundError:
+        allowed = False
+    if not allowed:
+        pytest.skip("no mounts of one's own here")
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
+    return subprocess.run([*own, script], cwd=folder, env=environment, capture_output=True, text=True, check=False)
+
+
+def test_what_is_missing_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(WavesymError, match=r"zarr not installed, the extra `sweep` expected \(pip install"):
+        run(SWEEP, tmp_path)
+
+
+def test_no_folder_of_a_sweep_is_said(tmp_path: Path) -> None:
+    with pytest.raises(WavesymError, match=r"no manifest.json in it"):
+        status(tmp_path)
+    with pytest.raises(SceneError):
+        run(tmp_path / "none.toml", tmp_path)

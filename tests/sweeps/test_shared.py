@@ -1,0 +1,188 @@
+"""What is computed together is what each case is alone: within the bounds of both, whatever the cases are."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
+
+from wavesym import Scene
+from wavesym.errors import WavesymError
+from wavesym.results.summary import Summary, summarised
+from wavesym.scene import lower
+from wavesym.sweeps.batches import batches
+from wavesym.sweeps.kinds import kind
+from wavesym.sweeps.plan import SweepPlan, plan
+from wavesym.sweeps.request import SweepRequest
+from wavesym.sweeps.values import BatchValues
+from wavesym.sweeps.work import compute
+
+pytestmark = pytest.mark.slow
+
+DRIVE: dict[str, Any] = {
+    "name": "shafts",
+    "system": {"type": "drive", "m": 3, "kappa": [1, "1/2", "4/5"], "inertia": [1, 2, "1/2", "3/2"]},
+    "load": [{"body": 1, "times": [0, 3], "steps": [1, "-1/2"]}],
+    "output": {"until": 20, "tolerance": "1e-6", "strain": [0.5, 1.5, 2.5], "velocity": [0]},
+}
+
+
+def shaken(spacing: str, **system: Any) -> dict[str, Any]:
+    return {
+        "name": "frame",
+        "system": {"type": "building", "m": 2, "kappa": ["1/20", "1/20", "1/25"], "base": "ground", **system},
+        "load": [{"spacing": spacing, "record": {"samples": [0, 1]}}],
+        "output": {
+            "until": 150,
+            "tolerance": "1e-5",
+            "acceleration": [1, 2],
+            "force": [0],
+            "drift": [1, 2],
+            "relative": [2],
+            "displacement": [1],
+        },
+    }
+
+
+def planned(fields: Mapping[str, Any]) -> SweepPlan:
+    file, request = SweepRequest.read(fields)
+    return plan(request, file)
+
+
+def computed(made: SweepPlan) -> list[tuple[tuple[int, ...], dict[str, Any], str]]:
+    """All cases, with their arrays, and how their batch was computed."""
+    parts = batches(made, *kind(made))
+    found = []
+    for batch in range(len(parts)):
+        values: BatchValues = compute(made, parts, batch)
+        region = parts.region(batch)
+        for place in parts.places(batch):
+            at = tuple(k - part.start for k, part in zip(place, region, strict=True))
+            reason = values.failed.get(place, "")
+            found.append((place, {name: array[at] for name, array in values.arrays.items()}, reason or str(values.how)))
+    return found
+
+
+def assert_alike(made: SweepPlan, place: tuple[int, ...], found: dict[str, Any]) -> None:
+    alone: Summary = summarised(lower(made.scene(place)))
+    for k, output in enumerate(alone.outputs):
+        both = (alone.bound + found["bound"]) * abs(output.largest.value)
+        for name, peak in (("min", output.min), ("max", output.max)):
+            assert abs(found[name][k] - peak.value) <= both, (place, output.name, name)
+
+
+def test_sets_of_parameters_are_what_each_is_alone() -> None:
+    draw = random.Random(3)
+    kappa = sorted({Fraction(draw.randint(1, 400), 100) for _ in range(9)})
+    steps = [Fraction(draw.randint(-300, 300), 97) for _ in range(3)]
+    made = planned(
+        {
+            "scene": DRIVE,
+            "vary": {"system.kappa[1]": kappa, "output.until": [20, "41/2"], "load[0].steps[1]": [*steps, 0]},
+        }
+    )
+    cases = computed(made)
+    assert kind(made) == ("parameters", (True, False, True))
+    assert len(cases) == made.cases
+    for place, found, how in draw.sample(cases, 10):
+        assert "parameters at run time" in how
+        assert_alike(made, place, found)
+        values = made.scene(place)
+        assert values.system.kappa[1] == kappa[place[0]]
+
+
+def test_sets_that_their_program_refuses_are_computed_alone() -> None:
+    """Bodies that are far too light for the program, and one that has no mass at all."""
+    kappa = ["1/10", "1/5", "3/10", "2/5", "1/2", 1, 2, "1e4", -1]
+    cases = computed(made := planned({"scene": DRIVE, "vary": {"system.kappa[0]": kappa}}))
+    for place, found, _ in cases[:-1]:
+        assert_alike(made, place, found)
+    assert "a positive number expected" in cases[-1][2]
+    assert np.isnan(cases[-1][1]["max"]).all()
+
+
+def records(folder: Path, draw: np.random.Generator) -> None:
+    """Noise, waves, a pulse, nothing but zeros, one that is rough, one that begins late, one that jumps at once."""
+    n = 300
+    t = np.arange(n) * 0.5
+    made = {
+        "noise": draw.standard_normal(n),
+        "waves": np.sin(0.7 * t) + np.sin(0.11 * t * t / 20),
+        "pulse": np.where(np.abs(t - 20) < 2, 1.0, 0.0),
+        "still": np.zeros(n),
+        "rough": np.where(np.arange(n) % 2, 1.0, -1.0) * (t > 1),
+        "late": np.where(t > 120, np.sin(t), 0.0),
+    }
+    for name, samples in made.items():
+        samples[0] = 0
+        (folder / f"{name}.csv").write_text("a\n" + "".join(f"{value:.6f}\n" for value in samples))
+    (folder / "jumps.csv").write_text("a\n" + "".join(f"{value:.6f}\n" for value in np.cos(t)))
+
+
+@pytest.mark.parametrize("spacing", ["1/2", "4.995", "0.0717"])
+@pytest.mark.parametrize(
+    "system", [{"damping": ["1/20", "3/10", 2]}, {"damping": {"modes": [1, 2], "ratio": 0.03}}, {}]
+)
+def test_records_are_what_each_is_alone(tmp_path: Path, spacing: str, system: dict[str, Any]) -> None:
+    records(tmp_path, np.random.default_rng(4))
+    fields = {
+        "scene": shaken(spacing, **system),
+        "vary": {"system.kappa[2]": ["1/25", "1/7"]},
+        "records": str(tmp_path / "*.csv"),
+    }
+    made = planned(fields)
+    assert kind(made)[0] == "recorded"
+    cases = computed(made)
+    assert len(cases) == made.cases == 14
+    met = 0
+    for place, found, how in cases:
+        try:
+            assert_alike(made, place, found)
+        except WavesymError:
+            assert np.isnan(found["max"]).all()
+            continue
+        met += "together" in how
+    assert met or not system, "no case was computed together"
+
+
+def test_thirty_random_cases_are_what_summary_says(tmp_path: Path) -> None:
+    draw = random.Random(8)
+    np_draw = np.random.default_rng(8)
+    t = np.arange(400)
+    for k in range(6):
+        wave = sum(np.sin(np_draw.uniform(0.02, 1.5) * t + 0.3 * j) for j in range(6)) * t * np.exp(-t / 60)
+        wave[0] = 0
+        (tmp_path / f"r{k}.csv").write_text("a\n" + "".join(f"{value:.5f}\n" for value in wave))
+    sweeps = [
+        {
+            "scene": shaken("3/7", damping="1/50"),
+            "vary": {"system.kappa[1]": [Fraction(draw.randint(2, 40), 100) for _ in range(4)]},
+            "records": str(tmp_path / "*.csv"),
+        },
+        {"scene": DRIVE, "vary": {"system.inertia[2]": [Fraction(draw.randint(20, 400), 101) for _ in range(12)]}},
+        {"scene": "collision_m4", "vary": {"output.until": [4, "19/3", 8], "system.kappa[0]": [1, "1/3"]}},
+    ]
+    checked = 0
+    for each in sweeps:
+        made = planned(each)
+        for place, found, _ in draw.sample(computed(made), min(made.cases, 12)):
+            assert_alike(made, place, found)
+            checked += 1
+    assert checked == 30
+
+
+def test_a_wrong_peak_would_be_seen() -> None:
+    made = planned({"scene": DRIVE, "vary": {"system.kappa[1]": [1, 2]}})
+    (place, found, _), *_ = computed(made)
+    assert_alike(made, place, found)
+    found["max"] = found["max"] * (1 + 1e-5)
+    with pytest.raises(AssertionError):
+        assert_alike(made, place, found)
+    assert isinstance(made.scene(place), Scene)

@@ -1,0 +1,76 @@
+"""`wavesym sweep`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import monotonic
+
+import click
+
+from wavesym.cli.parameters import PATH, put, refuse_unwritable
+from wavesym.cli.progress import progress
+
+
+@click.command()
+@click.argument("source", metavar="SWEEP", type=PATH)
+@click.option("-o", "out", type=PATH, metavar="DIR", help="Folder of the results; where they are begun it goes on.")
+@click.option("--workers", type=click.IntRange(min=1), help="So many processes of this machine compute.")
+@click.option("--scheduler", metavar="ADDRESS", help="The workers of this Dask scheduler compute (tcp://HOST:PORT).")
+@click.option("--retry-failed", is_flag=True, help="Cases that failed are tried again.")
+@click.option("--status", "tell", is_flag=True, help="Say what is done in the folder SWEEP, and what failed.")
+@click.option("--format", type=click.Choice(["text", "json"]), default="text", show_default=True, help="Of --status.")
+@click.option("--table", type=PATH, metavar="FILE", help="Write the results in the folder SWEEP as .csv or .parquet.")
+def sweep(
+    source: Path,
+    out: Path | None,
+    workers: int | None,
+    scheduler: str | None,
+    retry_failed: bool,
+    tell: bool,
+    format: str,
+    table: Path | None,
+) -> int:
+    """Compute many scenes that differ in a few fields or in their record.
+
+    SWEEP is a file that says which, or with --status and --table the folder of its results. What is done stays done:
+    the same command goes on where it was, whatever ended it.
+
+    \b
+    Example:
+      wavesym sweep stiffness.toml -o stiffness
+    """
+    from wavesym import compiler
+
+    if tell or table:
+        if out or workers or scheduler or retry_failed:
+            raise click.UsageError("--status and --table given with what is for computing, a folder alone expected")
+        if table:
+            refuse_unwritable(table)
+            compiler.sweep_table(source, table)
+        if tell:
+            found = compiler.sweep_status(source)
+            put(found.json() if format == "json" else found.text())
+        return 0
+    if out is None:
+        raise click.UsageError("-o DIR is missing: a folder for the results")
+    if workers and scheduler:
+        raise click.UsageError("--workers and --scheduler given, one of them expected")
+    refuse_unwritable(out, folder=True)
+    start = monotonic()
+    with progress(f"sweep {source}") as line:
+
+        def watch(cases: int, done: int, before: int) -> None:
+            line.tell(_told(cases, done, before, monotonic() - start))
+
+        failed = compiler.run_sweep(source, out, workers, scheduler, retry_failed, watch)
+    click.echo(f"{out}: {compiler.sweep_status(out).line}", err=True)
+    return 1 if failed else 0
+
+
+def _told(cases: int, done: int, before: int, seconds: float) -> str:
+    """How far it is, how fast, and how long it will take."""
+    told = f"{done} of {cases} cases"
+    if done == before:
+        return told
+    rate = (done - before) / seconds
+    return f"{told}, {rate:.3g} a second, about {(cases - done) / rate:.0f} s left"

@@ -1,0 +1,187 @@
+"""The march of one hat of each record as an evaluator: any spacing, in three panels a window.
+
+What a record does is the sum of what its hats do, and these do the same, one spacing after the other. So one hat is
+marched for each load, by the march of any chain (../rings); what is no record is marched beside it. docs/march.md has
+the proof of the bound: that of a hat's march times the sum of the absolute samples, and what the sum loses.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from flint import arb, fmpq
+from numpy.typing import NDArray
+
+from wavesym.errors import SpacingError
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import bound, nearest, rational
+from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.programs.hats.split import RecordLoad, split, still
+from wavesym.programs.program import ProgramOutput
+from wavesym.programs.rings.bound import RingVerdict
+from wavesym.programs.rings.evaluator import RingMarch, judged_march
+from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
+from wavesym.programs.schemes.rings import RingScheme
+
+Numbers = NDArray[np.float64]
+
+_UNIT = 2.0**-53
+_PER_SPACING = 4  # instants at which an output's largest value is looked for
+_MARGIN = 1.01  # what is of second order in the roundoff
+
+
+@dataclass(frozen=True)
+class HatMarch:
+    """`marches` of the rest, where there is `rest` (1, else 0), and of one hat of each of the `records`.
+
+    `refusal` says why the loads are not marched as they are.
+    """
+
+    marches: tuple[RingMarch, ...]
+    rest: int
+    records: tuple[RecordLoad, ...]
+    refusal: str
+    outputs: tuple[ProgramOutput, ...] = ()
+
+    @property
+    def real(self) -> Real:
+        """Double precision: instants between samples need all of it."""
+        return DOUBLE
+
+    @property
+    def tau_max(self) -> float:
+        """The last tau."""
+        return self.marches[0].tau_max
+
+    @property
+    def degree(self) -> int:
+        """The largest of its polynomials."""
+        return max(march.degree for march in self.marches)
+
+    @cached_property
+    def error_bound(self) -> float:
+        """The largest error of any output relative to its largest value; proved."""
+        return max(output.bound for output in self.outputs)
+
+    @cached_property
+    def tables(self) -> dict[str, tuple[float, ...]]:
+        """The numbers of its program, those of all marches one after the other."""
+        marches = [march.tables for march in self.marches]
+        made = {name: tuple(number for one in marches for number in one[name]) for name in RingScheme.TABLES}
+        samples = [record.samples for record in self.records]
+        firsts = np.cumsum([0, *map(len, samples)]).tolist()
+        return made | {
+            "extent": tuple(len(one[name]) for one in marches for name in RingScheme.TABLES),
+            "constant": tuple(float(march.constants[name]) for march in self.marches for name in RingScheme.CONSTANTS),
+            "spacing": tuple(part for record in self.records for part in _parts(record.spacing)),
+            "begin_at": tuple(part for record in self.records for part in _parts(record.begin)),
+            "first_sample": tuple(firsts),
+            "sample": tuple(nearest(value) for of in samples for value in of),
+        }
+
+    @property
+    def constants(self) -> dict[str, float]:
+        """Its single number."""
+        return {"rest": self.rest}
+
+    @cached_property
+    def scheme(self) -> HatScheme:
+        """Its values in NumPy."""
+        return HatScheme(self.tables, self.constants, self.tau_max, np.float64)
+
+    @property
+    def bytes(self) -> int:
+        """The size of the tables that grow."""
+        return sum(march.bytes for march in self.marches) + 8 * sum(len(record.samples) for record in self.records)
+
+    @property
+    def work(self) -> float:
+        """About how many operations a window takes."""
+        return sum(march.work for march in self.marches)
+
+    @property
+    def marched(self) -> float:
+        """The same of all windows."""
+        return sum(march.marched for march in self.marches)
+
+    @property
+    def summary(self) -> str:
+        """What it is, in a few words."""
+        count = max(len(record.samples) for record in self.records)
+        return f"march of one hat, degree {self.degree}, for {count} samples, bound {self.error_bound:g}"
+
+    def shortfall(self, tolerance: fmpq) -> str:
+        """Why it does not meet a tolerance."""
+        worst = max(self.outputs, key=lambda output: output.bound)
+        if not worst.bound < 1:
+            return f"march: its error may be as large as {worst.name} itself"
+        return f"march: hats added up leave a bound of {worst.bound:g} to tau = {self.tau_max:g} for {worst.name}"
+
+    @property
+    def check_points(self) -> list[float]:
+        """For a self-test, of which there is none: there is no program in C."""
+        return [0.0]
+
+
+def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
+    """The march of one hat of each record; None where no load is a record, or the rest fits into no window either.
+
+    SpacingError for a record of too many samples; UnservedError, CostError as of a march.
+    """
+    parts = split(model)
+    if not parts.records:
+        return None
+    moving = [bar.velocity or bar.strain for bar in model.network.bars] + [p.velocity for p in model.network.points]
+    try:
+        rest = [judged_march(replace(model, loads=parts.rest))] if parts.rest or any(moving) else []
+    except SpacingError:
+        return None
+    hats = [judged_march(still(model, record)) for record in parts.records]
+    made = HatMarch(tuple(march for march, _ in (*rest, *hats)), len(rest), parts.records, refusal)
+    parted = [np.array([verdict.errors, verdict.heights]) for _, verdict in rest]
+    parted += [_added(record, *hat) for record, hat in zip(parts.records, hats, strict=True)]
+    errors, heights = sum(parted, np.zeros((2, len(model.probes))))
+    errors = _MARGIN * (errors + len(parted) * _UNIT * heights)
+    spacing = nearest(min(record.spacing for record in parts.records))
+    sizes = np.abs(made.scheme.evaluate(made.scheme.evenly(spacing / _PER_SPACING))).max(axis=1)
+    largest = np.where(errors > 0, np.maximum(sizes - errors, 0.0), 0.0)
+    return replace(
+        made,
+        outputs=tuple(
+            ProgramOutput(probe.name, _relative(error, size), size)
+            for probe, error, size in zip(model.probes, errors.tolist(), largest.tolist(), strict=True)
+        ),
+    )
+
+
+def _added(record: RecordLoad, march: RingMarch, hat: RingVerdict) -> Numbers:
+    """Of what hats add up to the largest error and what values do not exceed: (2, outputs)."""
+    samples = np.abs([nearest(value) for value in record.samples])
+    count, plan = len(samples), march.plan
+    total, spread = float(samples.sum()), float(np.sqrt(count * np.square(samples).sum()))
+    spacing, span = nearest(record.spacing), plan.cycle[1]
+    late = ShiftedHats.NEAR * march.tau_max + 4 * _UNIT * (spacing + span)
+    shortest = min(nearest(panel.length) for panel in plan.panels)
+    # what the error of a hat changes by so much later, in parts of itself
+    bent = 2 * min(2.0, late * 2 * hat.smooth**2 / shortest)
+    errors, heights, slopes = (np.array(each) for each in (hat.errors, hat.heights, hat.slopes))
+    levels = np.log2(4 * count)
+    added = _UNIT * (total * (count + 2) + spread * (24 * levels + 16)) * heights
+    silent = errors == 0
+    lost = 64 * count * np.where(silent, 0.0, 5e-324)
+    return np.array([total * ((1 + bent) * errors + late * slopes) + added + lost, total * heights])
+
+
+def _relative(error: float, size: float) -> float:
+    if error == 0:
+        return 0.0
+    return bound(arb(error) / arb(size)) if size else math.inf
+
+
+def _parts(value: fmpq) -> tuple[float, float]:
+    """An exact number as the sum of two doubles."""
+    high = nearest(value)
+    return high, nearest(value - rational(high))

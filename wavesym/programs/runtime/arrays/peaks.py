@@ -1,0 +1,131 @@
+"""The least and the greatest value of each output, between samples, too: what templates/c/runtime_peaks.c does."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from wavesym.programs.runtime.arrays.march import ArrayMarch
+from wavesym.programs.runtime.arrays.tables import ArrayTables, Ints
+from wavesym.programs.runtime.arrays.values import chebyshev
+from wavesym.programs.runtime.engine import Array
+
+_POINTS = 16
+_DEEPEST = 60
+
+
+class _Part:
+    """An output on a section of all windows: of all sets, one polynomial on each."""
+
+    def __init__(self, tables: ArrayTables, series: Array, section: int, output: int) -> None:
+        self._tables, self._series = tables, series
+        self._strands = [int(strand) for strand in tables.strands(section, output)]
+        begin, end = tables["from"][section : section + 2]
+        ends = np.minimum(end, tables.tau_max - np.arange(len(series)))
+        self.windows = np.flatnonzero(ends >= begin)
+        self.t = begin + (ends[self.windows] - begin)[:, None] * np.linspace(0, 1, _POINTS)
+
+    def survey(self) -> Array:
+        """At `t`: of shape (windows, points, sets)."""
+        found = np.zeros((*self.t.shape, self._series.shape[-1]))
+        for strand in self._strands:
+            found += self._weights(strand, self.t) @ self._series[self.windows, strand]
+        return found
+
+    def at(self, window: Ints, sets: Ints, t: Array) -> Array:
+        """Of each of `sets` at an instant of its own."""
+        found = np.zeros_like(t)
+        for strand in self._strands:
+            found += np.sum(self._weights(strand, t) * self._series[window, strand, :, sets], axis=1)
+        return found
+
+    def bend(self, noise: Array) -> Array:
+        """At most so large is the second derivative, of shape (windows, sets): |T_k''| <= k^2 (k^2 - 1) / 3."""
+        squares = np.arange(self._series.shape[2], dtype=np.float64) ** 2
+        found = np.zeros((len(self.windows), self._series.shape[-1]))
+        for strand in self._strands:
+            sizes = np.abs(self._series[self.windows, strand])
+            sizes = np.where(sizes > noise, sizes, 0.0)
+            scale = self._tables["strand_scale"][strand]
+            found += np.einsum("k,wks->ws", squares * (squares - 1), sizes) * (scale * scale / 3)
+        return found
+
+    def _weights(self, strand: int, t: Array) -> Array:
+        return chebyshev(self._tables.on(strand, t), self._series.shape[2] - 1)
+
+
+class _Summit:
+    """Of each set the greatest value seen, or of the negative where `sign` is -1, and its tau."""
+
+    def __init__(self, sign: int, sets: int) -> None:
+        self.sign = sign
+        self.best, self.tau = np.full(sets, -np.inf), np.full(sets, np.nan)
+
+    def see(self, sets: Ints, values: Array, tau: Array) -> None:
+        """Take what is higher."""
+        heights = self.sign * values
+        order = np.argsort(heights, kind="stable")  # of several of one set the last one stays, and is the highest
+        best, when = np.full_like(self.best, -np.inf), np.full_like(self.tau, np.nan)
+        best[sets[order]], when[sets[order]] = heights[order], tau[order]
+        higher = best > self.best
+        self.best, self.tau = np.where(higher, best, self.best), np.where(higher, when, self.tau)
+
+    def climb(self, part: _Part, survey: Array, bend: Array, slack: Array) -> None:
+        """Between ends no higher than h an output rises to h + bend * width^2 / 8 at most: halve, until that is no more
+        than `slack` above the best.
+        """
+        heights = self.sign * survey
+        steps = np.diff(part.t, axis=1)[:, :, None]
+        limit = np.maximum(heights[:, :-1], heights[:, 1:]) + bend[:, None] * steps * steps / 8
+        row, gap, sets = np.nonzero(limit > self.best + slack)
+        window, bends = part.windows[row], bend[row, sets]
+        left, right = part.t[row, gap], part.t[row, gap + 1]
+        at_left, at_right = heights[row, gap, sets], heights[row, gap + 1, sets]
+        for _ in range(_DEEPEST):
+            middle = left + (right - left) / 2
+            values = part.at(window, sets, middle)
+            self.see(sets, values, window + middle)
+            at_middle = self.sign * values
+            left, right = np.concatenate([left, middle]), np.concatenate([middle, right])
+            at_left, at_right = np.concatenate([at_left, at_middle]), np.concatenate([at_middle, at_right])
+            window, sets, bends = np.tile(window, 2), np.tile(sets, 2), np.tile(bends, 2)
+            limit = np.maximum(at_left, at_right) + bends * (right - left) ** 2 / 8
+            open_ = limit > self.best[sets] + slack[sets]
+            window, sets, bends, left, right, at_left, at_right = (
+                values[open_] for values in (window, sets, bends, left, right, at_left, at_right)
+            )
+            if not len(sets):
+                break
+
+
+def array_peaks(tables: ArrayTables, march: ArrayMarch) -> Array:
+    """Of shape (sets, outputs, 4): the least value, its tau, the greatest value, its tau."""
+    found = np.empty((len(march.status), tables.outputs, 4))
+    longest = max(series.shape[1] for series in march.series)
+    series = np.zeros((len(march.series), tables.sizes["strands"], longest, len(found)))
+    for window, of in enumerate(march.series):
+        series[window, :, : of.shape[1]] = of[:, :, 0]
+    series[..., march.status != 0] = 0
+    for output in range(tables.outputs):
+        parts = [_Part(tables, series, section, output) for section in range(tables.sizes["sections"])]
+        least, greatest = _extremes(parts, len(found), tables.unit)
+        found[:, output] = np.stack([-least.best, least.tau, greatest.best, greatest.tau], axis=1)
+    found[march.status != 0] = np.nan
+    return found
+
+
+def _extremes(parts: list[_Part], sets: int, unit: float) -> tuple[_Summit, _Summit]:
+    """Of one output: first of all instants surveyed, then of all between them that may be higher."""
+    least, greatest = _Summit(-1, sets), _Summit(1, sets)
+    surveys = [part.survey() for part in parts]
+    every = np.arange(sets)
+    for part, survey in zip(parts, surveys, strict=True):
+        flat, tau = survey.reshape(-1, sets), (part.windows[:, None] + part.t).ravel()
+        for summit in (least, greatest):
+            highest = np.argmax(summit.sign * flat, axis=0)
+            summit.see(every, flat[highest, every], tau[highest])
+    slack = 4 * unit * np.maximum(np.abs(least.best), np.abs(greatest.best))
+    for part, survey in zip(parts, surveys, strict=True):
+        bend = part.bend(slack)
+        least.climb(part, survey, bend, slack)
+        greatest.climb(part, survey, bend, slack)
+    return least, greatest

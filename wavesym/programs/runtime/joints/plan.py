@@ -1,0 +1,108 @@
+"""What is marched of a chain when parameters come at run time: the plan of a march with rings, over functions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from flint import fmpq
+
+from wavesym.exact.node_rules import joint_rule
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import rational
+from wavesym.numbers.reals import Real
+from wavesym.programs.march.plan import Stretch
+from wavesym.programs.rings.plan import Heard, RingPlan, ring_plan
+from wavesym.programs.rings.space import joint_rows
+from wavesym.programs.runtime.joints.network import FreeNetwork
+from wavesym.programs.runtime.plan import Push
+
+
+@dataclass(frozen=True)
+class JointTerm:
+    """A wave on one of its stretches. `low` and `high` are where, on [-1, 1], its integral begins and ends."""
+
+    heard: int
+    wave: Heard
+    stretch: Stretch
+    low: fmpq
+    high: fmpq
+
+
+@dataclass(frozen=True)
+class JointStrand:
+    """What of an output is one polynomial in t - start on a part of every window; `half` that panel's length."""
+
+    output: int
+    start: fmpq
+    half: fmpq
+    terms: tuple[JointTerm, ...]
+
+
+@dataclass(frozen=True)
+class JointsPlan:
+    """`plan` has joints that are functions, and no loads that matter; `own` is that of the scene's numbers."""
+
+    model: Model
+    plan: RingPlan
+    own: RingPlan
+    free: FreeNetwork
+    pushes: tuple[Push, ...]
+    heard: tuple[tuple[int, Any], ...]
+    strands: tuple[JointStrand, ...]
+
+    @property
+    def sections(self) -> tuple[fmpq, ...]:
+        """Where they begin in a window, and its end."""
+        return (*sorted({max(strand.start, fmpq(0)) for strand in self.strands} | {fmpq(0)}), self.plan.step)
+
+    def listening(self, section: int, output: int) -> list[int]:
+        """The strands that are an output on a section."""
+        at = self.sections[section]
+        return [n for n, s in enumerate(self.strands) if s.output == output and s.start <= at < s.start + 2 * s.half]
+
+
+def joints_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real: Real) -> JointsPlan:
+    """The plan of a chain; CostError as for a march."""
+    until = rational(model.horizon(real))
+    acting = [(load.time, number) for number, load in enumerate(loads) if load.time <= until]
+    # so that none of them is left out
+    all_loads = tuple(sorted((replace(load, weight=fmpq(1)) for load in loads), key=lambda load: load.time))
+    own = ring_plan(replace(model, loads=all_loads), real)
+    plan = ring_plan(replace(model, network=free.network, loads=all_loads), real, joint_rows)
+    heard = tuple((number, wave) for number, output in enumerate(plan.outputs) for wave in output.heard)
+    pushes = tuple(_pushes(plan, model, loads, [number for _, number in sorted(acting)]))
+    return JointsPlan(model, plan, own, free, pushes, heard, tuple(_strands(plan, heard)))
+
+
+def _pushes(plan: RingPlan, model: Model, loads: Sequence[Applied], acting: Sequence[int]) -> Iterator[Push]:
+    places = {panel.start: number for number, panel in enumerate(plan.panels)}
+    rule = joint_rule()
+    for number in acting:
+        load = loads[number]
+        window = int((load.time / plan.step).floor())
+        panel = places[load.time - window * plan.step]
+        for force, point in enumerate(model.network.points[k] for k in plan.pushed):
+            for unit in point.loads:
+                for power, coefficient in enumerate(unit.coefficients):
+                    if unit.source == load.source and coefficient != 0:
+                        if point.motion == "acceleration":  # a velocity is prescribed
+                            yield Push(window, panel, force, power + 1, coefficient / (power + 1), number)
+                        else:
+                            factor = rule.load if point.motion is None else fmpq(1)
+                            yield Push(window, panel, force, power, factor * coefficient, number)
+
+
+def _strands(plan: RingPlan, heard: Sequence[tuple[int, Heard]]) -> Iterator[JointStrand]:
+    groups: dict[tuple[int, fmpq, fmpq], list[JointTerm]] = {}
+    for number, (output, wave) in enumerate(heard):
+        for stretch in plan.stretches(wave.delay):
+            half = plan.panels[stretch.panel].length / 2
+            low = max(-stretch.start / half - 1, fmpq(-1))
+            high = min((plan.step - stretch.start) / half - 1, fmpq(1))
+            groups.setdefault((output, stretch.start, half), []).append(JointTerm(number, wave, stretch, low, high))
+    # in the order of time, so that integrals go on from stretch to stretch
+    for (output, start, half), terms in sorted(groups.items(), key=lambda group: group[0]):
+        yield JointStrand(output, start, half, tuple(terms))

@@ -1,0 +1,251 @@
+"""The march of a chain under records in NumPy: one hat of each load is marched, and its response added up."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from wavesym.programs.schemes.rings import MarchingRings, RingScheme, WindowBlock
+
+
+class HatScheme:
+    """The march of a chain under loads that are linear between samples, however far these are apart.
+
+        output(tau) = rest(tau) + sum over records j and samples i of sample[j, i] hat_j(tau - begin_j - i spacing_j)
+
+    hat_j is what a load does that is 0 at 0, 1 at spacing_j, 0 from 2 spacing_j on, and linear between; `rest`, where
+    there is one, is all that is no record. Each is a march of its own (RingScheme), and their tables stand one after
+    the other: `extent` has the length of each table of the first march, then those of the next; `constant` the same of
+    single numbers. A spacing is the sum of two numbers, as is the instant at which a record begins.
+    """
+
+    TABLES = (*RingScheme.TABLES, "extent", "constant", "spacing", "begin_at", "first_sample", "sample")
+    CONSTANTS = ("rest",)
+
+    def __init__(
+        self,
+        tables: dict[str, tuple[float, ...]],
+        constants: dict[str, float],
+        tau_max: float,
+        real: type[np.float64],
+    ) -> None:
+        self._tau_max, self._real = tau_max, real
+        extents = np.array(tables["extent"], int).reshape(-1, len(RingScheme.TABLES))
+        ends = np.cumsum(np.vstack([np.zeros_like(extents[:1]), extents]), axis=0)
+        numbers = np.array(tables["constant"], real).reshape(len(extents), -1).tolist()
+        marches = [
+            RingScheme(
+                {
+                    name: tables[name][first:last]
+                    for name, first, last in zip(RingScheme.TABLES, ends[k], ends[k + 1], strict=True)
+                },
+                dict(zip(RingScheme.CONSTANTS, numbers[k], strict=True)),
+                tau_max,
+                real,
+            )
+            for k in range(len(extents))
+        ]
+        rest = int(constants["rest"])
+        spacing, begin = (np.array(tables[name], real).reshape(-1, 2).tolist() for name in ("spacing", "begin_at"))
+        sample, edges = np.array(tables["sample"], real), tables["first_sample"]
+        self._records = [
+            ShiftedHats(march, spacing[j], begin[j], sample[edges[j] : edges[j + 1]])
+            for j, march in enumerate(marches[rest:])
+        ]
+        self._rest = marches[:rest]
+
+    def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
+        """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range."""
+        taus = np.asarray(tau, dtype=self._real)
+        flat = taus.ravel()
+        inside = (flat >= 0) & (flat <= self._tau_max)
+        parts = [part.evaluate(flat[inside]) for part in self._rest]
+        parts += [part.evaluate(flat[inside]) for part in self._records]
+        out = np.full((len(parts[0]), flat.size), np.nan, self._real)
+        out[:, inside] = sum(parts[1:], parts[0])
+        return out.reshape(len(out), *taus.shape)
+
+    def each(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Each output at instants of its own in range: tau and values are (outputs, n)."""
+        flat, back = np.unique(tau, return_inverse=True)
+        own = back.reshape(tau.shape)
+        out = sum((np.take_along_axis(rest.evaluate(flat), own, axis=1) for rest in self._rest), np.zeros(tau.shape))
+        for output, taus in enumerate(tau):
+            out[output] += sum(record.evaluate(taus, range(output, output + 1))[0] for record in self._records)
+        return np.asarray(out)
+
+    def evenly(self, step: float) -> NDArray[np.float64]:
+        """Instants of the horizon, no more than `step` apart, that lie alike between the samples of the first record.
+
+        There is an even number of equal steps from sample to sample, and at both ends. Values there take one march, and
+        a Fourier transform for each place between samples.
+        """
+        return self._records[0].evenly(step)
+
+
+class ShiftedHats:
+    """One record: `sample[i]` times the response to a hat that begins at begin + i spacing.
+
+    Instants are told by their `phase`, how long after the last hat has begun. At one phase hats are asked for at
+    phase, phase + spacing, ..., and what they add up to at all instants of that phase is a convolution.
+    """
+
+    KEPT = 1 << 24
+    """So many numbers of a march are kept; where there are more it goes on block by block, each time."""
+    PAIRS = 1 << 13
+    """So many values are read at once."""
+    VALUES = 1 << 22
+    """So many are held."""
+    NEAR = 2.0**-51
+    """Phases that differ by no more, in parts of the horizon, are one."""
+
+    def __init__(
+        self, march: RingScheme, spacing: list[float], begin: list[float], sample: NDArray[np.float64]
+    ) -> None:
+        self._march, self._begin, self._sample = march, begin, sample
+        # multiples of the first part are exact
+        high = spacing[0]
+        cut = 2.0 ** (np.ceil(np.log2(high)) - 32)
+        self._high = np.floor(high / cut) * cut
+        self._low = (high - self._high) + spacing[1]
+        self._spacing = high
+        self._near = self.NEAR * march.tau_max
+        self._windows = int(march.places(np.array([march.tau_max]))[0][0]) + 1
+        self._whole: list[WindowBlock] = []
+
+    def evenly(self, step: float) -> NDArray[np.float64]:
+        """As HatScheme has it."""
+        parts = 2 * int(np.ceil(self._spacing / (2 * step)))
+        begin, last = self._begin[0], self._march.tau_max
+        k = np.arange(-np.floor(begin / self._spacing), np.floor((last - begin) / self._spacing) + 1)
+        starts = begin + k * self._spacing
+        taus = starts[:-1, None] + np.arange(parts) / parts * self._spacing
+        ends = (np.linspace(low, high, parts + 1) for low, high in ((0.0, starts[0]), (starts[-1], last)))
+        return np.unique(np.clip(np.concatenate([*ends, taus.ravel()]), 0.0, last))
+
+    def evaluate(self, tau: NDArray[np.float64], outputs: range | None = None) -> NDArray[np.float64]:
+        """All outputs, or some, at tau: (outputs, tau.size)."""
+        chosen = range(self._march.outputs) if outputs is None else outputs
+        out = np.zeros((len(chosen), tau.size))
+        latest, phase = self._placed(tau)
+        order = np.argsort(phase, kind="stable")
+        order = order[latest[order] >= 0]
+        if not order.size:
+            return out
+        groups = np.split(order, self._apart(phase[order]))
+        alone = np.array([group[0] for group in groups if len(group) == 1], int)
+        if alone.size:
+            out[:, alone] = self._single(latest[alone], phase[alone], chosen)
+        several = [group for group in groups if len(group) > 1]
+        at_once = max(1, self.VALUES // (len(out) * len(self._sample) + 1))
+        for first in range(0, len(several), at_once):
+            some = several[first : first + at_once]
+            last = np.array([latest[group].max() for group in some])
+            responses = self._responses(last, phase[[group[0] for group in some]], chosen)
+            for group, response in zip(some, responses, strict=True):
+                out[:, group] = self._convolved(response)[:, latest[group]]
+        return out
+
+    def _placed(self, tau: NDArray[np.float64]) -> tuple[NDArray[np.int_], NDArray[np.float64]]:
+        """Of each tau the number of the hat that began last, and how long ago."""
+        since, lost = _difference(tau, self._begin[0])
+        lost = lost - self._begin[1]
+        number = np.floor(since / self._spacing)
+        number += np.floor(self._phase(since, lost, number) / self._spacing)
+        phase = self._phase(since, lost, number)
+        # rounding may leave an instant of a sample just before it
+        after = phase > self._spacing - self._near
+        return (number + after).astype(int), np.where(after, 0.0, np.maximum(phase, 0.0))
+
+    def _phase(
+        self, since: NDArray[np.float64], lost: NDArray[np.float64], number: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """since + lost - number spacing, rounded once."""
+        phase, more = _difference(since, number * self._high)
+        return np.asarray(phase + ((lost + more) - number * self._low))
+
+    def _apart(self, phase: NDArray[np.float64]) -> list[int]:
+        """Where, in order, a phase begins that differs from the one before by more than rounding makes of one."""
+        found = []
+        first = 0
+        while (first := int(np.searchsorted(phase, phase[first] + self._near, side="right"))) < phase.size:
+            found.append(first)
+        return found
+
+    def _blocks(self) -> "Iterator[WindowBlock]":
+        """The march, block by block; all of it at once where it is not too large, and then only once."""
+        if self._whole:
+            yield from self._whole
+            return
+        each = len(self._march.held) * self._march.panels * (self._march.degree + 1)
+        marching = MarchingRings(self._march, self._windows if each * self._windows <= self.KEPT else None)
+        for first in range(0, self._windows, marching.most):
+            block = marching.block(first, min(marching.most, self._windows - first))
+            if marching.most == self._windows:
+                self._whole.append(block)
+            yield block
+
+    def _read(
+        self, latest: NDArray[np.int_], phase: NDArray[np.float64], outputs: range
+    ) -> "Iterator[tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]]":
+        """The response to one hat at phase[q] + m spacing, m = 0 ... latest[q]: q, m and outputs, some at a time."""
+        step = float(self._march.step)
+        for block in self._blocks():
+            until = block.first + block.count
+            low = np.floor((block.first * step - phase) / self._spacing).astype(int) - 1
+            high = np.ceil((until * step - phase) / self._spacing).astype(int) + 1
+            low, high = np.maximum(low, 0), np.minimum(high, latest)
+            counts = np.maximum(high - low + 1, 0)
+            ends = np.cumsum(counts)
+            for first in range(0, int(ends[-1]), self.PAIRS):
+                pair = np.arange(first, min(first + self.PAIRS, int(ends[-1])))
+                q = np.searchsorted(ends, pair, side="right")
+                m = low[q] + (pair - (ends - counts)[q])
+                window, place, t = self._places(m, phase[q])
+                here = (window >= block.first) & (window < until)
+                yield q[here], m[here], block.at(window[here], place[here], t[here], outputs)
+
+    def _places(
+        self, m: NDArray[np.int_], phase: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]:
+        """Of phase + m spacing what RingScheme.places says, without the rounding of a large number."""
+        march = self._march
+        far = m * self._high
+        cycle = np.floor(far / march.span)
+        t = (far - cycle * march.span) + (phase + m * self._low)
+        more = np.floor(t / march.span)
+        t, cycle = np.maximum(t - more * march.span, 0.0), cycle + more
+        place = np.searchsorted(march.begin, t, side="right") - 1
+        return cycle.astype(int) * len(march.begin) + place, place, t
+
+    def _single(self, latest: NDArray[np.int_], phase: NDArray[np.float64], outputs: range) -> NDArray[np.float64]:
+        """Outputs at instants of different phases, added up hat by hat."""
+        out = np.zeros((len(outputs), latest.size))
+        for q, m, values in self._read(latest, phase, outputs):
+            weights = self._sample[latest[q] - m]
+            for total, row in zip(out, values, strict=True):
+                total += np.bincount(q, row * weights, minlength=latest.size)
+        return out
+
+    def _responses(self, latest: NDArray[np.int_], phase: NDArray[np.float64], outputs: range) -> NDArray[np.float64]:
+        """Those to one hat at all m, for some phases: (phases, outputs, m)."""
+        made = np.zeros((latest.size, len(outputs), int(latest.max()) + 1))
+        for q, m, values in self._read(latest, phase, outputs):
+            made[q, :, m] = values.T
+        return made
+
+    def _convolved(self, response: NDArray[np.float64]) -> NDArray[np.float64]:
+        """sum over i of sample[i] response[:, n - i]: (outputs, n)."""
+        count = response.shape[1]
+        size = 1 << (2 * count - 1).bit_length()
+        spectrum = np.fft.rfft(response, size) * np.fft.rfft(self._sample[:count], size)
+        return np.asarray(np.fft.irfft(spectrum, size)[:, :count])
+
+
+def _difference(
+    one: NDArray[np.float64], other: NDArray[np.float64] | float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """one - other, rounded, and what rounding has lost of it."""
+    rounded = np.asarray(one - other)
+    back = rounded - one
+    return rounded, (one - (rounded - back)) - (other + back)

@@ -1,0 +1,142 @@
+"""What a careful engineer writes by hand for one scene whose parameters change: characteristics of order 4, in C and,
+for all sets at once, in NumPy. From new parameters to equally spaced samples.
+
+Only what such a program needs: equal rods, loads that begin at whole tau, strains and velocities, and samples and
+outputs on the grid. It keeps no estimate of its error.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from wavesym.errors import UnservedError
+from wavesym.rivals.characteristics import lagrange
+from wavesym.rivals.problem import Array, Problem
+from wavesym.running.native import FAST, address, library
+
+_SOURCE = Path(__file__).with_suffix(".c")
+_GAUSS = np.polynomial.legendre.leggauss(24)
+_FIRSTS = (0, -1, -2)
+
+
+class SampleGrid:
+    """`stride` steps from each of `count` samples to the next, the last at the horizon or before; for one scene."""
+
+    def __init__(self, problem: Problem, count: int, stride: int) -> None:
+        steps = stride * (count - 1) / problem.until
+        if steps != round(steps) or steps < 4:
+            raise UnservedError(f"samples: {steps:g} steps in a unit of tau given, a whole number from 4 on expected")
+        self.steps, self.count, self.stride = round(steps), count, stride
+        self.windows = int(problem.until) + 1
+        self.outputs = len(problem.watches)
+        self.terms = [
+            (output, watch.rod - (way == 1), way, sign, round(lag * self.steps))
+            for output, watch in enumerate(problem.watches)
+            for way, sign, lag in (
+                (1, -1.0 if watch.quantity == "strain" else 1.0, watch.offset),
+                (0, 1.0, 1 - watch.offset),
+            )
+        ]
+        self.events = sorted((int(event.time), event.node) for event in problem.events)
+        for watch in problem.watches:
+            if watch.quantity == "displacement" or watch.offset * self.steps % 1:
+                raise UnservedError(f"{watch.quantity} given, a strain or velocity on the grid expected")
+        if any(event.time % 1 for event in problem.events):
+            raise UnservedError("load: an instant between whole tau given, none expected")
+
+    def arguments(self, problem: Problem) -> list[Array]:
+        """What changes with parameters."""
+        loads = [event.coefficients for event in sorted(problem.events, key=lambda event: (event.time, event.node))]
+        before = np.stack(problem.beside(problem.rods)) / 2
+        of = problem.inertia, problem.alpha, problem.beta, problem.gamma, problem.velocity, before, np.array(loads)
+        return [np.ascontiguousarray(each, np.float64) for each in of]
+
+
+def in_c(grid: SampleGrid, problem: Problem) -> Callable[[Problem], Callable[[], Array]]:
+    """A call that makes samples of a set of parameters, (outputs, count); compiled for the sizes of this scene."""
+    output, node, way, sign, lag = zip(*grid.terms, strict=True)
+    windows, nodes = zip(*grid.events, strict=True) if grid.events else ((), ())
+    integers = {"of_output": output, "of_node": node, "of_way": way, "of_lag": lag}
+    integers |= {"event_window": windows, "event_node": nodes}
+    tables = "".join(f"const int {name}[] = {{{_listed(values)}}};\n" for name, values in integers.items())
+    sizes = {
+        "NODES": problem.nodes,
+        "STEPS": grid.steps,
+        "WINDOWS": grid.windows,
+        "TERMS": len(grid.terms),
+        "OUTPUTS": grid.outputs,
+        "EVENTS": len(grid.events),
+        "STRIDE": grid.stride,
+    }
+    source = _SOURCE.read_text(encoding="utf-8") + tables + f"const double of_sign[] = {{{_listed(sign)}}};\n"
+    compiled = library(source, (*FAST, *(f"-D{name}={value}" for name, value in sizes.items())))
+    out = np.empty((grid.outputs, grid.count))
+    function = compiled.parameters_to_samples
+
+    def of(chosen: Problem) -> Callable[[], Array]:
+        arguments = grid.arguments(chosen)
+        where = [address(argument) for argument in arguments]
+        call = [*map(ctypes.c_void_p, where), ctypes.c_size_t(grid.count), ctypes.c_void_p(address(out))]
+
+        def samples() -> Array:
+            _ = arguments  # C reads them, so that they must live as long as this
+            function(*call)
+            return out
+
+        return samples
+
+    return of
+
+
+def _listed(values: Sequence[float]) -> str:
+    return ", ".join(map(str, values)) or "0"
+
+
+def in_numpy(grid: SampleGrid, problems: Sequence[Problem]) -> Array:
+    """Samples of all sets at once: (sets, outputs, count)."""
+    one, steps = problems[0], grid.steps
+    h, sets = 1 / steps, len(problems)
+    stacked = [np.stack(values) for values in zip(*(grid.arguments(each) for each in problems), strict=True)]
+    inertia, alpha, beta, gamma, velocity, before, loads = stacked
+    bodies = np.where(inertia > 0, inertia, 1.0)
+    z = (gamma / bodies * h)[..., np.newaxis]
+    s, weights = (_GAUSS[0] + 1) / 2, _GAUSS[1] / 2
+    kernel = np.exp(-z * (1 - s)) * weights * h / bodies[..., np.newaxis]
+    first, inner, last = (kernel @ lagrange(s, begin, 4) for begin in _FIRSTS)
+    decay = np.exp(-z[..., 0])
+    wave = np.zeros((grid.windows + 1, 2, one.nodes + 2, steps + 1, sets))
+    wave[0, :, 1:-1] = np.moveaxis(before, 0, -1)[:, :, np.newaxis]
+    load, at, q = np.zeros((sets, one.nodes, 3)), h * np.arange(steps + 1), velocity.copy()
+    event = 0
+    for window in range(grid.windows):
+        load[..., 0] += load[..., 1] + load[..., 2]
+        load[..., 1] += 2 * load[..., 2]
+        while event < len(grid.events) and grid.events[event][0] == window:
+            load[:, grid.events[event][1]] += loads[:, event]
+            event += 1
+        a, b = wave[window, 1, :-2], wave[window, 0, 2:]  # (nodes, steps + 1, sets)
+        c = np.moveaxis(load, 0, -1)[:, :, np.newaxis]  # (nodes, 3, 1, sets)
+        t = at[:, np.newaxis]
+        r = alpha.T[:, np.newaxis] * a + beta.T[:, np.newaxis] * b + (c[:, 0] + t * (c[:, 1] + t * c[:, 2]))
+        v = np.empty_like(r)
+        for n in range(one.nodes):
+            if one.inertia[n] == 0:
+                v[n] = r[n] / gamma[:, n]
+                continue
+            v[n, 0] = q[:, n]
+            v[n, 2:-1] = sum(inner[:, n, j] * r[n, j : j + steps - 2] for j in range(4))
+            v[n, 1] = sum(first[:, n, j] * r[n, j] for j in range(4))
+            v[n, -1] = sum(last[:, n, j] * r[n, steps - 3 + j] for j in range(4))
+            for k in range(1, steps + 1):
+                v[n, k] += decay[:, n] * v[n, k - 1]
+            q[:, n] = v[n, -1]
+        wave[window + 1, 0, 1:-1], wave[window + 1, 1, 1:-1] = v - a, v - b
+    out = np.zeros((sets, grid.outputs, grid.count))
+    for output, node, way, sign, lag in grid.terms:
+        at, place = np.divmod(np.arange(grid.count) * grid.stride - lag + steps, steps)
+        out[:, output] += sign * wave[at, way, node + 1, place].T
+    return out

@@ -1,0 +1,162 @@
+"""Parameters at run time, from Python: what `wavesym.model` gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from wavesym.errors import WavesymError
+from wavesym.programs.program import Program
+from wavesym.programs.runtime.engine import Array
+from wavesym.running.sets import sets_engine
+
+_WHY = ("", "a number that is not finite, or not positive where it has to be, or too large", "bodies too light")
+
+
+@dataclass(frozen=True)
+class SetChecks:
+    """Of each set its `status`, 0, or 1 for a bad number, or 2 for rates beyond what the degree of the program can
+    follow; and its `estimate`, about the largest error of any output relative to its largest value, with a margin (not
+    proved; NaN where the status is not 0).
+    """
+
+    status: NDArray[np.int32]
+    estimate: Array
+
+    @property
+    def why(self) -> list[str]:
+        """In words, empty for a set that is fine."""
+        return [_WHY[status] for status in self.status]
+
+
+@dataclass(frozen=True)
+class SetPeaks:
+    """The least and the greatest value of each output, and a tau of it, of shape (sets, outputs), NaN where `checks`
+    has a status that is not 0. Where an output jumps, what it comes from counts, too.
+    """
+
+    min: Array
+    tau_min: Array
+    max: Array
+    tau_max: Array
+    checks: SetChecks
+
+
+@dataclass(frozen=True)
+class SetGradients:
+    """`values` of shape (sets, outputs, *tau.shape), and `by[field]`, their derivatives by each number of a field, of
+    shape (sets, numbers, outputs, *tau.shape). The estimate of `checks` is that of the values.
+    """
+
+    values: Array
+    by: Mapping[str, Array]
+    checks: SetChecks
+
+
+class RuntimeModel:
+    """A scene whose parameters are given when it runs.
+
+    `outputs` are the names of its outputs, `tau_max` its horizon, `parameters` the scene's own numbers of each field,
+    by name. They are given by these names, as arrays of shape (sets, numbers), or (numbers,) for all sets; those that
+    are not given are the scene's. A set that is refused is NaN throughout, and `check` says why; so is tau out of
+    range. WavesymError for a field that there is not, and for arrays of other shapes.
+    """
+
+    def __init__(self, program: Program) -> None:
+        laws = program.laws
+        assert laws is not None
+        self._engine = sets_engine(program)
+        self.parameters: Mapping[str, Array] = {
+            field.name: np.array([float(value) for value in field.values]) for field in laws.fields
+        }
+        self.labels: Mapping[str, tuple[str, ...]] = {field.name: field.told for field in laws.fields}
+        """What the numbers of each field are called."""
+        self.units: Mapping[str, tuple[str, ...]] = {
+            field.name: tuple(unit.text for unit in field.units) for field in laws.fields
+        }
+        """Their units; empty where they have none."""
+        self.outputs = tuple(output.name for output in program.outputs)
+        self.tau_max = program.tau_max
+
+    def run(self, tau: ArrayLike, **parameters: ArrayLike) -> Array:
+        """Values of shape (sets, outputs, *tau.shape)."""
+        instants = _numbers("tau", tau)
+        found = self._engine.values(self._given(parameters), instants.ravel())
+        return found.values.reshape(len(found.values), len(self.outputs), *instants.shape)
+
+    def gradients(self, tau: ArrayLike, **parameters: ArrayLike) -> SetGradients:
+        """Values, and their derivatives by all parameters, given or not."""
+        instants = _numbers("tau", tau)
+        found = self._engine.tangents(self._given(parameters), instants.ravel())
+        shape = (len(self.outputs), *instants.shape)
+        lanes = found.values.reshape(len(found.values), -1, *shape)
+        ends = np.cumsum([1, *map(len, self.parameters.values())])
+        by = {name: lanes[:, begin:end] for name, begin, end in zip(self.parameters, ends[:-1], ends[1:], strict=True)}
+        return SetGradients(lanes[:, 0], by, SetChecks(found.status, found.estimate))
+
+    def peaks(self, **parameters: ArrayLike) -> SetPeaks:
+        """Extremes on the whole horizon, between samples, too."""
+        found = self._engine.peaks(self._given(parameters))
+        least, tau_least, greatest, tau_greatest = np.moveaxis(found.values, 2, 0)
+        return SetPeaks(least, tau_least, greatest, tau_greatest, SetChecks(found.status, found.estimate))
+
+    def misfit(self, tau: ArrayLike, data: ArrayLike) -> Callable[..., Array]:
+        """What makes of parameters, as `run` takes them, the sum of the squares of (output - data), of shape (sets,).
+
+        `data` of shape (outputs, *tau.shape) is NaN where there is none. Where C runs, the work that the number of tau
+        sets is done here, once.
+        """
+        instants, values = _numbers("tau", tau), _numbers("data", data)
+        wanted = (len(self.outputs), *instants.shape)
+        if values.shape != wanted:
+            raise WavesymError(f"data: an array of shape {values.shape} given, {wanted} expected")
+        if not np.all((instants >= 0) & (instants <= self.tau_max)):
+            raise WavesymError(f"tau: 0 to {self.tau_max:g} expected where there are data")
+        misfits = self._engine.misfit(instants.ravel(), values.reshape(len(self.outputs), -1))
+
+        def of(**parameters: ArrayLike) -> Array:
+            return misfits(self._given(parameters)).values
+
+        return of
+
+    def bounds(self, **parameters: ArrayLike) -> Array:
+        """Of each set and output the largest error relative to its largest value on the horizon, at most: proved.
+
+        It is pessimistic by a few digits, infinite where it leaves nothing. Of shape (sets, outputs); UnservedError
+        where there is no C compiler.
+        """
+        return self._engine.bounds(self._given(parameters)).values
+
+    def check(self, **parameters: ArrayLike) -> SetChecks:
+        """Which sets are refused, and what errors the others have."""
+        found = self._engine.values(self._given(parameters), np.empty(0))
+        return SetChecks(found.status, found.estimate)
+
+    def _given(self, parameters: Mapping[str, ArrayLike]) -> Array:
+        """All fields side by side, a row for each set."""
+        columns = dict(self.parameters)
+        for name, values in parameters.items():
+            if name not in columns:
+                raise WavesymError(f"{name} given, {' or '.join(columns)} expected")
+            wanted = columns[name].shape
+            columns[name] = _numbers(name, values)
+            if columns[name].ndim not in (1, 2) or columns[name].shape[-1:] != wanted:
+                raise WavesymError(
+                    f"{name}: an array of shape {columns[name].shape} given, (sets, {wanted[0]}) expected"
+                )
+        counts = {len(values) for values in columns.values() if values.ndim == 2}
+        if len(counts) > 1:
+            raise WavesymError(f"{' and '.join(map(str, sorted(counts)))} sets given, as many of each expected")
+        sets = counts.pop() if counts else 1
+        rows = [np.broadcast_to(values, (sets, values.shape[-1])) for values in columns.values()]
+        return np.ascontiguousarray(np.concatenate(rows, axis=1))
+
+
+def _numbers(name: str, values: ArrayLike) -> Array:
+    try:
+        return np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        raise WavesymError(f"{name}: an array of numbers expected") from None

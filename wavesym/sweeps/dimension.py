@@ -1,0 +1,129 @@
+"""The dimensions of a sweep: fields that are varied, each with its exact values and a coordinate for people."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from flint import arb, ctx
+from pydantic_core import PydanticCustomError
+
+from wavesym.errors import SceneError
+from wavesym.fields.numbers import exact, written
+from wavesym.fields.quantity import parted
+from wavesym.fields.table import shown, wrong
+from wavesym.numbers.doubles import midpoint, rational
+from wavesym.scene.physical.measured import plain
+from wavesym.sweeps.request import Span
+
+_BITS = 128  # of values in equal ratios, each of which is rounded once to a double
+
+
+@dataclass(frozen=True)
+class Column:
+    """A field that is varied: its `path`, the `values` that it takes, and how each of them is `told`.
+
+    `coordinate` is numbers where all values are numbers, in `unit` where they are quantities of one unit; else text.
+    """
+
+    path: str
+    values: tuple[Any, ...]
+    told: tuple[str, ...]
+    coordinate: tuple[float, ...] | tuple[str, ...]
+    unit: str = ""
+
+    @classmethod
+    def of(cls, path: str, given: Iterable[object]) -> Column:
+        """The column of values as a user gives them."""
+        values = tuple(plain(value) for value in given)
+        found = [number_of(value) for value in values]
+        units = {each[1] for each in found if each is not None}
+        told = tuple(value if isinstance(value, str) else json.dumps(value) for value in values)
+        if None in found or len(units) != 1:
+            return cls(path, values, told, told)
+        numbers = tuple(float(each[0]) for each in found if each is not None)
+        return cls(path, values, told, numbers, units.pop())
+
+    @cached_property
+    def keys(self) -> tuple[object, ...]:
+        """What tells two values apart: 0.5 and "1/2" are the same."""
+        return tuple(number or told for number, told in zip(map(number_of, self.values), self.told, strict=True))
+
+
+@dataclass(frozen=True)
+class SweepAxis:
+    """Columns that are run through side by side: one, but where a sweep zips them."""
+
+    name: str
+    columns: tuple[Column, ...]
+
+    def __len__(self) -> int:
+        return len(self.columns[0].values)
+
+    def refuse_duplicates(self, path: str) -> None:
+        """SceneError where two of its values are the same."""
+        seen: dict[object, int] = {}
+        for k, key in enumerate(zip(*(column.keys for column in self.columns), strict=True)):
+            if key in seen:
+                told = ", ".join(column.told[k] for column in self.columns)
+                raise SceneError(f"{shown(told)} given as [{seen[key]}] and again as [{k}], once expected", path)
+            seen[key] = k
+
+
+def count_of(values: Span | tuple[object, ...]) -> int:
+    """How many there are, known before they are made."""
+    return values.count if isinstance(values, Span) else len(values)
+
+
+def spread(values: Span | tuple[object, ...]) -> Sequence[object]:
+    """The values, one by one. Raises the error of `table.wrong`."""
+    if not isinstance(values, Span):
+        return values
+    (first, unit), (last, other) = _end(values.first, "from"), _end(values.last, "to")
+    if unit != other:
+        raise wrong(f"{shown(values.last)} given, a number in {unit or 'no unit'} expected, as `from` has it", "to")
+    steps = values.count - 1
+    if not steps and first != last:
+        raise wrong("1 given, at least 2 expected (`from` and `to` differ)", "count")
+    if values.log:
+        if first * last <= 0:
+            raise wrong(f"{shown(values.last)} given, two numbers of one sign expected for equal ratios", "to")
+        inner = [_between(first, last, Fraction(k, steps)) for k in range(1, steps)]
+    else:
+        inner = [first + (last - first) * Fraction(k, steps) for k in range(1, steps)]
+    numbers = [first, *inner, *([last] if steps else [])]
+    return [_written(number, unit) for number in numbers]
+
+
+def _between(first: Fraction, last: Fraction, part: Fraction) -> Fraction:
+    """first (last/first)^part, rounded to the shortest decimal of a double."""
+    with ctx.workprec(_BITS):
+        ratio = arb(rational(last / first)) ** arb(rational(part))
+        return exact(midpoint(ratio * arb(rational(first))))
+
+
+def _written(number: Fraction, unit: str) -> object:
+    if unit:
+        return f"{number} {unit}"
+    return int(number) if number.denominator == 1 else str(number)
+
+
+def _end(value: object, key: str) -> tuple[Fraction, str]:
+    found = number_of(plain(value))
+    if found is None:
+        raise wrong(f"{shown(value)} given, a number expected, with a unit or without", key)
+    return found
+
+
+def number_of(value: object) -> tuple[Fraction, str] | None:
+    """A number and its unit, "" without; None of anything else."""
+    if isinstance(value, bool) or (written(value) is None and not isinstance(value, int)):
+        return None
+    try:
+        return exact(value), ""
+    except PydanticCustomError:
+        return parted(value)

@@ -1,0 +1,15 @@
+"""How the cases of a sweep are computed: which of them share work."""
+
+from __future__ import annotations
+
+from wavesym.sweeps import parameters, recorded
+from wavesym.sweeps.plan import SweepPlan
+
+
+def kind(plan: SweepPlan) -> tuple[str, tuple[bool, ...]]:
+    """The kind of its batches, and in which dimensions cases can be parts of one batch."""
+    if recorded.serves(plan):
+        return "recorded", ()
+    if joined := parameters.together(plan):
+        return "parameters", joined
+    return "single", (True,) * len(plan.dimensions)

@@ -1,0 +1,116 @@
+"""One structure with all its records: its modes are found once, and the records go through it together."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+from wavesym.errors import WavesymError
+from wavesym.fields.numbers import exact
+from wavesym.numbers.doubles import nearest, rational
+from wavesym.programs.modes.roughness import Roughness, of_samples
+from wavesym.records.load import RecordedLoad
+from wavesym.results.recorded import ManyRecords, recorded_extremes
+from wavesym.scene import Scene, lower
+from wavesym.scene.paths import changed
+from wavesym.sweeps.measured import Unreadable
+from wavesym.sweeps.plan import SweepPlan
+from wavesym.sweeps.single import of_model, output_rows, spread_out
+from wavesym.sweeps.values import CaseValues, Numbers
+
+_PROBE = ["0", "1"]
+"""Samples of a record that tells what a scene makes of all records with the same spacing and units."""
+
+Place = tuple[int, ...]
+
+
+def serves(plan: SweepPlan) -> bool:
+    """Whether records that share a structure can be computed together: nothing but true extremes of one record."""
+    loads = plan.fields.get("load", ())
+    return (
+        plan.records is not None
+        and len(plan.records.values) > 1
+        and not plan.histories
+        and "arrival" not in plan.summary
+        and len(loads) == 1
+    )
+
+
+def recorded(plan: SweepPlan, places: Sequence[Place]) -> Iterator[tuple[Place, CaseValues]]:
+    """The cases of one structure, as far as modes serve them to the scene's tolerance; the others are left out."""
+    values, path = plan.records.values, plan.records.path  # type: ignore[union-attr]
+    alike: dict[str, list[Place]] = {}
+    for place in places:
+        record = values[place[-1]]
+        if not isinstance(record, Unreadable):
+            head = json.dumps({key: each for key, each in record.items() if key != "samples"}, sort_keys=True)
+            alike.setdefault(head, []).append(place)
+    for head, some in alike.items():
+        try:
+            scene = Scene(**changed(plan.fields_at(some[0]), path, {**json.loads(head), "samples": _PROBE}))
+            yield from _together(plan, scene, [(place, _read(_key(values[place[-1]]))) for place in some])
+        except WavesymError:
+            continue
+
+
+def _together(
+    plan: SweepPlan, scene: Scene, records: Sequence[tuple[Place, _Samples]]
+) -> Iterator[tuple[Place, CaseValues]]:
+    """Those of records that a scene takes alike."""
+    model, (load,) = lower(scene), scene.load
+    if not isinstance(load, RecordedLoad):
+        return
+    # a record begins with a jump, where its first sample is at tau = 0 and is not 0: nothing for modes
+    late = load.begin > 0
+    fit = [(place, each) for place, each in records if late or each.first == 0]
+    if not fit:
+        return
+    h, begin = rational(load.step), rational(load.begin - load.step if late else load.begin)
+    if begin >= model.until:
+        return
+    steps = ceil(Fraction(int((span := (model.until - begin) / h).p), int(span.q)))
+    samples = np.zeros((len(fit), steps + 2))
+    for row, (_, each) in zip(samples, fit, strict=True):
+        given = each.values if late else each.values[1:]
+        count = min(len(given), steps + 1)
+        row[1 : count + 1] = given[:count]
+    factor = nearest(rational(load.record.samples[1] * load.scale))
+    rough = [each.late if late else each.early for _, each in fit]
+    many = ManyRecords(factor * samples, nearest(begin), nearest(h), rough, factor)
+    found = recorded_extremes(model, many)
+    rows, of_all = output_rows(plan, model), of_model(plan, model)
+    for k, (place, _) in enumerate(fit):
+        if found.bounds[k] <= nearest(model.tolerance):
+            made: dict[str, Numbers | float] = {**of_all, "bound": float(found.bounds[k])}
+            for side, name in enumerate(("min", "max")):
+                made[name] = spread_out(plan, rows, found.values[k, :, side])
+                made[f"tau_{name}"] = spread_out(plan, rows, found.taus[k, :, side])
+            yield place, CaseValues(made, f"{found.modes} modes, all records of a structure together")
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """A record in doubles, and its roughness where it begins at tau = 0 and where it rises to its first sample."""
+
+    first: Fraction
+    values: Numbers
+    early: Roughness
+    late: Roughness
+
+
+def _key(record: dict[str, Any]) -> tuple[str, ...]:
+    return tuple(record["samples"])
+
+
+@lru_cache(2048)
+def _read(written: tuple[str, ...]) -> _Samples:
+    exactly = [exact(each) for each in written]
+    values = np.array([float(each) for each in exactly])
+    return _Samples(exactly[0], values, of_samples(values), of_samples(np.concatenate([[0.0], values])))

@@ -1,0 +1,172 @@
+"""What a user asks of a sweep: a scene, its fields that are varied, records, and what to keep of each case."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from os import PathLike
+from typing import Annotated, Any, Self
+
+from pydantic import Field, PlainValidator, PrivateAttr, ValidationError, field_validator, model_validator
+
+from wavesym.errors import SceneError
+from wavesym.fields.numbers import Integer
+from wavesym.fields.table import SceneTable, first_error, key_path, listed, shown, wrong
+from wavesym.reading import read_text
+from wavesym.scene.scene import Scene
+from wavesym.scene.scene_file import builtin_names, parsed
+
+STATISTICS = ("min", "max", "tau_min", "tau_max", "arrival")
+_USUAL = STATISTICS[:4]
+_MOST_SAMPLES = 1_000_000
+_EXPECTED = "a file of TOML that describes a sweep"
+
+
+class Span(SceneTable):
+    """`count` values from one number to another, evenly or, where it is `log`, in equal ratios; with a unit or not."""
+
+    first: Any = Field(alias="from", description="a number")
+    last: Any = Field(alias="to", description="a number")
+    count: Integer = Field(description="how many values")
+    log: bool = False
+
+    @field_validator("count")
+    @classmethod
+    def _some(cls, count: int) -> int:
+        if count < 1:
+            raise wrong(f"{count} given, at least 1 expected")
+        return count
+
+
+def _values(value: object) -> Span | tuple[object, ...]:
+    """A list, or a table of a span."""
+    if isinstance(value, Span):
+        return value
+    if isinstance(value, Mapping):
+        try:
+            return Span.model_validate(value)
+        except ValidationError as error:
+            what, path = first_error(error)
+            raise wrong(what, *path) from None
+    if isinstance(value, str) or not hasattr(value, "__len__"):
+        raise wrong(f"{shown(value)} given, a list of values expected, or a table with from, to and count")
+    values = listed(value if isinstance(value, list | tuple) else list(value))  # type: ignore[call-overload]
+    if not values:
+        raise wrong("no values given, at least 1 expected")
+    return values
+
+
+Values = Annotated[Span | tuple[object, ...], PlainValidator(_values)]
+
+
+class Kept(SceneTable):
+    """What is kept of each case: extremes of its outputs, and their values at so many equally spaced times."""
+
+    summary: tuple[str, ...] = _USUAL
+    histories: Integer | None = None
+
+    @field_validator("summary", mode="before")
+    @classmethod
+    def _known(cls, value: object) -> tuple[object, ...]:
+        names = listed(value)
+        for k, name in enumerate(names):
+            if name not in STATISTICS:
+                raise wrong(f"{shown(name)} given, {', '.join(STATISTICS[:-1])} or {STATISTICS[-1]} expected", k)
+            if name in names[:k]:
+                raise wrong(f"{shown(name)} given twice, once expected", k)
+        return names
+
+    @field_validator("histories")
+    @classmethod
+    def _samples(cls, count: int | None) -> int | None:
+        if count is not None and not 2 <= count <= _MOST_SAMPLES:
+            raise wrong(f"{count} samples given, 2 to {_MOST_SAMPLES} expected")
+        return count
+
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if not self.summary and self.histories is None:
+            raise wrong("nothing given, a summary or histories expected")
+        return self
+
+
+def _texts(value: object) -> tuple[str, ...]:
+    """A text, or a list of texts."""
+    texts = []
+    for k, each in enumerate((value,) if isinstance(value, str | PathLike) else listed(value)):
+        if not isinstance(each, str | PathLike):
+            raise wrong(f"{shown(each)} given, the path of a file expected (* stands for any characters)", k)
+        texts.append(str(os.fspath(each)))
+    if not texts:
+        raise wrong("no path given, at least 1 expected")
+    return tuple(texts)
+
+
+class SweepRequest(SceneTable):
+    """A sweep as a user writes it.
+
+    `vary` has the paths of fields in the order of their dimensions: all values with all others, or, where they are
+    to `zip`, the k-th value of each in case k.
+    """
+
+    scene: Any = Field(description="the path of a scene")
+    records: Annotated[tuple[str, ...], PlainValidator(_texts)] = ()
+    zip: bool = False
+    vary: dict[str, Values] = Field(default_factory=dict)
+    keep: Kept = Kept()
+
+    _folder: str = PrivateAttr(default="")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _zipped_beside(cls, value: object) -> object:
+        """`zip` may stand among the fields that it is about: no field of a scene is called so."""
+        if isinstance(value, Mapping) and isinstance(vary := value.get("vary"), Mapping) and "zip" in vary:
+            rest = {path: values for path, values in vary.items() if path != "zip"}
+            return {**value, "vary": rest, "zip": vary["zip"]}
+        return value
+
+    @field_validator("zip", mode="before")
+    @classmethod
+    def _true_or_false(cls, value: object) -> object:
+        if not isinstance(value, bool):
+            raise wrong(f"{shown(value)} given, true or false expected")
+        return value
+
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if not self.vary and not self.records:
+            raise wrong("nothing that is varied given, a table [vary] or records expected")
+        return self
+
+    @property
+    def folder(self) -> str:
+        """Where its paths count from."""
+        return self._folder
+
+    @classmethod
+    def read(cls, source: str | PathLike[str] | Mapping[str, Any]) -> tuple[str, Self]:
+        """What messages call it, and the request: from a file, or from the same fields. Raises SceneError."""
+        if isinstance(source, Mapping):
+            file, folder, fields = "sweep", "", dict(source)
+        else:
+            file, text = read_text(source, _EXPECTED)
+            folder, fields = os.path.dirname(os.fspath(source)), parsed(file, text)
+        try:
+            request = cls.model_validate(fields)
+        except ValidationError as error:
+            what, path = first_error(error)
+            raise SceneError(what, key_path(path), file) from None
+        request._folder = folder
+        return file, request
+
+    def base(self) -> Scene:
+        """The scene that cases are made of. SceneError names its file."""
+        if isinstance(self.scene, Scene):
+            return self.scene
+        if isinstance(self.scene, Mapping):
+            return Scene(**self.scene)
+        if not isinstance(self.scene, str | PathLike):
+            raise wrong(f"{shown(self.scene)} given, the path of a scene or the name of a built-in one expected")
+        path = os.fspath(self.scene)
+        return Scene.from_toml(path if path in builtin_names() else os.path.join(self.folder, path))

@@ -1,0 +1,73 @@
+"""A case by itself: what `wavesym.summary` says of its scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from wavesym.errors import SceneError
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import nearest, not_below
+from wavesym.results.response import Response
+from wavesym.results.summary import OutputSummary, summarised
+from wavesym.scene import Scene, lower
+from wavesym.sweeps.plan import SweepPlan
+from wavesym.sweeps.values import CaseValues, Numbers
+
+
+def single(plan: SweepPlan, scene: Scene) -> CaseValues:
+    """The values of a scene. WavesymError as for `summary` and `evaluator`."""
+    model = lower(scene)
+    rows = output_rows(plan, model)
+    made = dict[str, Numbers | float]()
+    bounds, hows = [], []
+    if plan.summary:
+        found = summarised(model)
+        columns = np.array([_statistics(output) for output in found.outputs])
+        for name, values in zip(("min", "max", "tau_min", "tau_max", "arrival"), columns.T, strict=True):
+            made[name] = spread_out(plan, rows, values)
+        bounds.append(found.bound)
+        hows.append(found.how.partition(" at ")[0])
+    if plan.histories:
+        response = Response(model)
+        made["history"] = spread_out(plan, rows, response(instants(model, plan.histories)))
+        bounds.append(response.error_bound)
+        hows.append(f"histories of {response.program.evaluator}" if response.program else "exact histories")
+    return CaseValues({**made, **of_model(plan, model), "bound": max(bounds)}, ", ".join(hows))
+
+
+def of_model(plan: SweepPlan, model: Model) -> dict[str, float]:
+    """What is kept of a case whatever it does: its horizon, and its clock."""
+    if plan.time_unit is None:
+        return {"until": nearest(model.until)}
+    if model.clock is None or model.clock.unit != plan.time_unit:
+        raise SceneError(f"times in another unit given, {plan.time_unit} expected, as in the other cases", "units.time")
+    return {"until": nearest(model.until), "time_per_tau": nearest(model.clock.per_tau)}
+
+
+def instants(model: Model, count: int) -> list[float]:
+    """Equally spaced tau from 0 to the end of the horizon, each the first double that is not below."""
+    return [min(not_below(model.until * k / (count - 1)), model.horizon()) for k in range(count)]
+
+
+def output_rows(plan: SweepPlan, model: Model) -> list[int]:
+    """The places of a model's outputs among those of the sweep."""
+    place = {pair: k for k, pair in enumerate(zip(plan.outputs, plan.units, strict=True))}
+    for probe in model.probes:
+        if (probe.name, probe.unit) not in place:
+            told = f"{probe.name} [{probe.unit}]" if probe.unit else probe.name
+            raise SceneError(f"{told} given, an output of the other cases expected", "output")
+    return [place[probe.name, probe.unit] for probe in model.probes]
+
+
+def spread_out(plan: SweepPlan, rows: Sequence[int], values: Numbers) -> Numbers:
+    """Values of a model's outputs as those of the sweep's."""
+    made = np.full((len(plan.outputs), *values.shape[1:]), np.nan)
+    made[list(rows)] = values
+    return made
+
+
+def _statistics(output: OutputSummary) -> tuple[float, ...]:
+    arrival = np.nan if output.arrival is None else output.arrival.tau
+    return output.min.value, output.max.value, output.min.at.tau, output.max.at.tau, arrival

@@ -1,0 +1,112 @@
+"""The summary of a sweep as a table, a row for each case: CSV or Parquet, some thousand rows at a time."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator
+from math import prod
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from wavesym.errors import WavesymError
+from wavesym.sweeps.plan import OUTPUT
+from wavesym.sweeps.request import STATISTICS
+from wavesym.sweeps.store import DIMENSIONS, arrays, needed
+from wavesym.writing import write_whole
+
+_ROWS = 4096
+Columns = dict[str, Any]
+
+
+def write_table(folder: Path, path: Path) -> None:
+    """Write the table of the sweep in a folder. WavesymError for a suffix that is neither .csv nor .parquet.
+
+    Columns are the values that were varied, by path, and of each output NAME.min, NAME.max, NAME.tau_min, NAME.tau_max,
+    as far as they were kept. What there is no value of is empty.
+    """
+    if path.suffix not in (".csv", ".parquet"):
+        raise WavesymError(f"--table: {path} given, a file .csv or .parquet expected")
+    if path.suffix == ".parquet":
+        needed("pyarrow")
+    blocks = _columns(arrays(folder))
+    if path.suffix == ".csv":
+        write_whole({path: _csv(blocks)})
+    else:
+        _parquet(blocks, path)
+
+
+def _columns(found: Any) -> Iterator[Columns]:
+    """The columns of a sweep's arrays, block of rows by block."""
+    dimensions, shape = found["bound"].attrs[DIMENSIONS], found["bound"].shape
+    kept = [name for name in STATISTICS if name in found]
+    names = found[OUTPUT][:].tolist()
+    varied = []
+    for name, array in found.arrays():
+        if "path" in array.attrs:
+            axis = dimensions.index(array.attrs[DIMENSIONS][0])
+            varied.append((axis, array.attrs["number"], name, array[:]))
+    varied.sort(key=lambda each: each[:2])
+    for part in _slabs(shape):
+        counts = tuple(each.stop - each.start for each in part)
+        place = np.unravel_index(np.arange(prod(counts)), counts)
+        made: Columns = {name: values[part[axis]][place[axis]] for axis, _, name, values in varied}
+        values = {name: found[name][part].reshape(len(place[0]), len(names)) for name in kept}
+        for k, output in enumerate(names):
+            made |= {f"{output}.{name}": values[name][:, k] for name in kept}
+        yield made
+
+
+def _slabs(shape: tuple[int, ...]) -> Iterator[tuple[slice, ...]]:
+    """Consecutive cases: the last dimensions whole, as far as they are few enough, and a part of the one before."""
+    inner, axis = 1, len(shape)
+    while axis and inner * shape[axis - 1] <= _ROWS:
+        axis -= 1
+        inner *= shape[axis]
+    whole = tuple(slice(0, n) for n in shape[axis:])
+    if not axis:
+        yield whole
+        return
+    step = max(_ROWS // inner, 1)
+    for place in np.ndindex(*shape[: axis - 1]):
+        before = tuple(slice(k, k + 1) for k in place)
+        for first in range(0, shape[axis - 1], step):
+            yield (*before, slice(first, min(first + step, shape[axis - 1])), *whole)
+
+
+def _csv(blocks: Iterator[Columns]) -> Iterator[str]:
+    """Numbers in the shortest decimals that read back to them; nothing where there is none."""
+    for number, block in enumerate(blocks):
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        if not number:
+            writer.writerow(block)
+        columns = ([_cell(each) for each in column.tolist()] for column in block.values())
+        writer.writerows(zip(*columns, strict=True))
+        yield text.getvalue()
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, float):
+        return "" if value != value else repr(value)
+    return str(value)
+
+
+def _parquet(blocks: Iterator[Columns], path: Path) -> None:
+    import pyarrow
+    from pyarrow import parquet
+
+    draft = path.with_name(f".{path.name}.part")
+    writer = None
+    try:
+        for block in blocks:
+            table = pyarrow.table({name: pyarrow.array(column.tolist()) for name, column in block.items()})
+            writer = writer or parquet.ParquetWriter(draft, table.schema)
+            writer.write_table(table)
+        if writer:
+            writer.close()
+            draft.replace(path)
+    finally:
+        draft.unlink(missing_ok=True)

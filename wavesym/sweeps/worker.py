@@ -1,0 +1,34 @@
+"""What is in a worker of a Dask cluster: the plan, which it was sent once, and batches computed by it."""
+
+from __future__ import annotations
+
+from distributed import WorkerPlugin
+
+from wavesym import __version__
+from wavesym.errors import WavesymError
+from wavesym.sweeps.batches import Batches
+from wavesym.sweeps.plan import SweepPlan
+from wavesym.sweeps.values import BatchValues
+from wavesym.sweeps.work import compute, compute_case
+
+_PLANS: dict[str, tuple[SweepPlan, Batches]] = {}
+"""By the hash of the sweep."""
+
+
+class SentPlan(WorkerPlugin):  # type: ignore[misc]
+    """Takes a plan to every worker that there is, and to those that come."""
+
+    def __init__(self, plan: SweepPlan, batches: Batches) -> None:
+        self.plan, self.batches = plan, batches
+        self.name = f"wavesym-{plan.sha256}"
+
+    def setup(self, worker: object) -> None:
+        _PLANS[self.plan.sha256] = self.plan, self.batches
+
+
+def computed(version: str, sha256: str, batch: int, place: tuple[int, ...] | None = None) -> BatchValues:
+    """A batch of a plan that was sent, or one case of it."""
+    if version != __version__:
+        raise WavesymError(f"wavesym {__version__} found at a worker, {version} expected")
+    plan, batches = _PLANS[sha256]
+    return compute(plan, batches, batch) if place is None else compute_case(plan, batches, batch, place)

@@ -1,0 +1,109 @@
+"""Parameters at run time of a chain that is written out, as C: the march of its joints, built when they are known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from wavesym.programs.program import Program, ReferenceValues
+from wavesym.rendering import render
+from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.runtime import (
+    LIMITS,
+    CRuntimeField,
+    CRuntimeHeader,
+    assigned,
+    load_lane,
+    parameter_fields,
+    runtime_selftest,
+    slopes,
+)
+from wavesym.targets.description import Description
+from wavesym.targets.literals import Lines, c_constants, c_literals, c_tables
+
+_SIZES = (
+    "windows",
+    "strands",
+    "degree",
+    "panels",
+    "joints",
+    "points",
+    "states",
+    "squares",
+    "widest",
+    "ports",
+    "tracks",
+    "slots",
+    "forces",
+    "heard",
+    "events",
+    "lanes",
+)
+
+
+@dataclass(frozen=True)
+class CRuntimeJoints:
+    """templates/c/runtime_joints.c.j2; as `CRuntime`, and `arrays` are the laws with how many numbers each has."""
+
+    scene: Description
+    fields: tuple[CRuntimeField, ...]
+    arrays: tuple[tuple[str, str], ...]
+    laws: tuple[tuple[str, str], ...]
+    slopes: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]
+    load_lane: str
+    tables: dict[str, Lines]
+    constants: dict[str, str]
+    amplitudes: Lines
+    largest: str
+    loads: str
+    numbers: str
+    series: str
+    kernel: str
+    read: str
+
+
+def files(scene: Description, program: Program) -> dict[str, str]:
+    """The files of a program, by name."""
+    laws, real = program.laws, program.real
+    assert laws is not None
+    fields = tuple(parameter_fields(laws, real))
+    constants = c_constants(program.constants, real)
+    own = not any(field.name == "load" for field in fields)
+    header = CRuntimeHeader(
+        scene=scene,
+        fields=fields,
+        sizes=tuple((name.upper(), constants[name]) for name in _SIZES),
+        model=kernel("runtime_joints_model.h", scene),
+        batch="",
+    )
+    context = CRuntimeJoints(
+        scene=scene,
+        fields=fields,
+        arrays=tuple((name, str(len(functions))) for name, functions in laws.functions.items()),
+        laws=tuple(assigned(laws, laws.functions, real)),
+        slopes=tuple(slopes(laws, real)),
+        load_lane=load_lane(laws),
+        tables=c_tables(program.tables, real),
+        constants=constants,
+        amplitudes=c_literals(laws.amplitudes or (0.0,), real) if own else (),
+        largest=f"{LIMITS[real.name]}_MAX",
+        loads="amplitude" if own else "p->load",
+        numbers=kernel("real.h", scene),
+        series=kernel("runtime_series.c", scene),
+        kernel=kernel("runtime_joints.c", scene),
+        read=kernel("runtime_read.c", scene),
+    )
+    made = {
+        f"{scene.name}.h": render("c/runtime.h.j2", header),
+        f"{scene.name}.c": render("c/runtime_joints.c.j2", context),
+    }
+    if isinstance(program.reference, ReferenceValues):
+        made[f"{scene.name}_selftest.c"] = runtime_selftest(scene, program, program.reference)
+    return made
+
+
+def sets(scene: Description, program: Program) -> dict[str, str]:
+    """The files, with what runs many sets of parameters in NAME.c."""
+    made = files(scene, program)
+    name = f"{scene.name}.c"
+    more = "\n\n".join(kernel(file, scene) for file in ("runtime_peaks.c", "runtime_sets.c"))
+    return made | {name: f"{made[name]}\n{more}\n"}
