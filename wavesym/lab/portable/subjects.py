@@ -51,6 +51,11 @@ class Subject:
         return f"generate {self.scene}{self.request.options}"
 
     @property
+    def calls_exp(self) -> bool:
+        """Whether the program needs <math.h>: closed forms do, no others."""
+        return self.template == "closed"
+
+    @property
     def called(self) -> tuple[str, ...]:
         """What the driver calls of it, without the program's name before it."""
         return tuple(dict.fromkeys(re.findall(r"\bname_(\w+)\(", text_of(f"proof/{self.driver}.c"))))
