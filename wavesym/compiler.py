@@ -46,6 +46,7 @@ from wavesym.results.response import Response
 from wavesym.results.rows import SAMPLES, csv_lines, grid
 from wavesym.results.summary import Summary, summarised
 from wavesym.results.unexpected import event_lines, outside, unexpected, without_load
+from wavesym.running.model import RuntimeModel
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes, drifts, sources
 from wavesym.targets import LANGUAGES
@@ -58,7 +59,6 @@ if TYPE_CHECKING:
     from wavesym.mechanics.node import System
     from wavesym.papers.entries import PaperEntry
     from wavesym.programs.program import Program
-    from wavesym.running.model import RuntimeModel
     from wavesym.sweeps.status import SweepStatus
 
 
@@ -415,19 +415,19 @@ def _written(
 def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     """A scene whose parameters are given when it runs, for one set of them or for a million.
 
-    `runtime` names them: "kappa", "inertia", "velocity", "load", those that the scene has. It is compiled once, where
-    there is a C compiler; elsewhere NumPy computes the same, more slowly. WavesymError for a scene that has not got
-    these parameters, UnservedError and CostError for one that no such program serves.
+    `runtime` names them: "kappa", "inertia", "velocity", "load", or of a chain that is written out "mass", "dashpot",
+    "spring", "impedance", "velocity", "load", those that the scene has. It is compiled once, where there is a C
+    compiler; elsewhere NumPy computes the same, more slowly, but not for such chains (CompilerError). WavesymError for
+    a scene that has not got these parameters, UnservedError and CostError for one that no such program serves.
 
     >>> import wavesym
     >>> model = wavesym.model(wavesym.Scene.from_toml("drive_m1"), runtime=["kappa"])
     >>> model.run(kappa=[[0.5], [1], [2]], tau=[2.0, 4.0]).shape  # sets, outputs, then the shape of tau
-    (3, 4, 2)
+    (3, 5, 2)
     >>> model.peaks(kappa=[[0.5], [1], [2]]).max.shape
-    (3, 4)
+    (3, 5)
     """
     from wavesym.programs.runtime.making import runtime_program
-    from wavesym.running.model import RuntimeModel
 
     given = amplitudes(scene) if "load" in runtime else ()
     return RuntimeModel(runtime_program(lower(scene), Request(runtime=tuple(runtime)), given))

@@ -6,16 +6,16 @@
  *   load 0: 1 a at 0, -2/3 b at 0, 3/2 a at 3, 1/3 b at 3, 1/2 a at 6, 1/3 b at 6
  *   until = 12, tolerance = 1e-08
  *
- * Evaluator: closed, 69 pulses, bound 1e-11, takes longer; pieces, degree 0..5, 27 KiB, bound 9.4e-09
+ * Evaluator: closed, 69 pulses, bound 1e-11, takes longer; pieces, degree 0..6, 15 KiB, bound 9.4e-09
  * Everything is dimensionless: x in rod lengths, tau = c t / l, strain positive in tension.
  *
  * output           proved largest error / largest value
- *   strain@0.5             9.3e-09
- *   strain@1.5             8.8e-09
+ *   strain@0.5             9.4e-09
+ *   strain@1.5             8.2e-09
  *   velocity@0.5           9.4e-09
- *   velocity@1.5           9.2e-09
- *   displacement@0.5       9.4e-09
- *   displacement@1.5       8.9e-09
+ *   velocity@1.5           9.3e-09
+ *   displacement@0.5       7.6e-09
+ *   displacement@1.5       9.1e-09
  */
 #ifndef BUILDING_M2_H
 #define BUILDING_M2_H

@@ -5,20 +5,20 @@
  *   velocity_1 = 1, velocity_3 = -1/2
  *   until = 10, tolerance = 1e-10
  *
- * Evaluator: closed, 65 pulses, bound 2.9e-13, takes longer; pieces, degree 0..5, 36 KiB, bound 9.3e-11
+ * Evaluator: closed, 65 pulses, bound 2.9e-13, takes longer; pieces, degree 0..6, 20 KiB, bound 9.3e-11
  * Everything is dimensionless: x in rod lengths, tau = c t / l, strain positive in tension.
  *
  * output           proved largest error / largest value
- *   strain@1-              9.3e-11
- *   strain@2               1.3e-11
- *   strain@3+              9.3e-11
- *   displacement@0         2.2e-11
- *   displacement@1         9.2e-11
- *   displacement@1.5       9e-11
- *   displacement@2         5.9e-11
- *   displacement@2.5       2.4e-11
- *   displacement@3         4.4e-11
- *   displacement@4         3.9e-11
+ *   strain@1-              7.6e-11
+ *   strain@2               4.1e-11
+ *   strain@3+              7.8e-11
+ *   displacement@0         9.3e-11
+ *   displacement@1         5.8e-11
+ *   displacement@1.5       8.9e-11
+ *   displacement@2         8.5e-11
+ *   displacement@2.5       8.9e-11
+ *   displacement@3         8.8e-11
+ *   displacement@4         9.3e-11
  */
 #ifndef COLLISION_M4_H
 #define COLLISION_M4_H

@@ -20,8 +20,7 @@ typedef struct {
     real output[NAME_OUTPUTS], seen[NAME_OUTPUTS];
 } wrong;
 
-/* Infinity, without <math.h>. */
-static real beyond_all(void)
+static real infinity(void)
 {
     const volatile real zero = 0;
     return 1 / zero;
@@ -32,7 +31,7 @@ static real root(real x)
 {
     real y = 1;
     if (!(x > 0) || !finite_number(x)) {
-        return x > 0 ? beyond_all() : 0;
+        return x > 0 ? infinity() : 0;
     }
     while (y < x / y) {
         y *= 2;
@@ -296,7 +295,7 @@ int name_error_bound(name_model *model, const name_parameters *parameters, name_
         if (status == 0) {
             /* a hundredth for what is of second order in a rounding, and for the roundings of this here */
             const real error = w.output[output] * (real)1.01;
-            bound[output] = error < w.seen[output] ? error / (w.seen[output] - error) * (1 + 4 * unit) : beyond_all();
+            bound[output] = error < w.seen[output] ? error / (w.seen[output] - error) * (1 + 4 * unit) : infinity();
         }
     }
     return status;

@@ -46,7 +46,9 @@ int name_tangent_sample(
     const name_tangent *tangent, name_real tau0, name_real dtau, size_t count, name_real *out);
 
 #include <float.h>
+
 #include "real.h"
+
 typedef name_model model_of;
 
 enum { LEAST = 8, LOAD_LANE = -1, SECTIONS = 3, CYCLE = 2 };

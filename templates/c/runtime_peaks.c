@@ -4,8 +4,8 @@
 #include "runtime_misfit.c"
 #endif
 
-/* How often an interval is halved at most. */
-enum { DEEPEST = 60 };
+/* How often an interval is halved at most; into how many parts one is cut where it is looked at closely. */
+enum { DEEPEST = 60, CLOSELY = 8 };
 
 /* The greatest value of an output, or of its negative where `sign` is -1, of all that were seen, and when. */
 typedef struct {
@@ -82,6 +82,43 @@ static void survey(const part *p, real *t, real *found)
     output_block(p->m, p->m->series, p->window, p->section * NAME_OUTPUTS + p->output, t, found);
 }
 
+/* As bend, of what was found in a survey: four times the largest second difference. Near a front, or where an output
+ * comes to rest, the bound of a whole panel is far too large. */
+static real bend_seen(const part *p, const real *found)
+{
+    const real step = p->length / (BLOCK - 1);
+    real most = 0;
+    for (int j = 1; j + 1 < BLOCK; ++j) {
+        most = larger(most, (found[j - 1] - found[j]) + (found[j + 1] - found[j]));
+    }
+    const real seen_here = 4 * most / (step * step);
+    return seen_here < p->bend ? seen_here : p->bend;
+}
+
+/* Look for what is higher between two instants, where it can be. */
+static void explore(const part *p, summit *top, real left, real at_left, real right, real at_right, real slack)
+{
+    const real width = right - left;
+    const real one = top->sign * at_left, other = top->sign * at_right;
+    if (!((one > other ? one : other) + p->bend * width * width / 8 > top->best + slack)) {
+        return;
+    }
+    for (int i = 0; i < CLOSELY; ++i) {
+        real t[BLOCK], found[BLOCK];
+        part q = *p;
+        q.begin = left + width * ((real)i / CLOSELY);
+        q.length = width / CLOSELY;
+        survey(&q, t, found);
+        q.bend = bend_seen(&q, found);
+        for (int j = 0; j < BLOCK; ++j) {
+            seen(top, found[j], cycle_begin(p->window) + t[j]);
+        }
+        for (int j = 1; j < BLOCK; ++j) {
+            climb(&q, top, t[j - 1], found[j - 1], t[j], found[j], slack);
+        }
+    }
+}
+
 /* First the best of all instants surveyed; then, `slack` given, of all between them that may be higher. */
 static void search(const model_of *m, int output, summit *least, summit *greatest, const real *slack)
 {
@@ -107,8 +144,8 @@ static void search(const model_of *m, int output, summit *least, summit *greates
                     seen(least, found[j], cycle_begin(window) + t[j]);
                     seen(greatest, found[j], cycle_begin(window) + t[j]);
                 } else if (j > 0) {
-                    climb(&p, greatest, t[j - 1], found[j - 1], t[j], found[j], *slack);
-                    climb(&p, least, t[j - 1], found[j - 1], t[j], found[j], *slack);
+                    explore(&p, greatest, t[j - 1], found[j - 1], t[j], found[j], *slack);
+                    explore(&p, least, t[j - 1], found[j - 1], t[j], found[j], *slack);
                 }
             }
         }

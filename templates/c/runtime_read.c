@@ -102,27 +102,31 @@ static const real offset[BLOCK] = {
 /* A block of values of a series, added to what is there where `more`. */
 static void block(const real *c, int degree, const real *u, int more, real *out)
 {
-    real next[BLOCK], after[BLOCK];
-    const real highest = c[degree];
+    const slice *const at = (const slice *)u;
+    slice *const to = (slice *)out;
+    slice twice[SLICES], next[SLICES], after[SLICES];
     UNROLLED
-    for (int j = 0; j < BLOCK; ++j) {
-        next[j] = highest;
-        after[j] = 0;
+    for (int j = 0; j < SLICES; ++j) {
+        twice[j] = at[j] + at[j];
+        after[j] = at[j] - at[j];
+        next[j] = after[j] + c[degree];
     }
     for (int k = degree - 1; k > 0; --k) {
-        const real add = c[k];
         UNROLLED
-        for (int j = 0; j < BLOCK; ++j) {
-            const real now = u[j] * (next[j] + next[j]) + (add - after[j]);
+        for (int j = 0; j < SLICES; ++j) {
+            const slice now = twice[j] * next[j] + (c[k] - after[j]);
             after[j] = next[j];
             next[j] = now;
         }
     }
-    const real mean = c[0];
     UNROLLED
-    for (int j = 0; j < BLOCK; ++j) {
-        const real sum = u[j] * next[j] + (mean - after[j]);
-        out[j] = more ? out[j] + sum : sum;
+    for (int j = 0; j < SLICES; ++j) {
+        const slice sum = at[j] * next[j] + (c[0] - after[j]);
+        if (more) {
+            to[j] += sum;
+        } else {
+            to[j] = sum;
+        }
     }
 }
 

@@ -15,7 +15,14 @@
 #define UNROLLED
 #endif
 
-enum { BLOCK = 16 };
+/* A block is a few slices, vectors where there is GNU C and NAME_PLAIN does not ask for plain C. */
+#if defined(__GNUC__) && !defined(__FRAMAC__) && !defined(NAME_PLAIN)
+typedef real full_slice __attribute__((vector_size(64)));
+typedef full_slice slice __attribute__((aligned(sizeof(real)), may_alias));
+#else
+typedef real slice;
+#endif
+enum { BLOCK = 16, SLICES = BLOCK * sizeof(real) / sizeof(slice) };
 
 static real magnitude(real x)
 {

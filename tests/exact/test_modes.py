@@ -1,5 +1,6 @@
 """Exact modes: the frequency equation from the derived law, frequencies others know, none missed, closed sums."""
 
+from dataclasses import replace
 from itertools import pairwise
 from math import pi
 
@@ -12,6 +13,7 @@ from scipy.linalg import eigh
 from tests.support.modal import NASTY, building, by_elements, chain
 from wavesym.derivation.node_law import node_law
 from wavesym.errors import UnservedError
+from wavesym.exact.modes import cluster
 from wavesym.exact.modes import frequencies as found
 from wavesym.exact.modes.frequencies import Spectrum, frequencies, searched
 from wavesym.exact.modes.statics import Statics
@@ -185,13 +187,10 @@ def test_a_frequency_that_was_missed_is_seen(monkeypatch):
     assert all(a.overlaps(b) for a, b in zip(made, expected, strict=True))
 
 
-@pytest.mark.parametrize("name", NASTY)
-def test_modes_are_orthogonal(name):
-    """By Simpson's rule, which knows no formula."""
-    model = NASTY[name]
-    modes = Spectrum(model.network).first(7)
+def gram(modes):
+    """Products of modes by Simpson's rule, which knows no formula."""
     network = modes[0].stiffness.network
-    grams = np.zeros((7, 7))
+    grams = np.zeros((len(modes), len(modes)))
     for number, point in enumerate(network.points):
         q = np.array([float(mode.points[number]) for mode in modes])
         grams += float(fmpq(point.mass)) * np.outer(q, q)
@@ -209,7 +208,12 @@ def test_modes_are_orthogonal(name):
             )
             moved.append(shape)
         grams += (np.array(moved) * weights) @ np.array(moved).T
-    assert grams == pytest.approx(np.eye(7), abs=3e-8)
+    return grams
+
+
+@pytest.mark.parametrize("name", NASTY)
+def test_modes_are_orthogonal(name):
+    assert gram(Spectrum(NASTY[name].network).first(7)) == pytest.approx(np.eye(7), abs=3e-8)
 
 
 @pytest.mark.parametrize("name", ["springs", "a branch with gears", "a node at rest in the middle", "one storey"])
@@ -232,14 +236,69 @@ def test_sums_over_all_modes_are_known(name):
 
 
 def test_what_has_no_modes_is_refused():
-    """Dashpots, absorbing ends and contacts in one line; so are two branches that are the same."""
+    """Dashpots, absorbing ends and contacts in one line."""
     dashpot = chain(["fixed", {"rod": 1}, {"mass": 1, "dashpot": 1, "name": "hammer"}, {"rod": 1}, "free"])
     with pytest.raises(UnservedError, match="at hammer given, none expected in modes"):
         frequencies(dashpot.network, 1)
     contact = chain([{"mass": 1, "velocity": 1}, "contact", {"rod": 1}, "fixed"], velocity=["0-"])
     with pytest.raises(UnservedError, match="a contact at 0 given"):
         frequencies(contact.network, 1)
-    same = [{"from": "g", "name": name, "parts": [{"rod": 1}, {"mass": 1}]} for name in "abc"]
-    star = chain(["fixed", {"rod": 1}, {"mass": 1, "name": "g"}, {"rod": 1}, "free"], branch=same)
-    with pytest.raises(UnservedError, match="two frequencies meet near"):
-        frequencies(star.network, 6)
+
+
+def star(count, apart=0):
+    """Branches from one mass: all but three of them equal, the masses of these `apart`."""
+    names = "abcdefhk"[:count]
+    same = [{"from": "g", "name": name, "parts": [{"rod": 1}, {"mass": 1, "name": f"m{name}"}]} for name in names]
+    model = chain(["fixed", {"rod": 1}, {"mass": 1, "name": "g"}, {"rod": 1}, "free"], branch=same)
+    more = {"ma": apart, "mb": 2 * apart}
+    points = tuple(replace(p, mass=p.mass + more.get(p.name, 0)) for p in model.network.points)
+    return replace(model, network=replace(model.network, points=points))
+
+
+CLUSTERS = {
+    "equal": star(4),
+    "hardly different": star(5, fmpq(1, 10**14)),
+    "beyond most bits": star(7, fmpq(1, 10**70)),
+    "beyond all bits": star(4, fmpq(1, 10**200)),
+    "equal bars at rest": chain(
+        ["fixed", {"rod": 1}, {"joint": True, "name": "g"}, {"rod": 1}, "fixed"],
+        branch=[{"from": "g", "name": name, "parts": [{"rod": 1}, "fixed"]} for name in "ab"],
+    ),
+}
+
+
+FEW_BITS = ["equal", "equal bars at rest"]
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n in FEW_BITS else [pytest.mark.slow]) for n in CLUSTERS])
+def test_equal_frequencies_are_all_found(name):
+    """As many as finite elements have; and their shapes are modes at right angles: the gram matrix is one."""
+    count = 14
+    modes = Spectrum(CLUSTERS[name].network).first(count)
+    w = np.array([float(mode.frequency) for mode in modes])
+    squares = []
+    for resolution in (12, 24):
+        _, mass, stiffness = by_elements(CLUSTERS[name], resolution)
+        squares.append(eigh(stiffness, mass, eigvals_only=True)[:count])
+    assert w == pytest.approx(np.sqrt((4 * squares[1] - squares[0]) / 3), rel=2e-2, abs=1e-6)
+    assert np.count_nonzero(np.diff(w) < 1e-12) >= 4
+    assert gram(modes) == pytest.approx(np.eye(count), abs=3e-7)
+
+
+def test_the_shapes_of_a_cluster_are_proved(monkeypatch):
+    """The sum of q q^T of all modes below, with others added as a force near them adds them, is that of three forces:
+    balls are as narrow as they say, and contain what many more bits find."""
+    found_with = []
+    for more in (1, 2):
+        monkeypatch.setattr(found, "_TIMES", (1, 4, 8 * more))
+        modes = Spectrum(CLUSTERS["equal"].network).first(4)[1:4]
+        found_with.append([[m.points[a] * m.points[b] for a in range(6) for b in range(6)] for m in modes])
+    first, second = (np.array(each).sum(axis=0) for each in found_with)
+    assert all(a.overlaps(b) and a.rad() < 1e-15 for a, b in zip(first, second, strict=True))
+
+
+def test_shapes_that_cannot_be_told_are_refused(monkeypatch):
+    monkeypatch.setattr(cluster, "_APART", (2,))
+    monkeypatch.setattr(found, "_TIMES", (1, 8))
+    with pytest.raises(UnservedError, match=r"frequencies meet near 0\.86.*pieces and march serve it"):
+        frequencies(CLUSTERS["beyond most bits"].network, 5)

@@ -28,6 +28,7 @@ def errors(scene, stride):
     return np.max(np.abs(found - true)) / np.max(np.abs(true))
 
 
+@pytest.mark.slow
 def test_what_is_written_by_hand_is_right():
     coarse, fine = (errors(SCENES["building, m = 2, to 20"], stride) for stride in (4, 16))
     assert fine < 1e-5

@@ -17,10 +17,10 @@ from wavesym.errors import CostError, ToleranceError, UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.damping import Damping
 from wavesym.numbers.reals import DOUBLE
-from wavesym.programs.modes import system as made_by
 from wavesym.programs.modes.roughness import Roughness, roughness
 from wavesym.programs.modes.rounding import rounded
-from wavesym.programs.modes.system import modal_system
+from wavesym.programs.modes.swinging import SwingingChain
+from wavesym.programs.modes.system import ModalModes, modal_system
 from wavesym.programs.modes.tables import scheme_tables
 from wavesym.programs.schemes.modes import ModesScheme
 from wavesym.scene import Scene, lower
@@ -86,11 +86,11 @@ def rounding(model, made):
 
 def with_modes(model, count):
     """The first `count` modes, and what the others can add."""
-    built = made_by.ModalChain(model)
+    built = SwingingChain(model)
     known = built.shares(count)
     errors = built.errors(known, count)
     rest = np.zeros(count)
-    return made_by.ModalModes(built.system(known, count), built.sources, built.loads, errors, errors, known.w, rest)
+    return ModalModes(built.system(known, count), built.sources, built.loads, errors, errors, known.w, rest)
 
 
 @pytest.mark.parametrize("name", UNDAMPED)
@@ -212,6 +212,80 @@ def test_outputs_that_are_0_are_exactly_0():
     assert not values(model, made, np.linspace(0, 1.5, 9))[[0, 3]].any()
 
 
+SYMMETRIC = ["free", {"rod": "1/2"}, {"mass": 1, "name": "l"}, {"rod": 1}, {"mass": 2, "name": "c"}]
+SYMMETRIC += [{"rod": 1}, {"mass": 1, "name": "r"}, {"rod": "1/2"}, "free"]
+
+
+def both(sign, late="1"):
+    """A load on the left and one on the right."""
+    right = {"times": [0, late, 2], "ramps": [sign, -2 * sign, sign]}
+    return [{"at": "l", "times": [0, 1, 2], "ramps": [1, -2, 1]}, {"at": "r", **right}]
+
+
+@pytest.mark.parametrize(
+    "damping",
+    [
+        Damping((fmpq(1, 20),)),
+        *(pytest.param(d, marks=pytest.mark.slow) for d in (None, Damping((fmpq(1, 20),), (1, 2)))),
+    ],
+)
+def test_outputs_that_are_0_by_symmetry_are_exactly_0(damping):
+    """In the middle, under opposite loads; strain there under equal ones; at one of equal branches. Elsewhere not."""
+    watched = {"velocity": ["c", "1/3"], "displacement": ["c"], "acceleration": ["c"], "until": 20, "tolerance": "1e-2"}
+    model = replace(chain(SYMMETRIC, both(-1), **watched), damping=damping)
+    made = modal_system(model)
+    found = values(model, made, np.linspace(0, 20, 41))
+    zero = [probe.name.endswith("@c") for probe in model.probes]
+    assert zero.count(True) == 3
+    assert not made.bounds[zero].any()
+    assert not found[zero].any()
+    assert made.bounds[~np.array(zero)].all()
+    branches = [{"from": "c", "name": name, "parts": [{"rod": 1}, {"mass": 1, "name": f"m{name}"}]} for name in "xyz"]
+    loads = [{**load, "at": f"m{name}"} for name, load in zip("xy", both(-1), strict=True)]
+    star = chain(SYMMETRIC, loads, branches, velocity=["c", "mx", "mz"], until=20, tolerance="1e-2")
+    assert (modal_system(replace(star, damping=damping)).bounds > 0).tolist() == [False, True, False]
+
+
+@pytest.mark.parametrize(
+    "loads", [both(-1, "999/1000"), *(pytest.param(both(sign), marks=pytest.mark.slow) for sign in (-2, 1))]
+)
+def test_outputs_that_are_nearly_0_have_a_bound(loads):
+    model = chain(SYMMETRIC, loads, velocity=["c"], until=9, tolerance="1/10")
+    made = modal_system(replace(model, damping=Damping((fmpq(1, 20),))))
+    assert made.bounds[0] > 0
+    assert made.largest[0] > 1e-5
+
+
+def test_what_no_number_of_modes_tells_from_0_is_refused_early(monkeypatch):
+    """Of loads that nearly cancel: not after thousands of modes, but after the first."""
+    model = chain(SYMMETRIC, both(-1.0000000001), velocity=["c"], until=9, tolerance="1e-3")
+    counts, every = [], SwingingChain.shares
+
+    def counted(built, count):
+        counts.append(count)
+        return every(built, count)
+
+    monkeypatch.setattr(SwingingChain, "shares", counted)
+    with pytest.raises(ToleranceError, match="would not tell the largest value of velocity@c from 0"):
+        modal_system(model)
+    assert max(counts) < 200
+
+
+def test_equal_frequencies_are_damped_alike_or_refused():
+    """Two branches that are the same, against exact waves; a list of ratios does not say which mode it means."""
+    same = [{"from": "g", "name": name, "parts": [{"rod": 1}, {"mass": 1, "name": f"m{name}"}]} for name in "ab"]
+    parts = ["fixed", {"rod": 1}, {"mass": 1, "name": "g"}, {"rod": 1}, {"mass": 1}]
+    model = chain(parts, [{**PUSH, "at": "ma"}], same, velocity=["g", "mb"], strain=["a:0"], until=8, tolerance="1e-3")
+    taus = np.linspace(0, 8, 57)
+    exact = np.array(Reference(model).values(taus.tolist()))
+    made = modal_system(model)
+    assert np.any(np.diff(made.frequencies) == 0)
+    error = np.abs(values(model, made, taus) - exact).max(axis=1)
+    assert np.all(error <= made.errors + rounding(model, made))
+    with pytest.raises(UnservedError, match=r"^system.damping: 0.05 and 0.1 given for modes 2 and 3, which have one"):
+        modal_system(replace(model, damping=Damping((fmpq(1, 20), fmpq(1, 20), fmpq(1, 10)))))
+
+
 @pytest.mark.parametrize(
     "name", ["a ratio", *(pytest.param(name, marks=pytest.mark.slow) for name in ("a list", "Rayleigh"))]
 )
@@ -299,7 +373,7 @@ def test_kinks_in_step_are_not_underestimated(count):
 def test_roughness_is_that_of_the_load():
     """Changes of slope at their times: of 0, 2, 1, then constant in steps of 1/2."""
     model = building(["1", "1"], [{"spacing": "1/2", "samples": [0, 2, 1]}])
-    (rough,) = roughness(made_by.ModalChain(model).loads)
+    (rough,) = roughness(SwingingChain(model).loads)
     assert rough.times.tolist() == [0, 0.5, 1]
     assert rough.kinks.tolist() == [4, -6, 2]
     assert (rough.steps, rough.steepest) == ((0, 1, 2), 4)

@@ -8,23 +8,23 @@ from tests.support.without_compiler import without_compiler
 from wavesym.errors import UnservedError, WavesymError
 
 SCENE = wavesym.Scene.from_toml("drive_equal").with_(
-    {"output.until": 6, "output.tolerance": "1e-11", "load[1].times": ["5/2"]}
+    {"output.until": 4, "output.tolerance": "1e-11", "load[1].times": ["3/2"]}
 )
 KAPPA = np.array([[1, 1, 1], [0.5, 2, 0.25], [100, 1e-3, 20], *np.linspace([0.2, 0.3, 0.4], [3, 2, 1], 16)])
 RANDOM = np.random.default_rng(14)
 TAUS = {
-    "even": np.linspace(0, 6, 101),
+    "even": np.linspace(0, 4, 101),
     "none": np.empty(0),
-    "few": np.array([6.0, 0.25, 3.999]),
+    "few": np.array([4.0, 0.25, 2.999]),
     "at one instant": np.full(30, 2.5),
     "crowded": 1.3 + np.concatenate([1e-9 * np.arange(12), [1e-3, 0.1, 0.15, -0.2]]),
-    "any": RANDOM.uniform(0, 6, 300),
+    "any": RANDOM.uniform(0, 4, 300),
 }
 
 
 @pytest.fixture(scope="module")
 def model():
-    return wavesym.model(SCENE, runtime=["kappa"])
+    return wavesym.model(SCENE, runtime=["kappa", "load"])  # that of test_model.py, compiled once
 
 
 @pytest.mark.parametrize("where", TAUS)
@@ -60,13 +60,13 @@ def test_a_refused_set_is_nan_and_no_other(model):
 def test_other_data_are_refused(model):
     with pytest.raises(WavesymError, match=r"data: an array of shape \(2,\) given, \(\d, 2\) expected"):
         model.misfit([0, 1], [1, 2])
-    with pytest.raises(WavesymError, match="tau: 0 to 6 expected"):
+    with pytest.raises(WavesymError, match="tau: 0 to 4 expected"):
         model.misfit([7.0], np.zeros((len(model.outputs), 1)))
 
 
 def test_numpy_finds_the_same(model):
     with without_compiler():
-        other = wavesym.model(SCENE, runtime=["kappa"])
+        other = wavesym.model(SCENE, runtime=["kappa", "load"])
     kappa = np.array([*KAPPA[:3], [1, -1, 1]])
     tau, data = TAUS["few"], np.ones((len(model.outputs), 3))
     data[0, 1] = np.nan

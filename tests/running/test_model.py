@@ -1,6 +1,5 @@
 """Many sets of parameters at once, from Python: each is what the exact outputs of its own scene are."""
 
-from contextlib import nullcontext
 from functools import cache
 
 import numpy as np
@@ -10,16 +9,19 @@ import wavesym
 from tests.support.without_compiler import without_compiler
 from wavesym.errors import WavesymError
 from wavesym.programs.runtime.arrays.engine import ArraySets
+from wavesym.running import sets
 
 SCENE = wavesym.Scene.from_toml("drive_equal").with_(
-    {"output.until": 4, "output.tolerance": "1e-11", "load[1].times": ["3/2"]}
+    {"output.until": 3, "output.tolerance": "1e-11", "load[1].times": ["3/2"]}
 )
-KAPPA = np.array([[1, 1, 1], [0.5, 2, 0.25], [3, 0.125, 3], [1, 1.0000001, 1], [1e-3, 1e-3, 1e-3], [100, 1e-3, 20]])
+KAPPA = np.array([[0.5, 2, 0.25], [1, 1.0000001, 1], [1e-3, 1e-3, 1e-3], [100, 1e-3, 20]])
 
 
 @pytest.fixture(scope="module", params=["C", "NumPy"])
 def model(request):
-    with without_compiler() if request.param == "NumPy" else nullcontext():
+    with without_compiler() if request.param == "NumPy" else pytest.MonkeyPatch.context() as machine:
+        if machine:
+            machine.setattr(sets, "FAST", ("-O1",))  # compiled sooner
         return wavesym.model(SCENE, runtime=["kappa", "load"])
 
 
@@ -34,7 +36,7 @@ def exact():
     return [(wavesym.evaluator(each), wavesym.summary(each).outputs) for each in scenes]
 
 
-@pytest.mark.parametrize("tau", [np.linspace(0, 4, 25), np.array([0.0, 0.3, 3.9, 3.0, 4.0])], ids=["even", "uneven"])
+@pytest.mark.parametrize("tau", [np.linspace(0, 3, 25), np.array([0.0, 0.3, 2.9, 1.5, 3.0])], ids=["even", "uneven"])
 def test_each_set_is_its_scene(model, tau):
     true = np.array([response(tau) for response, _ in exact()])
     largest = np.max(np.abs(true), axis=2, keepdims=True)
@@ -57,7 +59,7 @@ def test_extremes_are_those_of_the_exact_outputs(model):
 
 
 def test_derivatives_are_those_of_the_exact_outputs(model):
-    tau, kappa, h = np.linspace(0, 4, 13), np.array([0.5, 2, 0.25]), 1e-5
+    tau, kappa, h = np.linspace(0, 3, 13), np.array([0.5, 2, 0.25]), 1e-5
     found = model.gradients(kappa=kappa, tau=tau)
     assert np.allclose(found.values, model.run(kappa=kappa, tau=tau), rtol=0, atol=1e-15)
     for place in range(3):
@@ -73,9 +75,9 @@ def test_derivatives_are_those_of_the_exact_outputs(model):
 def test_extremes_are_not_those_of_samples_alone(model, monkeypatch):
     full = model.peaks(kappa=KAPPA)
     if isinstance(model._engine, ArraySets):
-        monkeypatch.setattr("wavesym.programs.runtime.arrays.peaks._Summit.climb", lambda *_: None)
+        monkeypatch.setattr("wavesym.programs.runtime.arrays.peaks._Summit.explore", lambda *_: None)
         assert np.max(full.max - model.peaks(kappa=KAPPA).max) > 1e-6
-    samples = model.run(kappa=KAPPA, tau=np.linspace(0, 4, 1001))
+    samples = model.run(kappa=KAPPA, tau=np.linspace(0, 3, 1001))
     # those at jumps aside, no sample is beyond the extremes, and one is near
     assert np.all(samples.max(axis=2) <= full.max + 1e-12)
     assert np.all(samples.min(axis=2) >= full.min - 1e-12)
@@ -83,7 +85,7 @@ def test_extremes_are_not_those_of_samples_alone(model, monkeypatch):
 
 
 def test_what_is_not_given_is_the_scenes(model):
-    tau = np.linspace(0, 4, 7)
+    tau = np.linspace(0, 3, 7)
     (own,) = model.run(tau)
     values = model.run(tau, load=[[1, 0.5], [2, 1]])
     assert np.allclose(values[0], own, rtol=0, atol=1e-15)
@@ -116,6 +118,7 @@ def test_no_set_and_no_instant_are_empty(model):
     assert model.run(tau=[]).shape == (1, 3, 0)
     assert model.run(tau=2.0).shape == (1, 3)
     assert model.peaks(kappa=np.empty((0, 3))).min.shape == (0, 3)
+    assert model.gradients([1.0], kappa=np.empty((0, 3))).by["kappa"].shape == (0, 3, 3, 1)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,9 @@ from hypothesis import strategies as st
 
 import wavesym
 from tests.support.builds import LANGUAGES, STRICT
+from tests.support.built_model import BuiltModel
 from tests.support.without_compiler import without_compiler
+from tests.targets.test_runtime_c import SANITIZED
 from wavesym.errors import WavesymError
 from wavesym.running.toolchain import compiler
 
@@ -232,9 +234,56 @@ def selftest(folder, *changes):
     return subprocess.run([folder / "test"], capture_output=True, check=False).returncode
 
 
-def test_its_selftest_sees_what_is_broken(tmp_path):
+def test_its_selftest_passes(tmp_path):
     assert selftest(tmp_path / "right") == 0
+
+
+@pytest.mark.slow
+def test_its_selftest_sees_what_is_broken(tmp_path):
     assert selftest(tmp_path / "wrong", ("ratio[port] * q", "0.999999 * ratio[port] * q")) == 1
+
+
+@pytest.mark.slow
+@EVERY
+def test_a_bad_number_is_refused(make, tmp_path):
+    names = ["mass", "dashpot", "impedance", "load"]
+    made = BuiltModel(make(NUMBERS[make]), names, tmp_path, flags=SANITIZED)
+    own = [value for name in names for value in NUMBERS[make][name]]
+    assert made.build(*own) == 0
+    positive = len(own) - len(NUMBERS[make]["load"])
+    for place in range(len(own)):
+        for bad in (np.nan, np.inf, -np.inf, *([0.0, -1.0, -0.0] if place < positive else [])):
+            assert made.build(*own[:place], bad, *own[place + 1 :]) == 1
+            assert np.isnan(made.estimate)
+            assert np.isnan(made.at(1.0)[1]).all()
+        for huge in (1e308, 1e200, 1e-200, 1e-320):
+            extreme = [*own[:place], huge, *own[place + 1 :]]
+            status = made.build(*extreme)
+            assert status in (0, 1, 2)
+            assert np.isfinite(made.at(1.0)[1]).all() == (status == 0)
+            assert made.tangents(extreme, 0.0, 1.0, 3)[0] in (status, 1)
+    assert made.build(*own) == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("one - (k == 0 ? 2 : 1) * now[i]", "one - (k == 0 ? 1.999 : 1) * now[i]"),
+        ("half * ((k == 1 ? 2 * f[i][0]", "half * ((k == 1 ? 1.999 * f[i][0]"),
+        ("add_series(slope->rates", "if (0) add_series(slope->rates"),
+        ("gather(m->waves, NULL, slope", "if (0) gather(m->waves, NULL, slope"),
+    ],
+)
+def test_a_mistake_is_seen(change, tmp_path):
+    names = ["mass", "spring", "impedance"]
+    right, wrong = (tmp_path / name for name in ("right", "wrong"))
+    right.mkdir()
+    wrong.mkdir()
+    own = [value for name in names for value in NUMBERS[frame][name]]
+    built = [BuiltModel(frame(NUMBERS[frame]), names, *of) for of in ((right,), (wrong, [change]))]
+    values = [made.tangents(own, 0.0, 0.25, 21)[1] for made in built]
+    assert np.max(np.abs(values[0] - values[1])) > 1e-6
 
 
 @pytest.mark.slow

@@ -71,7 +71,11 @@ def computed(made: SweepPlan) -> list[tuple[tuple[int, ...], dict[str, Any], str
 
 
 def assert_alike(made: SweepPlan, place: tuple[int, ...], found: dict[str, Any]) -> None:
-    alone: Summary = summarised(lower(made.scene(place)))
+    try:
+        alone: Summary = summarised(lower(made.scene(place)))
+    except WavesymError:
+        assert np.isnan(found["max"]).all()
+        return
     for k, output in enumerate(alone.outputs):
         both = (alone.bound + found["bound"]) * abs(output.largest.value)
         for name, peak in (("min", output.min), ("max", output.max)):
@@ -99,10 +103,11 @@ def test_sets_of_parameters_are_what_each_is_alone() -> None:
 
 
 def test_sets_that_their_program_refuses_are_computed_alone() -> None:
-    """Bodies that are far too light for the program, and one that has no mass at all."""
-    kappa = ["1/10", "1/5", "3/10", "2/5", "1/2", 1, 2, "1e4", -1]
-    cases = computed(made := planned({"scene": DRIVE, "vary": {"system.kappa[0]": kappa}}))
-    for place, found, _ in cases[:-1]:
+    """Bodies that are far too light for the program, and a number that is none."""
+    kappa = ["1/10", "1/5", "3/10", "2/5", "1/2", 1, 2, 100, -1]
+    short = {**DRIVE, "output": {**DRIVE["output"], "until": 4}}
+    cases = computed(made := planned({"scene": short, "vary": {"system.kappa[0]": kappa}}))
+    for place, found, _ in cases[-4:]:
         assert_alike(made, place, found)
     assert "a positive number expected" in cases[-1][2]
     assert np.isnan(cases[-1][1]["max"]).all()
@@ -126,30 +131,23 @@ def records(folder: Path, draw: np.random.Generator) -> None:
     (folder / "jumps.csv").write_text("a\n" + "".join(f"{value:.6f}\n" for value in np.cos(t)))
 
 
-@pytest.mark.parametrize("spacing", ["1/2", "4.995", "0.0717"])
 @pytest.mark.parametrize(
-    "system", [{"damping": ["1/20", "3/10", 2]}, {"damping": {"modes": [1, 2], "ratio": 0.03}}, {}]
+    ("spacing", "system"),
+    [
+        ("1/2", {"damping": "1/20"}),
+        ("4.995", {"damping": ["1/20", "3/10"]}),
+        ("4.995", {"damping": {"modes": [1, 2], "ratio": 0.03}}),
+    ],
 )
 def test_records_are_what_each_is_alone(tmp_path: Path, spacing: str, system: dict[str, Any]) -> None:
     records(tmp_path, np.random.default_rng(4))
-    fields = {
-        "scene": shaken(spacing, **system),
-        "vary": {"system.kappa[2]": ["1/25", "1/7"]},
-        "records": str(tmp_path / "*.csv"),
-    }
-    made = planned(fields)
+    made = planned({"scene": shaken(spacing, **system), "records": str(tmp_path / "*.csv")})
     assert kind(made)[0] == "recorded"
     cases = computed(made)
-    assert len(cases) == made.cases == 14
-    met = 0
-    for place, found, how in cases:
-        try:
-            assert_alike(made, place, found)
-        except WavesymError:
-            assert np.isnan(found["max"]).all()
-            continue
-        met += "together" in how
-    assert met or not system, "no case was computed together"
+    assert len(cases) == made.cases == 7
+    assert sum("together" in how for _, _, how in cases) >= 3
+    for place, found, _ in cases:
+        assert_alike(made, place, found)
 
 
 def test_thirty_random_cases_are_what_summary_says(tmp_path: Path) -> None:

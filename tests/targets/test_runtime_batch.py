@@ -167,8 +167,7 @@ def test_in_single_precision_too(case, tmp_path):
     [
         ("*total += high - low;", "*total += high;"),
         ("b->edge[row][LOSS] * mean", "b->edge[row][SLACK] * mean"),
-        ("const int next = degree == NAME_DEGREE ? before :", "const int next = before < 0 ? before :"),
-        ("b->alpha[node], set) = law->alpha[node]", "b->alpha[node], 0) = law->alpha[node]"),
+        ("b->rate[node], set) = law->rate[node]", "b->rate[node], 0) = law->rate[node]"),
     ],
 )
 def test_a_mistake_is_seen(change, tmp_path):

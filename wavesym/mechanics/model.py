@@ -46,7 +46,8 @@ class Model:
     `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
     `tolerance` is relative to an output's largest value. Loads are sorted by time; where they have samples, the closest
     are `spacing` apart. The `clock` is that of a physical scene, the `damping` that of its modes; `inputs` says of the
-    sources of its loads what 1 is in the unit of results, and that unit. An `endless` one goes on after that tau.
+    sources of its loads, and of the numbers of its parts by name, what 1 is in a unit, and that unit. An `endless` one
+    goes on after that tau.
     """
 
     name: str

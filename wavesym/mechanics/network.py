@@ -143,6 +143,20 @@ class Network:
                 "and `run` serve it, not tables, closed form or march)"
             )
 
+    @property
+    def loses(self) -> bool:
+        """Whether dashpots take energy from it: any but those between points that move as they are told."""
+        free = {number for number, point in enumerate(self.points) if point.motion is None}
+        return any(self.points[number].damping != 0 for number in free) or any(
+            link.damping != 0 and not link.contact and free & {link.left, link.right} for link in self.links
+        )
+
+    @property
+    def bridged(self) -> frozenset[int]:
+        """The bars that springs or dashpots lie beside, between the same two points."""
+        pairs = {frozenset((k.left, k.right)) for k in self.links if k.stiffness != 0 or k.damping != 0}
+        return frozenset(n for n, bar in enumerate(self.bars) if frozenset((bar.left, bar.right)) in pairs)
+
     @cached_property
     def joint_of(self) -> Mapping[int, int]:
         """The number of each point's joint."""

@@ -41,7 +41,8 @@ from wavesym.programs.program import ProgramOutput
 MOST_BYTES = 4 << 20
 # The numbers from 0 on that C has for the widest vectors (templates/c/pieces.c).
 _OFFSETS = 16
-# Pieces in a unit of tau: shorter ones have lower degrees and round less, in larger tables, and fewer samples are on each.
+# Pieces in a unit of tau: shorter ones have lower degrees and round less, in larger tables, and fewer samples are on
+# each.
 _USUAL = (4, 2, 1)
 _SHORTER = (2, 4, 8, 16, 32)
 # A fit at so many bits takes seconds, at twice as many the better part of a minute (the terms double with the bits).

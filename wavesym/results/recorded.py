@@ -18,7 +18,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.records import RecordResponse
 from wavesym.programs.modes.roughness import Roughness, scaled
-from wavesym.programs.modes.system import ModalChain
+from wavesym.programs.modes.system import modal_chain
 
 Numbers = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -30,7 +30,7 @@ _NEARER = 8  # times, in the second look at a top
 _EQUAL = 1e-14
 _AT_ONCE = 1 << 18  # numbers of an array: what a cache holds
 _ROUNDING = 64 * 2.0**-53
-_ATTEMPTS = 4
+_ATTEMPTS, _MOST_MODES = 4, 600
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def recorded_extremes(model: Model, records: ManyRecords) -> RecordedExtremes:
 
     UnservedError for what modes do not serve, ToleranceError as for `modal_system`.
     """
-    chain, tolerance = ModalChain(model), nearest(model.tolerance)
+    chain, tolerance = modal_chain(model), nearest(model.tolerance)
     count = chain.fewest
     for attempt in range(_ATTEMPTS):
         known = chain.shares(count)
@@ -70,18 +70,21 @@ def recorded_extremes(model: Model, records: ManyRecords) -> RecordedExtremes:
         largest = np.abs(values).max(axis=2)
         errors = np.array(
             [
-                chain.errors(known, count, [scaled(rough, records.begin, records.spacing, records.factor)])
+                chain.errors(
+                    known, count, [scaled(rough, records.begin, records.spacing, records.factor, model.horizon())]
+                )
                 for rough in records.rough
             ]
         ) + _ROUNDING * largest * np.sqrt(records.samples.shape[1])
         errors[:, np.array(chain.silent)] = 0.0
         with np.errstate(divide="ignore", invalid="ignore"):
             bounds = np.where(errors > 0, errors / np.maximum(largest - errors, 0.0), 0.0).max(axis=1, initial=0.0)
-        worst = float(bounds.max(initial=0.0))
-        if worst <= tolerance or count >= chain.most or attempt == _ATTEMPTS - 1:
+        # a record that needs far more modes than the others is better off alone
+        worst = float(bounds[bounds < inf].max(initial=0.0))
+        most = min(_MOST_MODES, chain.most)
+        if worst <= tolerance or count >= most or attempt == _ATTEMPTS - 1:
             break
-        more = (worst / tolerance) ** 0.6 if worst < inf else 4.0
-        count = min(ceil(count * min(max(1.1 * more, 1.3), 8.0)), chain.most)
+        count = min(ceil(count * min(max(1.1 * (worst / tolerance) ** 0.6, 1.3), 8.0)), max(most, count))
     return RecordedExtremes(values, taus, bounds, count)
 
 

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from wavesym.errors import WavesymError
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.engine import Array
-from wavesym.running.sets import sets_engine
 
 _WHY = ("", "a number that is not finite, or not positive where it has to be, or too large", "bodies too light")
 
@@ -66,6 +65,8 @@ class RuntimeModel:
     """
 
     def __init__(self, program: Program) -> None:
+        from wavesym.running.sets import sets_engine  # what compiles and computes is loaded when it is needed
+
         laws = program.laws
         assert laws is not None
         self._engine = sets_engine(program)
@@ -92,7 +93,7 @@ class RuntimeModel:
         instants = _numbers("tau", tau)
         found = self._engine.tangents(self._given(parameters), instants.ravel())
         shape = (len(self.outputs), *instants.shape)
-        lanes = found.values.reshape(len(found.values), -1, *shape)
+        lanes = found.values.reshape(*found.values.shape[:2], *shape)
         ends = np.cumsum([1, *map(len, self.parameters.values())])
         by = {name: lanes[:, begin:end] for name, begin, end in zip(self.parameters, ends[:-1], ends[1:], strict=True)}
         return SetGradients(lanes[:, 0], by, SetChecks(found.status, found.estimate))

@@ -101,13 +101,15 @@ def _when(scene: Scene, tau: Fraction) -> str:
 
 
 def _inputs(scene: Scene) -> dict[str, tuple[fmpq, str]]:
-    if scene.scale and not scene.system.load_kinds:  # its own velocities move it
-        return {"impact": (rational(scene.scale.factor("velocity", 1)), scene.scale.unit("velocity"))}
     given = scene.physical.inputs if scene.physical else ()
+    parts = scene.scale.parts if scene.scale else {}
     return {
-        source: (rational(factor), unit)
-        for load, (factor, unit) in zip(scene.load, given, strict=False)
-        for source in load.sources
+        **{name: (rational(size), unit) for name, (size, unit) in parts.items()},
+        **{
+            source: (rational(factor), unit)
+            for load, (factor, unit) in zip(scene.load, given, strict=False)
+            for source in load.sources
+        },
     }
 
 

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from wavesym.errors import WavesymError
-from wavesym.fields.numbers import exact
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.modes.roughness import Roughness, of_samples
 from wavesym.records.load import RecordedLoad
@@ -69,7 +68,7 @@ def _together(
         return
     # a record begins with a jump, where its first sample is at tau = 0 and is not 0: nothing for modes
     late = load.begin > 0
-    fit = [(place, each) for place, each in records if late or each.first == 0]
+    fit = [(place, each) for place, each in records if late or not each.jumps]
     if not fit:
         return
     h, begin = rational(load.step), rational(load.begin - load.step if late else load.begin)
@@ -97,9 +96,10 @@ def _together(
 
 @dataclass(frozen=True)
 class _Samples:
-    """A record in doubles, and its roughness where it begins at tau = 0 and where it rises to its first sample."""
+    """A record in doubles, whether its first sample is not 0, and its roughness where it begins at tau = 0 and where it
+    rises to its first sample."""
 
-    first: Fraction
+    jumps: bool
     values: Numbers
     early: Roughness
     late: Roughness
@@ -111,6 +111,11 @@ def _key(record: dict[str, Any]) -> tuple[str, ...]:
 
 @lru_cache(2048)
 def _read(written: tuple[str, ...]) -> _Samples:
-    exactly = [exact(each) for each in written]
-    values = np.array([float(each) for each in exactly])
-    return _Samples(exactly[0], values, of_samples(values), of_samples(np.concatenate([[0.0], values])))
+    values = np.array([_double(each) for each in written])
+    return _Samples(bool(values[0]), values, of_samples(values), of_samples(np.concatenate([[0.0], values])))
+
+
+def _double(written: str) -> float:
+    """The double nearest to a ratio, as records are dumped: Python divides integers exactly, then rounds once."""
+    above, _, below = written.partition("/")
+    return int(above) / int(below or 1)

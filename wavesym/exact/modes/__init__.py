@@ -1,1 +1,1 @@
-"""The modes of vibration of an undamped chain, exact: all of them, none missed, each in balls."""
+"""The modes of vibration of a chain, exact, each in balls: without dashpots all of them, none missed."""

@@ -8,6 +8,7 @@ import numpy as np
 from flint import arb, ctx, fmpq
 
 from wavesym.errors import UnservedError
+from wavesym.exact.modes.cluster import WIDE, clustered, met
 from wavesym.exact.modes.cuts import Cut, cut
 from wavesym.exact.modes.shape import Mode, Trial, rigid, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, Vector
@@ -15,20 +16,22 @@ from wavesym.mechanics.network import Network
 
 _BITS = 192
 _BITS_A_ROW = 6  # of which determinants in balls take about 4
+_TIMES = (1, 4, 8)  # as many bits; the most for those that are together
 _BISECTIONS = 64
 _NEWTON = 6
+_TOGETHER = 2.0**-40
 _OFF = 2.0**-36  # a frequency itself tells less of its mode than one near it
 _SHARP = arb(2) ** -60  # shapes
 
 
 class CoincidenceError(ArithmeticError):
-    """Two frequencies that no bits tell apart, or one at which all points are at rest."""
+    """Frequencies whose modes no bits tell apart, or one at which all points are at rest."""
 
 
 def refuse_damped(network: Network) -> None:
     """UnservedError for what has no real modes, or is no one chain: dashpots, absorbing ends, contacts."""
     for point in network.points:
-        if point.damping != 0:
+        if point.damping != 0 and point.motion is None:
             raise UnservedError(
                 f"system: a dashpot or an absorbing end at {point.name or point.place} given, none expected in modes "
                 "(pieces and march serve it)"
@@ -44,7 +47,8 @@ def frequencies(network: Network, count: int) -> tuple[arb, ...]:
     """The first `count` angular frequencies of an undamped network in balls, ascending; none is missed.
 
     Per unit of its time. Ends that move as they are told are at rest. A chain that nothing holds begins with 0.
-    UnservedError where it is damped, has contacts, or frequencies that coincide.
+    Of several that are equal each is one. UnservedError where it is damped or has contacts, and for frequencies that
+    nearly coincide and whose modes cannot be told apart.
 
     >>> from wavesym import Scene
     >>> from wavesym.scene import lower
@@ -90,22 +94,28 @@ def _modes(stiffness: Stiffness, count: int, known: int) -> Iterator[Mode]:
     if not stiffness.points:
         raise CoincidenceError("no point moves")
     free = rigid(stiffness.network)
-    ways: list[tuple[int, HarmonicLaw]] = []
-    for times in (1, 4):
+    laws: list[tuple[int, HarmonicLaw]] = []
+    for times in _TIMES:
         bits = times * (_BITS + _BITS_A_ROW * len(stiffness.points))
         with ctx.workprec(bits):
-            ways.append((bits, stiffness.law(arb)))
-    guesses = searched(stiffness, count)[known:]
+            laws.append((bits, stiffness.law(arb)))
+    guesses = searched(stiffness, count)
     roots = stiffness.yielding(guesses * (1 - _OFF)).tolist()
-    for n, (guess, root) in enumerate(zip(guesses.tolist(), roots, strict=True), known + 1):
+    together = np.diff(guesses) < _TOGETHER * guesses[1:]
+    n = known + 1
+    while n <= count:
         if n == 1 and free:
             with ctx.workprec(_BITS):
-                yield _still(stiffness, free)
-            continue
-        mode = next((made for bits, law in ways if (made := _proved(stiffness, law, n, guess, root, bits))), None)
-        if mode is None:
-            raise CoincidenceError(f"two frequencies meet near {guess:.6g}")
-        yield mode
+                made = [_still(stiffness, free)]
+        else:
+            # one that may be several is not tried as one alone
+            tried = laws[2:] if together[max(n - 2, 0) : n].any() else laws
+            found = (_proved(stiffness, law, n, float(guesses[n - 1]), roots[n - 1], bits) for bits, law in tried)
+            made = next((modes for modes in found if modes), [])
+        if not made:
+            raise CoincidenceError(f"two frequencies meet near {guesses[n - 1]:.6g}")
+        yield from made
+        n += len(made)
 
 
 def searched(stiffness: Stiffness, count: int) -> Vector:
@@ -121,14 +131,30 @@ def searched(stiffness: Stiffness, count: int) -> Vector:
     return np.asarray(high, np.float64)
 
 
-def _proved(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> Mode | None:
-    """The n-th mode, in which row `root` moves much; None where it cannot be told from others."""
+def _proved(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> list[Mode]:
+    """The n-th mode, in which row `root` moves much, and those that no bits tell from it; none where more bits may."""
     with ctx.workprec(bits):
-        w = _polished(stiffness, law, n, guess, root, bits) or _bisected(stiffness, law, n, guess, bits)
-        if w is None:
-            return None
-        points = _normal(stiffness, trial(stiffness, law, w, root))
-    return Mode(stiffness, w, points) if all(q.rad() < _SHARP for q in points) else None
+        if bits > 2 * WIDE:
+            for near in _nearer(stiffness, law, n, guess, root):
+                if (made := clustered(stiffness, law, n, near)) and all(map(_sharp, made)):
+                    return made
+        w = _polished(stiffness, law, n, guess, root, bits) or _bisected(stiffness, law, n, guess, bits // 3)
+        if w is None or not _is(stiffness, law, n, w):
+            return []
+        mode = Mode(stiffness, w, _normal(stiffness, trial(stiffness, law, w, root)))
+    return [mode] if _sharp(mode) else []
+
+
+def _nearer(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int) -> Iterator[arb]:
+    """Where the n-th frequency and others may be that no bits tell from it."""
+    if (w := met(stiffness, law, arb(guess), root)) is not None:
+        yield w
+    if (found := _bisected(stiffness, law, n, guess, WIDE + 2)) is not None:
+        yield found.mid()
+
+
+def _sharp(mode: Mode) -> bool:
+    return all(q.rad() < _SHARP for q in mode.points)
 
 
 def _polished(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, root: int, bits: int) -> arb | None:
@@ -152,8 +178,8 @@ def _is(stiffness: Stiffness, law: HarmonicLaw, n: int, w: arb) -> bool:
     return stiffness.proved(law, w.lower()) == n - 1 and stiffness.proved(law, w.upper()) == n
 
 
-def _bisected(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, bits: int) -> arb | None:
-    """The same by counting alone, where another frequency is too near for Newton's method."""
+def _bisected(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, share: int) -> arb | None:
+    """The same to `share` bits by counting alone, where another frequency is too near for Newton's method."""
     low, high = arb(guess), arb(guess)
     reach = arb(2) ** -40
     while (below := stiffness.proved(law, low)) is None or below >= n:
@@ -164,15 +190,14 @@ def _bisected(stiffness: Stiffness, law: HarmonicLaw, n: int, guess: float, bits
     reach = arb(2) ** -40
     while (below := stiffness.proved(law, high)) is None or below < n:
         high, reach = (high * (1 + reach)).mid(), 4 * reach
-    while high - low > arb(2) ** (-bits // 3) * high:
+    while high - low > arb(2) ** -share * high:
         # a little off the middle, which may be a frequency
         middle = ((low * 515 + high * 509) / 1024).mid()
         count = stiffness.proved(law, middle)
         if count is None:
             return None
         low, high = (middle, high) if count < n else (low, middle)
-    w = low.union(high)
-    return w if _is(stiffness, law, n, w) else None
+    return low.union(high)
 
 
 def _normal(stiffness: Stiffness, found: Trial) -> list[arb]:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from flint import arb, fmpq
 
-from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, circular
+from wavesym.exact.modes.stiffness import HarmonicLaw, Quantity, Stiffness, circular
 from wavesym.mechanics.network import End, Network
 
 
@@ -18,18 +18,19 @@ class Mode:
     """A frequency, and how far each point moves in the shape whose kinetic energy at velocity 1 is 1/2: balls.
 
     `points` are by their numbers in the network, and 0 where one does not move. Energies count those of the bars, too.
+    Where there are dashpots all is complex, and the mass is that of `Trial`.
     """
 
     stiffness: Stiffness
-    frequency: arb
-    points: Sequence[arb]
+    frequency: Quantity
+    points: Sequence[Quantity]
 
-    def at(self, end: End) -> arb:
+    def at(self, end: End) -> Quantity:
         """How far the end of a bar moves."""
         bar = self.stiffness.network.bars[end.bar]
         return self.points[bar.right if end.side else bar.left] * bar.ratios[end.side]
 
-    def slope(self, end: End) -> arb:
+    def slope(self, end: End) -> Quantity:
         """The strain there times the bar's speed."""
         if self.frequency == 0:
             return arb(0)
@@ -38,14 +39,14 @@ class Mode:
         slope = self.frequency * (there - here * cosine) / sine
         return -slope if end.side else slope
 
-    def turned(self, delay: fmpq) -> tuple[arb, arb]:
+    def turned(self, delay: fmpq) -> tuple[Quantity, Quantity]:
         """sin and cos of the frequency times a delay."""
         if delay not in self._turned:
             self._turned[delay] = (self.frequency * delay).sin_cos()
         return self._turned[delay]
 
     @cached_property
-    def _turned(self) -> dict[fmpq, tuple[arb, arb]]:
+    def _turned(self) -> dict[fmpq, tuple[Quantity, Quantity]]:
         return {}
 
 
@@ -68,25 +69,31 @@ def rigid(network: Network) -> tuple[fmpq, ...] | None:
 
 
 class Trial(NamedTuple):
-    """How far each row moves; all of them are in balance but row `root`, on which the `rest` acts; and the mass."""
+    """How far each row moves; all of them are in balance but row `root`, on which the `rest` acts; and the mass.
 
-    rows: list[arb]
+    Where there are dashpots all is complex, and part of the mass is what they resist over 2 i w: that, too, is the
+    w^2-derivative of -K.
+    """
+
+    rows: list[Quantity]
     root: int
-    rest: arb
-    mass: arb
+    rest: Quantity
+    mass: Quantity
 
-    def better(self, w: arb) -> arb:
+    def better(self, w: Quantity) -> Quantity:
         """A better frequency than w: Newton's method, as the w^2-derivative of -K, seen by a shape, is its mass."""
         return (w * w + self.rest * self.rows[self.root] / self.mass).sqrt().mid()
 
 
-def trial(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> Trial:
+def trial(stiffness: Stiffness, law: HarmonicLaw, w: Quantity, root: int, rate: Quantity = None) -> Trial:
     """How the chain moves at a frequency where only row `root` is held. Where nothing acts on it that is a mode.
+
+    Where there are dashpots `rate` is i w.
 
     Determinants of branches instead of pivots: a part of the chain may have the same frequency as the whole.
     """
     cot, csc = circular(law, w)
-    diagonal, up = law.matrix(w, cot, csc)
+    diagonal, up = law.matrix(w, cot, csc, rate)
     order = stiffness.orders(root)
     # of each branch its determinant, and that without the row it hangs by: the product of those of its branches
     whole, inner = list(diagonal), [arb(1)] * len(diagonal)
@@ -103,17 +110,28 @@ def trial(stiffness: Stiffness, law: HarmonicLaw, w: arb, root: int) -> Trial:
             if other != row:
                 scale[row] *= whole[other]
     rows = [a * b for a, b in zip(scale, inner, strict=True)]
-    return Trial(rows, root, whole[root], _mass(law, w, rows, stiffness.parents, cot, csc))
+    mass = moved_mass(law, w, rows, stiffness.parents, cot, csc)
+    if rate is not None:
+        mass += _resisted(law, rows, stiffness.parents) / (2 * rate)
+    return Trial(rows, root, whole[root], mass)
 
 
-def _mass(
+def _resisted(law: HarmonicLaw, found: Sequence[Quantity], parents: Sequence[int | None]) -> Quantity:
+    """What dashpots resist at velocities q, seen by q."""
+    total = sum((c * q * q for c, q in zip(law.slowed, found, strict=True)), arb(0))
+    for c, q, parent in zip(law.slowing, found, parents, strict=True):
+        total += 2 * c * q * found[parent or 0]
+    return total
+
+
+def moved_mass(
     law: HarmonicLaw,
-    w: arb,
-    found: Sequence[arb],
+    w: Quantity,
+    found: Sequence[Quantity],
     parents: Sequence[int | None],
-    cot: Sequence[arb],
-    csc: Sequence[arb],
-) -> arb:
+    cot: Sequence[Quantity],
+    csc: Sequence[Quantity],
+) -> Quantity:
     """The sum of M q^2, and of the integrals of Z u^2 over the delays of the bars."""
     # u = (left sin w(T - s) + right sin w s)/sin w T, so that its square has the integral
     # (left^2 + right^2) same + 2 left right other

@@ -6,6 +6,8 @@ A chain with branches is a tree of points: eliminated from the tips to the root,
 
 Wittrick and Williams (1971): the frequencies below w are as many as the bars would have there if their ends were at
 rest, floor(w T/pi) each, and the negative pivots. None can be missed.
+
+A dashpot adds i w times what it resists. Then K is symmetric, and frequencies are complex.
 """
 
 from __future__ import annotations
@@ -36,22 +38,33 @@ Weights = list[tuple[int, Quantity]]
 class HarmonicLaw:
     """The numbers of K in one arithmetic; rows run from the tips to the root.
 
-    Of each row its mass, the springs that hold it, the bars that end there; of its coupling to its parent the springs
-    and the bars. `counts` are the numbers of bars of each of the `delays`.
+    Of each row its mass, the springs that hold it, the dashpots, the bars that end there; of its coupling to its parent
+    the springs, the dashpots and the bars. `counts` are the numbers of bars of each of the `delays`.
     """
 
     mass: list[Quantity]
     held: list[Quantity]
+    slowed: list[Quantity]
     ends: list[Weights]
     across: list[Quantity]
+    slowing: list[Quantity]
     bars: list[Weights]
     delays: list[Quantity]
     counts: list[int]
 
-    def matrix(self, w: Quantity, cot: Sequence[Quantity], csc: Sequence[Quantity]) -> tuple[list[Any], list[Any]]:
-        """The diagonal of K, and what couples each row to its parent, from cot and 1/sin of w times each delay."""
-        square = w * w
-        pulled, shared = [w * value for value in cot], [-w * value for value in csc]
+    def matrix(
+        self, w: Quantity, cot: Sequence[Quantity], csc: Sequence[Quantity], rate: Quantity = None
+    ) -> tuple[list[Any], list[Any]]:
+        """The diagonal of K, and what couples each row to its parent, from cot and 1/sin of w times each delay.
+
+        Where there are dashpots `rate` is i w.
+        """
+        return self.assembled(w * w, [w * value for value in cot], [-w * value for value in csc], rate)
+
+    def assembled(
+        self, square: Quantity, pulled: Sequence[Quantity], shared: Sequence[Quantity], rate: Quantity = None
+    ) -> tuple[list[Any], list[Any]]:
+        """The same from w^2, and for each delay from what a bar of impedance 1 adds at its ends, and across."""
         diagonal = [k - square * mass for k, mass in zip(self.held, self.mass, strict=True)]
         for row, weights in enumerate(self.ends):
             for delay, weight in weights:
@@ -60,6 +73,9 @@ class HarmonicLaw:
         for row, weights in enumerate(self.bars):
             for delay, weight in weights:
                 up[row] = up[row] + weight * shared[delay]
+        if rate is not None:
+            diagonal = [k + rate * c for k, c in zip(diagonal, self.slowed, strict=True)]
+            up = [k + rate * c for k, c in zip(up, self.slowing, strict=True)]
         return diagonal, up
 
 
@@ -90,7 +106,7 @@ class Stiffness:
         network = self.network
         beside: dict[int, list[int]] = {n: [] for n, point in enumerate(network.points) if point.motion is None}
         pairs = [(bar.left, bar.right) for bar in network.bars]
-        pairs += [(link.left, link.right) for link in network.links if link.stiffness != 0]
+        pairs += [(link.left, link.right) for link in network.links if link.stiffness != 0 or link.damping != 0]
         for one, other in pairs:
             if one in beside and other in beside:
                 beside[one].append(other)
@@ -119,15 +135,19 @@ class Stiffness:
         free = [network.points[point] for point in self.points]
         delays = sorted({bar.delay for bar in network.bars})
         held, across = [point.stiffness for point in free], [fmpq(0)] * len(free)
+        slowed, slowing = [point.damping for point in free], [fmpq(0)] * len(free)
         ends, bars = [dict[int, fmpq]() for _ in free], [dict[int, fmpq]() for _ in free]
         for link in network.links:
             left, right = rows.get(link.left), rows.get(link.right)
             if left is not None:
                 held[left] += link.ratio**2 * link.stiffness
+                slowed[left] += link.ratio**2 * link.damping
             if right is not None:
                 held[right] += link.stiffness
+                slowed[right] += link.damping
                 if left is not None:
                     across[min(left, right)] -= link.ratio * link.stiffness
+                    slowing[min(left, right)] -= link.ratio * link.damping
         for bar in network.bars:
             delay, pair = delays.index(bar.delay), (rows.get(bar.left), rows.get(bar.right))
             for row, ratio in zip(pair, bar.ratios, strict=True):
@@ -139,8 +159,10 @@ class Stiffness:
         return HarmonicLaw(
             [number(point.mass) for point in free],
             [*map(number, held)],
+            [*map(number, slowed)],
             [[(delay, number(weight)) for delay, weight in each.items()] for each in ends],
             [*map(number, across)],
+            [*map(number, slowing)],
             [[(delay, number(weight)) for delay, weight in each.items()] for each in bars],
             [*map(number, delays)],
             [sum(bar.delay == delay for bar in network.bars) for delay in delays],
@@ -172,8 +194,21 @@ class Stiffness:
                 diagonal[parent] = diagonal[parent] - up[row] * up[row] / diagonal[row]
         return diagonal
 
+    def solved(self, diagonal: list[Quantity], up: Sequence[Quantity], forces: Sequence[Quantity]) -> list[Quantity]:
+        """How far rows move under forces on them, `diagonal` eliminated in place."""
+        pivots, moved = self.pivots(diagonal, up), list(forces)
+        for row, parent in enumerate(self.parents):
+            if parent is not None:
+                moved[parent] = moved[parent] - up[row] * moved[row] / pivots[row]
+        for row in reversed(range(len(pivots))):
+            parent = self.parents[row]
+            beyond = moved[row] if parent is None else moved[row] - up[row] * moved[parent]
+            moved[row] = beyond / pivots[row]
+        return moved
+
     @cached_property
-    def _doubles(self) -> HarmonicLaw:
+    def doubles(self) -> HarmonicLaw:
+        """Its numbers in doubles."""
         return self.law(nearest)
 
     @cached_property
@@ -183,20 +218,23 @@ class Stiffness:
 
     def counted(self, w: Vector) -> NDArray[np.int64]:
         """How many frequencies lie below each w > 0, in doubles: right but for rounding."""
-        angles = [w * delay for delay in self._doubles.delays]
+        angles = [w * delay for delay in self.doubles.delays]
         sines = [np.sin(angle) for angle in angles]
         turns = [_turns(angle, sine) for angle, sine in zip(angles, sines, strict=True)]
         with np.errstate(all="ignore"):
             pivots, _ = self._eliminated(w, angles, sines)
             negative = [pivot < 0 for pivot in pivots]
-        clamped = [count * turn for count, turn in zip(self._doubles.counts, turns, strict=True)]
+        clamped = [count * turn for count, turn in zip(self.doubles.counts, turns, strict=True)]
         return np.asarray(sum(clamped, np.zeros(w.shape, np.int64)) + sum(negative, np.zeros(w.shape, np.int64)))
 
-    def yielding(self, w: Vector) -> NDArray[np.int64]:
-        """The row on which a force moves most at each w, in doubles: one that moves much in the mode that is near."""
-        angles = [w * delay for delay in self._doubles.delays]
+    def yielding(self, w: NDArray[Any], rate: NDArray[Any] | None = None) -> NDArray[np.int64]:
+        """The row on which a force moves most at each w, in doubles: one that moves much in the mode that is near.
+
+        Where there are dashpots `rate` is i w.
+        """
+        angles = [w * delay for delay in self.doubles.delays]
         with np.errstate(all="ignore"):
-            pivots, up = self._eliminated(w, angles, [np.sin(angle) for angle in angles])
+            pivots, up = self._eliminated(w, angles, [np.sin(angle) for angle in angles], rate)
             # what is left of a row once all others are eliminated
             left = list(pivots)
             for row in reversed(range(len(left))):
@@ -206,11 +244,11 @@ class Stiffness:
         return np.asarray(np.argmin(np.nan_to_num(np.abs(left), nan=np.inf), axis=0))
 
     def _eliminated(
-        self, w: Vector, angles: Sequence[Vector], sines: Sequence[Vector]
+        self, w: Quantity, angles: Sequence[Quantity], sines: Sequence[Quantity], rate: Quantity = None
     ) -> tuple[list[Vector], list[Any]]:
         csc = [1 / sine for sine in sines]
         cot = [np.cos(angle) / sine for angle, sine in zip(angles, sines, strict=True)]
-        diagonal, up = self._doubles.matrix(w, cot, csc)
+        diagonal, up = self.doubles.matrix(w, cot, csc, rate)
         return self.pivots(diagonal, up), up
 
     def proved(self, law: HarmonicLaw, w: arb) -> int | None:
@@ -234,7 +272,7 @@ def _turns(angle: Vector, sine: Vector) -> NDArray[np.int64]:
     return nearest_turn - (np.where(nearest_turn % 2, -sine, sine) < 0)
 
 
-def circular(law: HarmonicLaw, w: arb) -> tuple[list[arb], list[arb]]:
+def circular(law: HarmonicLaw, w: Quantity) -> tuple[list[Quantity], list[Quantity]]:
     """cot and 1/sin of w times each delay."""
     pairs = [(w * delay).sin_cos() for delay in law.delays]
     return [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs]

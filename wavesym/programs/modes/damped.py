@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import inf, sqrt
 
 import numpy as np
 
+from wavesym.errors import UnservedError
 from wavesym.mechanics.damping import Damping
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.modal import Numbers
@@ -45,11 +47,21 @@ class Damped:
 
 
 def damped(damping: Damping | None, w: Sequence[float]) -> Damped:
-    """What a scene says of damping, for modes whose first frequencies with strain are w."""
+    """What a scene says of damping, for modes whose first frequencies with strain are w.
+
+    UnservedError where two modes with one frequency have ratios of their own, as then it is open which modes they are.
+    """
     if damping is None:
         return Damped()
     ratio = nearest(damping.ratios[0])
     if damping.modes is None or ratio == 0:
-        return Damped(tuple(map(nearest, damping.ratios)))
+        ratios = tuple(map(nearest, damping.ratios))
+        for number, (one, other) in enumerate(pairwise(ratios[: len(w)]), 1):
+            if one != other and w[number - 1] == w[number]:
+                raise UnservedError(
+                    f"system.damping: {one:g} and {other:g} given for modes {number} and {number + 1}, which have one "
+                    f"frequency, {w[number]:g}; the same ratio expected for both"
+                )
+        return Damped(ratios)
     first, second = (w[number - 1] for number in damping.modes)
     return Damped(rayleigh=(2 * ratio * first * second / (first + second), 2 * ratio / (first + second)))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import isqrt
 
 import numpy as np
 from flint import fmpq
@@ -21,7 +22,7 @@ from wavesym.programs.modes.panels import Panels
 from wavesym.programs.modes.tables import scheme_tables
 
 _LONGEST = 64  # steps of a block
-_MOST = 1 << 24  # numbers of a matrix
+_MOST = 1 << 22  # numbers of a matrix
 Places = NDArray[np.intp]
 
 
@@ -58,8 +59,10 @@ class RecordResponse:
     @cached_property
     def steps(self) -> int:
         """Of a block."""
-        width = (2 * self._modes + _LONGEST) * self.parts * len(self.system.direct)
-        return max(4, min(_LONGEST, _MOST // width))
+        loads, rows = self.system.pushes.shape[1], 2 * self._modes
+        width = (rows + _LONGEST * loads) * self.parts * len(self.system.direct)
+        fits: int = min(_MOST // width, isqrt(_MOST // (rows * loads)))
+        return max(4, min(_LONGEST, fits))
 
     @cached_property
     def _step(self) -> tuple[Numbers, Numbers]:
@@ -74,32 +77,30 @@ class RecordResponse:
 
     @cached_property
     def _matrices(self) -> tuple[Numbers, Numbers]:
-        """What the values in a block, and the state at its end, take: of the state at its start, then of the samples.
-
-        (2 modes + (steps + 1) loads, steps * parts * outputs) and (2 modes + (steps + 1) loads, 2 modes).
-        """
+        """What the values in a block take of the state at its start and of the samples, (2 modes + (steps + 1) loads,
+        steps * parts * outputs), and what the state at its end takes of the samples, ((steps + 1) loads, 2 modes)."""
         count, modes, (turn, push) = self.steps, self._modes, self._step
         loads, outputs = push.shape[2], len(self.system.direct)
-        states = np.zeros((count + 1, 2 * modes + (count + 1) * loads, 2, modes))
-        on = np.arange(modes)
-        states[0, on, 0, on] = states[0, modes + on, 1, on] = 1.0
+        # the state after each step, of one sample that is 1
+        states = np.zeros((count + 1, (count + 1) * loads, 2, modes))
         for k in range(count):
-            now, then = states[k], states[k + 1]
-            np.einsum("abm,rbm->ram", turn, now, out=then)
-            at = 2 * modes + k * loads
-            then[at : at + loads] += push[0].transpose(1, 0, 2)
-            then[at + loads : at + 2 * loads] += push[1].transpose(1, 0, 2)
-        rows = states.shape[1]
-        values = np.empty((rows, count, self.parts, outputs))
-        starts = states[:count].transpose(1, 0, 2, 3).reshape(rows * count, 2 * modes)
+            np.einsum("abm,rbm->ram", turn, states[k], out=states[k + 1])
+            at = k * loads
+            states[k + 1, at : at + loads] += push[0].transpose(1, 0, 2)
+            states[k + 1, at + loads : at + 2 * loads] += push[1].transpose(1, 0, 2)
+        starts = states[:count].transpose(1, 0, 2, 3).reshape(-1, 2 * modes)
+        values = np.empty((2 * modes + states.shape[1], count, self.parts, outputs))
         for part, reads in enumerate(self._panels.reads(self._parts)):
-            values[:, :, part] = (starts @ reads[: 2 * modes]).reshape(rows, count, outputs)
+            of_state = reads[: 2 * modes].reshape(2, modes, outputs)
+            turned = np.einsum("kabm,amo->bmko", self._powers, of_state)
+            values[: 2 * modes, :, part] = turned.reshape(2 * modes, count, outputs)
+            values[2 * modes :, :, part] = (starts @ reads[: 2 * modes]).reshape(-1, count, outputs)
             slope, value = reads[2 * modes :][: 2 * loads].reshape(2, loads, outputs)
             for k in range(count):
                 at = 2 * modes + k * loads
                 values[at : at + loads, k, part] += value - slope / self.spacing
                 values[at + loads : at + 2 * loads, k, part] += slope / self.spacing
-        return values.reshape(rows, -1), states[count].reshape(rows, 2 * modes)
+        return values.reshape(len(values), -1), states[count].reshape(-1, 2 * modes)
 
     @property
     def _parts(self) -> Numbers:
@@ -119,9 +120,12 @@ class RecordResponse:
         known[:, :, 2 * self._modes :] = padded[:, at].reshape(records, blocks, -1)
         states = known[:, :, : 2 * self._modes]
         values, ends = self._matrices
-        added = known[:, :, 2 * self._modes :] @ ends[2 * self._modes :]
+        added = (known[:, :, 2 * self._modes :] @ ends).reshape(records, blocks, 2, self._modes)
+        last = np.einsum("abm,bcm->acm", self._step[0], self._powers[-1])
+        state = np.zeros((records, 2, self._modes))
         for block in range(blocks - 1):
-            states[:, block + 1] = states[:, block] @ ends[: 2 * self._modes] + added[:, block]
+            state = np.einsum("abm,rbm->ram", last, state) + added[:, block]
+            states[:, block + 1] = state.reshape(records, -1)
         made = (known.reshape(records * blocks, -1) @ values).reshape(records, -1, len(self.system.direct))
         made = made[:, : (n - 1) * self.parts]
         if self._summing:
@@ -165,7 +169,7 @@ class RecordResponse:
         first = window[np.arange(len(step)), count - since]
         state = states[record, block].reshape(-1, 2, modes)
         known = np.einsum("cabm,cbm->cam", self._powers[since], state).reshape(len(step), 2 * modes)
-        known += window.reshape(len(step), -1) @ self._matrices[1][2 * modes :]
+        known += window.reshape(len(step), -1) @ self._matrices[1]
         # the sample with which the block begins ends no step of it
         known -= np.einsum("cj,ckj->ck", first, self._lead[since])
         now, then = samples[record, step], samples[record, step + 1]

@@ -67,37 +67,41 @@ class ScaledRoughness(Roughness):
 
     unit: Roughness
     by: float
+    apart: float
 
     @cached_property
     def in_step(self) -> float:
-        return self.unit.in_step * self.by * _MORE
+        return self.unit.in_step * self.by * _MORE if self.kinks.any() else 0.0
 
     def fading(self, rate: float) -> float:
         """As of any load; here kinks are equally far apart."""
-        total, step, apart = np.abs(self.kinks), 1, float(self.times[1] - self.times[0])
+        total, step, apart = np.abs(self.kinks), 1, self.apart
         while step < len(total):
             earlier = total[:-step] * np.exp(-rate * apart * step * (1 - 1e-12))
             total[step:] += earlier
             step *= 2
-        return float(np.max(total) * _MORE)
+        return float(np.max(total, initial=0.0) * _MORE)
 
 
 def of_samples(samples: Numbers) -> Roughness:
     """Of a load that is 0 until tau = 0, has these `samples` one unit of tau apart, the first of them 0, and then 0."""
     slopes = np.diff(samples, append=0.0)
     kinks = np.diff(slopes, prepend=0.0, append=0.0)
-    kinks += np.copysign(4 * np.finfo(float).eps * np.abs(samples).max(initial=0.0), kinks)  # what rounding took
+    rounding = 4 * np.finfo(float).eps * np.abs(samples).max(initial=0.0)
+    kinks += np.where(kinks == 0, 0.0, np.copysign(rounding, kinks))
     return Roughness(
         np.arange(float(len(kinks))), kinks, tuple(range(len(kinks))), float(np.abs(slopes).max(initial=0.0)) * _MORE
     )
 
 
-def scaled(unit: Roughness, begin: float, spacing: float, factor: float) -> ScaledRoughness:
-    """The same load from `begin` on, `factor` times as high, its samples `spacing` apart."""
+def scaled(unit: Roughness, begin: float, spacing: float, factor: float, until: float) -> ScaledRoughness:
+    """The same load from `begin` on, `factor` times as high, its samples `spacing` apart; what is felt by `until`."""
     by = abs(factor) / spacing * _MORE
-    return ScaledRoughness(
-        begin + spacing * unit.times, by * unit.kinks, unit.steps, by * unit.steepest, unit=unit, by=by
-    )
+    times = begin + spacing * unit.times
+    felt = times <= until
+    kinks = by * unit.kinks[felt]
+    steepest = by * unit.steepest if kinks.any() else 0.0
+    return ScaledRoughness(times[felt], kinks, unit.steps, steepest, unit=unit, by=by, apart=spacing)
 
 
 def _partial(terms: Numbers) -> float:

@@ -8,11 +8,12 @@ from functools import cached_property
 from math import fsum
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import acb, arb, ctx, fmpq
 
 from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.statics import Shape, Statics
+from wavesym.exact.modes.stiffness import Quantity
 from wavesym.mechanics.network import End, Network
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.modes.modal import Numbers
@@ -80,7 +81,7 @@ def shares(found: Sequence[Mode], pieces: Cut, seen: Sequence[Seen], drivers: Se
         return Shares(
             w=np.array([float(mode.frequency) for mode in found]),
             seen=np.array([_column(each, found) for each in seen]).reshape(len(seen), len(found)),
-            shares=_array([[_share(network, each, mode) for mode in found] for each in drivers], len(found)),
+            shares=_array([[share(network, each, mode) for mode in found] for each in drivers], len(found)),
             imposed=_array(
                 [
                     [arb(0) if s is None else each.of(s) * g for g, (s, _) in zip(gains, shapes, strict=True)]
@@ -112,7 +113,7 @@ def _shapes(statics: Statics, driver: Driver) -> tuple[Shape | None, Shape]:
     return imposed, statics.accelerated(imposed)
 
 
-def _share(network: Network, driver: Driver, mode: Mode) -> arb:
+def share(network: Network, driver: Driver, mode: Mode) -> Quantity:
     """The share of a mode of mass 1 in a load."""
     if network.points[driver.point].motion is None:
         return mode.points[driver.point] * driver.gain
@@ -127,6 +128,8 @@ def _share(network: Network, driver: Driver, mode: Mode) -> arb:
         if driver.point in (link.left, link.right):
             other = link.right if link.left == driver.point else link.left
             pull += mode.points[other] * (link.ratio * link.stiffness)
+            if link.damping != 0:
+                pull += mode.points[other] * (mode.frequency * acb(0, link.ratio * link.damping))
     return -pull * driver.gain / (mode.frequency * mode.frequency)
 
 

@@ -1,26 +1,42 @@
-"""Outputs that are 0 throughout the horizon, whatever a load does."""
+"""Outputs that are 0 throughout the horizon: where no load has come to, and where its effects cancel.
+
+They cancel if what all loads together do to the output at a frequency w is 0 at every w: then each mode's part is 0,
+damped or not. It is a rational function of w and of E = exp(-i w h), all delays being multiples of h. As in
+exact/silence.py it is computed modulo a prime, one in which i is a number; at a random w and E what is not 0 is taken
+for 0 with a chance of less than one in 2**70.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
+from math import gcd, lcm
 
-from flint import fmpq
+from flint import fmpq, fmpq_mat, fmpz_mod, fmpz_mod_ctx
 
+from wavesym.exact.modes.cuts import cut
+from wavesym.exact.modes.stiffness import Stiffness
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
 from wavesym.mechanics.probe import Probe
 from wavesym.programs.modes.loads import LinearLoads
-from wavesym.programs.modes.watched import Driver, ground
+from wavesym.programs.modes.watched import Driver, Seen, ground, places, seen
+
+_FIELD = fmpz_mod_ctx(2**127 - 39)
+_W, _E = _FIELD(0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357), _FIELD(0x0DD_BA11_2468_ACE0_FACE_0FF5_1DE5)
+_I = _FIELD(3) ** ((2**127 - 40) // 4)
 
 
 def silent(model: Model, drivers: Sequence[Driver], loads: LinearLoads) -> tuple[bool, ...]:
-    """Whether each output is: at a free end, or where no load has come to before the end of the horizon.
+    """Whether each output is: at a free end, where no load has come to before the end of the horizon, or cancelled.
 
     Damped modes move the whole chain at once. Without any load outputs are 0 of themselves.
     """
+    answer = _Answer(model)
+    shares = _histories(loads)
     begun = [(each.point, _begin(loads, j)) for j, each in enumerate(drivers)]
     acting = [(point, time) for point, time in begun if time is not None]
-    return tuple(_silent(model, probe, acting) for probe in model.probes)
+    return tuple(_silent(model, probe, acting) or answer.cancels(probe, drivers, shares) for probe in model.probes)
 
 
 def _silent(model: Model, probe: Probe, acting: Sequence[tuple[int, fmpq]]) -> bool:
@@ -46,3 +62,90 @@ def _begin(loads: LinearLoads, j: int) -> fmpq | None:
         if row[j] != 0:
             return loads.times[k - 1]
     return loads.times[-1] if loads.slopes[j] != 0 else None
+
+
+def _histories(loads: LinearLoads) -> list[list[fmpq]]:
+    """Loads as sums of as few histories as will do: how much of each history is in each load."""
+    if len(loads.slopes) == 1:
+        return [[fmpq(1)]]
+    rows, rank = fmpq_mat([list(row) for row in (*loads.samples, loads.slopes)]).rref()
+    return [[rows[k, j] for j in range(len(loads.slopes))] for k in range(rank)]
+
+
+class _Answer:
+    """What loads do to outputs at one w and E, modulo a prime."""
+
+    def __init__(self, model: Model) -> None:
+        self._network = model.network
+        self._cut = cut(model.network, places(model))
+        self._stiffness = Stiffness(self._cut.network)
+
+    def cancels(self, probe: Probe, drivers: Sequence[Driver], histories: Sequence[Sequence[fmpq]]) -> bool:
+        """Whether what the loads do to an output adds up to 0."""
+        output = seen(self._network, self._cut, probe)
+        done = [self._read(output, self._moved(driver)) for driver in drivers]
+        zero = _FIELD(0)
+        return all(
+            sum((_modular(part) * each for part, each in zip(history, done, strict=True)), zero) == 0
+            for history in histories
+        )
+
+    @cached_property
+    def _circular(self) -> dict[fmpq, tuple[fmpz_mod, fmpz_mod]]:
+        """sin and cos of w times each delay."""
+        delays = {bar.delay for bar in self._cut.network.bars}
+        over = lcm(*(int(delay.q) for delay in delays))
+        measure = fmpq(gcd(*(int(delay * over) for delay in delays)), over)
+        made = {}
+        for delay in delays:
+            forth = _E ** int(delay / measure)
+            back = 1 / forth
+            made[delay] = ((back - forth) / (2 * _I), (back + forth) / 2)
+        return made
+
+    def _moved(self, driver: Driver) -> list[fmpz_mod]:
+        """How far points move under a load."""
+        key = driver.point, driver.gain
+        return self._known.get(key) or self._known.setdefault(key, self._solved(driver))
+
+    @cached_property
+    def _known(self) -> dict[tuple[int, fmpq], list[fmpz_mod]]:
+        return {}
+
+    def _solved(self, driver: Driver) -> list[fmpz_mod]:
+        network, zero = self._cut.network, _FIELD(0)
+        moved, forces = [zero] * len(network.points), [zero] * len(network.points)
+        if network.points[driver.point].motion is None:
+            forces[driver.point] = _modular(driver.gain)
+        else:
+            told = moved[driver.point] = -_modular(driver.gain) / (_W * _W)
+            for bar in network.bars:
+                ratio = _modular(bar.impedance * bar.ratios[0] * bar.ratios[1])
+                across = ratio * _W / self._circular[bar.delay][0]
+                for here, there in ((bar.left, bar.right), (bar.right, bar.left)):
+                    forces[there] += across * told if here == driver.point else zero
+            for link in network.links:
+                across = _modular(link.ratio * link.stiffness) + _I * _W * _modular(link.ratio * link.damping)
+                for here, there in ((link.left, link.right), (link.right, link.left)):
+                    forces[there] += across * told if here == driver.point else zero
+        law = self._stiffness.law(_modular)
+        pairs = [self._circular[delay] for delay in sorted(self._circular)]
+        matrix = law.matrix(_W, [cosine / sine for sine, cosine in pairs], [1 / sine for sine, _ in pairs], _I * _W)
+        found = self._stiffness.solved(*matrix, [forces[point] for point in self._stiffness.points])
+        for point, q in zip(self._stiffness.points, found, strict=True):
+            moved[point] = q
+        return moved
+
+    def _read(self, output: Seen, moved: Sequence[fmpz_mod]) -> fmpz_mod:
+        """An output, but for the powers of w that its derivatives have."""
+        if output.slope is None:
+            return sum((_modular(weight) * moved[point] for point, weight in output.points.items()), _FIELD(0))
+        end = output.slope[1]
+        bar = self._cut.network.bars[end.bar]
+        sine, cosine = self._circular[bar.delay]
+        ends = [moved[point] * _modular(ratio) for point, ratio in zip((bar.left, bar.right), bar.ratios, strict=True)]
+        return (ends[1 - end.side] - ends[end.side] * cosine) / sine
+
+
+def _modular(value: fmpq) -> fmpz_mod:
+    return _FIELD(int(value.p)) / _FIELD(int(value.q))

@@ -11,6 +11,7 @@ from wavesym.errors import UnservedError
 from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.statics import Shape, Statics
+from wavesym.exact.modes.stiffness import Quantity
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Network, Point
 from wavesym.mechanics.probe import Probe
@@ -24,7 +25,7 @@ class Seen:
     points: Mapping[int, fmpq]
     slope: tuple[fmpq, End] | None = None
 
-    def of(self, shape: Mode | Shape) -> arb:
+    def of(self, shape: Mode | Shape) -> Quantity:
         """What it is of a shape."""
         if self.slope:
             weight, end = self.slope
@@ -46,7 +47,7 @@ class Seen:
             total = sum((arb(b * b / network.points[point].mass) for point, b in self.points.items()), arb(0))
             part = sum((free[point] * b for point, b in self.points.items()), arb(0)) if free else arb(0)
             return total - part * part
-        return self.of(statics.under(self.points))
+        return arb(self.of(statics.under(self.points)))
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,13 @@ def _felt(point: Point, coefficients: Sequence[fmpq]) -> list[fmpq]:
 
 
 def places(model: Model) -> tuple[tuple[int, fmpq], ...]:
-    """Where bars are to be cut so that all outputs are at points."""
+    """Where bars are to be cut so that all outputs are at points. UnservedError where that makes a ring."""
+    for probe in model.probes:
+        if 0 < probe.place < 1 and probe.rod - 1 in model.network.bridged:
+            raise UnservedError(
+                f"output: {probe.name} inside a rod with a spring or dashpot beside it given, a place at its ends "
+                "expected in modes (pieces and march serve it)"
+            )
     return tuple((probe.rod - 1, probe.place) for probe in model.probes if probe.rod)
 
 

@@ -1,8 +1,9 @@
 """Parameters of a scene with units: in which units they are given, and what of the scene they leave as it is.
 
-kappa is a ratio of masses. Loads, velocities and inertias are given in the units of results. In collisions and
-buildings rods stay, so that kappa changes bodies; in a drive discs have inertias of their own, so that kappa changes
-shafts. The time that a wave takes through a rod stays everywhere, and so does a load: 5 N*m are 5 N*m.
+kappa is a ratio of masses. Loads and velocities are given in the units of results, inertias and the numbers of a
+chain's parts in SI base units. In collisions and buildings rods stay, so that kappa changes bodies; in a drive discs
+have inertias of their own, so that kappa changes shafts. The time that a wave takes through a rod stays everywhere, and
+so does a load: 5 N*m are 5 N*m.
 """
 
 from __future__ import annotations
@@ -34,11 +35,11 @@ PLAIN = ParameterUnit(fmpq(1), "")
 
 def unit_of(model: Model, name: str) -> ParameterUnit:
     """That of the numbers of a field other than `load`."""
-    if model.clock is None or name not in ("velocity", "inertia"):
+    if model.clock is None or name == "kappa":
         return PLAIN
     if name == "inertia":  # as a physical drive is rewritten
         return ParameterUnit(fmpq(1), "kg*m^2")
-    return ParameterUnit(*model.inputs["impact"])
+    return ParameterUnit(*model.inputs[name])
 
 
 def unit_of_load(model: Model, load: Applied) -> ParameterUnit:
@@ -46,7 +47,8 @@ def unit_of_load(model: Model, load: Applied) -> ParameterUnit:
     if model.clock is None:
         return PLAIN
     size, text = model.inputs[load.source]
-    if load.source[0] not in RAMPS:
+    ramp = load.source.endswith(":ramp") if model.chain is None else load.source[0] in RAMPS
+    if not ramp:
         return ParameterUnit(size, text)
     return ParameterUnit(size / model.clock.per_tau, f"{text}/{model.clock.unit}")
 

@@ -141,6 +141,20 @@ class Scale:
         return texts[self._moved]
 
     @property
+    def parts(self) -> dict[str, tuple[Fraction, str]]:
+        """What a dimensionless 1 of the numbers of a chain's parts is: in SI base units, and velocities as results."""
+        stiffness = self.force / self.displacement
+        turned = self.kind == "torsional"
+        mass, spring, dashpot = ("kg*m^2", "N*m/rad", "N*m*s/rad") if turned else ("kg", "N/m", "N*s/m")
+        return {
+            "mass": (stiffness * self.seconds**2, mass),
+            "spring": (stiffness, spring),
+            "dashpot": (stiffness * self.seconds, dashpot),
+            "impedance": (stiffness * self.seconds, dashpot),
+            "velocity": (self.factor("velocity", 1), self.unit("velocity")),
+        }
+
+    @property
     def _moved(self) -> str:
         return "angle" if self.kind == "torsional" else "length"
 

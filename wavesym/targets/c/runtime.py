@@ -62,8 +62,8 @@ class CRuntime:
     largest: str
     least: str
     loads: str
-    numbers: str
     series: str
+    numbers: str
     kernel: str
     read: str
     bound: str
@@ -106,8 +106,8 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         constants=constants,
         amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
         loads="amplitude" if own else "p->load",
-        numbers=kernel("real.h", scene),
         series=kernel("runtime_series.c", scene),
+        numbers=kernel("real.h", scene),
         kernel=kernel("runtime.c", scene),
         read=kernel("runtime_read.c", scene),
         bound=kernel("runtime_bound.c", scene),

@@ -11,6 +11,8 @@ from wavesym.programs.runtime.engine import Array
 
 _POINTS = 16
 _DEEPEST = 60
+_CLOSELY = 8
+_AT_ONCE = 1 << 10
 
 
 class _Part:
@@ -69,18 +71,55 @@ class _Summit:
         higher = best > self.best
         self.best, self.tau = np.where(higher, best, self.best), np.where(higher, when, self.tau)
 
-    def climb(self, part: _Part, survey: Array, bend: Array, slack: Array) -> None:
-        """Between ends no higher than h an output rises to h + bend * width^2 / 8 at most: halve, until that is no more
-        than `slack` above the best.
+    def explore(self, part: _Part, survey: Array, bend: Array, slack: Array) -> None:
+        """Look for what is higher between the instants of a survey, closely where it can be.
+
+        `bend` is the bound of a whole panel. Near a front, or where an output comes to rest, that is far too large:
+        there four times the largest second difference is taken.
         """
         heights = self.sign * survey
         steps = np.diff(part.t, axis=1)[:, :, None]
         limit = np.maximum(heights[:, :-1], heights[:, 1:]) + bend[:, None] * steps * steps / 8
         row, gap, sets = np.nonzero(limit > self.best + slack)
-        window, bends = part.windows[row], bend[row, sets]
-        left, right = part.t[row, gap], part.t[row, gap + 1]
-        at_left, at_right = heights[row, gap, sets], heights[row, gap + 1, sets]
+        for begin in range(0, len(row), _AT_ONCE):
+            some = slice(begin, begin + _AT_ONCE)
+            places = np.linspace(0, 1, _POINTS) / _CLOSELY + np.arange(_CLOSELY)[:, None] / _CLOSELY
+            left, width = part.t[row[some], gap[some]], steps[row[some], gap[some], 0]
+            t = (left[:, None, None] + width[:, None, None] * places).reshape(-1, _POINTS)
+            window, members = (np.repeat(of[some], _CLOSELY) for of in (part.windows[row], sets))
+            values = part.at(np.repeat(window, _POINTS), np.repeat(members, _POINTS), t.ravel()).reshape(t.shape)
+            self.see(np.repeat(members, _POINTS), values.ravel(), (window[:, None] + t).ravel())
+            each = np.repeat(width, _CLOSELY) / (_CLOSELY * (_POINTS - 1))
+            seen = 4 * np.abs(np.diff(values, 2, axis=1)).max(axis=1) / (each * each)
+            bends = np.minimum(seen, np.repeat(bend[row[some], sets[some]], _CLOSELY))
+            window, members, bends = (np.repeat(of, _POINTS - 1) for of in (window, members, bends))
+            (left, right), (at_left, at_right) = (
+                (of[:, :-1].ravel(), of[:, 1:].ravel()) for of in (t, self.sign * values)
+            )
+            self._climb(part, window, members, bends, left, right, at_left, at_right, slack)
+
+    def _climb(
+        self,
+        part: _Part,
+        window: Ints,
+        sets: Ints,
+        bends: Array,
+        left: Array,
+        right: Array,
+        at_left: Array,
+        at_right: Array,
+        slack: Array,
+    ) -> None:
+        """Between ends no higher than h an output rises to h + bend * width^2 / 8 at most: halve, until that is no more
+        than `slack` above the best.
+        """
         for _ in range(_DEEPEST):
+            limit = np.maximum(at_left, at_right) + bends * (right - left) ** 2 / 8
+            some = limit > self.best[sets] + slack[sets]
+            if not some.any():
+                break
+            window, sets, bends = window[some], sets[some], bends[some]
+            left, right, at_left, at_right = left[some], right[some], at_left[some], at_right[some]
             middle = left + (right - left) / 2
             values = part.at(window, sets, middle)
             self.see(sets, values, window + middle)
@@ -88,13 +127,6 @@ class _Summit:
             left, right = np.concatenate([left, middle]), np.concatenate([middle, right])
             at_left, at_right = np.concatenate([at_left, at_middle]), np.concatenate([at_middle, at_right])
             window, sets, bends = np.tile(window, 2), np.tile(sets, 2), np.tile(bends, 2)
-            limit = np.maximum(at_left, at_right) + bends * (right - left) ** 2 / 8
-            open_ = limit > self.best[sets] + slack[sets]
-            window, sets, bends, left, right, at_left, at_right = (
-                values[open_] for values in (window, sets, bends, left, right, at_left, at_right)
-            )
-            if not len(sets):
-                break
 
 
 def array_peaks(tables: ArrayTables, march: ArrayMarch) -> Array:
@@ -126,6 +158,6 @@ def _extremes(parts: list[_Part], sets: int, unit: float) -> tuple[_Summit, _Sum
     slack = 4 * unit * np.maximum(np.abs(least.best), np.abs(greatest.best))
     for part, survey in zip(parts, surveys, strict=True):
         bend = part.bend(slack)
-        least.climb(part, survey, bend, slack)
-        greatest.climb(part, survey, bend, slack)
+        least.explore(part, survey, bend, slack)
+        greatest.explore(part, survey, bend, slack)
     return least, greatest

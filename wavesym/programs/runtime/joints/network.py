@@ -14,7 +14,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.ratio import Ring
 from wavesym.programs.runtime.request import RuntimeField, field_of, refuse_others
-from wavesym.programs.runtime.units import PLAIN
+from wavesym.programs.runtime.units import unit_of, unit_of_load
 
 Numbers = dict[tuple[str, int], fmpq]
 """By what has it, a "point", "bar" or "link", and its number."""
@@ -37,8 +37,6 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
     network = model.network
     network.refuse_contacts()
     model.refuse_damping()
-    if model.clock is not None:
-        raise UnservedError("--runtime: chain with [units] given, one without expected (its parts say what it is)")
     for point in network.points:
         if point.motion is not None and point.velocity != 0:
             raise UnservedError(f"--runtime: the end at {point.place} moves at tau = 0, one at rest expected")
@@ -46,23 +44,25 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
     known = [*there, *(["load"] if amplitudes or model.loads else [])]
     refuse_others(names, known)
     fields: list[RuntimeField] = []
-    symbols: dict[tuple[str, str, int], str] = {}
+    symbols: dict[tuple[str, str, int], tuple[str, fmpq]] = {}
     for name in there:
         if name in names:
             labels = {key: f"{name}_{kind}_{number}" for key in there[name] for kind, number in [key]}
-            symbols |= {(name, *key): label for key, label in labels.items()}
+            unit = unit_of(model, name)
+            symbols |= {(name, *key): (label, unit.size) for key, label in labels.items()}
             fields.append(
                 field_of(
                     name,
-                    [(labels[key], value, PLAIN) for key, value in there[name].items()],
+                    [(labels[key], value, unit) for key, value in there[name].items()],
                     tuple(f"{name} of {_told(network, *key)}" for key in there[name]),
                 )
             )
     if "load" in names:
-        fields.append(field_of("load", [(told, load.weight, PLAIN) for told, load in amplitudes]))
-    ring = Ring(tuple(symbols.values()))
+        fields.append(field_of("load", [(told, load.weight, unit_of_load(model, load)) for told, load in amplitudes]))
+    ring = Ring(tuple(label for label, _ in symbols.values()))
     made = ring.symbols()
-    return FreeNetwork(tuple(fields), ring, _freed(network, {key: made[label] for key, label in symbols.items()}))
+    plain = {key: made[label] / size for key, (label, size) in symbols.items()}
+    return FreeNetwork(tuple(fields), ring, _freed(network, plain))
 
 
 def _masses(network: Network) -> Iterator[tuple[tuple[str, int], fmpq]]:

@@ -73,11 +73,15 @@ def joints_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real:
     own = ring_plan(replace(model, loads=all_loads), real)
     plan = ring_plan(replace(model, network=free.network, loads=all_loads), real, joint_rows)
     heard = tuple((number, wave) for number, output in enumerate(plan.outputs) for wave in output.heard)
-    pushes = tuple(_pushes(plan, model, loads, [number for _, number in sorted(acting)]))
+    units = [unit.size for field in free.fields if field.name == "load" for unit in field.units]
+    sizes = units or [fmpq(1)] * len(loads)
+    pushes = tuple(_pushes(plan, model, loads, [number for _, number in sorted(acting)], sizes))
     return JointsPlan(model, plan, own, free, pushes, heard, tuple(_strands(plan, heard)))
 
 
-def _pushes(plan: RingPlan, model: Model, loads: Sequence[Applied], acting: Sequence[int]) -> Iterator[Push]:
+def _pushes(
+    plan: RingPlan, model: Model, loads: Sequence[Applied], acting: Sequence[int], sizes: Sequence[fmpq]
+) -> Iterator[Push]:
     places = {panel.start: number for number, panel in enumerate(plan.panels)}
     rule = joint_rule()
     for number in acting:
@@ -86,7 +90,8 @@ def _pushes(plan: RingPlan, model: Model, loads: Sequence[Applied], acting: Sequ
         panel = places[load.time - window * plan.step]
         for force, point in enumerate(model.network.points[k] for k in plan.pushed):
             for unit in point.loads:
-                for power, coefficient in enumerate(unit.coefficients):
+                for power, of_unit in enumerate(unit.coefficients):
+                    coefficient = of_unit / sizes[number]
                     if unit.source == load.source and coefficient != 0:
                         if point.motion == "acceleration":  # a velocity is prescribed
                             yield Push(window, panel, force, power + 1, coefficient / (power + 1), number)

@@ -1,0 +1,193 @@
+"""The modes of a chain with dashpots: complex frequencies w, of motions exp(i w tau) that die away, each proved.
+
+They are the zeros of K(w)'s determinant times the sines of the bars, a function without poles. Those of the same chain
+without dashpots are known; from these all are sought at once in doubles by Newton's method, each pushed off by all
+others, as zeros of a polynomial are (Aberth, 1973). So none is found twice, also where two meet and leave the same way:
+one swings no more, and has become two that creep.
+
+Each is polished in complex balls, and proved: a ball that Newton's method (with all slopes that occur in it) maps into
+its inside has one zero. That none is missed is not proved here. What all modes together have is known otherwise, and
+bounds count what is left of it (programs/modes/dissipation.py): a mode that was missed makes a bound worse, not wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from flint import acb, arb, ctx, fmpq
+from numpy.typing import NDArray
+
+from wavesym.errors import UnservedError
+from wavesym.exact.modes.cuts import Cut, cut
+from wavesym.exact.modes.frequencies import searched
+from wavesym.exact.modes.shape import Mode, trial
+from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
+from wavesym.mechanics.network import Network
+
+Complex = NDArray[np.complex128]
+
+_BITS = 224
+_BITS_A_ROW = 8
+_BALL = 80  # bits
+_NEWTON = 8
+_MEETING = 1e-5  # frequencies that no step tells apart
+_BESIDE, _FEW = 1e-9, 64  # modes that are so near each other, and at most how many
+_SHARP = arb(2) ** -60  # shapes
+_OFF = 2.0**-30  # a frequency itself tells less of its mode than one near it
+_STRAIGHT = 1e-9  # of what creeps, which has no real part
+_MORE = 1.15  # as many are sought, as those at the edge are pushed off by fewer
+_ROUNDS = 400
+_FOUND = 1e-11
+_CREEPING = 1e-4, 1e2  # where they are sought, spacings of frequencies from 0
+_CREEPERS = 24
+_I = acb(0, 1)
+
+
+def undamped(network: Network) -> Network:
+    """The same chain without its dashpots."""
+    points = tuple(replace(point, damping=point.damping * 0) for point in network.points)
+    return replace(
+        network, points=points, links=tuple(replace(link, damping=link.damping * 0) for link in network.links)
+    )
+
+
+class DyingSpectrum:
+    """The modes of a network with dashpots that is cut at places (bar, part of it)."""
+
+    def __init__(self, network: Network, places: Sequence[tuple[int, fmpq]] = ()) -> None:
+        self._cuts = [cut(network, places)]
+        if not network.bridged:  # where cuts would make rings
+            self._cuts.append(cut(network, places, aside=True))
+
+    @property
+    def cut(self) -> Cut:
+        """The network as it is cut."""
+        return self._cuts[0]
+
+    def first(self, count: int) -> list[Mode]:
+        """About the first `count` modes, by the absolute values of their frequencies, with real parts of at least 0.
+
+        Of a mode that creeps the real part is exactly 0. Shapes have mass 1 as `Trial` counts it. UnservedError where
+        frequencies coincide, as of equal branches.
+        """
+        stiffness = Stiffness(self.cut.network)
+        guesses = sought(stiffness, count) if stiffness.points else np.zeros(1, complex)
+        found = _all_proved(stiffness, guesses) if stiffness.points else [None]
+        for k in (k for k, mode in enumerate(found) if mode is None):
+            if self._cuts[1:]:  # all points may be at rest
+                del self._cuts[0]
+                return self.first(count)
+            if np.count_nonzero(np.abs(guesses - guesses[k]) < _MEETING * abs(guesses[k])) > 1:
+                raise UnservedError(
+                    f"system: two frequencies meet near {abs(guesses[k]):.6g}, frequencies that differ expected in "
+                    "modes with dashpots (pieces and march serve it)"
+                )
+        return _apart([mode for mode in found if mode])
+
+
+def _all_proved(stiffness: Stiffness, guesses: Complex) -> list[Mode | None]:
+    with ctx.workprec(_BITS + _BITS_A_ROW * len(stiffness.points)):
+        law, near = stiffness.law(arb), guesses * (1 + _OFF)
+        roots = stiffness.yielding(near, 1j * near).tolist()
+        return [_proved(stiffness, law, *each) for each in zip(guesses.tolist(), roots, strict=True)]
+
+
+def sought(stiffness: Stiffness, count: int) -> Complex:
+    """The first frequencies in doubles, those with a real part of at least 0."""
+    many = int(_MORE * count) + len(stiffness.network.bars) + 4
+    start = searched(Stiffness(undamped(stiffness.network)), many)
+    draw = np.random.default_rng(0)  # nothing is to stay symmetric by chance
+    apart = np.pi / float(stiffness.delay)
+    start = start + apart * (0.1j + 0.02 * (draw.normal(size=many) + 1j * draw.uniform(size=many)))
+    creeping = apart * (np.geomspace(*_CREEPING, _CREEPERS) * 1j + 1e-3)
+    w = np.concatenate([start, -start.conjugate() + 1e-3 * apart, creeping])
+    moving = np.arange(len(w))
+    for _ in range(_ROUNDS):
+        apart = w[moving, None] - w
+        apart[np.arange(len(moving)), moving] = np.inf
+        with np.errstate(all="ignore"):
+            step = 1 / (_pull(stiffness, w[moving]) - (1 / apart).sum(axis=1))
+        step = np.where(np.isfinite(step), step, 0.1 * draw.normal(size=len(step)))
+        size = np.abs(step)
+        step *= np.minimum(1.0, 2.0 / float(stiffness.delay) / np.maximum(size, 1e-300))
+        w[moving] -= step
+        moving = moving[size > _FOUND * np.abs(w[moving])]
+        if not len(moving):
+            break
+    done = np.setdiff1d(np.arange(len(w)), moving)
+    found = w[done]
+    found = found[found.real > -1e-9 * np.abs(found)]
+    found = found[np.argsort(np.abs(found), kind="stable")]
+    return np.asarray(found[:count])
+
+
+def _pull(stiffness: Stiffness, w: Complex) -> Complex:
+    """The slope of the logarithm of det K times the sines of the bars over w."""
+    law = stiffness.doubles
+    angles = [w * delay for delay in law.delays]
+    with np.errstate(all="ignore"):
+        csc = [1 / np.sin(angle) for angle in angles]
+        cot = [np.cos(angle) * each for angle, each in zip(angles, csc, strict=True)]
+        diagonal, up = law.matrix(w, cot, csc, 1j * w)
+        pulled = [c - a * s * s for c, s, a in zip(cot, csc, angles, strict=True)]
+        shared = [a * s * c - s for c, s, a in zip(cot, csc, angles, strict=True)]
+        bent = replace(law, held=[0.0] * len(law.held), across=[0.0] * len(law.across))
+        slopes = bent.assembled(2 * w, pulled, shared, 1j)
+        total = sum(n * (t * c - 1 / w) for n, t, c in zip(law.counts, law.delays, cot, strict=True))
+        for row, parent in enumerate(stiffness.parents):
+            pivot, slope = diagonal[row], slopes[0][row]
+            total = total + slope / pivot
+            if parent is not None:
+                over = up[row] / pivot
+                diagonal[parent] = diagonal[parent] - up[row] * over
+                slopes[0][parent] = slopes[0][parent] - over * (2 * slopes[1][row] - over * slope)
+    return np.asarray(total)
+
+
+def _proved(stiffness: Stiffness, law: HarmonicLaw, guess: complex, root: int) -> Mode | None:
+    """The mode near a guess, in which row `root` moves much; None where that cannot be proved."""
+    creeps = abs(guess.real) < _STRAIGHT * abs(guess)
+    w = acb(0.0 if creeps else guess.real, guess.imag)
+    for _ in range(_NEWTON):
+        tried = trial(stiffness, law, w, root, _I * w)
+        better = (w + tried.rest * tried.rows[root] / (2 * w * tried.mass)).mid()
+        if not better.is_finite():
+            return None
+        if creeps:
+            better = acb(0, better.imag)
+        off, w = abs(better - w), better
+        if off < abs(w) * arb(2) ** -_BALL:
+            break
+    else:
+        return None
+    radius = (abs(w) * arb(2) ** -_BALL).upper()
+    ball = acb(arb(w.real, radius), arb(w.imag, radius))
+    here, around = (trial(stiffness, law, v, root, _I * v) for v in (w, ball))
+    slope = -2 * ball * around.mass / around.rows[root] ** 2
+    inside = w - here.rest / here.rows[root] / slope
+    if not ball.contains_interior(inside):
+        return None
+    if creeps:  # and so does the mirror image of the zero, which is the only one in the ball
+        inside = acb(0, inside.imag)
+    made = trial(stiffness, law, inside, root, _I * inside)
+    # a square root away from where it jumps
+    scale = (-made.mass).rsqrt() * _I if made.mass.real.mid() < 0 else made.mass.rsqrt()
+    points = [acb(0)] * len(stiffness.network.points)
+    for row, point in enumerate(stiffness.points):
+        points[point] = made.rows[row] * scale
+    if not all(q.real.rad() < _SHARP and q.imag.rad() < _SHARP for q in points):
+        return None
+    return Mode(stiffness, inside, points)
+
+
+def _apart(modes: Sequence[Mode]) -> list[Mode]:
+    """Each mode once, in their order."""
+    sizes = np.array([abs(complex(mode.frequency)) for mode in modes])
+    kept: list[int] = []
+    for k in np.argsort(sizes, kind="stable").tolist():
+        beside = [j for j in kept[-_FEW:] if sizes[j] > sizes[k] * (1 - _BESIDE)]
+        if not any(modes[k].frequency.overlaps(modes[j].frequency) for j in beside):
+            kept.append(k)
+    return [modes[k] for k in kept]

@@ -1,0 +1,170 @@
+"""What modes have of each other, and of what ports start, where dashpots take energy: in balls (left.py has the laws).
+
+Most of what is started is in few slow modes. These are taken away in balls, so that what is left is not lost in the
+rounding of what is not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from flint import acb, acb_mat, arb
+
+from wavesym.exact.modes.shape import Mode
+from wavesym.exact.modes.stiffness import Quantity
+from wavesym.numbers.doubles import nearest
+from wavesym.programs.modes.left import POWERS, Complex, Started, Taken, left
+from wavesym.programs.modes.modal import Numbers
+from wavesym.programs.modes.ports import TERMS, Dashpot, SlowPort
+
+_STILL = 2.0**-80  # of a frequency: what dies away more slowly does not in doubles
+_SLOW = 32  # modes that are taken away in balls
+_ABOVE = 1 + 2.0**-50
+
+
+@dataclass(frozen=True)
+class StartedInBalls:
+    """What a port starts: its shares in modes, |A^-q B|^2 for each q, and <A^-q B, X> of all modes."""
+
+    shares: Sequence[acb]
+    energies: Sequence[arb]
+    known: Sequence[Sequence[acb]]
+    least: int
+
+    def rounded(self, first: int) -> Started:
+        """In doubles, without the first modes."""
+        return Started(
+            np.array([complex(b) for b in self.shares[first:]], complex),
+            np.array([max(float(each.upper()) * _ABOVE, 0.0) for each in self.energies]),
+            np.array([[complex(h) for h in row[first:]] for row in self.known], complex),
+            self.least,
+        )
+
+
+class Dissipation:
+    """Modes that die away: their rates, how far dashpots are extended in them, and twice their energies."""
+
+    def __init__(self, modes: Sequence[Mode], dashpots: Sequence[Dashpot]) -> None:
+        self._dashpots, self._sizes = dashpots, [arb(dashpot.size) for dashpot in dashpots]
+        self.rates = [_rate(mode.frequency) for mode in modes]
+        self._extended = [[_sum(dashpot, mode.points) for dashpot in dashpots] for mode in modes]
+        self._fast = [[rate * e for e in row] for rate, row in zip(self.rates, self._extended, strict=True)]
+        self._energies = [self._energy(rate, fast) for rate, fast in zip(self.rates, self._fast, strict=True)]
+
+    def left(self, ports: Sequence[SlowPort], shares: Sequence[Sequence[acb]]) -> Numbers:
+        """What is left of ports once the first 0, 1, 2, ... modes are taken: (ports, POWERS, modes + 1)."""
+        responses = [self._response(port, row) for port, row in zip(ports, shares, strict=True)]
+        taken = self._rounded()
+        made = left(taken, [response.rounded(0) for response in responses])
+        slow = min(_SLOW, len(self.rates))
+        deflated = [response.rounded(slow) for response in self._without(responses, slow)]
+        made[:, :, slow:] = np.minimum(made[:, :, slow:], left(taken.after(slow), deflated))
+        return made
+
+    def _energy(self, rate: acb, fast: Sequence[acb]) -> arb:
+        if not rate.real < 0:
+            return 2 * abs(rate) ** 2  # that of a mass of 1
+        return arb(-self._taken(fast, fast).real / rate.real)
+
+    def _taken(self, one: Sequence[Quantity], other: Sequence[Quantity]) -> Quantity:
+        """What dashpots take of two states."""
+        return sum((c * a * b.conjugate() for c, a, b in zip(self._sizes, one, other, strict=True)), acb(0))
+
+    def _product(self, k: int, n: int, conjugate: bool) -> acb:
+        """That of a mode, or its conjugate, and another one."""
+        if k == n and not conjugate:
+            return acb(self._energies[k])
+        rate, fast = self.rates[k], self._fast[k]
+        if conjugate:
+            rate, fast = rate.conjugate(), [v.conjugate() for v in fast]
+        return acb(-2 * self._taken(fast, self._fast[n]) / (rate + self.rates[n].conjugate()))
+
+    def _response(self, port: SlowPort, shares: Sequence[acb]) -> StartedInBalls:
+        moved = [[acb(_sum(dashpot, [q[k] for q in port.moved])) for dashpot in self._dashpots] for k in range(TERMS)]
+        zero = [acb(0)] * len(self._dashpots)
+
+        def fast(q: int) -> list[acb]:
+            """How fast dashpots are extended by A^-q of what it starts."""
+            k = q - 2 + port.told
+            return [-each for each in moved[k]] if k >= 0 else zero
+
+        energies = []
+        for q in range(POWERS):
+            if port.told:
+                energy = port.reads[2 * q + 2] - 2 * self._taken(moved[0], moved[2 * q + 1]).real
+            else:
+                energy = -port.reads[2 * q - 2] if q else port.begun
+            for j in range(q - 1, -1, -1):
+                energy = -2 * self._taken(fast(q + j + 1), fast(q - j)).real - energy
+            energies.append(energy)
+        known = [(rate * b).conjugate() for rate, b in zip(self.rates, shares, strict=True)]
+        if port.told:
+            known = [h + 2 * self._taken(moved[0], e) for h, e in zip(known, self._extended, strict=True)]
+        rows = [known]
+        for q in range(1, POWERS):
+            acting = fast(q)
+            pairs = zip(known, self._fast, self.rates, strict=True)
+            known = [-(h + 2 * self._taken(acting, v)) / rate.conjugate() for h, v, rate in pairs]
+            rows.append(known)
+        return StartedInBalls(shares, energies, rows, port.least)
+
+    def _without(self, responses: Sequence[StartedInBalls], slow: int) -> list[StartedInBalls]:
+        """What ports start but for their parts in the first modes."""
+        if not slow:
+            return list(responses)
+        columns = [
+            [part(rate, b) / rate ** (q + 1) for rate, b in zip(self.rates[:slow], each.shares, strict=False)]
+            for each in responses
+            for q in range(POWERS)
+        ]
+        both = [
+            [*(self._product(k, n, False) for k in range(slow)), *(self._product(k, n, True) for k in range(slow))]
+            for n in range(len(self.rates))
+        ]
+        halves = acb_mat([[x / 2 for x in column] + [x.conjugate() / 2 for x in column] for column in columns])
+        parts = acb_mat(both) * halves.transpose()
+        made, column = [], 0
+        for each in responses:
+            energies, rows = [], []
+            for q in range(POWERS):
+                row = [h - parts[n, column] for n, h in enumerate(each.known[q])]
+                mixed = zip(columns[column], each.known[q], row, strict=False)
+                taken = sum(((x.conjugate() * (h + rest)).real for x, h, rest in mixed), arb(0))
+                energies.append(each.energies[q] - taken)
+                rows.append(row)
+                column += 1
+            made.append(StartedInBalls(each.shares, energies, rows, each.least))
+        return made
+
+    def _rounded(self) -> Taken:
+        rates = np.array([complex(rate) for rate in self.rates], complex)
+        return Taken(
+            rates=rates,
+            finer=np.array([float(a.imag - b.imag) for a, b in zip(self.rates, rates.tolist(), strict=True)]),
+            energy=np.array([float(energy) for energy in self._energies]),
+            size=np.array([nearest(dashpot.size) for dashpot in self._dashpots]),
+            extended=complexes([list(row) for row in zip(*self._fast, strict=True)], len(rates)),
+        )
+
+
+def complexes(rows: Sequence[Sequence[Quantity]], columns: int) -> Complex:
+    """Balls rounded to doubles."""
+    return np.array([[complex(value) for value in row] for row in rows], complex).reshape(len(rows), columns)
+
+
+def _rate(frequency: acb) -> acb:
+    """That of exp(rate tau). It is 0 but for its imaginary part where that dies away too slowly to be seen."""
+    fades = frequency.imag > abs(frequency) * _STILL
+    return acb(-frequency.imag if fades else 0, frequency.real)
+
+
+def part(rate: acb, share: acb) -> acb:
+    """A share of one mode of a pair, or of one alone, so that a share over its rate counts for all of it."""
+    return share if rate.imag != 0 else share / 2
+
+
+def _sum(dashpot: Dashpot, points: Sequence[Quantity]) -> Quantity:
+    """How far a dashpot is extended."""
+    return sum((points[point] * weight for point, weight in dashpot.points.items()), arb(0))

@@ -1,0 +1,188 @@
+"""What loads and outputs are of a chain with dashpots when all is slow: power series in s, the rate of exp(s tau).
+
+A port is what a load acts on, or what an output reads. Under a load on it points move by T(s), a power series, and it
+reads H(s) of this itself. Dashpots are what take energy: each resists a sum of velocities.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+
+from flint import arb, arb_series, ctx, fmpq
+
+from wavesym.errors import UnservedError
+from wavesym.exact.modes.stiffness import Stiffness
+from wavesym.mechanics.network import End, Network
+from wavesym.programs.modes.watched import Driver, Seen
+
+TERMS = 10
+"""Of a power series."""
+
+Series = arb_series
+
+
+@contextmanager
+def series() -> Iterator[None]:
+    """Power series of so many terms."""
+    before, ctx.cap = ctx.cap, TERMS
+    try:
+        yield
+    finally:
+        ctx.cap = before
+
+
+@dataclass(frozen=True)
+class Dashpot:
+    """It resists `size` times the sum of weights times the velocities of points."""
+
+    size: fmpq
+    points: Mapping[int, fmpq]
+
+
+def dashpots(network: Network) -> list[Dashpot]:
+    """Those that take energy from a network."""
+    free = {number for number, point in enumerate(network.points) if point.motion is None}
+    found = [Dashpot(network.points[n].damping, {n: fmpq(1)}) for n in sorted(free) if network.points[n].damping != 0]
+    return found + [
+        Dashpot(link.damping, {link.right: fmpq(1), link.left: -link.ratio})
+        for link in network.links
+        if link.damping != 0 and free & {link.left, link.right}
+    ]
+
+
+@dataclass(frozen=True)
+class SlowPort:
+    """How points move under it, and what it reads of this; `told` is 2 where it is an acceleration, twice integrated.
+
+    `least` is the power of 1/s from which on what it starts has a finite energy, and that energy (in 1/s^0) `begun`.
+    """
+
+    moved: Sequence[Series]
+    reads: Series
+    told: int
+    least: int
+    begun: arb
+
+
+class Slowly:
+    """A network under loads that change slowly. UnservedError where dashpots alone, or nothing, hold it."""
+
+    def __init__(self, stiffness: Stiffness) -> None:
+        self._stiffness = stiffness
+        self._network = stiffness.network
+        self._law = stiffness.law(arb)
+        self._s = arb_series([0, 1])
+        for pivot in stiffness.pivots(*self._matrix):
+            if not pivot[0] > 0:
+                raise UnservedError(
+                    "system: a chain that dashpots alone, or nothing, hold given, one that an end or a spring holds "
+                    "expected in modes with dashpots (pieces and march serve it)"
+                )
+
+    @property
+    def _matrix(self) -> tuple[list[Series], list[Series]]:
+        delays = self._law.delays
+        square, one = -self._s * self._s, arb_series([1])
+        pulled = [self._bars[delay][0] for delay in self._delays]
+        shared = [-self._bars[delay][1] for delay in self._delays]
+        assert len(pulled) == len(delays)
+        diagonal, up = self._law.assembled(square, pulled, shared, self._s)
+        return [one * k for k in diagonal], [one * k for k in up]
+
+    @cached_property
+    def _delays(self) -> list[fmpq]:
+        return sorted({bar.delay for bar in self._network.bars})
+
+    @cached_property
+    def _bars(self) -> dict[fmpq, tuple[Series, Series]]:
+        """s coth(s T) and s/sinh(s T) of each delay."""
+        made = {}
+        for delay in self._delays:
+            term, sinh, cosh = fmpq(1), list[fmpq](), list[fmpq]()
+            for k in range(TERMS):
+                (sinh if k % 2 else cosh).append(term)  # of sinh(s T)/s the powers of s are one lower
+                (cosh if k % 2 else sinh).append(fmpq(0))
+                term = term * delay / (k + 1)
+            over = 1 / arb_series([*sinh[1:], term if TERMS % 2 else fmpq(0)])
+            made[delay] = arb_series(cosh) * over, over
+        return made
+
+    def _under(self, forces: Mapping[int, Series]) -> list[Series]:
+        """How far points move under forces on them."""
+        stiffness, zero = self._stiffness, arb_series([0])
+        moved = [zero] * len(self._network.points)
+        given = [forces.get(point, zero) for point in stiffness.points]
+        for point, q in zip(stiffness.points, stiffness.solved(*self._matrix, given), strict=True):
+            moved[point] = q
+        return moved
+
+    def slope(self, moved: Sequence[Series], end: End) -> Series:
+        """The strain times the bar's speed at its end."""
+        bar = self._network.bars[end.bar]
+        ends = [moved[point] * arb(ratio) for point, ratio in zip((bar.left, bar.right), bar.ratios, strict=True)]
+        pulled, shared = self._bars[bar.delay]
+        slope = shared * ends[1 - end.side] - pulled * ends[end.side]
+        return -slope if end.side else slope
+
+    def read(self, output: Seen, moved: Sequence[Series]) -> Series:
+        """An output of how far points move, but for its derivatives."""
+        if output.slope:
+            weight, end = output.slope
+            return self.slope(moved, end) * arb(weight)
+        return sum((moved[point] * arb(weight) for point, weight in output.points.items()), arb_series([0]))
+
+    def output(self, output: Seen) -> SlowPort:
+        """The port that an output is."""
+        network, zero, one = self._network, arb(0), arb_series([1])
+        if output.slope:
+            weight, end = output.slope
+            bar = network.bars[end.bar]
+            pulled, shared = self._bars[bar.delay]
+            here, there = (bar.left, bar.right)[:: -1 if end.side else 1]
+            sign = arb(-weight if end.side else weight)
+            forces = {there: shared * (sign * arb(bar.ratios[1 - end.side]))}
+            forces[here] = forces.get(here, arb_series([0])) - pulled * (sign * arb(bar.ratios[end.side]))
+            moved = self._under(forces)
+            reads = self.read(output, moved) - pulled * (arb(weight * weight) / arb(bar.impedance))
+            return SlowPort(moved, reads, 0, 2, zero)
+        free = {point: weight for point, weight in output.points.items() if network.points[point].motion is None}
+        moved = self._under({point: one * arb(weight) for point, weight in free.items()})
+        reads = sum((moved[point] * arb(weight) for point, weight in free.items()), arb_series([0]))
+        return SlowPort(moved, reads, 0, *self._begun(free))
+
+    def driver(self, driver: Driver) -> SlowPort:
+        """The port that a load is."""
+        network, gain, one = self._network, arb(driver.gain), arb_series([1])
+        if network.points[driver.point].motion is None:
+            moved = self._under({driver.point: one * gain})
+            return SlowPort(moved, moved[driver.point] * gain, 0, *self._begun({driver.point: driver.gain}))
+        held, forces = arb_series([0]), dict[int, Series]()
+        for bar in network.bars:
+            pulled, shared = self._bars[bar.delay]
+            for here, there, (ratio, other) in (
+                (bar.left, bar.right, bar.ratios),
+                (bar.right, bar.left, bar.ratios[::-1]),
+            ):
+                if here == driver.point:
+                    held += pulled * arb(bar.impedance * ratio * ratio)
+                    forces[there] = forces.get(there, arb_series([0])) + shared * arb(bar.impedance * ratio * other)
+        for link in network.links:
+            across = arb_series([arb(link.stiffness), arb(link.damping)])
+            for here, there, ratio in ((link.left, link.right, link.ratio), (link.right, link.left, fmpq(1))):
+                if here == driver.point:
+                    held += across * arb(ratio * ratio)
+                    forces[there] = forces.get(there, arb_series([0])) + across * arb(link.ratio)
+        moved = [q * gain for q in self._under(forces)]
+        pull = sum((forces[point] * moved[point] for point in forces if network.points[point].motion is None), one * 0)
+        moved[driver.point] = one * gain
+        return SlowPort(moved, (held * gain - pull) * gain, 2, 0, arb(0))
+
+    def _begun(self, weights: Mapping[int, fmpq]) -> tuple[int, arb]:
+        """Of a force the first power whose energy is finite, and that of its impulse: where there are masses, both."""
+        masses = {point: self._network.points[point].mass for point in weights}
+        if not all(mass > 0 for mass in masses.values()):
+            return 1, arb(0)
+        return 0, arb(sum((weight * weight / masses[point] for point, weight in weights.items()), fmpq(0)))

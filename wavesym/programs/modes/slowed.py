@@ -1,0 +1,191 @@
+"""Modes of a chain with dashpots: each swings and dies away, or creeps; and what is left out, by its energy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate
+
+import numpy as np
+from flint import acb, arb, ctx, fmpq, fmpq_mat
+
+from wavesym.errors import UnservedError
+from wavesym.exact.modes.cuts import Cut
+from wavesym.exact.modes.dying import DyingSpectrum
+from wavesym.exact.modes.shape import Mode
+from wavesym.exact.modes.stiffness import Stiffness
+from wavesym.mechanics.network import Network
+from wavesym.programs.modes.chain import ModalChain
+from wavesym.programs.modes.dissipation import Dissipation, complexes, part
+from wavesym.programs.modes.left import Complex
+from wavesym.programs.modes.modal import ModalSystem, Numbers
+from wavesym.programs.modes.ports import Slowly, dashpots, series
+from wavesym.programs.modes.roughness import Roughness
+from wavesym.programs.modes.shares import share
+from wavesym.programs.modes.watched import Driver, Seen, places
+
+_BITS = 320
+_MORE = 1 + 1e-12
+
+
+@dataclass(frozen=True)
+class SlowedShares:
+    """Modes by columns, their rates (of exp(rate tau)), what outputs and loads are of them.
+
+    `slow` (outputs, loads, 3) is what outputs have of second integrals, integrals and loads where all changes slowly;
+    `beside` (outputs, loads, modes + 1) what they have of loads beside the first 0, 1, 2, ... modes.
+
+    `left` (outputs and then loads, powers, modes + 1) is what their states have without the first modes.
+    """
+
+    rates: Complex
+    seen: Complex
+    shares: Complex
+    slow: Numbers
+    beside: Numbers
+    left: Numbers
+
+    @property
+    def w(self) -> Numbers:
+        """The absolute values of their frequencies."""
+        return np.abs(self.rates)
+
+    @cached_property
+    def pushed(self) -> Complex:
+        """What loads do to modes, z' = rate z + this; the real part of what outputs are of them counts."""
+        twice = np.where(self.rates.imag != 0, 2.0, 1.0)  # for what is conjugate to it
+        return np.asarray(self.shares * twice / (2 * self.rates))
+
+
+@dataclass(frozen=True)
+class SlowedChain(ModalChain[SlowedShares]):
+    """Its modes, and what those that are left out can add (dissipation.py)."""
+
+    MOST = 1000
+    WORK = 20_000
+
+    @property
+    def least(self) -> int:
+        """As many modes as are taken at least."""
+        return 1
+
+    @cached_property
+    def spectrum(self) -> DyingSpectrum:
+        """Its modes."""
+        return DyingSpectrum(self.model.network, places(self.model))
+
+    @property
+    def cut(self) -> Cut:
+        """The network with points wherever outputs are."""
+        return self.spectrum.cut
+
+    def shares(self, count: int) -> SlowedShares:
+        """The first modes. UnservedError for what modes do not serve."""
+        self.refuse()
+        network = self.model.network
+        network.refuse_contacts()
+        refuse_absorbing(network)
+        found = self.spectrum.first(count)
+        with ctx.workprec(_BITS), series():
+            return slowed_shares(found, self.cut, self.seen, self.drivers)
+
+    def errors(self, known: SlowedShares, count: int, loads: Sequence[Roughness] | None = None) -> Numbers:
+        """What the modes after the first `count` can add to each output, under its own or other `loads`."""
+        taken = min(count, len(known.rates))
+        made = np.zeros(len(self.model.probes))
+        for o, output in enumerate(self.seen):
+            powers = range(3 - output.order + 1)
+            for j, rough in enumerate(self.rough if loads is None else loads):
+                ports = known.left[o], known.left[len(self.seen) + j]
+                size = min(ports[0][p, taken] * ports[1][3 - output.order - p, taken] for p in powers)
+                made[o] += (rough.in_step + rough.steepest) * size
+        return np.where(self.silent, 0.0, _MORE * made)
+
+    def system(self, known: SlowedShares, count: int) -> ModalSystem:
+        """The system of the first `count` modes."""
+        rates = known.rates[:count]
+        orders = np.array([output.order for output in self.seen])
+        direct = np.zeros((*known.slow.shape[:2], 3))
+        for o, order in enumerate(orders.tolist()):
+            direct[o, :, 1 : 3 - order] = known.slow[o, :, : 2 - order][:, ::-1]
+            direct[o, :, 0] = known.beside[o, :, min(count, len(known.rates))]
+        # a mode is rate z + loads; of one load, z = y' - conj(rate) y, y an oscillator's
+        read = known.seen[:, :count] * rates ** orders[:, None]
+        pushed = known.pushed[:, :count]
+        phase = pushed[np.abs(pushed).argmax(axis=0), np.arange(len(rates))]
+        phase = np.where(phase != 0, phase / np.where(phase != 0, np.abs(phase), 1.0), 1.0)
+        pushed, read = pushed / phase, read * phase
+        mixed = np.flatnonzero(np.abs(pushed.imag).max(axis=0) > 2.0**-50 * np.abs(pushed).max(axis=0))
+        every = np.append(np.arange(len(rates)), mixed)
+        pushes = np.append(pushed.real, pushed.imag[:, mixed], axis=1)
+        read = np.append(read, 1j * read[:, mixed], axis=1)
+        w, heard = np.abs(rates[every]), ~np.array(self.silent)
+        return ModalSystem(
+            w,
+            np.clip(-rates[every].real / w, 0.0, 1.0),
+            pushes.T.copy(),
+            -np.real(read * rates[every].conj()) * heard[:, None],
+            np.real(read) * heard[:, None],
+            direct * heard[:, None, None],
+        )
+
+
+def refuse_absorbing(network: Network) -> None:
+    """UnservedError where dashpots swallow waves of some kind altogether: these have no modes.
+
+    Waves that arrive where there is no mass are sent back changed by 2 Z (Z + C)^-1 - 1, with the impedances Z and the
+    dashpots C; nothing is sent back where Z - C takes something to 0.
+    """
+    for joint in network.joints:
+        light = [p for p in joint.points if network.points[p].motion is None and network.points[p].mass == 0]
+        place = {point: k for k, point in enumerate(light)}
+        rows = [[fmpq(0)] * len(light) for _ in light]
+        for end, point in joint.ends:
+            if point in place:
+                rows[place[point]][place[point]] += (
+                    network.bars[end.bar].impedance * network.bars[end.bar].ratios[end.side] ** 2
+                )
+        for point, k in place.items():
+            rows[k][k] -= network.points[point].damping
+        for link in network.links:
+            if link.damping != 0:
+                weights = {place[p]: n for p, n in ((link.left, link.ratio), (link.right, fmpq(-1))) if p in place}
+                for a, n in weights.items():
+                    for b, m in weights.items():
+                        rows[a][b] -= n * m * link.damping
+        if light and fmpq_mat(rows).det() == 0:
+            at = network.points[light[0]].name or network.points[light[0]].place
+            raise UnservedError(
+                f"system: dashpots as large as the impedance at {at} given, larger or smaller ones expected in modes, "
+                "as nothing returns from these (pieces and march serve it)"
+            )
+
+
+def slowed_shares(
+    found: Sequence[Mode], pieces: Cut, outputs: Sequence[Seen], drivers: Sequence[Driver]
+) -> SlowedShares:
+    """Those of the modes of a network that is cut, in the precision and with the power series that are set."""
+    network = pieces.network
+    slowly, losing = Slowly(Stiffness(network)), Dissipation(found, dashpots(network))
+    loads = [slowly.driver(driver) for driver in drivers]
+    seen = [[acb(output.of(mode)) for mode in found] for output in outputs]
+    shares = [[acb(share(network, driver, mode)) for mode in found] for driver in drivers]
+    slow = np.zeros((len(outputs), len(loads), 3))
+    beside = np.zeros((len(outputs), len(loads), len(found) + 1))
+    for o, output in enumerate(outputs):
+        for j, port in enumerate(loads):
+            read = slowly.read(output, port.moved)
+            felt = [arb(0)] * (2 - port.told) + [read[k] for k in range(port.told + 1)]
+            slow[o, j] = [float(each) for each in felt]
+            parts = zip(losing.rates, seen[o], shares[j], strict=True)
+            each = [(part(rate, b) * a * rate ** (output.order - 2)).real for rate, a, b in parts]
+            beside[o, j] = [float(total) for total in accumulate(each, initial=felt[2 - output.order])]
+    return SlowedShares(
+        rates=np.array([complex(rate) for rate in losing.rates], complex),
+        seen=complexes(seen, len(found)),
+        shares=complexes(shares, len(found)),
+        slow=slow,
+        beside=beside,
+        left=losing.left([*map(slowly.output, outputs), *loads], [*seen, *shares]),
+    )
