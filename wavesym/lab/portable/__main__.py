@@ -6,6 +6,7 @@ Exit status 1 where something is not as it has to be; 0 with a word where the to
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -29,17 +30,24 @@ def main(what: str, page: Path) -> int:
         folder = Path(name)
         match what:
             case "prove":
-                made = table(prove.HEAD, prove.rows(PROVED, folder, failed))
+                made = table(prove.HEAD, _told(prove.rows(PROVED, folder, failed)))
                 told = f"Frama-C {version(prove.TOOL)}, data as of {', '.join(prove.MACHINES)}."
             case "misra":
-                made = table(misra.HEAD, misra.rows(CHECKED, folder, failed))
+                made = table(misra.HEAD, _told(misra.rows(CHECKED, folder, failed)))
                 told = f"{version(misra.TOOL)}, in {', '.join(subject.name for subject in CHECKED)}."
             case _:
-                made = table(targets.HEAD, targets.rows(COMPILED, targets.TARGETS, folder, failed))
+                made = table(targets.HEAD, _told(targets.rows(COMPILED, targets.TARGETS, folder, failed)))
                 told = f"{targets.compiler()}, `-Os`."
     put(page, what, f"{told}\n\n{made}")
-    print(made, *failed, sep="\n")
+    print(*failed, sep="\n", end="\n" if failed else "")
     return 1 if failed else 0
+
+
+def _told(rows: Iterator[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
+    """The rows, each on standard error when it is there."""
+    for row in rows:
+        print(*row, sep="  ", file=sys.stderr, flush=True)
+        yield row
 
 
 if __name__ == "__main__":

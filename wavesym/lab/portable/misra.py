@@ -14,7 +14,14 @@ from wavesym.rendering import text_of
 TOOL = "cppcheck"
 HEAD = ("rule", "findings", "why it is left")
 REVIEWED = "proof/deviations.txt"
-_COMMAND = (TOOL, "--addon=misra", "--std=c99", "--quiet", "--suppress=missingIncludeSystem", "--template={file}:{line}:{id}")
+_COMMAND = (
+    TOOL,
+    "--addon=misra",
+    "--std=c99",
+    "--quiet",
+    "--suppress=missingIncludeSystem",
+    "--template={file}:{line}:{id}",
+)
 _SECONDS = 300.0
 
 
@@ -39,7 +46,9 @@ def rows(subjects: Sequence[Subject], folder: Path, failed: list[str]) -> Iterat
     allowed = deviations()
     failed += unreviewed(found, allowed)
     counted = Counter(rule for rule, _ in found)
-    failed += [f"rule {rule}: a deviation is listed, and there is no finding" for rule in allowed.keys() - counted.keys()]
+    failed += [
+        f"rule {rule}: a deviation is listed, and there is no finding" for rule in allowed.keys() - counted.keys()
+    ]
     for rule in sorted(counted, key=_in_order):
         yield rule, str(counted[rule]), allowed.get(rule, "not reviewed")
 

@@ -1,7 +1,7 @@
-"""Frama-C's Eva on every program: it covers all that the C can do for any argument, and alarms where it might be undefined.
+"""Frama-C's Eva on every program: it covers all that C can do for any argument, and alarms where that is undefined.
 
 That is: access out of bounds or of what was never set, overflow of integers, of conversions to integers, of shifts,
-comparison of pointers into different things. Numbers may be any, NaN and infinities included, so that these are no alarms.
+comparison of pointers into different things. Numbers may be any, NaN and infinities included: these are no alarms.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from wavesym.lab.portable.tools import started
 
 TOOL = "frama-c"
 HEAD = ("program", "made by", "called, any argument", "counts", "statements reached", "alarms")
-MACHINES = {"gcc_x86_64": "64 bits", "gcc_x86_32": "32 bits"}
+MACHINES = ("gcc_x86_64",)
 """Layouts of data: integers, long and pointers as on these machines."""
 
 _SECONDS = 900.0
@@ -56,9 +56,7 @@ def rows(subjects: Sequence[Subject], folder: Path, failed: list[str]) -> Iterat
     for subject in subjects:
         for file, text in subject.files().items():
             (folder / file).write_text(text, encoding="utf-8")
-        found = [
-            verdict(subject, count, machine, folder) for machine in MACHINES for count in (subject.counts or (0,))
-        ]
+        found = [verdict(subject, count, machine, folder) for machine in MACHINES for count in (subject.counts or (0,))]
         alarms = [one.alarms for one in found]
         failed += [f"{subject.name}, {subject.driver}: {line}" for one in found if one.alarms != 0 for line in one.told]
         yield (

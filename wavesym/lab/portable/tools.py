@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 from collections.abc import Sequence
@@ -26,7 +27,14 @@ def started(command: Sequence[str], folder: Path, seconds: float) -> Said:
     """Run a command in a folder, for so long at most."""
     try:
         done = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, errors="replace", check=False, timeout=seconds
+            command,
+            cwd=folder,
+            env=os.environ | {"PWD": os.fspath(folder)},  # which Frama-C believes
+            capture_output=True,
+            text=True,
+            errors="replace",
+            check=False,
+            timeout=seconds,
         )
     except subprocess.TimeoutExpired:
         return Said(None, "", f"{command[0]}: stopped after {seconds:g} s")
