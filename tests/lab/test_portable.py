@@ -17,7 +17,7 @@ from wavesym.lab.portable.tools import absent
 from wavesym.running.toolchain import CompilerError
 
 PAGE = "docs/portability.md"
-(PIECES,) = (subject for subject in PROVED if subject.template == "pieces")
+(PIECES,) = (subject for subject in PROVED if subject.name == "pieces_double")
 (SINGLE,) = (subject for subject in COMPILED if subject.name == "pieces_single")
 NATIVE = targets.TARGETS[0]
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,8 +40,9 @@ class Verdict(NamedTuple):
 
 def verdict(subject: Subject, count: int, machine: str, folder: Path) -> Verdict:
     """Prove a program, whose files are in `folder`, under its driver."""
-    (folder / "driver.c").write_text(subject.driven(count), encoding="utf-8")
-    command = [TOOL, *_OPTIONS, "-machdep", machine, "driver.c", f"{subject.name}.c"]
+    driver = f"{subject.name}_{count}_{machine}_driver.c"
+    (folder / driver).write_text(subject.driven(count), encoding="utf-8")
+    command = [TOOL, *_OPTIONS, "-machdep", machine, driver, f"{subject.name}.c"]
     said = started(command, folder, _SECONDS)
     found = re.search(r"(\d+) alarms? generated", said.out)
     covered = re.search(r"(\d+) statements reached \(out of (\d+)\)", said.out)
@@ -56,7 +58,13 @@ def rows(subjects: Sequence[Subject], folder: Path, failed: list[str]) -> Iterat
     for subject in subjects:
         for file, text in subject.files().items():
             (folder / file).write_text(text, encoding="utf-8")
-        found = [verdict(subject, count, machine, folder) for machine in MACHINES for count in (subject.counts or (0,))]
+
+    def verdicts(subject: Subject) -> list[Verdict]:
+        return [verdict(subject, count, machine, folder) for machine in MACHINES for count in subject.counts or (0,)]
+
+    with ThreadPoolExecutor() as started_at_once:
+        every = list(started_at_once.map(verdicts, subjects))
+    for subject, found in zip(subjects, every, strict=True):
         alarms = [one.alarms for one in found]
         failed += [f"{subject.name}, {subject.driver}: {line}" for one in found if one.alarms != 0 for line in one.told]
         yield (
