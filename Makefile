@@ -17,7 +17,7 @@ COMMA := ,
 DEMO := collision_m4 drive_m1 building_m2
 CORES := -n auto --dist loadfile
 
-.PHONY: install demo test lint generated examples bench mutants peers check-all
+.PHONY: install demo test lint generated examples bench prove misra targets mutants peers check-all
 
 # what running and plotting need; `make test` and `make lint` add what they need
 install: .venv/.installed
@@ -95,6 +95,13 @@ bench: install
 	@set -e; for scene in b d c l r; do \
 		$(BIN)/wavesym chart bench/$$scene.toml -o bench/$$scene.svg --csv bench/$$scene.csv; \
 	done
+
+# what a prover, a checker of rules and other machines say of generated C, into its tables; skipped where they are not
+prove misra: install
+	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
+
+targets: .venv/.test
+	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
 
 # which mistakes in the proofs of the bounds the tests would miss: 300 of them, within 45 minutes on 2 cores
 mutants: .venv/.test
