@@ -35,6 +35,8 @@ NAMED = "BDC"
 COUNTS = (300, 1001, SAMPLES)
 """Of samples: runs are short with few of them, and with many all time goes into polynomials."""
 
+_WAYS = ("lines", "many")  # the write floor, and `sample`
+
 CHAINS = "LSE"
 """Written out: three lengths, a spring, contact events."""
 
@@ -208,7 +210,7 @@ def _sampling(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
                 for count in COUNTS:
                     calls = CALLS * SAMPLES // count  # so many that what calls C takes no time beside them
                     with chosen_compiler(compiler.name):
-                        low, sample = least([many(which, each, made, flags, calls, count) for which in ("lines", "many")])
+                        low, sample = least([many(which, each, made, flags, calls, count) for which in _WAYS])
                     times.append(f"{1e9 * sample / (calls * count * len(each.outputs)):.3f}")
                     ratios.append(f"{sample / low:.2f}")
                 yield label, compiler.name, f"`{' '.join(flags)}`", *times, *ratios
