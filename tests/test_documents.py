@@ -5,7 +5,7 @@ toml, c     a scene or a sweep, a program in C; a later command uses the file
 csv         a record, which a scene or a command uses
 python      a program, which runs
 sh          commands, line by line
-text        all that the block before it puts out, to the character
+text        all that the block before it puts out, to the character; of what takes long only with patience
 picture     for the eye only
 others      what another test reads: those of READ_ELSEWHERE
 """
@@ -42,8 +42,10 @@ EXAMPLES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "example
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, *EXAMPLES)
 READ_ELSEWHERE = {"order", "exceptions", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
-LONG = re.compile(r"wavesym (chart|stability|plot --published|verify --published)\b")  # half a minute and more
+LONG = re.compile(r"wavesym (chart|stability|verify|plot --published)\b")  # seconds and more
+COMPILED = "wavesym.model("  # of a block of Python: it waits for a compiler
 SHELL = set("|<>;&$`*?~=")  # what a line is for a shell with, but for these two endings
+UNREAD = "..."  # what a command that takes long puts out, for whom has no patience
 TELLING = ["||", "echo", "exit status $?"]
 
 BLOCK = re.compile(r"^```(.*)\n((?:.*\n)*?)^```$\n", re.MULTILINE)
@@ -83,6 +85,7 @@ class Reader:
             shutil.copytree(ROOT / "examples", folder / "examples", ignore=shutil.ignore_patterns("*.png"))
             self.folder = folder / beside.relative_to(ROOT)
         self.unused: set[str] = set()
+        self.unread = False  # a command of this block, since it takes long
         programs = folder / "bin"
         programs.mkdir()
         program, *given = compiler().command
@@ -116,13 +119,18 @@ class Reader:
                 self.unused.add(block.file)
             case "csv":
                 self.unused.add(block.file)
+            case "python" if COMPILED in block.text and not self.patience:
+                return UNREAD
             case "python":
                 return self.process([sys.executable, "-c", block.text])
             case "sh":
+                self.unread = False
                 lines = [self.line(line) for line in block.text.splitlines() if line.partition("#")[0].strip()]
-                return None if None in lines else "".join(filter(None, lines))
+                if None in lines:
+                    return None
+                return UNREAD if UNREAD in lines else "".join(filter(None, lines))
             case "text":
-                assert block.text == before
+                assert before == UNREAD or block.text == before
             case other if other in {"picture", *READ_ELSEWHERE}:
                 return before
             case _:
@@ -130,31 +138,43 @@ class Reader:
         return None
 
     def line(self, line: str) -> str | None:
-        """What a command puts out; None of one that is not run."""
+        """What a command puts out; None of one that is not run, UNREAD of one that takes too long."""
         self.unused -= set(re.split(r"[\s/]+", line))
         words = shlex.split(line, comments=True)
+        if self.unread and words[0] != "wavesym":  # it looks at what would have been made
+            return UNREAD
         if words[0] == "make":
             assert_made(words[1:])
             return None
         if LONG.match(line) and not self.patience:
-            assert_spelt(words)
-            return None
+            assert_spelt(words[: words.index("|")] if "|" in words else words)
+            self.unread = True
+            return UNREAD
         told = words[-3:] == TELLING
         words = words[:-3] if told else words
         file = words.pop() if words[-2:-1] == [">"] else None
         words = words[:-1] if file else words
+        given = ""
+        if words[0] == "sed" and words.count("|") == 1 and not self.patience:
+            at = words.index("|")
+            given, words = self.process(words[:at]), words[at + 1 :]
         if words[0] == "wavesym" and not self.patience and not SHELL & set(" ".join(words)):
-            return self.here(words[1:], file, told=told)
+            return self.here(words[1:], file, given, told=told)
         return self.process(["bash", "-c", line])
 
-    def here(self, arguments: list[str], file: str | None, *, told: bool) -> str:
+    def here(self, arguments: list[str], file: str | None, given: str, *, told: bool) -> str:
         """What a command of wavesym puts out, without the second that a process takes to start.
 
-        Standard output goes into a `file`, where there is one; a status other than 0 is wrong where it is not `told`.
+        Standard input is what is `given`. Standard output goes into a `file`, where there is one; a status other than 0
+        is wrong where it is not `told`.
         """
-        out, err = io.StringIO(), io.StringIO()
+        out, err, before = io.StringIO(), io.StringIO(), sys.stdin
         with chdir(self.folder), redirect_stdout(out), redirect_stderr(err if file else out):
-            status = main(arguments)
+            sys.stdin = io.TextIOWrapper(io.BytesIO(given.encode()))
+            try:
+                status = main(arguments)
+            finally:
+                sys.stdin = before
         assert status == 0 or told, out.getvalue() + err.getvalue()
         if file:
             (self.folder / file).write_text(out.getvalue(), encoding="utf-8")

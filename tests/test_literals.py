@@ -28,7 +28,7 @@ KEPT = Path(__file__).parent.parent / "generated"
 EXAMPLES = ("building_m2", "collision_m4", "drive_m1")
 NUMBER = re.compile(r"(?<![\w.@/+-])-?(?:\d+\.\d+(?:e[+-]?\d+)?|\d+e[+-]?\d+)(?![\w.])")
 TABLE = re.compile(r"static const (?:real|double) (\w+)\[\] = \{([^}]*)\};")
-NODES = 24  # the pieces are 1/8 long: what 24 points do not see is below 2**-170
+NODES = 32  # the pieces are 1/4 long: what 32 points do not see is below 2**-190
 COUNTED: dict[str, int] = {}
 
 
@@ -110,7 +110,7 @@ class Pieces:
         breaks = sorted({Fraction(0), *(n + part for part in parts for n in range(int(self.until) + 1))})
         cuts = []
         for low, high in pairwise([*(b for b in breaks if b <= self.until), self.last]):
-            count = max(1, math.ceil((high - low) * 8))
+            count = max(1, math.ceil((high - low) * 4))
             inner = [Fraction(float(low + (high - low) * j / count)) for j in range(1, count)]
             cuts += [low, *inner]
         return [*cuts, self.last]

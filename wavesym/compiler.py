@@ -522,6 +522,13 @@ def report(scene: Scene, path: Path) -> None:
     write_whole({path: page(scene)})
 
 
+def sweep_report(folder: Path, path: Path) -> None:
+    """Write what the sweep in a folder came to as one page of HTML. WavesymError where there is no sweep."""
+    from wavesym.report.page.sweep import sweep_page
+
+    write_whole({path: sweep_page(folder)})
+
+
 def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[list[str], list[str]]:
     """Response spectra as CSV lines, and what to say of them; drawn at `path`, too, where there is one.
 

@@ -100,7 +100,7 @@ class ToleranceError(WavesymError):
     ...     wavesym.generate(scene, "out", evaluator="pieces")
     ... except wavesym.ToleranceError as error:
     ...     print(error)
-    output.tolerance: 1e-20 cannot be met: pieces: rounding leaves a bound of 2.8e-16 for strain@0
+    output.tolerance: 1e-20 cannot be met: pieces: rounding leaves a bound of 4e-16 for strain@0
     """
 
     status: ClassVar[int] = 1

@@ -339,10 +339,11 @@ static int piece_at(int grid, real tau)
     return piece;
 }
 
-static real polynomial_at(const real *power, const real *end, int members, real w)
+static real polynomial_at(const real *power, const real *lowest, int members, real w)
 {
     real sum = *power;
-    for (power += members; power < end; power += members) {
+    while (power < lowest) {
+        power += members;
         sum = sum * w + *power;
     }
     return sum;
@@ -352,11 +353,12 @@ static real polynomial_at(const real *power, const real *end, int members, real 
 static void at(int grid, int piece, real tau, real *out, size_t stride)
 {
     const int members = first_member[grid + 1] - first_member[grid];
-    const real *const power = coefficient + first_power[piece];
+    const real *const first = coefficient + first_power[piece];
+    const real *const last = coefficient + first_power[piece + 1] - members;
     const real w = tau - centre[piece];
     for (int m = 0; m < members; ++m) {
         out[(size_t)member[first_member[grid] + m] * stride] =
-            polynomial_at(power + m, coefficient + first_power[piece + 1], members, w);
+            polynomial_at(first + m, last + m, members, w);
     }
 }
 
@@ -382,13 +384,14 @@ static lanes places(const samples *s, size_t k, real centred)
 }
 
 /* Samples k ... end - 1, all of them on one piece. Whole vectors are written: what is beyond the end is written anew by
- * the runs that follow. */
-static APART void run(int grid, int piece, const samples *s, size_t k, size_t end)
+ * the runs that follow. Returns the first sample that is left, at the end of a row. That is left to others: a call after
+ * vectors makes gcc 12 return with their upper halves in use, which slows down all that follows. */
+static APART size_t run(int grid, int piece, const samples *s, size_t k, size_t end)
 {
     const int *const rows = member + first_member[grid];
     const int members = first_member[grid + 1] - first_member[grid];
     const real *const first = coefficient + first_power[piece];
-    const real *const last = coefficient + first_power[piece + 1];
+    const real *const last = coefficient + first_power[piece + 1] - members;
     const real middle = centre[piece];
     const size_t count = s->count;
     const size_t long_before = end > 2 * LANES ? end - 2 * LANES : 0;
@@ -402,11 +405,13 @@ static APART void run(int grid, int piece, const samples *s, size_t k, size_t en
         for (int m = 0; m < members; ++m) {
             real *const row = s->out + (size_t)rows[m] * count + k;
             const real *power = first + m;
+            const real *const lowest = last + m;
             lanes sum0 = everywhere(*power);
             lanes sum1 = sum0;
             lanes sum2 = sum0;
             lanes sum3 = sum0;
-            for (power += members; power < last; power += members) {
+            while (power < lowest) {
+                power += members;
                 sum0 = sum0 * w0 + *power;
                 sum1 = sum1 * w1 + *power;
                 sum2 = sum2 * w2 + *power;
@@ -428,11 +433,13 @@ static APART void run(int grid, int piece, const samples *s, size_t k, size_t en
             const int m2 = rest < 2 ? rest : 2;
             const int m3 = rest < 3 ? rest : 3;
             const real *power = first + m;
+            const real *const lowest = last + m;
             lanes sum0 = everywhere(power[0]);
             lanes sum1 = everywhere(power[m1]);
             lanes sum2 = everywhere(power[m2]);
             lanes sum3 = everywhere(power[m3]);
-            for (power += members; power < last; power += members) {
+            while (power < lowest) {
+                power += members;
                 sum0 = sum0 * w + power[0];
                 sum1 = sum1 * w + power[m1];
                 sum2 = sum2 * w + power[m2];
@@ -444,9 +451,7 @@ static APART void run(int grid, int piece, const samples *s, size_t k, size_t en
             *(stored *)(column + (size_t)rows[m + m3] * count) = sum3;
         }
     }
-    for (; k < end; ++k) {
-        at(grid, piece, instant(s->tau0, s->dtau, s->one, (real)k), s->out + k, count);
-    }
+    return k < end ? k : end;
 }
 
 /* Whether sample k comes before an edge, on the way that samples go. */
@@ -517,8 +522,9 @@ int drive_m1_sample(real tau0, real dtau, size_t count, real *out)
                     if (end == k) {
                         break;
                     }
-                    run(grid, begin + piece, &s, k, end);
-                    k = end;
+                    for (k = run(grid, begin + piece, &s, k, end); k < end; ++k) {
+                        at(grid, begin + piece, instant(tau0, dtau, s.one, (real)k), out + k, count);
+                    }
                 }
             } else {
                 for (int m = first_member[grid]; m < first_member[grid + 1]; ++m) {

@@ -10,6 +10,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -38,12 +39,12 @@ class Compiler(SimpleNamespace):
     def __init__(self) -> None:
         super().__init__(asked=[], difference="", allowed=True)
 
-    def generate(self, scene: object, *options: object, force: bool = False) -> tuple[Path, ...]:
-        self.asked.append(options)
+    def generate(self, scene: object, *options: object, **named: object) -> tuple[Path, ...]:
+        self.asked.append((*options, {key: value for key, value in named.items() if value}))
         return (Path("out/mine.c"), Path("out/mine.h"))
 
-    def check(self, scene: object, *options: object) -> str:
-        self.asked.append(options)
+    def check(self, scene: object, *options: object, **named: object) -> str:
+        self.asked.append((*options, {key: value for key, value in named.items() if value}))
         return self.difference
 
     def warnings(self, scene: object) -> list[str]:
@@ -212,11 +213,13 @@ def test_a_wrong_scene_is_refused_by_every_command(command: str, capsys: pytest.
 def test_generate(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["generate", "mine.toml"]) == 0
     assert main(["generate", "mine.toml", "-o", "there", "--language", "all", "--evaluator", "closed"]) == 0
+    assert main(["generate", "mine.toml", "--stream", "--step", "1/8", "--package"]) == 0
     assert compiler.asked == [
-        (None, "c", "auto", "double", None, None, ()),
-        (Path("there"), "all", "closed", "double", None, None, ()),
+        (None, "c", "auto", "double", None, None, (), {}),
+        (Path("there"), "all", "closed", "double", None, None, (), {}),
+        (None, "c", "auto", "double", None, None, (), {"stream": True, "step": Fraction(1, 8), "package": True}),
     ]
-    assert capsys.readouterr().out.split() == [str(Path("out/mine.c")), str(Path("out/mine.h"))] * 2
+    assert capsys.readouterr().out.split() == [str(Path("out/mine.c")), str(Path("out/mine.h"))] * 3
 
 
 def test_generate_check(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
@@ -303,7 +306,7 @@ def test_a_full_disk(compiler: Compiler, capsys: pytest.CaptureFixture[str], mon
 
 def test_errors_of_the_compiler(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
     def failing(error: Exception) -> object:
-        def generate(*_: object, force: bool) -> None:
+        def generate(*_: object, **named: object) -> None:
             raise error
 
         return generate

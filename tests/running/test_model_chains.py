@@ -234,6 +234,7 @@ def selftest(folder, *changes):
     return subprocess.run([folder / "test"], capture_output=True, check=False).returncode
 
 
+@pytest.mark.slow
 def test_its_selftest_passes(tmp_path):
     assert selftest(tmp_path / "right") == 0
 

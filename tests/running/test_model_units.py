@@ -116,6 +116,7 @@ def test_another_set_is_another_scene(case):
     assert {name: units[0] for name, units in model.units.items()} == CASES[case][1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", ["load_kept", "force_kept"])
 def test_loads_and_forces_that_change_with_discs_are_seen(rule, monkeypatch):
     monkeypatch.setattr(plan, rule, lambda model, free: 1)

@@ -201,7 +201,7 @@ SPANS = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(
     vary=st.dictionaries(PATHS, st.one_of(st.lists(VALUES, max_size=4), SPANS), max_size=3),
     zipped=st.booleans(),

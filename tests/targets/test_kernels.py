@@ -69,3 +69,9 @@ def test_a_program_is_its_kernel_under_its_own_name(of):
     assert not re.search(r"\b(name|NAME)_|_tables\.h", text)
     kernel = (C / f"{of[0]}.c").read_text().partition("\n\n")[2]
     assert text.endswith(re.sub(r"\bname_", f"{made.name}_", re.sub(r"\bNAME_", f"{made.name.upper()}_", kernel)))
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_fast_math_is_refused_unless_it_is_asked_for(kernel):
+    assert "no longer hold" in complaint(kernel, C, "-ffast-math")
+    assert complaint(kernel, C, "-ffast-math", "-DNAME_ALLOW_FAST_MATH") == ""

@@ -10,6 +10,7 @@ import pytest
 
 from tests.support.builds import STRICT, needs_binutils
 from tests.support.generated import numpy_text, program_files
+from tests.support.patience import first_always
 from wavesym.numbers.doubles import fraction, nearest
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.march.evaluator import marched
@@ -17,8 +18,7 @@ from wavesym.running.compiled import FLAGS, compiled, imported
 from wavesym.running.toolchain import at_hand
 from wavesym.scene import Scene, lower
 
-# the first compiler always, the others when there is time
-COMPILERS = [pytest.param(each, marks=pytest.mark.slow) if k else each for k, each in enumerate(at_hand())]
+COMPILERS = first_always(at_hand())
 
 
 def scene(system, load=(), until=9, **outputs):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,13 +14,27 @@ if TYPE_CHECKING:
     from wavesym.scene import Scene
 
 
+class _Source(click.ParamType[Any]):
+    """A scene, or the folder of a sweep."""
+
+    name = "scene"
+    shell_complete = SCENE.shell_complete
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Scene | Path:
+        """The folder as a path, of anything else the scene."""
+        if isinstance(value, str) and Path(value).is_dir():
+            return Path(value)
+        return SCENE.convert(value, param, ctx)
+
+
 @click.command()
-@click.argument("scene", type=SCENE)
+@click.argument("scene", type=_Source())
 @click.option("-o", "out", type=PATH, metavar="FILE.html", required=True, help="The page.")
-def report(scene: Scene, out: Path) -> None:
+def report(scene: Scene | Path, out: Path) -> None:
     """Write one page of HTML about a scene: the structure, histories, extremes, and how well all of it is known.
 
-    It needs no network, and is complete without script.
+    Of the folder of a sweep it has the worst cases and their scenes, a map, and a table. It needs no network, and is
+    complete without script.
 
     \b
     Example:
@@ -29,6 +43,11 @@ def report(scene: Scene, out: Path) -> None:
     if out.suffix.lower() not in (".html", ".htm"):
         raise click.UsageError(f"-o: {out} given, a name that ends in .html expected", click.get_current_context())
     refuse_unwritable(out)
+    if isinstance(scene, Path):
+        from wavesym import compiler
+
+        compiler.sweep_report(scene, out)
+        return
     refuse_scene(out)
     with progress(f"report {scene.name}"):
         from wavesym import compiler

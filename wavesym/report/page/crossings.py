@@ -63,9 +63,9 @@ def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | N
     )
     formal = together(*(_formal(end, x, y, until, long, scale.per_tau) for end in contact_ends(model)))
     nodes = together(*_nodes(model, stations, open_times(model, field.events), x, scale.per_tau, y))
-    bar = colour_bar(
-        f"{name} in {units.unit(name)}" if units else f"{name} (dimensionless)", largest, TOP + _TALL + BELOW
-    )
+    ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
+    words = f"{name} in {units.unit(name)}" if units else f"{name} (dimensionless)"
+    bar = colour_bar(words, ends, TOP + _TALL + BELOW)
     told = (
         f"Colours show the {name} of every rod of the main line, place to the right and time upward to "
         f"{scale.told(until)}; waves are bands that slope by one rod in one crossing."

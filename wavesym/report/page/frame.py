@@ -59,19 +59,20 @@ def spread(low: float, high: float, room: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Frame:
-    """Two axes and what is written beside them; `places` are numbers upward that take the place of ticks."""
+    """Two axes and what is written beside them; `places` upward and `x_places` take the place of ticks."""
 
     x: PlotAxis
     y: PlotAxis
     x_title: str
     y_title: str
     places: Sequence[tuple[float, str]] | None = None
+    x_places: Sequence[tuple[float, str]] | None = None
 
     def drawn(self, numbers: bool = True) -> Svg:
         """The grid, the numbers (those of x only where `numbers` are asked for) and the titles."""
         left, right, top, bottom = self.x.start, self.x.end, self.y.end, self.y.start
         parts = []
-        for value, number in self.x.ticks(10):
+        for value, number in self.x.ticks(10) if self.x_places is None else self.x_places:
             at = self.x.at(value)
             parts.append(line(at, top, at, bottom, "grid"))
             if numbers:

@@ -135,7 +135,8 @@ def _map(
         class_="cells",
     )
     frame = Frame(x, y, scale.title, upward, places)
-    bar = colour_bar(axis_title(model, quantity.quantity, quantity.unit), largest, TOP + tall + BELOW)
+    ends = (f"\u2264 {-largest:.3g}", f"\u2265 {largest:.3g}")
+    bar = colour_bar(axis_title(model, quantity.quantity, quantity.unit), ends, TOP + tall + BELOW)
     return together(frame.drawn(), image, bar), TOP + tall + BELOW + 34
 
 
@@ -149,8 +150,8 @@ def _evenly(band: Band, values: Points) -> Points:
     return np.asarray(values[np.searchsorted(edges, middles, side="right") - 1])
 
 
-def colour_bar(title: str, largest: float, top: float) -> Svg:
-    """From the least to the greatest colour, and what they mean."""
+def colour_bar(title: str, ends: tuple[str, str], top: float) -> Svg:
+    """From the least to the greatest colour, what is written at its ends, and what they mean."""
     shades = colours()[:-1]
     wide = 20.0
     left = (WIDTH - wide * len(shades)) / 2
@@ -158,8 +159,8 @@ def colour_bar(title: str, largest: float, top: float) -> Svg:
         element("rect", fill="#{:02x}{:02x}{:02x}".format(*colour), x=left + k * wide, y=top, width=wide, height=12)
         for k, colour in enumerate(shades)
     )
-    ends = (
-        text(left - 6, top + 10, f"\u2264 {-largest:.3g}", "end"),
-        text(left + wide * len(shades) + 6, top + 10, f"\u2265 {largest:.3g}", "start"),
+    numbers = (
+        text(left - 6, top + 10, ends[0], "end"),
+        text(left + wide * len(shades) + 6, top + 10, ends[1], "start"),
     )
-    return together(*cells, *ends, text(WIDTH / 2, top + 27, title.replace("\n", " ")))
+    return together(*cells, *numbers, text(WIDTH / 2, top + 27, title.replace("\n", " ")))
