@@ -97,7 +97,10 @@ bench: install
 	done
 
 # what a prover, a checker of rules and other machines say of generated C, into its tables; skipped where they are not
-prove misra: install
+prove: install
+	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
+
+misra: install
 	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
 
 targets: .venv/.test

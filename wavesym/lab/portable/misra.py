@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from wavesym.lab.portable.subjects import Subject
+from wavesym.lab.portable.subjects import PortableProgram
 from wavesym.lab.portable.tools import started
 from wavesym.rendering import text_of
 
@@ -31,7 +31,7 @@ def deviations() -> dict[str, str]:
     return {rule: reason.strip() for rule, _, reason in lines}
 
 
-def findings(subject: Subject, folder: Path) -> list[tuple[str, str]]:
+def findings(subject: PortableProgram, folder: Path) -> list[tuple[str, str]]:
     """What the checker finds in a program: the rule, and where."""
     for file, text in subject.files().items():
         (folder / file).write_text(text, encoding="utf-8")
@@ -40,7 +40,7 @@ def findings(subject: Subject, folder: Path) -> list[tuple[str, str]]:
     return [(rule.removeprefix("misra-c2012-"), place) for place, rule in lines]
 
 
-def rows(subjects: Sequence[Subject], folder: Path, failed: list[str]) -> Iterator[tuple[str, ...]]:
+def rows(subjects: Sequence[PortableProgram], folder: Path, failed: list[str]) -> Iterator[tuple[str, ...]]:
     """A row for each rule; findings that no deviation allows are added to `failed`, and deviations without one."""
     found = [finding for subject in subjects for finding in findings(subject, folder)]
     allowed = deviations()

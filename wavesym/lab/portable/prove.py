@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
-from wavesym.lab.portable.subjects import Subject
+from wavesym.lab.portable.subjects import PortableProgram
 from wavesym.lab.portable.tools import started
 
 TOOL = "frama-c"
@@ -25,11 +25,11 @@ _OPTIONS = (
     *("-eva", "-eva-no-show-progress", "-eva-msg-key=-final-states,-initial-state"),
     *("-warn-special-float", "none"),
     # what the driver repeats for ever is joined at once; loops of the program are unrolled
-    *("-eva-precision", "2", "-eva-slevel-function", "main:0"),
+    *("-eva-slevel-function", "main:0"),
 )
 
 
-class Verdict(NamedTuple):
+class ProofVerdict(NamedTuple):
     """Of one run: alarms (None: it did not come to an end), statements reached of those there are, and each alarm."""
 
     alarms: int | None
@@ -38,28 +38,37 @@ class Verdict(NamedTuple):
     told: list[str]
 
 
-def verdict(subject: Subject, count: int, machine: str, folder: Path) -> Verdict:
+def verdict(subject: PortableProgram, count: int, machine: str, folder: Path) -> ProofVerdict:
     """Prove a program, whose files are in `folder`, under its driver."""
     driver = f"{subject.name}_{count}_{machine}_driver.c"
     (folder / driver).write_text(subject.driven(count), encoding="utf-8")
-    command = [TOOL, *_OPTIONS, "-machdep", machine, driver, f"{subject.name}.c"]
+    command = [
+        TOOL,
+        "-eva-precision",
+        str(subject.precision),
+        *_OPTIONS,
+        "-machdep",
+        machine,
+        driver,
+        f"{subject.name}.c",
+    ]
     said = started(command, folder, _SECONDS)
     found = re.search(r"(\d+) alarms? generated", said.out)
     covered = re.search(r"(\d+) statements reached \(out of (\d+)\)", said.out)
     if said.status != 0 or not found or not covered:
-        return Verdict(None, 0, 0, [said.errors or said.out[-500:]])
+        return ProofVerdict(None, 0, 0, [said.errors or said.out[-500:]])
     told = re.findall(r"^\[eva:alarm\] (.*?): Warning:\s*(.*(?:\n  .*)*)", said.out, re.MULTILINE)
     alarms = [f"{place}: {' '.join(what.split())}" for place, what in told]
-    return Verdict(int(found[1]), int(covered[1]), int(covered[2]), alarms)
+    return ProofVerdict(int(found[1]), int(covered[1]), int(covered[2]), alarms)
 
 
-def rows(subjects: Sequence[Subject], folder: Path, failed: list[str]) -> Iterator[tuple[str, ...]]:
+def rows(subjects: Sequence[PortableProgram], folder: Path, failed: list[str]) -> Iterator[tuple[str, ...]]:
     """A row for each program, its counts together; what was not proved is added to `failed`."""
     for subject in subjects:
         for file, text in subject.files().items():
             (folder / file).write_text(text, encoding="utf-8")
 
-    def verdicts(subject: Subject) -> list[Verdict]:
+    def verdicts(subject: PortableProgram) -> list[ProofVerdict]:
         return [verdict(subject, count, machine, folder) for machine in MACHINES for count in subject.counts or (0,)]
 
     with ThreadPoolExecutor() as started_at_once:

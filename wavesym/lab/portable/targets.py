@@ -10,7 +10,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
 
-from wavesym.lab.portable.subjects import Subject
+from wavesym.lab.portable.subjects import PortableProgram
 from wavesym.lab.portable.tools import absent, started
 from wavesym.running.toolchain import CompilerError
 
@@ -32,7 +32,7 @@ _PIE = ("-fPIE",)
 
 
 @dataclass(frozen=True)
-class Target:
+class TargetMachine:
     """A machine as zig calls it, with nothing on it, and with a system and C library (empty: it has none).
 
     `runner` runs the self-test: a program of this machine, which `qemu` or node lets believe that it is on that one.
@@ -46,20 +46,22 @@ class Target:
 
 
 TARGETS = (
-    Target("x86-64", "x86_64-freestanding", "x86_64-linux-musl", ("./selftest",), _PIE),
-    Target("aarch64", "aarch64-freestanding", "aarch64-linux-musl", ("qemu-aarch64-static", "./selftest"), _PIE),
-    Target("riscv64", "riscv64-freestanding", "riscv64-linux-musl", ("qemu-riscv64-static", "./selftest"), _PIE),
-    Target("s390x, big-endian", "s390x-freestanding", "s390x-linux-musl", ("qemu-s390x-static", "./selftest"), _PIE),
-    Target("i386", "x86-freestanding", "x86-linux-musl", ("qemu-i386-static", "./selftest"), _PIE),
-    Target("arm", "arm-freestanding-eabihf", "arm-linux-musleabihf", ("qemu-arm-static", "./selftest"), _PIE),
-    Target("Cortex-M4F", "thumb-freestanding-eabihf", "", options=("-mcpu=cortex_m4+vfp4d16sp",)),
-    Target("Cortex-M0+", "thumb-freestanding-eabi", "", options=("-mcpu=cortex_m0plus",)),
-    Target("windows", "x86_64-windows-gnu", "x86_64-windows-gnu"),
-    Target("wasm32", "wasm32-freestanding", "wasm32-wasi", ("node", "--no-warnings", "selftest.mjs")),
+    TargetMachine("x86-64", "x86_64-freestanding", "x86_64-linux-musl", ("./selftest",), _PIE),
+    TargetMachine("aarch64", "aarch64-freestanding", "aarch64-linux-musl", ("qemu-aarch64-static", "./selftest"), _PIE),
+    TargetMachine("riscv64", "riscv64-freestanding", "riscv64-linux-musl", ("qemu-riscv64-static", "./selftest"), _PIE),
+    TargetMachine(
+        "s390x, big-endian", "s390x-freestanding", "s390x-linux-musl", ("qemu-s390x-static", "./selftest"), _PIE
+    ),
+    TargetMachine("i386", "x86-freestanding", "x86-linux-musl", ("qemu-i386-static", "./selftest"), _PIE),
+    TargetMachine("arm", "arm-freestanding-eabihf", "arm-linux-musleabihf", ("qemu-arm-static", "./selftest"), _PIE),
+    TargetMachine("Cortex-M4F", "thumb-freestanding-eabihf", "", options=("-mcpu=cortex_m4+vfp4d16sp",)),
+    TargetMachine("Cortex-M0+", "thumb-freestanding-eabi", "", options=("-mcpu=cortex_m0plus",)),
+    TargetMachine("windows", "x86_64-windows-gnu", "x86_64-windows-gnu"),
+    TargetMachine("wasm32", "wasm32-freestanding", "wasm32-wasi", ("node", "--no-warnings", "selftest.mjs")),
 )
 
 
-class Size(NamedTuple):
+class MachineBytes(NamedTuple):
     """Bytes: of code, of constants, of data that can be written, and of the frames of all functions together, which is
     more than the stack can become, as no function calls itself."""
 
@@ -75,7 +77,7 @@ def compiler() -> str:
 
 
 def rows(
-    subjects: Sequence[Subject], targets: Sequence[Target], folder: Path, failed: list[str]
+    subjects: Sequence[PortableProgram], targets: Sequence[TargetMachine], folder: Path, failed: list[str]
 ) -> Iterator[tuple[str, ...]]:
     """A row for each target and program; what does not compile, and a self-test that fails, is added to `failed`."""
     (folder / "selftest.mjs").write_text(_RUN_WASM, encoding="utf-8")
@@ -95,7 +97,7 @@ def rows(
                 yield target.name, subject.name, "no", "", "", "", "", ""
 
 
-def compiled(subject: Subject, target: Target, folder: Path) -> Size:
+def compiled(subject: PortableProgram, target: TargetMachine, folder: Path) -> MachineBytes:
     """A program alone, compiled for a machine with nothing on it. CompilerError where that says a word."""
     triple = target.hosted if subject.calls_exp else target.bare
     single = subject.request.precision == "single"
@@ -110,7 +112,7 @@ def compiled(subject: Subject, target: Target, folder: Path) -> Size:
         raise CompilerError(said.errors)
     stack = sum(int(size[1]) for size in sizes if size)
     found = sections(folder / "object")
-    return Size(
+    return MachineBytes(
         text=sum(size for name, size in found.items() if name.startswith((".text", "code"))),
         rodata=sum(size for name, size in found.items() if name.startswith((".rodata", ".rdata", "constant"))),
         data=sum(size for name, size in found.items() if name.startswith((".data", ".bss", ".tdata", "writable"))),
@@ -118,7 +120,7 @@ def compiled(subject: Subject, target: Target, folder: Path) -> Size:
     )
 
 
-def selftest(subject: Subject, target: Target, folder: Path) -> str:
+def selftest(subject: PortableProgram, target: TargetMachine, folder: Path) -> str:
     """That the self-test passes on the machine, or why it was not run. CompilerError where it fails."""
     if not target.runner:
         return "not run"
