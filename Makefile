@@ -17,7 +17,7 @@ COMMA := ,
 DEMO := collision_m4 drive_m1 building_m2
 CORES := -n auto --dist loadfile
 
-.PHONY: install demo test lint generated examples bench mutants peers check-all
+.PHONY: install demo test lint generated examples bench prove misra targets mutants peers check-all
 
 # what running and plotting need; `make test` and `make lint` add what they need
 install: .venv/.installed
@@ -28,7 +28,7 @@ install: .venv/.installed
 	@$(PIP) '.[$(subst $() ,$(COMMA),$(NEEDED))]'
 	@touch $@
 
-.venv/.test .venv/.lint: .venv/.%: .venv/.installed
+.venv/.test .venv/.lint .venv/.simulator: .venv/.%: .venv/.installed
 	@echo '== Python packages into .venv: what `make $*` needs'
 	@$(PIP) '.[$*]'
 	@touch $@
@@ -85,7 +85,7 @@ examples: install
 		( cd $$(dirname $$page) && grep '^wavesym plot' README.md | $(TOLD) sh -e ); \
 	done
 
-check-all: lint .venv/.test
+check-all: lint .venv/.test .venv/.simulator
 	$(BIN)/python -m pytest $(CORES) --run-slow
 
 # speed, as ratios within one run, and the charts of the same scenes
@@ -95,6 +95,16 @@ bench: install
 	@set -e; for scene in b d c l r; do \
 		$(BIN)/wavesym chart bench/$$scene.toml -o bench/$$scene.svg --csv bench/$$scene.csv; \
 	done
+
+# what a prover, a checker of rules and other machines say of generated C, into its tables; skipped where they are not
+prove: install
+	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
+
+misra: install
+	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
+
+targets: .venv/.test
+	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
 
 # which mistakes in the proofs of the bounds the tests would miss: 300 of them, within 45 minutes on 2 cores
 mutants: .venv/.test

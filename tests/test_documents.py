@@ -42,7 +42,7 @@ EXAMPLES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "example
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, *EXAMPLES)
 READ_ELSEWHERE = {"order", "exceptions", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
-LONG = re.compile(r"wavesym (chart|stability|verify|sweep|plot --published)\b")  # seconds and more
+LONG = re.compile(r"wavesym (chart|stability|verify|plot --published|generate \S+ --target)\b")  # seconds and more
 COMPILED = "wavesym.model("  # of a block of Python: it waits for a compiler
 SHELL = set("|<>;&$`*?~=")  # what a line is for a shell with, but for these two endings
 UNREAD = "..."  # what a command that takes long puts out, for whom has no patience

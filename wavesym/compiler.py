@@ -49,7 +49,7 @@ from wavesym.results.unexpected import event_lines, outside, unexpected, without
 from wavesym.running.model import RuntimeModel
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes, drifts, sources
-from wavesym.targets import LANGUAGES
+from wavesym.targets import LANGUAGES, SIMULATORS
 from wavesym.targets.files import files, is_ours, tested
 from wavesym.writing import traces, write_whole
 
@@ -312,6 +312,7 @@ def generate(
     stream: bool = False,
     step: Fraction | None = None,
     package: bool = False,
+    target: str = "",
     force: bool = False,
 ) -> tuple[Path, ...]:
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
@@ -319,7 +320,8 @@ def generate(
     `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
     "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters that C takes when it
     runs: "kappa", "inertia", "velocity", "load". A `stream` takes the loads sample by sample, at any time, or best at
-    multiples of `step`, in tau. `package` adds what CMake builds, tests and installs C with. Files that wavesym did not
+    multiples of `step`, in tau. `package` adds what CMake builds, tests and installs C with. `target` "fmu2" or "fmu3"
+    makes one file, NAME.fmu, a stream for simulators; CompilerError without a C compiler. Files that wavesym did not
     write are replaced only by `force`; WavesymError else, and for a language, evaluator, precision or aim that there is
     not.
 
@@ -329,8 +331,12 @@ def generate(
     drive/drive_m1.json
     drive/drive_m1.py
     """
-    request = _request(evaluator, precision, windows, optimize, runtime, stream, step)
-    made = _written(scene, directory, language, request, package)
+    request = _request(evaluator, precision, windows, optimize, runtime, stream, step, target)
+    made: Mapping[Path, str | bytes]
+    if target:
+        made = {Path(directory or scene.name) / f"{scene.name}.fmu": _fmu(scene, language, request, package)}
+    else:
+        made = _written(scene, directory, language, request, package)
     for path in made:
         if not force and path.is_file() and not is_ours(path):
             raise WavesymError(f"{path}: exists and was not written by wavesym; --force replaces it")
@@ -376,14 +382,16 @@ def _request(
     runtime: Sequence[str],
     stream: bool,
     step: Fraction | None,
+    target: str = "",
 ) -> Request:
     """The options of `generate` as one value. WavesymError for a step without a stream."""
+    stream = stream or bool(target)
     if step is not None and not stream:
         raise WavesymError(f"--step: {step} given without --stream, nothing expected")
     if step is not None and evaluator == "modes":
         raise WavesymError(f"--step: {step} given with --evaluator modes, nothing expected (loads say what it is)")
     every = None if step is None else rational(step)
-    return Request(evaluator, precision, windows, optimize, tuple(runtime), stream, every)
+    return Request(evaluator, precision, windows, optimize, tuple(runtime), stream, every, target)
 
 
 def _written(
@@ -410,6 +418,36 @@ def _written(
     else:
         program = make(model, request, tested=tested(language))
     return {folder / name: text for name, text in files(program, language, packaged=package).items()}
+
+
+def _fmu(scene: Scene, language: str, request: Request, package: bool) -> bytes:
+    """A scene's stream for simulators: of modes where they are damped or asked for, else of waves."""
+    from wavesym.running.fmu import fmu
+
+    refuse_unknown("target", request.target, SIMULATORS)
+    for option, given, usual in (
+        ("language", language, "c"),
+        ("precision", request.precision, "double"),
+        ("runtime", ",".join(request.runtime), ""),
+        ("package", str(package), "False"),
+    ):
+        if given != usual:
+            raise WavesymError(f"{option}: {given} given with --target, {usual or 'nothing'} expected")
+    model = lower(scene)
+    if request.evaluator != "modes" and (model.damping is None or request.evaluator != "auto"):
+        return fmu(stream_program(scene, request), request.target)
+    if request.step is not None:
+        raise WavesymError(f"--step: {request.step} given with modes, nothing expected (loads say what it is)")
+    if not scene.load:
+        raise UnservedError("load: none given with modes and --target, at least one expected (it is an input)")
+    return fmu(make(model, replace(request, evaluator="modes")), request.target)
+
+
+def fmu_told(path: Path) -> list[str]:
+    """What to say of an FMU that was made."""
+    from wavesym.running.fmu import told
+
+    return told(path)
 
 
 def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:

@@ -26,7 +26,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        autoescape=lambda name: name is not None and name.endswith(".html.j2"),  # the rest is C, Python and LaTeX
+        autoescape=lambda name: name is not None and name.endswith((".html.j2", ".xml.j2")),  # the rest is C, Python
     )
 
 

@@ -265,7 +265,7 @@ static void outputs_at(march *state, real tau, real out[OUTPUTS])
         --cycle;
     }
     const real t = tau - (real)cycle * span;
-    int phase = (int)(t / step);
+    int phase = t > 0 ? (int)(t / step) : 0;
     phase = phase < CYCLE ? phase : CYCLE - 1;
     while (phase > 0 && t < begin[phase]) {
         --phase;

@@ -11,7 +11,7 @@ name_real name_error_estimate(const name_model *model)
 
 static int inside(const model_of *m, real tau)
 {
-    return m->built && tau >= 0 && tau <= NAME_TAU_MAX;
+    return m->built && tau == tau && tau >= 0 && tau <= NAME_TAU_MAX;
 }
 
 /* When the cycle of a window begins: after CYCLE windows, which are `span` long, tau is a whole number again. */
@@ -30,12 +30,12 @@ static int in_cycle(int window, int section)
 static int section_at(real tau)
 {
     int cycle = (int)(tau / span);
-    if ((real)cycle * span > tau) {
+    if (cycle > 0 && (real)cycle * span > tau) {
         --cycle;
     }
     const real t = tau - (real)cycle * span;
     const int last = CYCLE * SECTIONS - 1;
-    int at = CYCLE > 1 ? (int)(t / window_length) * SECTIONS : 0;
+    int at = CYCLE > 1 && t > 0 ? (int)(t / window_length) * SECTIONS : 0;
     at = at < last ? at : last;
     while (at > 0 && t < from[at]) {
         --at;
@@ -63,7 +63,7 @@ static real value(const model_of *m, int window, int section, int output, real t
 
 int name_model_eval(const name_model *model, name_real tau, name_real *out)
 {
-    if (!inside(model, tau)) {
+    if (!(model->built && tau == tau && tau >= 0 && tau <= NAME_TAU_MAX)) {
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
             out[output] = not_a_number();
         }
@@ -188,7 +188,7 @@ static size_t run_end(const model_of *m, int window, int section, const samples 
     const int at = in_cycle(window, section);
     const real edge = cycle_begin(window) + (s->dtau < 0 ? from[at] : from[at + 1]);
     const real reach = (edge - s->tau0) * s->per_tau; /* about where the run ends */
-    size_t end = reach < (real)s->count ? (reach > (real)k ? (size_t)reach : k) + 1 : s->count;
+    size_t end = reach == reach && reach < (real)s->count ? (reach > (real)k ? (size_t)reach : k) + 1 : s->count;
     end = end > s->count ? s->count : end;
     while (end > k + 1 && !on_section(m, window, section, s, end - 1)) {
         --end;
@@ -207,7 +207,7 @@ static int sampled(const model_of *m, const real *series, real tau0, real dtau, 
     size_t k = 0;
     while (k < count) {
         const real tau = instant(tau0, dtau, s.one, (real)k);
-        if (inside(m, tau)) {
+        if (m->built && tau == tau && tau >= 0 && tau <= NAME_TAU_MAX) {
             const int at = section_at(tau);
             const int window = at / SECTIONS;
             const int section = at % SECTIONS;

@@ -5,6 +5,7 @@ volatile int any_choice;
 
 int main(void)
 {
+    /*@ widen_hints global:"all", 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 32, 64; */
     static name_state state;
     static name_real loads[NAME_SOURCES * NAME_POINTS + 1];
     name_real out[NAME_OUTPUTS];

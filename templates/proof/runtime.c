@@ -4,11 +4,12 @@ volatile name_real any_number;
 
 int main(void)
 {
+    /*@ widen_hints global:"all", 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 32, 64; */
     static name_model model;
     static name_tangent tangent;
     static name_real rows[(NAME_LANES + 1) * NAME_OUTPUTS * COUNT + 1];
     name_real out[NAME_OUTPUTS];
-    name_parameters parameters;
+    static name_parameters parameters;
     int status = 0;
     for (size_t k = 0; k < sizeof parameters / sizeof(name_real); ++k) {
         ((name_real *)&parameters)[k] = any_number;

@@ -5,6 +5,7 @@ volatile int any_choice;
 
 int main(void)
 {
+    /*@ widen_hints global:"all", 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 32, 64; */
     static name_state state;
     name_real load[NAME_LOADS];
     name_real out[NAME_OUTPUTS];

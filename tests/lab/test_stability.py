@@ -265,7 +265,7 @@ def test_guards_that_count_the_cost_first(name, scene, why):
 
 def test_pieces_refuse_tables_that_are_too_large(monkeypatch):
     choose(lower(guarded(6)), "pieces")
-    monkeypatch.setattr(pieces, "MOST_BYTES", 2000)
+    monkeypatch.setattr(pieces, "MOST_BYTES", 1000)
     with pytest.raises(CostError, match="pieces would take"):
         choose(lower(guarded(6)), "pieces")
 

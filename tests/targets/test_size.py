@@ -7,7 +7,7 @@ import pytest
 import wavesym
 from tests.support.builds import needs_binutils, sections
 from tests.support.generated import files
-from wavesym.running.toolchain import at_hand
+from wavesym.running.toolchain import at_hand, compiler
 from wavesym.scene import lower
 
 TARGETS = {
@@ -25,21 +25,41 @@ SCENE = wavesym.Scene(
 
 
 @needs_binutils
-@pytest.mark.parametrize("compiler", [each for each in at_hand() if each.name in TARGETS], ids=lambda each: each.name)
+@pytest.mark.parametrize("made_by", [each for each in at_hand() if each.name in TARGETS], ids=lambda each: each.name)
 @pytest.mark.parametrize("evaluator", ["closed", "pieces"])
 @pytest.mark.parametrize("precision", ["double", "single"])
-def test_code_and_data_are_no_larger_than_stated(evaluator, precision, compiler, tmp_path):
+def test_code_and_data_are_no_larger_than_stated(evaluator, precision, made_by, tmp_path):
     made = files(lower(SCENE), "c", evaluator, precision)
     for name, text in made.items():
         (tmp_path / name).write_text(text)
     # no C library for the target is needed to count bytes
     (tmp_path / "math.h").write_text('#define NAN (__builtin_nanf(""))\ndouble exp(double);\nfloat expf(float);\n')
-    flags = [*TARGETS[compiler.name], "-ffreestanding", "-std=c99", "-Os", "-I."]
-    compiler.run([*flags, "-c", "small.c", "-o", "small.o"], tmp_path)
+    flags = [*TARGETS[made_by.name], "-ffreestanding", "-std=c99", "-Os", "-I."]
+    made_by.run([*flags, "-c", "small.c", "-o", "small.o"], tmp_path)
     sizes = sections(tmp_path / "small.o")
     stated = json.loads(made["small.json"])["size"]
     assert sum(size for name, size in sizes.items() if name.startswith(".text")) <= stated["code_at_most"]
     tables = sum(size for name, size in sizes.items() if name.startswith(".rodata"))
     # the outputs' names and their addresses are not tables
-    assert LEAST.get(compiler.name, 1) * stated["data"] <= tables <= stated["data"] + 256
+    assert LEAST.get(made_by.name, 1) * stated["data"] <= tables <= stated["data"] + 256
     assert not sizes.keys() & {".data", ".bss"}
+
+
+@needs_binutils
+@pytest.mark.slow
+@pytest.mark.parametrize("evaluator", ["closed", "pieces", "march"])
+def test_double_precision_takes_at_most_twice_the_bytes(evaluator, tmp_path):
+    """Of the smallest programs at equal tolerance (text and tables), as the compiler of this machine makes them."""
+    # a march in single precision cannot do better
+    asked = SCENE.with_({"output.tolerance": "1e-2"}) if evaluator == "march" else SCENE
+    sizes = {}
+    for precision in ("double", "single"):
+        made = files(lower(asked), "c", evaluator, precision, None, "size")
+        folder = tmp_path / precision
+        folder.mkdir()
+        for name, text in made.items():
+            (folder / name).write_text(text)
+        compiler().run(["-std=c99", "-Os", "-c", "small.c", "-o", "small.o"], folder)
+        found = sections(folder / "small.o")
+        sizes[precision] = sum(size for name, size in found.items() if name.startswith((".text", ".rodata")))
+    assert 0 < sizes["double"] <= 2 * sizes["single"]

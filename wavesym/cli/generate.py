@@ -11,7 +11,7 @@ import click
 
 from wavesym.cli.parameters import PATH, SCENE, put, scene_argument
 from wavesym.cli.progress import progress
-from wavesym.targets import LANGUAGES
+from wavesym.targets import LANGUAGES, SIMULATORS
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -81,6 +81,7 @@ STEP = StepParameter()
     help="For a stream whose steps all begin at multiples of this, in tau, as 0.1 or 1/8.",
 )
 @click.option("--package", is_flag=True, help="Add what builds, tests and installs C: CMake, ctest, pkg-config.")
+@click.option("--target", type=click.Choice(SIMULATORS), help="Make one file, NAME.fmu, a stream for simulators.")
 @click.option("--force", is_flag=True, help="Replace files that wavesym did not write, too.")
 @click.option("--check", "only_check", is_flag=True, help="Write nothing; print a diff and exit 1 where files differ.")
 def generate(
@@ -95,6 +96,7 @@ def generate(
     stream: bool,
     step: Fraction | None,
     package: bool,
+    target: str | None,
     force: bool,
     only_check: bool,
 ) -> int:
@@ -108,6 +110,8 @@ def generate(
 
     asked = (scene, directory, language, evaluator, precision, windows, optimize)
     given = () if runtime is None else tuple(name.strip() for name in runtime.split(","))
+    if only_check and target:
+        raise click.UsageError(f"--check given with --target {target}, nothing expected: binaries differ by compiler")
     if only_check:
         with progress(f"check {scene.name}"):
             difference = compiler.check(*asked, scene_argument(), given, stream=stream, step=step, package=package)
@@ -115,13 +119,17 @@ def generate(
             put(difference)
         return 1 if difference else 0
     with progress(f"generate {scene.name}"):
-        written = compiler.generate(*asked, given, stream=stream, step=step, package=package, force=force)
+        written = compiler.generate(
+            *asked, given, stream=stream, step=step, package=package, target=target or "", force=force
+        )
     for path in written:
         click.echo(path)
+    for line in compiler.fmu_told(written[0]) if target else ():
+        click.echo(f"{scene.name}: {line}", err=True)
     if given and scene.output.tolerance < (finest := FINEST[precision]):
         told = f"tolerance {float(scene.output.tolerance):g} taken as {float(finest):.0e} at run time"
         click.echo(f"{scene.name}: {told}", err=True)
-    for line in () if stream else compiler.no_load(scene):
+    for line in () if stream or target else compiler.no_load(scene):
         click.echo(f"{scene.name}: {line}", err=True)
     for manifest in (path for path in written if path.suffix == ".json"):
         click.echo(f"{scene.name}: {json.loads(manifest.read_text(encoding='utf-8'))['reason']}", err=True)

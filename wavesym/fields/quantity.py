@@ -74,6 +74,11 @@ def unit(value: object, dimension: str) -> Fraction:
     return _fitting(value, dimension, value).factor
 
 
+def base_units(unit: str) -> tuple[Fraction, Mapping[str, int]]:
+    """How many SI base units a unit of results is, and its powers of m, kg, s and rad; "g" is that of gravity."""
+    return _meaning(unit, unit, gravity=True)
+
+
 def _fitting(text: str, dimension: str, value: str) -> _Meaning:
     """What a unit means, which is one of a dimension; `value` is what the message shows where it is none."""
     meaning = _meaning(text, value, gravity=dimension in ("acceleration", "jerk"))

@@ -18,7 +18,7 @@ import numpy as np
 from wavesym.lab import parameters, recorded, streamed, swept
 from wavesym.lab.equal_degree import at_degree, fitted, ratios
 from wavesym.lab.harness import CALLS, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
-from wavesym.lab.timing import medians, ran
+from wavesym.lab.timing import least, medians, ran
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import choose
 from wavesym.programs.making import make
@@ -31,6 +31,11 @@ from wavesym.targets.files import files
 
 NAMED = "BDC"
 """Of the paper's systems."""
+
+COUNTS = (300, 1001, SAMPLES)
+"""Of samples: runs are short with few of them, and with many all time goes into polynomials."""
+
+_WAYS = ("lines", "many")  # the write floor, and `sample`
 
 CHAINS = "LSE"
 """Written out: three lengths, a spring, contact events."""
@@ -64,6 +69,15 @@ def report(folder: Path) -> Iterator[str]:
         _evaluating({**named, **chains}),
     )
     yield ""
+    yield "## Few samples and many"
+    yield ""
+    yield "`sample` and the write floor, each the best of many turns, for so many samples of each output."
+    yield ""
+    yield from _table(
+        ("scene", "compiler", "flags", *(f"{count}, ns" for count in COUNTS), *(f"{count}, ratio" for count in COUNTS)),
+        _sampling(named),
+    )
+    yield ""
     yield "## Chains against the collision"
     yield ""
     yield "Time a value, over that of C at the same degree: with as many samples, and with as many on a piece. A chain"
@@ -77,6 +91,10 @@ def report(folder: Path) -> Iterator[str]:
     yield "## Generating"
     yield ""
     yield from _table(("what", "wall s", "peak MB", "evaluator"), _generating(folder))
+    yield ""
+    yield "Of scenes that come with wavesym, in turns with `python -c 'import sympy, numpy'`: wall time, and beyond it."
+    yield ""
+    yield from _table(("what", "wall s", "beyond"), _beyond_imports())
     yield ""
     yield "## Parameters at run time"
     yield ""
@@ -183,6 +201,21 @@ def _evaluating(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
                 )
 
 
+def _sampling(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
+    for label, each in given.items():
+        made = files(make(lower(each), Request(evaluator="pieces")), "c")
+        for compiler in compilers():
+            for flags in (FAST, PLAIN):
+                times, ratios = [], []
+                for count in COUNTS:
+                    calls = CALLS * SAMPLES // count  # so many that what calls C takes no time beside them
+                    with chosen_compiler(compiler.name):
+                        low, sample = least([many(which, each, made, flags, calls, count) for which in _WAYS])
+                    times.append(f"{1e9 * sample / (calls * count * len(each.outputs)):.3f}")
+                    ratios.append(f"{sample / low:.2f}")
+                yield label, compiler.name, f"`{' '.join(flags)}`", *times, *ratios
+
+
 def _at_equal_degree(collision: Scene, chains: dict[str, Scene]) -> Iterator[Sequence[str]]:
     other = fitted(collision, rational(collision.output.tolerance))
     for label, chain in chains.items():
@@ -212,6 +245,19 @@ def _generating(folder: Path) -> Iterator[Sequence[str]]:
     made = files(make(lower(tall), Request(evaluator="march")))
     (seconds,) = medians([many("many", tall, made, FAST, calls=1)])
     yield "one run of its C, 10 001 samples", f"{seconds:.3f}", "", "march"
+
+
+def _beyond_imports() -> Iterator[Sequence[str]]:
+    """Whole commands; the least of a few turns of each, of which what else runs disturbs few."""
+    names = ("building_m2", "drive_m1", "collision_m4")
+    imports = [sys.executable, "-c", "import sympy, numpy"]
+    with TemporaryDirectory() as folder:
+        generating = [[sys.executable, "-m", "wavesym", "generate", name, "-o", folder] for name in names]
+        turns = [[ran(command).seconds for command in (imports, *generating)] for _ in range(9)]
+    bare, *seconds = map(min, zip(*turns, strict=True))
+    yield "the imports", f"{bare:.2f}", ""
+    for name, each in zip(names, seconds, strict=True):
+        yield name, f"{each:.2f}", f"{each - bare:.2f}"
 
 
 def _rods() -> Scene:

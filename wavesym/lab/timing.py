@@ -32,6 +32,13 @@ def medians(calls: Sequence[Call], rounds: int = 9, shortest: float = 2e-3, pati
     return tuple(map(median, seconds))
 
 
+def least(calls: Sequence[Call], rounds: int = 50) -> tuple[float, ...]:
+    """Seconds a call of each, the least over rounds: of short calls on a machine that does other things, too."""
+    for call in calls:
+        call()
+    return tuple(map(min, zip(*([_turn(call, 1) for call in calls] for _ in range(rounds)), strict=True)))
+
+
 def _turn(call: Call, count: int) -> float:
     start = perf_counter()
     for _ in range(count):

@@ -20,7 +20,7 @@ class Request:
 
     `optimize` says of programs that meet the tolerance which is best: the fastest ("speed"), or the one with the least
     tables ("size"). Unless it is said the fastest kind is taken; in single precision, which is for small machines, with
-    small tables. `runtime` names the parameters that are given at run time.
+    small tables. `runtime` names the parameters that are given at run time. `target` is what a stream is wrapped for.
     """
 
     evaluator: str = "auto"
@@ -30,6 +30,7 @@ class Request:
     runtime: tuple[str, ...] = ()
     stream: bool = False
     step: fmpq | None = None
+    target: str = ""
 
     @property
     def options(self) -> str:
@@ -38,7 +39,8 @@ class Request:
         options += "" if self.precision == "double" else f" --precision {self.precision}"
         options += "" if self.windows is None else f" --windows {self.windows}"
         options += "" if self.optimize is None else f" --optimize {self.optimize}"
-        options += " --stream" if self.stream else ""
+        options += " --stream" if self.stream and not self.target else ""
+        options += f" --target {self.target}" if self.target else ""
         options += "" if self.step is None else f" --step {self.step}"
         return options + (f" --runtime {','.join(self.runtime)}" if self.runtime else "")
 

@@ -5,3 +5,6 @@ TARGETS = ("c", "numpy")
 
 LANGUAGES = (*TARGETS, "all")
 """What `generate --language` takes."""
+
+SIMULATORS = ("fmu2", "fmu3")
+"""What `generate --target` takes: versions of FMI."""

@@ -50,6 +50,13 @@ def runtime_sets(program: Program) -> dict[str, str]:
     return made
 
 
+def fmu_files(program: Program, version: str) -> dict[str, str]:
+    """What is text in the file of a stream for simulators, by its place there; the manifest too."""
+    description = describe(program)
+    made: dict[str, str] = import_module("wavesym.targets.fmu").fmu_files(description, program, version)
+    return made | {f"resources/{description.name}.json": manifest(description, program)}
+
+
 def tested(language: str) -> bool:
     """Whether a self-test is among the files of a language, or of "all"."""
     return any(_target(name).tested for name in (TARGETS if language == "all" else (language,)))

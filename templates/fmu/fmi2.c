@@ -1,0 +1,320 @@
+/* fmi2.c: simulation.h as FMI 2.0 calls it, for co-simulation. */
+#include "fmi2.h"
+#include "simulation.h"
+
+typedef struct {
+    simulation run;
+    fmi2CallbackFunctions calls;
+    int logging;
+    char name[64];
+} instance;
+
+static fmi2Status answer(instance *it, verdict found)
+{
+    const fmi2Status status = found == FINE ? fmi2OK : found == LOSING ? fmi2Warning : fmi2Error;
+    if (status != fmi2OK && it->logging && it->calls.logger) {
+        it->calls.logger(it->calls.componentEnvironment, it->name, status,
+                         status == fmi2Warning ? "logStatusWarning" : "logStatusError", "%s", it->run.said);
+    }
+    return status;
+}
+
+/* What this model has none of. */
+static fmi2Status none(instance *it, const char *what)
+{
+    snprintf(it->run.said, sizeof it->run.said, "%s: asked for, but this model has none", what);
+    return answer(it, WRONG);
+}
+
+const char *FMI2(fmi2GetTypesPlatform)(void)
+{
+    return "default";
+}
+
+const char *FMI2(fmi2GetVersion)(void)
+{
+    return "2.0";
+}
+
+fmi2Status FMI2(fmi2SetDebugLogging)(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[])
+{
+    (void)count;
+    (void)categories;
+    ((instance *)c)->logging = on;
+    return fmi2OK;
+}
+
+fmi2Component FMI2(fmi2Instantiate)(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
+                                    const fmi2CallbackFunctions *calls, fmi2Boolean visible, fmi2Boolean logging)
+{
+    const char *wrong = "not enough memory";
+    instance *it = NULL;
+    (void)resources;
+    (void)visible;
+    if (type != fmi2CoSimulation) {
+        wrong = "fmuType: co-simulation expected";
+    } else if (guid == NULL || strcmp(guid, TOKEN) != 0) {
+        wrong = "fmuGUID: not that of this model";
+    } else {
+        it = (instance *)calloc(1, sizeof *it);
+    }
+    if (it == NULL) {
+        if (calls && calls->logger) {
+            calls->logger(calls->componentEnvironment, name, fmi2Error, "logStatusError", "%s", wrong);
+        }
+        return NULL;
+    }
+    if (calls) {
+        it->calls = *calls;
+    }
+    it->logging = logging;
+    snprintf(it->name, sizeof it->name, "%s", name ? name : "");
+    reset(&it->run);
+    return it;
+}
+
+void FMI2(fmi2FreeInstance)(fmi2Component c)
+{
+    free(c);
+}
+
+fmi2Status FMI2(fmi2SetupExperiment)(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
+                                     fmi2Boolean has_stop, fmi2Real stop)
+{
+    (void)has_tolerance;
+    (void)tolerance;
+    return answer((instance *)c, set_times(&((instance *)c)->run, start, has_stop, stop));
+}
+
+fmi2Status FMI2(fmi2EnterInitializationMode)(fmi2Component c)
+{
+    return answer((instance *)c, begin(&((instance *)c)->run));
+}
+
+fmi2Status FMI2(fmi2ExitInitializationMode)(fmi2Component c)
+{
+    return answer((instance *)c, ready(&((instance *)c)->run));
+}
+
+fmi2Status FMI2(fmi2Terminate)(fmi2Component c)
+{
+    return answer((instance *)c, finish(&((instance *)c)->run));
+}
+
+fmi2Status FMI2(fmi2Reset)(fmi2Component c)
+{
+    reset(&((instance *)c)->run);
+    return fmi2OK;
+}
+
+fmi2Status FMI2(fmi2GetReal)(fmi2Component c, const fmi2ValueReference reference[], size_t count, fmi2Real value[])
+{
+    return answer((instance *)c, get_reals(&((instance *)c)->run, reference, count, value));
+}
+
+fmi2Status FMI2(fmi2SetReal)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
+                             const fmi2Real value[])
+{
+    return answer((instance *)c, set_reals(&((instance *)c)->run, reference, count, value));
+}
+
+fmi2Status FMI2(fmi2GetBoolean)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
+                                fmi2Boolean value[])
+{
+    instance *const it = (instance *)c;
+    for (size_t k = 0; k < count; ++k) {
+        if (reference[k] != LINEAR_REFERENCE) {
+            return answer(it, unknown(&it->run, reference[k], "a parameter that is true or false"));
+        }
+        value[k] = it->run.now.linear;
+    }
+    return fmi2OK;
+}
+
+fmi2Status FMI2(fmi2SetBoolean)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
+                                const fmi2Boolean value[])
+{
+    instance *const it = (instance *)c;
+    verdict found = FINE;
+    for (size_t k = 0; k < count && found == FINE; ++k) {
+        found = set_linear(&it->run, reference[k], value[k]);
+    }
+    return answer(it, found);
+}
+
+fmi2Status FMI2(fmi2GetInteger)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
+                                fmi2Integer value[])
+{
+    (void)reference;
+    (void)value;
+    return count ? none((instance *)c, "an integer") : fmi2OK;
+}
+
+fmi2Status FMI2(fmi2SetInteger)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
+                                const fmi2Integer value[])
+{
+    (void)reference;
+    (void)value;
+    return count ? none((instance *)c, "an integer") : fmi2OK;
+}
+
+fmi2Status FMI2(fmi2GetString)(fmi2Component c, const fmi2ValueReference reference[], size_t count, fmi2String value[])
+{
+    (void)reference;
+    (void)value;
+    return count ? none((instance *)c, "a string") : fmi2OK;
+}
+
+fmi2Status FMI2(fmi2SetString)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
+                               const fmi2String value[])
+{
+    (void)reference;
+    (void)value;
+    return count ? none((instance *)c, "a string") : fmi2OK;
+}
+
+/* A state: into memory that is there already, or new memory. */
+static fmi2Status keep(instance *it, const situation *now, fmi2FMUstate *state)
+{
+    if (*state == NULL) {
+        *state = malloc(sizeof *now);
+    }
+    if (*state == NULL) {
+        return none(it, "memory");
+    }
+    memcpy(*state, now, sizeof *now);
+    return fmi2OK;
+}
+
+fmi2Status FMI2(fmi2GetFMUstate)(fmi2Component c, fmi2FMUstate *state)
+{
+    return keep((instance *)c, &((instance *)c)->run.now, state);
+}
+
+fmi2Status FMI2(fmi2SetFMUstate)(fmi2Component c, fmi2FMUstate state)
+{
+    if (state == NULL) {
+        return none((instance *)c, "a state at NULL");
+    }
+    memcpy(&((instance *)c)->run.now, state, sizeof(situation));
+    return fmi2OK;
+}
+
+fmi2Status FMI2(fmi2FreeFMUstate)(fmi2Component c, fmi2FMUstate *state)
+{
+    (void)c;
+    if (state) {
+        free(*state);
+        *state = NULL;
+    }
+    return fmi2OK;
+}
+
+fmi2Status FMI2(fmi2SerializedFMUstateSize)(fmi2Component c, fmi2FMUstate state, size_t *size)
+{
+    (void)c;
+    (void)state;
+    *size = KEPT_SIZE;
+    return fmi2OK;
+}
+
+fmi2Status FMI2(fmi2SerializeFMUstate)(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
+{
+    instance *const it = (instance *)c;
+    return state ? answer(it, serialize(&it->run, (const situation *)state, bytes, size)) : none(it, "a state at NULL");
+}
+
+fmi2Status FMI2(fmi2DeSerializeFMUstate)(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state)
+{
+    instance *const it = (instance *)c;
+    situation *const kept = (situation *)malloc(sizeof *kept);
+    fmi2Status status;
+    if (kept == NULL) {
+        return none(it, "memory");
+    }
+    status = answer(it, deserialize(&it->run, bytes, size, kept));
+    status = status == fmi2OK ? keep(it, kept, state) : status;
+    free(kept);
+    return status;
+}
+
+fmi2Status FMI2(fmi2GetDirectionalDerivative)(fmi2Component c, const fmi2ValueReference unknowns[], size_t rows,
+                                              const fmi2ValueReference knowns[], size_t columns, const fmi2Real seed[],
+                                              fmi2Real product[])
+{
+    (void)unknowns;
+    (void)rows;
+    (void)knowns;
+    (void)columns;
+    (void)seed;
+    (void)product;
+    return none((instance *)c, "a directional derivative");
+}
+
+fmi2Status FMI2(fmi2SetRealInputDerivatives)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
+                                             const fmi2Integer order[], const fmi2Real value[])
+{
+    (void)reference;
+    (void)order;
+    (void)value;
+    return count ? none((instance *)c, "an input's derivative (canInterpolateInputs is false)") : fmi2OK;
+}
+
+fmi2Status FMI2(fmi2GetRealOutputDerivatives)(fmi2Component c, const fmi2ValueReference reference[], size_t count,
+                                              const fmi2Integer order[], fmi2Real value[])
+{
+    (void)reference;
+    (void)order;
+    (void)value;
+    return count ? none((instance *)c, "an output's derivative (maxOutputDerivativeOrder is 0)") : fmi2OK;
+}
+
+fmi2Status FMI2(fmi2DoStep)(fmi2Component c, fmi2Real at, fmi2Real step, fmi2Boolean never_back)
+{
+    (void)never_back;
+    return answer((instance *)c, advance(&((instance *)c)->run, at, step));
+}
+
+fmi2Status FMI2(fmi2CancelStep)(fmi2Component c)
+{
+    return none((instance *)c, "a step that runs while others do");
+}
+
+fmi2Status FMI2(fmi2GetRealStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value)
+{
+    if (kind != fmi2LastSuccessfulTime) {
+        return none((instance *)c, "such a status");
+    }
+    *value = ((instance *)c)->run.now.time;
+    return fmi2OK;
+}
+
+fmi2Status FMI2(fmi2GetStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value)
+{
+    (void)kind;
+    (void)value;
+    return none((instance *)c, "a step that runs while others do");
+}
+
+fmi2Status FMI2(fmi2GetIntegerStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value)
+{
+    (void)kind;
+    (void)value;
+    return none((instance *)c, "a status that is an integer");
+}
+
+fmi2Status FMI2(fmi2GetBooleanStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value)
+{
+    if (kind != fmi2Terminated) {
+        return none((instance *)c, "such a status");
+    }
+    *value = 0; /* it never wants to end */
+    return fmi2OK;
+}
+
+fmi2Status FMI2(fmi2GetStringStatus)(fmi2Component c, const fmi2StatusKind kind, fmi2String *value)
+{
+    (void)kind;
+    (void)value;
+    return none((instance *)c, "a status that is text");
+}

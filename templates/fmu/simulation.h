@@ -1,0 +1,317 @@
+/* simulation.h: a stream as FMI drives it, whatever the version: time, phases, values by reference, what is kept.
+ * Plain C that is the same for every scene; what a scene is stands in model.h. fmi2.c and fmi3.c each contain it. */
+#ifndef SIMULATION_H
+#define SIMULATION_H
+
+#include "model.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What a call comes to; `said` has the reason for all but FINE. */
+typedef enum { FINE, LOSING, WRONG } verdict;
+
+typedef enum { MADE, INITIALIZING, STEPPING, OVER } phase;
+
+/* All that changes. Plain data: a copy of it is a state to come back to. */
+typedef struct {
+    double start; /* the times of the simulator at tau = 0, */
+    double stop;  /* beyond which no step goes, */
+    double time;  /* and now */
+    double input[INPUTS + 1];
+    double output[OUTPUTS];
+    int phase;
+    int linear; /* whether inputs go in straight lines, and are not held */
+    int stale;  /* whether outputs may have changed since they were computed */
+    int losing; /* whether it has been said that more may be lost than the tolerance */
+    stream_state stream;
+} situation;
+
+typedef struct {
+    situation now;
+    stream_state trial; /* for outputs that follow inputs at once */
+    char said[200];
+} simulation;
+
+/* As bytes: what it belongs to, a check of what follows, and the situation. */
+enum {
+    CHECK_PLACE = sizeof TOKEN,
+    KEPT_PLACE = CHECK_PLACE + sizeof(uint64_t),
+    KEPT_SIZE = KEPT_PLACE + sizeof(situation)
+};
+
+static int is_number(double x)
+{
+    return x - x == 0;
+}
+
+static verdict refuse(simulation *s, const char *what, double given, const char *expected)
+{
+    snprintf(s->said, sizeof s->said, "%s: %.17g given, %s expected", what, given, expected);
+    return WRONG;
+}
+
+/* A call that is made too early or too late. */
+static verdict need(simulation *s, int allowed, const char *call)
+{
+    static const char *const names[] = {"instantiated", "in initialization", "ready to step", "terminated"};
+    if (allowed) {
+        return FINE;
+    }
+    snprintf(s->said, sizeof s->said, "%s: called while %s", call, names[s->now.phase]);
+    return WRONG;
+}
+
+static double to_tau(const situation *now, double time)
+{
+    return (time - now->start) / SECONDS_PER_TAU;
+}
+
+/* Outputs as they are with the inputs of now, where these act at once; what is tried is no part of the stream. */
+static void refresh(simulation *s)
+{
+    const int follows = s->now.phase < STEPPING || (DIRECT && !s->now.linear);
+    if (s->now.stale && !STEPPED && follows) {
+        memcpy(&s->trial, &s->now.stream, sizeof s->trial);
+        stream_step(&s->trial, 0, s->now.input, s->now.output);
+    }
+    s->now.stale = 0;
+}
+
+static void reset(simulation *s)
+{
+    memset(s, 0, sizeof *s);
+    s->now.stop = HUGE_VAL;
+    s->now.linear = LINEAR;
+    stream_init(&s->now.stream);
+    s->now.stale = 1;
+    refresh(s);
+}
+
+static verdict set_times(simulation *s, double start, int has_stop, double stop)
+{
+    if (need(s, s->now.phase == MADE, "setting up the experiment") != FINE) {
+        return WRONG;
+    }
+    if (!is_number(start)) {
+        return refuse(s, "startTime", start, "a finite number");
+    }
+    if (has_stop && !(stop >= start)) {
+        return refuse(s, "stopTime", stop, "a number not below startTime");
+    }
+    s->now.start = start;
+    s->now.time = start;
+    s->now.stop = has_stop ? stop : HUGE_VAL;
+    return FINE;
+}
+
+static verdict begin(simulation *s)
+{
+    const verdict allowed = need(s, s->now.phase == MADE, "entering initialization");
+    s->now.phase = allowed == FINE ? INITIALIZING : s->now.phase;
+    return allowed;
+}
+
+/* Inputs have their first values from the start on. */
+static verdict ready(simulation *s)
+{
+    if (need(s, s->now.phase == INITIALIZING, "leaving initialization") != FINE) {
+        return WRONG;
+    }
+    if (STEPPED) {
+        for (int j = 0; j < INPUTS; ++j) {
+            s->now.stream.load[j] = s->now.input[j];
+        }
+    } else {
+        stream_step(&s->now.stream, 0, s->now.input, s->now.output);
+    }
+    s->now.stale = 0;
+    s->now.phase = STEPPING;
+    return FINE;
+}
+
+static verdict finish(simulation *s)
+{
+    const verdict allowed = need(s, s->now.phase == STEPPING, "terminating");
+    s->now.phase = allowed == FINE ? OVER : s->now.phase;
+    return allowed;
+}
+
+/* A stream that goes on in equal steps: as many of them as there are in dtau. */
+static verdict march(simulation *s, double dtau)
+{
+    const double count = STEPPED ? dtau / STEP_LENGTH : 0;
+    const int steps = count > 0.5 && count < 1e6 ? (int)(count + 0.5) : 0;
+    const double all = steps > 0 ? steps : 1;
+    double from[INPUTS + 1];
+    double load[INPUTS + 1];
+    if (steps < 1 || fabs(count - steps) > 1e-6 * all) {
+        snprintf(s->said, sizeof s->said, "communicationStepSize: %.17g given, a whole multiple of %.17g expected",
+                 dtau * SECONDS_PER_TAU, STEP_LENGTH * SECONDS_PER_TAU);
+        return WRONG;
+    }
+    for (int j = 0; j < INPUTS; ++j) {
+        s->now.stream.load[j] = s->now.linear ? s->now.stream.load[j] : s->now.input[j];
+        from[j] = s->now.stream.load[j];
+    }
+    for (int k = 1; k <= steps; ++k) {
+        for (int j = 0; j < INPUTS; ++j) {
+            load[j] = k < steps ? from[j] + (s->now.input[j] - from[j]) * (k / all) : s->now.input[j];
+        }
+        stream_step(&s->now.stream, STEP_LENGTH, load, s->now.output);
+    }
+    return FINE;
+}
+
+/* One that goes any way. */
+static verdict flow(simulation *s, double dtau)
+{
+    if (!(dtau >= STEP_LEAST && dtau <= STEP_MOST)) {
+        snprintf(s->said, sizeof s->said, "communicationStepSize: %.17g given, %.3g to %.3g expected",
+                 dtau * SECONDS_PER_TAU, STEP_LEAST * SECONDS_PER_TAU, STEP_MOST * SECONDS_PER_TAU);
+        return WRONG;
+    }
+    if (!s->now.linear) {
+        stream_step(&s->now.stream, 0, s->now.input, s->now.output);
+    }
+    if (stream_step(&s->now.stream, dtau, s->now.input, s->now.output) == 2 && !s->now.losing) {
+        s->now.losing = 1;
+        snprintf(s->said, sizeof s->said,
+                 "inputs changed inside of a panel (%.17g long): %.2g of the largest wave may be lost, an estimate",
+                 PANEL * SECONDS_PER_TAU, stream_lost(&s->now.stream));
+        return LOSING;
+    }
+    return FINE;
+}
+
+/* From `at`, which is now, on by `step`. Times are differences of the simulator's own, so that nothing adds up. */
+static verdict advance(simulation *s, double at, double step)
+{
+    const double then = at + step;
+    verdict done;
+    if (need(s, s->now.phase == STEPPING, "doStep") != FINE) {
+        return WRONG;
+    }
+    if (!is_number(step) || !(step > 0)) {
+        return refuse(s, "communicationStepSize", step, "a positive number");
+    }
+    if (!(fabs(at - s->now.time) <= 1e-6 * step + 1e-12 * fabs(s->now.time))) {
+        snprintf(s->said, sizeof s->said, "currentCommunicationPoint: %.17g given, %.17g expected", at, s->now.time);
+        return WRONG;
+    }
+    if (!(then - s->now.stop <= 1e-6 * step)) {
+        return refuse(s, "the end of the step", then, "a time up to stopTime");
+    }
+    done = STEPPED ? march(s, step / SECONDS_PER_TAU) : flow(s, to_tau(&s->now, then) - to_tau(&s->now, s->now.time));
+    if (done != WRONG) {
+        s->now.time = then;
+        s->now.stale = 0;
+    }
+    return done;
+}
+
+static verdict unknown(simulation *s, unsigned reference, const char *kind)
+{
+    snprintf(s->said, sizeof s->said, "value reference %u: not that of %s", reference, kind);
+    return WRONG;
+}
+
+static verdict get_reals(simulation *s, const unsigned *reference, size_t count, double *value)
+{
+    static const double constant[] = CONSTANTS;
+    refresh(s);
+    for (size_t k = 0; k < count; ++k) {
+        const unsigned r = reference[k];
+        if (r >= LINEAR_REFERENCE) {
+            return unknown(s, r, "a number");
+        }
+        if (r == TIME_REFERENCE) {
+            value[k] = s->now.time;
+        } else if (r < FIRST_OUTPUT) {
+            value[k] = s->now.input[r - FIRST_INPUT];
+        } else if (r < LOST_REFERENCE) {
+            value[k] = s->now.output[r - FIRST_OUTPUT];
+        } else {
+            value[k] = r < FIRST_CONSTANT ? stream_lost(&s->now.stream) : constant[r - FIRST_CONSTANT];
+        }
+    }
+    return FINE;
+}
+
+/* All of them, or, where one is wrong, none. */
+static verdict set_reals(simulation *s, const unsigned *reference, size_t count, const double *value)
+{
+    if (need(s, s->now.phase != OVER, "setting a value") != FINE) {
+        return WRONG;
+    }
+    for (size_t k = 0; k < count; ++k) {
+        if (reference[k] < FIRST_INPUT || reference[k] >= FIRST_OUTPUT) {
+            return unknown(s, reference[k], "an input");
+        }
+        if (!is_number(value[k])) {
+            return refuse(s, "an input", value[k], "a finite number");
+        }
+    }
+    for (size_t k = 0; k < count; ++k) {
+        s->now.input[reference[k] - FIRST_INPUT] = value[k];
+        s->now.stale = 1;
+    }
+    return FINE;
+}
+
+static verdict set_linear(simulation *s, unsigned reference, int value)
+{
+    if (reference != LINEAR_REFERENCE) {
+        return unknown(s, reference, "a parameter that is true or false");
+    }
+    if (need(s, s->now.phase <= INITIALIZING, "setting a fixed parameter") != FINE) {
+        return WRONG;
+    }
+    s->now.linear = value != 0;
+    return FINE;
+}
+
+/* FNV-1a */
+static uint64_t checksum(const situation *kept)
+{
+    const unsigned char *const bytes = (const unsigned char *)kept;
+    uint64_t hash = 14695981039346656037u;
+    for (size_t k = 0; k < sizeof *kept; ++k) {
+        hash = (hash ^ bytes[k]) * 1099511628211u;
+    }
+    return hash;
+}
+
+static verdict serialize(simulation *s, const situation *kept, void *bytes, size_t size)
+{
+    char *const to = (char *)bytes;
+    const uint64_t check = checksum(kept);
+    if (size < KEPT_SIZE) {
+        return refuse(s, "size of a serialized state", (double)size, "that which is told");
+    }
+    memcpy(to, TOKEN, sizeof TOKEN);
+    memcpy(to + CHECK_PLACE, &check, sizeof check);
+    memcpy(to + KEPT_PLACE, kept, sizeof *kept);
+    return FINE;
+}
+
+/* What is not a state of this scene, as this program has it, or has been changed, is refused. */
+static verdict deserialize(simulation *s, const void *bytes, size_t size, situation *kept)
+{
+    const char *const from = (const char *)bytes;
+    uint64_t check = 0;
+    if (size >= KEPT_SIZE) {
+        memcpy(&check, from + CHECK_PLACE, sizeof check);
+        memcpy(kept, from + KEPT_PLACE, sizeof *kept);
+    }
+    if (size < KEPT_SIZE || memcmp(from, TOKEN, sizeof TOKEN) != 0 || check != checksum(kept)) {
+        snprintf(s->said, sizeof s->said, "a serialized state: not one of this model, or damaged");
+        return WRONG;
+    }
+    return FINE;
+}
+
+#endif

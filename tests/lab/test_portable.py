@@ -1,0 +1,168 @@
+"""What is proved of generated C, checked and compiled for other machines: that a flaw in a program would be seen."""
+
+from __future__ import annotations
+
+import re
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from tests.test_documents import document
+from wavesym.lab.portable import misra, prove, targets
+from wavesym.lab.portable.page import between, put, table
+from wavesym.lab.portable.subjects import CHECKED, COMPILED, PROVED
+from wavesym.lab.portable.tools import absent
+from wavesym.running.toolchain import CompilerError
+
+PAGE = "docs/portability.md"
+(PIECES,) = (subject for subject in PROVED if subject.name == "pieces_double")
+(SINGLE,) = (subject for subject in COMPILED if subject.name == "pieces_single")
+NATIVE = targets.TARGETS[0]
+
+needs_prover = pytest.mark.skipif(bool(absent(prove.TOOL)), reason="no Frama-C here")
+needs_checker = pytest.mark.skipif(bool(absent(misra.TOOL)), reason="no cppcheck here")
+needs_zig = pytest.mark.skipif(not find_spec("ziglang") or bool(absent("size")), reason="no zig, no size here")
+
+
+class Spoilt:
+    """A subject whose program is changed."""
+
+    def __init__(self, subject, right, wrong):
+        self.subject, self.right, self.wrong = subject, right, wrong
+
+    def __getattr__(self, name):
+        return getattr(self.subject, name)
+
+    def files(self):
+        made = self.subject.files()
+        file = f"{self.subject.name}.c"
+        assert self.right in made[file]
+        return made | {file: made[file].replace(self.right, self.wrong)}
+
+
+def written(subject, folder):
+    for file, text in subject.files().items():
+        (folder / file).write_text(text)
+    return subject
+
+
+def test_the_page_says_what_was_proved():
+    lines = between(document(PAGE), "prove").splitlines()[4:]
+    names = [line.split(" | ")[0].removeprefix("| ") for line in lines]
+    assert names == [subject.name for subject in PROVED]
+    assert [name for name, line in zip(names, lines, strict=True) if not line.endswith("| 0 |")] == []
+
+
+def test_the_page_has_a_reason_for_each_rule():
+    rows = [line.strip("| ").split(" | ") for line in between(document(PAGE), "misra").splitlines()[4:]]
+    assert {rule: reason for rule, _, reason in rows} == misra.deviations()
+
+
+def test_the_page_has_every_machine():
+    rows = [line.strip("| ").split(" | ") for line in between(document(PAGE), "targets").splitlines()[4:]]
+    assert {(row[0], row[1]) for row in rows} == {
+        (target.name, subject.name)
+        for target in targets.TARGETS
+        for subject in COMPILED
+        if target.hosted or not subject.calls_exp
+    }
+    assert {row[2] for row in rows} == {"yes"}
+    assert {row[6] for row in rows} == {"0"}
+
+
+def test_a_table_takes_the_place_of_the_one_before(tmp_path: Path):
+    page = tmp_path / "page.txt"
+    page.write_text("a\n<!-- written by `make prove` -->\nold\n<!-- end -->\nb\n")
+    put(page, "prove", table(("x", "y"), [("1", "2")]))
+    assert between(page.read_text(), "prove") == "| x | y |\n| --- | --- |\n| 1 | 2 |\n"
+    assert page.read_text().startswith("a\n")
+    assert page.read_text().endswith("-->\nb\n")
+    with pytest.raises(ValueError, match="misra"):
+        put(page, "misra", "")
+
+
+def test_a_finding_that_nobody_reviewed_is_told():
+    assert misra.unreviewed([("10.4", "a.c:1"), ("21.3", "a.c:2")], {"10.4": "so"}) == [
+        "a.c:2: 21.3 is not kept, and no deviation says why"
+    ]
+
+
+@needs_prover
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("tau == tau && tau >= 0 && tau <= PIECES_DOUBLE_TAU_MAX", "tau >= 0"),
+        ("while (piece < last && tau", "while (tau"),
+        ("while (power < lowest)", "while (power <= lowest)"),
+    ],
+)
+def test_the_prover_sees_what_is_wrong(right, wrong, tmp_path):
+    spoilt = written(Spoilt(PIECES, right, wrong), tmp_path)
+    found = prove.verdict(spoilt, 1, "gcc_x86_64", tmp_path)
+    assert found.alarms is None or found.alarms > 0
+
+
+@needs_prover
+@pytest.mark.slow
+def test_nothing_undefined_is_found_in_one_program(tmp_path):
+    found = prove.verdict(written(PIECES, tmp_path), 1, "gcc_x86_64", tmp_path)
+    assert (found.alarms, found.told) == (0, [])
+
+
+@needs_checker
+@pytest.mark.slow
+def test_what_the_checker_finds_was_reviewed(tmp_path):
+    found = [finding for subject in CHECKED for finding in misra.findings(subject, tmp_path)]
+    assert found
+    assert misra.unreviewed(found, misra.deviations()) == []
+
+
+@needs_checker
+@pytest.mark.slow
+def test_the_checker_sees_a_rule_that_is_broken(tmp_path):
+    found = misra.findings(Spoilt(PIECES, "\n#define BLOCK", "\n#include <stdio.h>\n#define BLOCK"), tmp_path)
+    assert misra.unreviewed(found, misra.deviations())
+
+
+@needs_zig
+@pytest.mark.slow
+def test_a_program_is_taken_alone_and_its_selftest_passes(tmp_path):
+    size = targets.compiled(written(SINGLE, tmp_path), NATIVE, tmp_path)
+    assert size.text > 0
+    assert size.rodata > 0
+    assert size.data == 0
+    if sys.platform == "linux":
+        assert targets.selftest(SINGLE, NATIVE, tmp_path) == "passes"
+
+
+@needs_zig
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("real sum = *power;", "real sum = (real)(2.0 * *power);"),  # on doubles
+        ("enum { GRIDS", "#include <stdio.h>\nenum { GRIDS"),  # from a C library
+        ("real sum = *power;", "real sum = *power; int unused;"),
+    ],
+)
+def test_what_a_small_machine_lacks_is_refused(right, wrong, tmp_path):
+    with pytest.raises(CompilerError):
+        targets.compiled(written(Spoilt(SINGLE, right, wrong), tmp_path), NATIVE, tmp_path)
+
+
+@needs_zig
+@pytest.mark.slow
+def test_data_that_can_be_written_is_counted(tmp_path):
+    spoilt = Spoilt(SINGLE, "enum { GRIDS", "int pieces_single_flaw = 1;\nenum { GRIDS")
+    assert targets.compiled(written(spoilt, tmp_path), NATIVE, tmp_path).data == 4
+
+
+def test_every_program_refuses_fast_math():
+    for subject in COMPILED:
+        text = subject.files()[f"{subject.name}.c"]
+        guard = f"!defined({subject.name.upper()}_ALLOW_FAST_MATH)"
+        assert guard in text
+        assert re.search(r"#error .*bounds of errors no longer hold", text)

@@ -1,0 +1,121 @@
+"""`sample` of pieces against `eval`: the same instants, the same pieces and, without contraction, the same bits."""
+
+import ctypes
+
+import numpy as np
+import pytest
+
+import wavesym
+from tests.support.generated import files
+from wavesym.running.native import library
+from wavesym.scene import lower
+
+DOUBLES = ctypes.POINTER(ctypes.c_double)
+UNTIL = 6.0
+SCENE = wavesym.Scene(
+    name="sampled",
+    system={"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "force"},
+    load=[{"times": [0], "a": [1], "b": [0]}],
+    output={"until": 6, "tolerance": "1e-6", "strain": ["1/2", "3/2"], "velocity": ["1/2"]},
+)
+# each pair of start and step; fronts lie at quarters and halves, which some of these meet
+GRIDS = (
+    (0.0, 0.1),
+    (0.0, 0.25),
+    (UNTIL, -0.1),
+    (5.75, -0.25),
+    (1.0, 0.0),
+    (0.4999999999999999, 1e-17),
+    (-0.35, 0.1),
+    (6.2, -0.013),
+    (float("nan"), 0.1),
+    (0.0, float("nan")),
+    (1e300, -1e300),
+    (0.0, float("inf")),
+)
+BUILDS = [
+    ("-Os", "-ffp-contract=off"),  # one by one
+    pytest.param(("-O2", "-ffp-contract=off"), marks=pytest.mark.slow),  # the narrowest vectors
+    pytest.param(("-O3", "-march=native", "-ffp-contract=off"), marks=pytest.mark.slow),
+    ("-O3", "-march=native", "-ffp-contract=fast"),
+]
+
+
+def built(made, *flags):
+    """The library of generated C."""
+    return library(made["sampled.c"], flags, ("sampled.h", made["sampled.h"]))
+
+
+def evaluated(loaded, taus, outputs):
+    call = loaded.sampled_eval
+    call.argtypes = [ctypes.c_double, DOUBLES]
+    columns = np.empty((len(taus), outputs))
+    for tau, column in zip(taus, columns, strict=True):
+        call(tau, column.ctypes.data_as(DOUBLES))
+    return columns.T
+
+
+def sampled(loaded, tau0, dtau, count, outputs):
+    """Status and samples; what lies behind the last of them must stay as it was."""
+    call = loaded.sampled_sample
+    call.argtypes = [ctypes.c_double, ctypes.c_double, ctypes.c_size_t, DOUBLES]
+    out = np.full(outputs * count + 64, 7.0)
+    status = call(tau0, dtau, count, out.ctypes.data_as(DOUBLES))
+    assert (out[outputs * count :] == 7.0).all()
+    return status, out[: outputs * count].reshape(outputs, count)
+
+
+def instants(tau0, dtau, count):
+    """tau0 + k dtau, both operations rounded."""
+    with np.errstate(all="ignore"):
+        return np.arange(count) * np.float64(dtau) + np.float64(tau0)
+
+
+@pytest.fixture(scope="module")
+def made():
+    return files(lower(SCENE), "c", "pieces")
+
+
+@pytest.mark.parametrize("flags", BUILDS, ids=" ".join)
+def test_short_runs_have_the_bits_of_single_values(made, flags):
+    """Every count to 40, both ways, across fronts, beyond both ends, at NaN and infinity."""
+    loaded = built(made, *flags)
+    for tau0, dtau in GRIDS:
+        taus = instants(tau0, dtau, 41)
+        expected = evaluated(loaded, taus.tolist(), 3)
+        inside = (taus >= 0) & (taus <= UNTIL)
+        np.testing.assert_array_equal(np.isnan(expected), np.broadcast_to(~inside, expected.shape))
+        for count in range(1, 41):
+            status, found = sampled(loaded, tau0, dtau, count, 3)
+            assert status == int(not inside[:count].all())
+            np.testing.assert_array_equal(found, expected[:, :count], f"{tau0} {dtau} {count}")
+
+
+@pytest.mark.parametrize("flags", BUILDS, ids=" ".join)
+def test_long_runs_have_the_bits_of_single_values(made, flags):
+    """1000 samples a unit of tau, onward and back: whole blocks of vectors, and what is left of them."""
+    loaded = built(made, *flags)
+    for tau0, dtau in ((0.0, 0.001), (UNTIL, -0.001), (0.0005, 0.0009765625)):
+        expected = evaluated(loaded, instants(tau0, dtau, 5999).tolist(), 3)
+        _, found = sampled(loaded, tau0, dtau, 5999, 3)
+        np.testing.assert_array_equal(found, expected, f"{tau0} {dtau}")
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("return (step * s->one + s->tau0) - centred;", "return step + (s->tau0 - centred);"),
+        ("tau >= edge : tau < edge", "tau >= edge : tau <= edge"),
+    ],
+)
+def test_other_roundings_and_later_fronts_are_seen(made, right, wrong):
+    """Where tau_k is not rounded by itself, or a run goes on behind its piece, the comparison above fails."""
+    text = made["sampled.c"]
+    assert right in text
+    loaded = built({**made, "sampled.c": text.replace(right, wrong)}, "-O2", "-ffp-contract=off")
+    differ = 0
+    for tau0, dtau, count in ((0.1, 0.0011, 5000), (0.0, 0.0625, 90)):
+        expected = evaluated(loaded, instants(tau0, dtau, count).tolist(), 3)
+        _, found = sampled(loaded, tau0, dtau, count, 3)
+        differ += int((found != expected).sum())
+    assert differ

@@ -1,0 +1,54 @@
+"""python -m wavesym.lab.portable prove|misra|targets PAGE: run the tool and put its table into the page.
+
+Exit status 1 where something is not as it has to be; 0 with a word where the tool is not on this machine.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from wavesym.lab.portable import misra, prove, targets
+from wavesym.lab.portable.page import put, table
+from wavesym.lab.portable.subjects import CHECKED, COMPILED, PROVED
+from wavesym.lab.portable.tools import absent, version
+
+
+def main(what: str, page: Path) -> int:
+    """Run one of them; what failed is told line by line."""
+    missing = {"prove": absent(prove.TOOL), "misra": absent(misra.TOOL), "targets": absent("size")}[what]
+    if what == "targets" and not find_spec("ziglang"):
+        missing.append("ziglang")
+    if missing:
+        print(f"{what}: skipped, no {', '.join(missing)} on this machine")
+        return 0
+    failed: list[str] = []
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        match what:
+            case "prove":
+                made = table(prove.HEAD, _told(prove.rows(PROVED, folder, failed)))
+                told = f"Frama-C {version(prove.TOOL)}, data as of {', '.join(prove.MACHINES)}."
+            case "misra":
+                made = table(misra.HEAD, _told(misra.rows(CHECKED, folder, failed)))
+                told = f"{version(misra.TOOL)}, in {', '.join(subject.name for subject in CHECKED)}."
+            case _:
+                made = table(targets.HEAD, _told(targets.rows(COMPILED, targets.TARGETS, folder, failed)))
+                told = f"{targets.compiler()}, `-Os`."
+    put(page, what, f"{told}\n\n{made}")
+    print(*failed, sep="\n", end="\n" if failed else "")
+    return 1 if failed else 0
+
+
+def _told(rows: Iterator[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
+    """The rows, each on standard error when it is there."""
+    for row in rows:
+        print(*row, sep="  ", file=sys.stderr, flush=True)
+        yield row
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1], Path(sys.argv[2])))

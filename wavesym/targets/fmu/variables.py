@@ -1,0 +1,88 @@
+"""What a simulator sees: time, loads, outputs, what is lost, what the model was made with, and one choice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from flint import fmpq
+
+from wavesym.numbers.doubles import nearest, rational
+from wavesym.programs.program import Program
+from wavesym.targets.literals import literal
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of an FMU, by its value `reference`. `kind` is that of its value, "Real" or "Boolean".
+
+    `start` is empty where it is computed; `dependencies` of an output are references of the inputs that act at once.
+    """
+
+    name: str
+    causality: str
+    variability: str
+    about: str
+    start: str = ""
+    unit: str = ""
+    kind: str = "Real"
+    dependencies: tuple[int, ...] = ()
+    reference: int = 0
+
+    @property
+    def initial(self) -> str:
+        """How its first value comes about; empty where that is clear."""
+        if self.variability == "constant":
+            return "exact"
+        return "calculated" if self.causality in ("output", "local") else ""
+
+    @property
+    def kind3(self) -> str:
+        """What FMI 3 calls its kind."""
+        return {"Real": "Float64"}.get(self.kind, self.kind)
+
+    @property
+    def place(self) -> int:
+        """Its number in FMI 2, which counts from 1."""
+        return 1 + self.reference
+
+    @property
+    def dependency_places(self) -> tuple[int, ...]:
+        """Its dependencies, so counted."""
+        return tuple(1 + reference for reference in self.dependencies)
+
+
+def variables(program: Program) -> tuple[Variable, ...]:
+    """All of them, in the order of their references, which is that of templates/fmu/model.h.j2."""
+    return tuple(replace(one, reference=reference) for reference, one in enumerate(_variables(program)))
+
+
+def _variables(program: Program) -> Iterator[Variable]:
+    model, stepped = program.provenance.model, program.kind == "modes"
+    seconds = "s" if model.clock else ""
+    yield Variable("time", "independent", "continuous", "time" if seconds else "time in tau", unit=seconds)
+    for source in program.sources:
+        name, _, unit = source.partition(" [")
+        about = f"load {name}, from the start of a step on, or at its end where linear is true"
+        yield Variable(f"load@{name}", "input", "continuous", about, "0.0", unit.removesuffix("]"))
+    direct = program.direct or ((),) * len(program.outputs)
+    for output, probe, of in zip(program.outputs, model.probes, direct, strict=True):
+        about = f"{probe.quantity} at {output.name.partition('@')[2]}"
+        at_once = tuple(1 + j for j in of)
+        yield Variable(output.name, "output", "continuous", about, unit=probe.unit, dependencies=at_once)
+    if not stepped:
+        about = "what inputs that change inside of panels have cost, of the largest wave: an estimate"
+        yield Variable("lost", "local", "continuous", about)
+    clock = model.clock.seconds if model.clock else fmpq(1)
+    if stepped:
+        about, length = "steps are whole multiples of this", program.constants["spacing"]
+    else:
+        about, length = "inputs that change at its multiples alone cost no accuracy", program.constants["panel"]
+    name = "spacing" if stepped else "panel"
+    yield Variable(name, "local", "constant", about, f"{nearest(rational(length) * clock):.15g}", seconds)
+    for name, numbers in model.felt.items():
+        for index, value in numbers.items():
+            about = "what the model was made with; a change takes another one"
+            yield Variable(f"{name}_{index}", "local", "constant", about, literal(nearest(value)))
+    about = "whether a load goes in a straight line to its value at the end of a step; else it is held over the step"
+    yield Variable("linear", "parameter", "fixed", about, str(stepped).lower(), kind="Boolean")
