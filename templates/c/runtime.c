@@ -1,6 +1,7 @@
 /* runtime.c: a march under parameters that come at run time, and its polynomials, one by one and in blocks.
  * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
  * the first empty line. */
+#define NAME_MARCHED
 #include "runtime_series.c"
 
 enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0, LOSS = 1, LEAK = 2 };

@@ -2,6 +2,7 @@
  * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
  * the first empty line. */
 #include "runtime_joints_tables.h"
+#define NAME_MARCHED
 #include "runtime_series.c"
 
 /* The matrices of a joint for each degree, and two more: x_k = SOLVE r_k + DOWN y_(k+1) - DOWN x_(k-1), FIRST and LAST sum
