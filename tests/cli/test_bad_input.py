@@ -74,7 +74,7 @@ def faults(answer: Answer, left: set[str], unmet: bool = False) -> list[str]:
     if answer.status not in ((0, 1, 2) if unmet else (0, 2)):
         found.append(f"status {answer.status}")
     if answer.status != 0:
-        if len(lines) != 1 or not lines[0].isprintable() or len(lines[0]) > 800:
+        if len(lines) != 1 or not lines[0].isprintable() or len(lines[0]) > 700:
             found.append("not one line")
         elif not NAMED.match(lines[0]):
             found.append("names no file and key")

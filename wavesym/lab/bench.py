@@ -60,6 +60,27 @@ def report(folder: Path) -> Iterator[str]:
     yield ""
     yield from _machine()
     yield ""
+    yield from _values(named, chains)
+    yield ""
+    yield from _set_up(folder)
+    yield ""
+    yield from _records(folder)
+    yield ""
+    yield "## Charts"
+    yield ""
+    yield "Time a sample against largest error, rivals included, by `wavesym chart`; the numbers are in the CSVs."
+    yield ""
+    yield from (f"![{label}]({label}.svg)" for label in "bdclr")
+    yield ""
+    yield "## Growth"
+    yield ""
+    yield "Fitted exponents of the time to choose and fit the pieces, and of the bytes of their tables."
+    yield ""
+    yield from _table(("against", "range", "time", "bytes"), _growth())
+
+
+def _values(named: dict[str, Scene], chains: dict[str, Scene]) -> Iterator[str]:
+    """What values take once a program is there."""
     yield "## Evaluating"
     yield ""
     yield f"{SAMPLES} uniform samples, proved bound 1e-14. ns a double; *ratio* is that of `sample` to the write floor."
@@ -87,7 +108,10 @@ def report(folder: Path) -> Iterator[str]:
         ("scene", "compiler", "flags", "degree", "that of C", "pieces", "those of C", "ratio", "at as many on a piece"),
         _at_equal_degree(named["C"], chains),
     )
-    yield ""
+
+
+def _set_up(folder: Path) -> Iterator[str]:
+    """What it takes until values can be had: generation, and models of new parameters."""
     yield "## Generating"
     yield ""
     yield from _table(("what", "wall s", "peak MB", "evaluator"), _generating(folder))
@@ -107,7 +131,10 @@ def report(folder: Path) -> Iterator[str]:
     )
     yield ""
     yield from _table(("many sets", "how fast"), parameters.many_rows(folder))
-    yield ""
+
+
+def _records(folder: Path) -> Iterator[str]:
+    """Records, one and many, and sweeps."""
     yield "## A record"
     yield ""
     yield f"Ten storeys, damped, 31 outputs at all {recorded.SAMPLES} samples, from the model of the scene on. Errors"
@@ -120,26 +147,14 @@ def report(folder: Path) -> Iterator[str]:
     yield "All floors of a damped steel frame: of `run`, start-up included, at all samples of the record; and of parts."
     yield ""
     yield from _table(("what", "time", "peak MB", "modes"), streamed.rows(folder.parent / "examples" / "records"))
-    yield ""
     if find_spec("zarr") and find_spec("distributed"):
+        yield ""
         yield "## Sweeps"
         yield ""
         yield "Whole commands, start-up included: 5 storeys, damped, 3000 samples, true peaks of 16 outputs; a drive of"
         yield "three shafts to tau = 40, true peaks of three strains at 1e-6."
         yield ""
         yield from _table(("what", "by", "s", "peak MB"), swept.rows())
-        yield ""
-    yield "## Charts"
-    yield ""
-    yield "Time a sample against largest error, rivals included, by `wavesym chart`; the numbers are in the CSVs."
-    yield ""
-    yield from (f"![{label}]({label}.svg)" for label in "bdclr")
-    yield ""
-    yield "## Growth"
-    yield ""
-    yield "Fitted exponents of the time to choose and fit the pieces, and of the bytes of their tables."
-    yield ""
-    yield from _table(("against", "range", "time", "bytes"), _growth())
 
 
 def _machine() -> Iterator[str]:

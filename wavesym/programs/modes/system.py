@@ -117,9 +117,9 @@ def _unmet(model: Model, chain: ModalChain[K], errors: Numbers, largest: Numbers
     if bounds[worst] < inf:
         what = f"leave a bound of about {2 * bounds[worst] / better:.2g} for {name}"
     else:
-        what = f"would not tell the largest value of {name} from 0 (without it the others may do)"
+        what = f"would not tell the largest value of {name} from 0 (leaving it out may help)"
     return ToleranceError(
-        f"output.tolerance: {nearest(model.tolerance):g} cannot be met: modes: {chain.most} modes, the most that are "
+        f"output.tolerance: {nearest(model.tolerance):g} cannot be met: modes: {chain.most} modes, the most "
         f"taken, {what}"
     )
 
