@@ -390,7 +390,7 @@ static void kept(model_of *m, const laws *law, progress *now)
     real *const all = m->series + now->place;
     clear(all, now->degree);
     listen(m, m->waves, law->gain, m->total, now->window % 2, now->degree, all);
-    look(m, all, now->degree);
+    look(m, now->window);
     weigh(&now->heard, all, now->degree);
     now->place += (size_t)NAME_STRANDS * (size_t)(now->degree + 2);
     now->window += 1;

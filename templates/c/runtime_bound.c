@@ -17,7 +17,7 @@ typedef struct {
     real moved[NAME_PANELS][NAME_NODES];      /* and that of a velocity as large, with its waves */
     real load[NAME_FORCES + 1][3], roundings[NAME_FORCES + 1];
     int since[NAME_FORCES + 1][2];
-    real output[NAME_OUTPUTS], seen[NAME_OUTPUTS];
+    real output[NAME_OUTPUTS];
 } wrong;
 
 /* No less than the root. */
@@ -86,7 +86,6 @@ static void begun_wrong(wrong *w, const laws *law)
     }
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
         w->output[output] = 0;
-        w->seen[output] = 0;
     }
 }
 
@@ -209,8 +208,7 @@ static void worsen(const model_of *m, const laws *law, wrong *w, int half, int d
     }
 }
 
-/* What the outputs of a window may be wrong by; and how large they are in the middle of sections, where that may be more
- * than was seen. */
+/* What the outputs of a window may be wrong by. */
 static void outputs_wrong(const model_of *m, const laws *law, wrong *w, int window, int degree)
 {
     const int half = window % 2;
@@ -246,19 +244,14 @@ static void outputs_wrong(const model_of *m, const laws *law, wrong *w, int wind
             }
         }
     }
-    for (int section = 0; section < SECTIONS; ++section) {
-        const real middle = (from[section] + from[section + 1]) / 2;
-        for (int output = 0; output < NAME_OUTPUTS && (real)window + from[section] <= NAME_TAU_MAX; ++output) {
+    for (int section = 0; section < SECTIONS && (real)window + from[section] <= NAME_TAU_MAX; ++section) {
+        for (int output = 0; output < NAME_OUTPUTS; ++output) {
             const int at = section * NAME_OUTPUTS + output;
-            real sum = 0, mean = 0;
+            real sum = 0;
             for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
                 sum += strand[strand_at[k]];
-                mean += m->series[m->place[window] + (size_t)strand_at[k] * (size_t)(degree + 2)];
             }
             w->output[output] = larger(w->output[output], sum);
-            if ((real)window + middle <= NAME_TAU_MAX && !(magnitude(mean) <= w->seen[output])) {
-                w->seen[output] = larger(w->seen[output], value(m, window, section, output, middle));
-            }
         }
     }
 }
@@ -289,7 +282,8 @@ int name_error_bound(name_model *model, const name_parameters *parameters, name_
         if (status == 0) {
             /* a hundredth for what is of second order in a rounding, and for the roundings of this here */
             const real error = w.output[output] * (real)1.01;
-            bound[output] = error < w.seen[output] ? error / (w.seen[output] - error) * (1 + 4 * unit) : infinity();
+            const real most = model->largest[output];
+            bound[output] = error < most ? error / (most - error) * (1 + 4 * unit) : infinity();
         }
     }
     return status;

@@ -28,10 +28,13 @@ enum {
     NAME_FORCES = 1,
     NAME_HEARD = 4,
     NAME_EVENTS = 3,
-    NAME_LANES = 3
+    NAME_LANES = 3,
+    NAME_GROUPS = 6
 };
 
 #include "runtime_joints_model.h"
+#include "runtime_joints_batch.h"
+#include "runtime_data.h"
 
 typedef struct {
     name_real mass[3];

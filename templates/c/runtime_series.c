@@ -149,17 +149,52 @@ static void clear(real *all, int degree)
     }
 }
 
-/* Look for the largest mean of each output. */
-static void look(model_of *m, const real *all, int degree)
+/* When the cycle of a window begins: after CYCLE windows, which are `span` long, tau is a whole number again. */
+static real cycle_begin(int window)
 {
+    return (real)(window / CYCLE) * span;
+}
+
+/* Where a section of a window is among those of its cycle. */
+static int in_cycle(int window, int section)
+{
+    return window % CYCLE * SECTIONS + section;
+}
+
+/* An output on a section of a window, t after the start of its cycle. */
+static real value(const model_of *m, int window, int section, int output, real t)
+{
+    const int at = section * NAME_OUTPUTS + output;
+    const int degree = m->degree[window];
+    real sum = 0;
+    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+        const int s = strand_at[k];
+        const int now = window % CYCLE * NAME_STRANDS + s;
+        const real u = ((t - strand_start[now]) + strand_excess[now]) * strand_scale[s] - 1;
+        sum += series_at(m->series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u);
+    }
+    return sum;
+}
+
+/* Look for the largest value of each output: in the middle of sections, where their mean may be more than was seen. What
+ * lies beyond TAU_MAX does not count. */
+static void look(model_of *m, int window)
+{
+    const real *const all = m->series + m->place[window];
     for (int section = 0; section < SECTIONS; ++section) {
-        for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        const int here = in_cycle(window, section);
+        const real reach = NAME_TAU_MAX - cycle_begin(window);
+        const real end = from[here + 1] < reach ? from[here + 1] : reach;
+        for (int output = 0; output < NAME_OUTPUTS && from[here] <= end; ++output) {
             const int at = section * NAME_OUTPUTS + output;
             real mean = 0;
             for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-                mean += all[(size_t)strand_at[k] * (size_t)(degree + 2)];
+                mean += all[(size_t)strand_at[k] * (size_t)(m->degree[window] + 2)];
             }
-            m->largest[output] = larger(m->largest[output], mean);
+            if (magnitude(mean) > m->largest[output]) {
+                const real middle = from[here] + (end - from[here]) / 2;
+                m->largest[output] = larger(m->largest[output], value(m, window, section, output, middle));
+            }
         }
     }
 }

@@ -18,25 +18,25 @@ from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.targets.files import runtime_sets
 
 _MANY, _WHERE = ctypes.c_size_t, ctypes.c_void_p
-_AT_ONCE = 1 << 22  # numbers
 
 
 def sets_engine(program: Program) -> Engine:
-    """What computes a program here: C, or NumPy where there is no compiler. CompilerError for a chain there."""
-    if program.kind == "joints":
-        return CompiledSets(program)
+    """What computes a program here: C, or NumPy where there is no compiler."""
     try:
         compiler()
     except CompilerError:
         return ArraySets(program)
-    return BatchedSets(program)
+    return CompiledSets(program)
 
 
 class CompiledSets:
-    """One set after the other, in the memory of one model. CompilerError where there is no C compiler."""
+    """One set after the other, in the memory of one model; misfits of several side by side.
+
+    CompilerError where there is no C compiler.
+    """
 
     def __init__(self, program: Program) -> None:
-        self._name = program.provenance.model.name
+        self._name, self._kind = program.provenance.model.name, program.kind
         files = runtime_sets(program)
         header = (f"{self._name}.h", files[f"{self._name}.h"])
         self._loaded = library(files[f"{self._name}.c"], FAST, header)
@@ -46,6 +46,12 @@ class CompiledSets:
             for kind in ("", "_tangents")
         )
         self._peaks = self._function("sets_peaks", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._misfits = self._function("sets_misfits", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._data_size = self._function("data_size", [_WHERE, _MANY], _MANY)
+        self._data = self._function("data_init", [_WHERE, _WHERE, _WHERE, _WHERE, _MANY], ctypes.c_int)
+        sizes = (_MANY * 2)()
+        self._function("sets_sizes", [_MANY * 2])(sizes)
+        self._batch_size, self._data_bytes = sizes
         self._size, self._tangent_size = (self._function(f"{kind}_size", [], _MANY)() for kind in ("model", "tangent"))
 
     def _function(self, name: str, arguments: list[Any], result: Any = None) -> ctypes._NamedFuncPointer:
@@ -67,20 +73,22 @@ class CompiledSets:
 
     def bounds(self, given: Array) -> FoundSets:
         """See `Engine`."""
-        raise UnservedError(f"bounds: {len(given)} sets of a chain given, collision, drive or building expected")
+        if self._kind == "joints":
+            raise UnservedError(f"bounds: {len(given)} sets of a chain given, collision, drive or building expected")
+        function = self._function("sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
+        return self._of_each(function, given, (self._outputs,))
 
     def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
-        """See `Engine`; sample by sample, some sets at a time."""
-        step = max(1, _AT_ONCE // max(1, data.size))
+        """See `Engine`."""
+        values = np.ascontiguousarray(data)
+        kept, numbers = np.empty(self._data_bytes, np.uint8), np.empty(self._data_size(address(tau), len(tau)))
+        self._data(address(kept), address(numbers), address(tau), address(values), len(tau))
 
         def misfits(given: Array) -> FoundSets:
+            _ = numbers  # C reads them, so that they must live as long as this
             found = _none(len(given), ())
-            for begin in range(0, len(given), step):
-                here = slice(begin, begin + step)
-                some = self.values(given[here], tau)
-                found.status[here], found.estimate[here] = some.status, some.estimate
-                sums = np.nansum((some.values[:, 0] - data) ** 2, axis=(1, 2))
-                found.values[here] = np.where(some.status == 0, sums, np.nan)
+            batch = _aligned(self._batch_size)
+            self._misfits(address(given), len(given), address(batch), address(kept), *_places(found))
             return found
 
         return misfits
@@ -98,39 +106,6 @@ class CompiledSets:
         model = np.empty(size, np.uint8)  # of this call, so that several may run at once
         function(address(given), len(given), address(model), address(told), even, len(tau), *_places(found))
         return found
-
-
-class BatchedSets(CompiledSets):
-    """Those of the named systems: with bounds, and with misfits of several sets side by side."""
-
-    def __init__(self, program: Program) -> None:
-        super().__init__(program)
-        self._misfits = self._function("sets_misfits", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
-        self._bounds = self._function("sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
-        self._data_size = self._function("data_size", [_WHERE, _MANY], _MANY)
-        self._data = self._function("data_init", [_WHERE, _WHERE, _WHERE, _WHERE, _MANY], ctypes.c_int)
-        sizes = (_MANY * 2)()
-        self._function("sets_sizes", [_MANY * 2])(sizes)
-        self._batch_size, self._data_bytes = sizes
-
-    def bounds(self, given: Array) -> FoundSets:
-        """See `Engine`."""
-        return self._of_each(self._bounds, given, (self._outputs,))
-
-    def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
-        """See `Engine`."""
-        values = np.ascontiguousarray(data)
-        kept, numbers = np.empty(self._data_bytes, np.uint8), np.empty(self._data_size(address(tau), len(tau)))
-        self._data(address(kept), address(numbers), address(tau), address(values), len(tau))
-
-        def misfits(given: Array) -> FoundSets:
-            _ = numbers  # C reads them, so that they must live as long as this
-            found = _none(len(given), ())
-            batch = _aligned(self._batch_size)
-            self._misfits(address(given), len(given), address(batch), address(kept), *_places(found))
-            return found
-
-        return misfits
 
 
 def _aligned(size: int) -> NDArray[np.uint8]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.rendering import render
-from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.runtime import (
     LIMITS,
     CRuntimeField,
@@ -37,6 +37,7 @@ _SIZES = (
     "heard",
     "events",
     "lanes",
+    "groups",
 )
 
 
@@ -57,8 +58,14 @@ class CRuntimeJoints:
     loads: str
     numbers: str
     series: str
-    kernel: str
+    joints: str
+    march: str
+    build: str
     read: str
+    lanes: str
+    march_in_lanes: str
+    batch: str
+    misfit: str
 
 
 def files(scene: Description, program: Program) -> dict[str, str]:
@@ -68,12 +75,13 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     fields = tuple(parameter_fields(laws, real))
     constants = c_constants(program.constants, real)
     own = not any(field.name == "load" for field in fields)
+    march = kernel("runtime_joints_march.c", scene)
     header = CRuntimeHeader(
         scene=scene,
         fields=fields,
         sizes=tuple((name.upper(), constants[name]) for name in _SIZES),
         model=kernel("runtime_joints_model.h", scene),
-        batch="",
+        batch=kernels(scene, "runtime_wide.h", "runtime_joints_batch.h", "runtime_data.h"),
     )
     context = CRuntimeJoints(
         scene=scene,
@@ -89,8 +97,14 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         loads="amplitude" if own else "p->load",
         numbers=kernel("real.h", scene),
         series=kernel("runtime_series.c", scene),
-        kernel=kernel("runtime_joints.c", scene),
+        joints=kernel("runtime_joints.c", scene),
+        march=march,
+        build=kernel("runtime_joints_build.c", scene),
         read=kernel("runtime_read.c", scene),
+        lanes=kernel("runtime_lanes.c", scene),
+        march_in_lanes=f"{kernel('runtime_joints_lanes.c', scene)}\n\n{march}",
+        batch=kernels(scene, "runtime_joints_batch.c", "runtime_batches.c"),
+        misfit=kernel("runtime_misfit.c", scene),
     )
     made = {
         f"{scene.name}.h": render("c/runtime.h.j2", header),
@@ -105,5 +119,5 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what runs many sets of parameters in NAME.c."""
     made = files(scene, program)
     name = f"{scene.name}.c"
-    more = "\n\n".join(kernel(file, scene) for file in ("runtime_peaks.c", "runtime_sets.c"))
+    more = kernels(scene, "runtime_peaks.c", "runtime_sets.c", "runtime_sets_batch.c")
     return made | {name: f"{made[name]}\n{more}\n"}

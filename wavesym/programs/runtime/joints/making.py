@@ -148,6 +148,7 @@ def _constants(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, flo
         "events": len(made.pushes),
         "lanes": sum(len(field.values) for field in laws.fields),
         "sections": len(made.sections) - 1,
+        "groups": (len(made.sections) - 1) * len(plan.outputs),
         "cycle": cycle,
         "span": real.nearest(fmpq(span)),
         "step": real.nearest(plan.step),
