@@ -9,13 +9,14 @@ sent at the same instant, on panels of the same length, are added up once, to a 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from flint import fmpq
 
 from wavesym.exact.node_rules import node_rule
+from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import network_of
@@ -24,6 +25,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ring
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.plan import HeardWave, Plan, Stretch, panels, plan
+from wavesym.programs.runtime.quiet import drawn, quiet
 from wavesym.programs.runtime.request import RuntimeField
 from wavesym.programs.runtime.units import Function, force_kept, load_kept
 
@@ -105,19 +107,9 @@ def runtime_plan(
     symbols = [label for field in given if field.name != "load" for label in field.labels]
     ring = Ring(tuple(symbols))
     symbols_of = ring.symbols()
-    own = {
-        label: symbols_of[label] / unit.size
-        for field in given
-        if field.name != "load"
-        for label, unit in zip(field.labels, field.units, strict=True)
-    }
-
-    def numbers(name: str) -> dict[int, Any] | None:
-        values: dict[int, Any] | None = getattr(chain.parameters, name)
-        return values and {i: own.get(f"{name}_{i}", value) for i, value in values.items()}
-
-    parameters = Parameters(**{name: numbers(name) for name in ("kappa", "inertia", "velocity", "dashpot")})
-    free = replace(chain, parameters=parameters)
+    free = _with(chain, given, symbols_of)
+    some = _with(chain, given, drawn(given))
+    silent = quiet(replace(model, chain=some, network=network_of(some)), given, loads, real)
     chosen = [unit.size for field in given if field.name == "load" for unit in field.units]
     units = chosen or [fmpq(1)] * len(loads)
     acting = [(load.time, number) for number, load in enumerate(loads) if load.time <= rational(model.horizon(real))]
@@ -127,7 +119,7 @@ def runtime_plan(
     )
     kept: list[Any] = [force_kept(model, free) if probe.quantity == "force" else fmpq(1) for probe in model.probes]
     heard = tuple(
-        (number, replace(wave, gain=wave.gain * kept[number]))
+        (number, replace(wave, gain=fmpq(0) if silent[number] else wave.gain * kept[number]))
         for number, output in enumerate(made.outputs)
         for wave in output.heard
     )
@@ -140,6 +132,24 @@ def runtime_plan(
         tuple(_pushes(made, loads, [number for _, number in sorted(acting)], units, load_kept(model, free))),
         heard,
         tuple(_strands(made, heard)),
+    )
+
+
+def _with(chain: Chain, given: Sequence[RuntimeField], values: Mapping[str, Any]) -> Chain:
+    """The chain with these values of the parameters, in their units."""
+    own = {
+        label: values[label] / unit.size
+        for field in given
+        if field.name != "load"
+        for label, unit in zip(field.labels, field.units, strict=True)
+    }
+
+    def numbers(name: str) -> dict[int, Any] | None:
+        values: dict[int, Any] | None = getattr(chain.parameters, name)
+        return values and {i: own.get(f"{name}_{i}", value) for i, value in values.items()}
+
+    return replace(
+        chain, parameters=Parameters(**{name: numbers(name) for name in ("kappa", "inertia", "velocity", "dashpot")})
     )
 
 
