@@ -1,7 +1,8 @@
 """Hundreds of sets of parameters at once, by a program whose parameters come at run time: one for each topology.
 
 A dimension can be run through so where its values are numbers of the program's own fields and nothing else of the scene
-depends on them: kappa, inertia, amplitudes of loads. (Velocities of bodies must fit each other; a scene looks at that.)
+depends on them: kappa, inertia, a number of a chain's part, amplitudes of loads. (Velocities of bodies must fit each
+other; a scene looks at that.)
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ import numpy as np
 from wavesym.errors import WavesymError
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.request import Request
-from wavesym.programs.runtime.making import runtime_program
-from wavesym.programs.runtime.request import RuntimeField, fields
+from wavesym.programs.runtime.making import runtime_fields, runtime_program
+from wavesym.programs.runtime.request import RuntimeField
 from wavesym.running.model import RuntimeModel
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes
@@ -27,6 +28,7 @@ from wavesym.sweeps.values import CaseValues, Numbers
 
 _FEWEST = 8  # sets that are worth a program of their own
 _NAMES = ("kappa", "inertia")
+_OF_PARTS = ("mass", "dashpot", "spring", "impedance")
 _FROM_LISTS = ("steps", "ramps", "a", "b")  # of a load
 _PROBES = (2, 3)  # values that a column takes to see which number of the program it is
 
@@ -109,6 +111,8 @@ def _lane(plan: SweepPlan, column: Column) -> Lane | None:
     way = steps(column.path)
     if way[0] == "system" and len(way) == 3 and way[1] in _NAMES:
         name = str(way[1])
+    elif way[0] == "system" and "parts" in way and way[-1] in _OF_PARTS:
+        name = str(way[-1])
     elif way[0] == "load" and len(way) == 4 and way[2] in _FROM_LISTS:
         name = "load"
     else:
@@ -136,7 +140,7 @@ def _found(plan: SweepPlan, path: str, name: str) -> Lane | None:
 
 def _fields(scene: Scene, names: tuple[str, ...]) -> tuple[RuntimeField, ...]:
     given = amplitudes(scene) if "load" in names else ()
-    return fields(lower(scene), names, given)
+    return runtime_fields(lower(scene), names, given)
 
 
 def _number(column: Column, k: int) -> float:

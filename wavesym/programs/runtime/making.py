@@ -19,9 +19,10 @@ from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.degree import STIFF, degrees, share
 from wavesym.programs.runtime.joints.making import joints_program
+from wavesym.programs.runtime.joints.network import free_network
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.plan import Push, RuntimePlan, runtime_plan
-from wavesym.programs.runtime.request import fields
+from wavesym.programs.runtime.request import RuntimeField, fields
 from wavesym.programs.runtime.roundings import most_roundings
 from wavesym.programs.runtime.units import Function
 
@@ -83,6 +84,15 @@ def runtime_program(
         laws=laws,
     )
     return _with_reference(program) if tested else program
+
+
+def runtime_fields(
+    model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]]
+) -> tuple[RuntimeField, ...]:
+    """The fields of a program whose parameters `names` are given at run time. WavesymError as `runtime_program`."""
+    if model.chain is None:
+        return free_network(model, names, amplitudes).fields
+    return fields(model, names, amplitudes)
 
 
 def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:

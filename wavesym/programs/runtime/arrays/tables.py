@@ -49,7 +49,7 @@ class ArrayTables:
 
     def begins(self, windows: Ints) -> Array:
         """When the cycles of windows begin."""
-        found: Array = windows // self.cycle * self.span
+        found: Array = (windows // self.cycle).astype(np.float64) * self.span
         return found
 
     def section(self, phase: int, section: int) -> tuple[float, float]:
