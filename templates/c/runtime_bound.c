@@ -1,6 +1,7 @@
-/* runtime_bound.c: a proved bound of the errors of a model, from what it sends itself.
- * Plain C that stands below the text of runtime.c in generated files, which have what stands below the first empty line. */
-#include "runtime_read.c"
+/* runtime_bound.c: how wrong the waves of a model may be, from what it sends itself.
+ * Plain C that stands below the text of runtime_wrong.c in generated files, which have what stands below the first empty
+ * line. */
+#include "runtime_wrong.c"
 
 /* What may be wrong, at most; docs/march.md of wavesym has the proof. In short: let q be what a body sends plus what
  * arrived. How far q is from the law of the body is computed here, rounding included. That starts an error on this panel;
@@ -9,35 +10,12 @@ typedef struct {
     real energy;                              /* the norm of all errors so far */
     real wave[2][2][NAME_NODES + 2];          /* the largest error of a wave on a window, of both halves */
     real size[2][2][NAME_PANELS][NAME_NODES + 2]; /* of a wave the sum of its coefficients' magnitudes */
-    real force[NAME_PANELS][NAME_FORCES + 1]; /* of a load, on this window */
-    real total[NAME_HEARD + 1];               /* of an integral */
     real end[NAME_NODES], end_error[NAME_NODES];
     real mass[NAME_NODES];                    /* root of half the mass of a body */
     real sent[NAME_PANELS][NAME_NODES];       /* the energy of waves of size 1 on a panel, to both sides */
     real moved[NAME_PANELS][NAME_NODES];      /* and that of a velocity as large, with its waves */
-    real load[NAME_FORCES + 1][3], roundings[NAME_FORCES + 1];
-    int since[NAME_FORCES + 1][2];
-    real output[NAME_OUTPUTS];
+    wrong_beside beside;
 } wrong;
-
-/* No less than the root. */
-static real root(real x)
-{
-    real y = 1;
-    if (!(x > 0) || !finite_number(x)) {
-        return x > 0 ? infinity() : 0;
-    }
-    while (y < x / y) {
-        y *= 2;
-    }
-    while (y / 4 > x / y) {
-        y /= 2;
-    }
-    for (int k = 0; k < 8; ++k) {
-        y = (y + x / y) / 2;
-    }
-    return y * (1 + 4 * unit);
-}
 
 /* Nothing is wrong but what laws are rounded by. Impedances follow from rod to rod, as alpha to beta. */
 static void begun_wrong(wrong *w, const laws *law)
@@ -73,45 +51,7 @@ static void begun_wrong(wrong *w, const laws *law)
         w->end_error[node] = rounded * magnitude(law->motion[node]);
         w->energy += rounded * both * (magnitude(law->rod[node]) + magnitude(law->rod[node + 1]));
     }
-    for (int k = 0; k <= NAME_HEARD; ++k) {
-        w->total[k] = 0;
-    }
-    for (int f = 0; f <= NAME_FORCES; ++f) {
-        w->load[f][0] = w->load[f][1] = w->load[f][2] = 0;
-        w->roundings[f] = roundings + 4;
-        w->since[f][0] = w->since[f][1] = 0;
-        for (int panel = 0; panel < NAME_PANELS; ++panel) {
-            w->force[panel][f] = 0;
-        }
-    }
-    for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        w->output[output] = 0;
-    }
-}
-
-/* As press, with the absolute values of all that is added. */
-static int pressed(wrong *w, const real *change, int window, int event)
-{
-    for (int panel = 0; panel < NAME_PANELS; ++panel) {
-        while (event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel) {
-            const int f = event_force[event];
-            real *const c = w->load[f];
-            const real gone = (real)(window - w->since[f][0] + 1);
-            c[0] += gone * (c[1] + gone * c[2]);
-            c[1] += 2 * gone * c[2];
-            c[event_power[event]] += magnitude(change[event]);
-            w->since[f][0] = window;
-            w->since[f][1] = panel;
-            w->roundings[f] += 8;
-            ++event;
-        }
-        for (int f = 0; f < NAME_FORCES; ++f) {
-            const real *const c = w->load[f];
-            const real gone = (real)(window - w->since[f][0] + 2);
-            w->force[panel][f] = (w->roundings[f] + 12) * unit * (c[0] + 2 * gone * (c[1] + 2 * gone * c[2]));
-        }
-    }
-    return event;
+    begun_beside(&w->beside);
 }
 
 /* What a node adds to the errors on a panel: to those of its velocity, and more to the wave to the right. */
@@ -150,7 +90,7 @@ static void defect(const model_of *m, const laws *law, wrong *w, int half, int p
     w->size[half][LEFT][panel][node + 1] = lefts;
     w->size[half][RIGHT][panel][node + 1] = rights;
     const real pushed_wrong = unit * (2 * sizes + (roundings + 2) * pushes + (roundings + 8) * aparts) +
-                              (f >= 0 ? w->force[panel][f] : (real)0) + spare;
+                              (f >= 0 ? w->beside.force[panel][f] : (real)0) + spare;
     if (!is_body[node]) {
         *velocity = aparts + pushed_wrong;
         return;
@@ -175,8 +115,9 @@ static void defect(const model_of *m, const laws *law, wrong *w, int half, int p
 }
 
 /* What a window adds to the errors, and how large those of its waves are. */
-static void worsen(const model_of *m, const laws *law, wrong *w, int half, int degree)
+static void worsen(const model_of *m, const laws *law, wrong *w, int window, int degree)
 {
+    const int half = window % 2;
     real own[NAME_NODES], more[NAME_NODES];
     for (int node = 0; node < NAME_NODES; ++node) {
         own[node] = 0;
@@ -208,87 +149,13 @@ static void worsen(const model_of *m, const laws *law, wrong *w, int half, int d
     }
 }
 
-/* What the outputs of a window may be wrong by. */
-static void outputs_wrong(const model_of *m, const laws *law, wrong *w, int window, int degree)
+/* Of a wave that is heard on a window the largest error, and its size. */
+static void wrong_heard(const model_of *m, const wrong *w, int t, int window, real *error, real *size)
 {
-    const int half = window % 2;
-    real strand[NAME_STRANDS];
-    const real spare = (real)(64 * (degree + 4)) * least_number;
-    for (int s = 0; s < NAME_STRANDS; ++s) {
-        const real *const c = m->series + m->place[window] + (size_t)s * (size_t)(degree + 2);
-        const real terms = (real)(first_term[s + 1] - first_term[s]);
-        strand[s] = spare;
-        real weight = (real)(degree + 2), more = 4, reading = 0; /* (k + 1)(k + 2) + degree */
-        for (int k = 0; k <= degree + 1; ++k) {
-            reading += weight * magnitude(c[k]);
-            weight += more;
-            more += 2;
-        }
-        strand[s] += 12 * unit * reading;
-        for (int t = first_term[s]; t < first_term[s + 1]; ++t) {
-            const int then = term_back[t] ? !half : half;
-            const int way = term_way[t];
-            const int heard = term_heard[t];
-            const real length = 2 * half_length[term_panel[t]];
-            const real gain = magnitude(law->gain[heard]);
-            const real sender = way == LOAD ? w->force[term_panel[t]][term_sender[t]] : w->wave[then][way][term_sender[t]];
-            const real *const load = m->waves[then][LOAD][term_panel[t]][term_sender[t]];
-            const real size = way == LOAD ? magnitude(load[0]) + magnitude(load[1]) + magnitude(load[2])
-                                          : w->size[then][way][term_panel[t]][term_sender[t]];
-            if (term_summed[t]) {
-                const real total = magnitude(m->total[heard]) + length * size;
-                w->total[heard] += length * sender + unit * ((real)(degree + 16) * length * size + 2 * total) + spare;
-                strand[s] += gain * (w->total[heard] + unit * (roundings + terms + 4) * (total + length * size));
-            } else {
-                strand[s] += gain * (sender + unit * (roundings + terms + 4) * size);
-            }
-        }
-    }
-    for (int section = 0; section < SECTIONS && (real)window + from[section] <= NAME_TAU_MAX; ++section) {
-        for (int output = 0; output < NAME_OUTPUTS; ++output) {
-            const int at = section * NAME_OUTPUTS + output;
-            real sum = 0;
-            for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-                sum += strand[strand_at[k]];
-            }
-            w->output[output] = larger(w->output[output], sum);
-        }
-    }
-}
-
-int name_error_bound(name_model *model, const name_parameters *parameters, name_real *bound)
-{
-    laws law;
-    wrong w;
-    progress now = {0, LEAST, 0, 0, 0, 0, 0};
-    int status = begun(model, parameters, &law);
-    if (status == 0) {
-        begun_wrong(&w, &law);
-    }
-    while (status == 0 && now.window < NAME_WINDOWS) {
-        const int window = now.window;
-        const int event = now.event;
-        status = next_window(model, &law, &now);
-        if (status == 0) {
-            (void)pressed(&w, model->change, window, event);
-            worsen(model, &law, &w, window % 2, now.degree);
-            kept(model, &law, &now);
-            outputs_wrong(model, &law, &w, window, now.degree);
-        }
-    }
-    status = status ? status : ended(model, &law, &now);
-    for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        bound[output] = not_a_number();
-        if (status == 0) {
-            /* a hundredth for what is of second order in a rounding, and for the roundings of this here */
-            const real error = w.output[output] * (real)1.01;
-            const real most = model->largest[output];
-            real weight = 0; /* 0 for an output that is 0 whatever the parameters are */
-            for (int k = 0; k < NAME_HEARD; ++k) {
-                weight += heard_output[k] == output ? magnitude(law.gain[k]) : (real)0;
-            }
-            bound[output] = error < most ? error / (most - error) * (1 + 4 * unit) : weight > 0 ? infinity() : (real)0;
-        }
-    }
-    return status;
+    const int then = (window + term_back[t]) % 2;
+    const int way = term_way[t];
+    const real *const load = m->waves[then][LOAD][term_panel[t]][term_sender[t]];
+    *error = way == LOAD ? w->beside.force[term_panel[t]][term_sender[t]] : w->wave[then][way][term_sender[t]];
+    *size = way == LOAD ? magnitude(load[0]) + magnitude(load[1]) + magnitude(load[2])
+                        : w->size[then][way][term_panel[t]][term_sender[t]];
 }

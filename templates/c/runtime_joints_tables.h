@@ -65,6 +65,8 @@ typedef struct {
     real push[4 + 1];
     real held[4 + 1];
     real begun[3 + 1];
+    real weight[3 + 1];
+    real impedance[4 + 1];
     real strength[1 + 1];
     real gain[4 + 1];
     const real *load;
@@ -76,6 +78,8 @@ int laws_within_reach(const laws *law);
 void slopes_of(const name_parameters *p, int lane, laws *law);
 
 extern const real largest_number;
+extern const real least_number;
+extern const real roundings;
 extern const real share;
 extern const real unit;
 extern const real window_length;

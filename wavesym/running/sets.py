@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.errors import UnservedError
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.arrays.engine import ArraySets
 from wavesym.programs.runtime.engine import Array, Engine, FoundSets
@@ -36,7 +35,7 @@ class CompiledSets:
     """
 
     def __init__(self, program: Program) -> None:
-        self._name, self._kind = program.provenance.model.name, program.kind
+        self._name = program.provenance.model.name
         files = runtime_sets(program)
         header = (f"{self._name}.h", files[f"{self._name}.h"])
         self._loaded = library(files[f"{self._name}.c"], FAST, header)
@@ -46,6 +45,7 @@ class CompiledSets:
             for kind in ("", "_tangents")
         )
         self._peaks = self._function("sets_peaks", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._bounds = self._function("sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
         self._misfits = self._function("sets_misfits", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
         self._data_size = self._function("data_size", [_WHERE, _MANY], _MANY)
         self._data = self._function("data_init", [_WHERE, _WHERE, _WHERE, _WHERE, _MANY], ctypes.c_int)
@@ -73,10 +73,7 @@ class CompiledSets:
 
     def bounds(self, given: Array) -> FoundSets:
         """See `Engine`."""
-        if self._kind == "joints":
-            raise UnservedError(f"bounds: {len(given)} sets of a chain given, collision, drive or building expected")
-        function = self._function("sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
-        return self._of_each(function, given, (self._outputs,))
+        return self._of_each(self._bounds, given, (self._outputs,))
 
     def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
         """See `Engine`."""

@@ -55,6 +55,7 @@ class CRuntimeJoints:
     constants: dict[str, str]
     amplitudes: Lines
     largest: str
+    least: str
     loads: str
     numbers: str
     series: str
@@ -62,6 +63,7 @@ class CRuntimeJoints:
     march: str
     build: str
     read: str
+    bound: str
     lanes: str
     march_in_lanes: str
     batch: str
@@ -94,6 +96,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         constants=constants,
         amplitudes=c_literals(laws.amplitudes or (0.0,), real) if own else (),
         largest=f"{LIMITS[real.name]}_MAX",
+        least=f"{LIMITS[real.name]}_MIN",
         loads="amplitude" if own else "p->load",
         numbers=kernel("real.h", scene),
         series=kernel("runtime_series.c", scene),
@@ -101,6 +104,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         march=march,
         build=kernel("runtime_joints_build.c", scene),
         read=kernel("runtime_read.c", scene),
+        bound=kernels(scene, "runtime_wrong.c", "runtime_joints_bound.c", "runtime_bounds.c"),
         lanes=kernel("runtime_lanes.c", scene),
         march_in_lanes=f"{kernel('runtime_joints_lanes.c', scene)}\n\n{march}",
         batch=kernels(scene, "runtime_joints_batch.c", "runtime_batches.c"),
@@ -119,5 +123,5 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what runs many sets of parameters in NAME.c."""
     made = files(scene, program)
     name = f"{scene.name}.c"
-    more = kernels(scene, "runtime_peaks.c", "runtime_sets.c", "runtime_sets_batch.c")
+    more = kernels(scene, "runtime_peaks.c", "runtime_sets.c", "runtime_sets_batch.c", "runtime_sets_bounds.c")
     return made | {name: f"{made[name]}\n{more}\n"}
