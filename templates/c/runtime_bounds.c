@@ -52,7 +52,7 @@ int name_error_bound(name_model *model, const name_parameters *parameters, name_
 {
     laws law;
     wrong w;
-    progress now = {0, LEAST, 0, 0, 0, 0, 0};
+    progress now = {0, LEAST, 0, 0, 0, 0, 0, 0, 0};
     int status = begun(model, parameters, &law);
     if (status == 0) {
         begun_wrong(&w, &law);

@@ -41,15 +41,23 @@ static void listen(const model_of *m, track_of *waves, const real *gains, real *
 /* One window of the derivatives by a parameter, of which `slope` is what the laws change by: with x' = A x + B s and
  * q = S x + P s,
  *
- *     dx' = A dx + B ds + dA x + dB s,    dq = S dx + P ds + dS x + dP s. */
-static void follow(name_tangent *tangent, const laws *law, const laws *slope, int lane, int window, int degree)
+ *     dx' = A dx + B ds + dA x + dB s,    dq = S dx + P ds + dS x + dP s.
+ *
+ * What its polynomials miss. */
+static real follow(name_tangent *tangent, const laws *law, const laws *slope, int lane, int window, int degree)
 {
     model_of *const m = &tangent->value;
     track_of *const waves = tangent->waves[lane];
+    real *const size = &tangent->size[lane][1];
+    real missed = 0;
     real f[NAME_WIDEST][NAME_DEGREE + 2];
     real q[NAME_WIDEST][NAME_DEGREE + 2];
     real dx[NAME_WIDEST][NAME_DEGREE + 2];
     real acting[NAME_POINTS][NAME_DEGREE + 2];
+    *size = tangent->size[lane][0];
+    for (int k = 0; k < NAME_STATES; ++k) {
+        tangent->state[lane][1][k] = tangent->state[lane][0][k];
+    }
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         for (int joint = 0; joint < NAME_JOINTS; ++joint) {
             const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
@@ -64,15 +72,23 @@ static void follow(name_tangent *tangent, const laws *law, const laws *slope, in
                 add_series(law->pushed + at_pushed[joint], n, points, ds, degree, f);
                 add_series(slope->pushed + at_pushed[joint], n, points, s, degree, f);
                 add_series(slope->rates + at_rates[joint], n, n, x, degree, f);
-                moved(m, joint, panel, degree, f, tangent->state[lane] + first, dx);
+                moved(m, joint, panel, degree, f, tangent->state[lane][1] + first, dx);
+                add_missed(law, joint, panel, degree, f, dx, &missed);
                 add_series(law->shown + at_shown[joint], points, n, dx, degree, q);
                 add_series(slope->shown + at_shown[joint], points, n, x, degree, q);
             }
             add_series(law->passed + at_passed[joint], points, points, ds, degree, q);
             add_series(slope->passed + at_passed[joint], points, points, s, degree, q);
             send_out(waves, joint, panel, window, degree, q);
+            for (int i = 0; i < n; ++i) {
+                *size = is_mass[first + i] ? larger(*size, tangent->state[lane][1][first + i]) : *size;
+            }
+            for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+                *size = larger(*size, waves[slot(send[port], window, 0)][panel][0]);
+            }
         }
     }
+    return missed;
 }
 
 static int laws_to_march(const laws *law)
@@ -107,37 +123,46 @@ static int begun(model_of *m, const name_parameters *parameters, laws *law)
     return 0;
 }
 
+/* The window of now at the degree of now. */
+static void march_window(model_of *m, const laws *law, progress *now)
+{
+    now->seen = now->size;
+    now->leak = 0;
+    march(m, law, now->window, now->degree, &now->seen, &now->leak);
+}
+
+/* The same at a higher degree. */
+static void heighten(model_of *m, const laws *law, progress *now)
+{
+    now->degree = higher_than(now->degree);
+    tabulate(m, law, now->degree);
+    march_window(m, law, now);
+}
+
 /* The next window, at the lowest degree, raised by quarters, that misses no more than its share. */
 static int next_window(model_of *m, const laws *law, progress *now)
 {
     now->event = press(m->change, m->load, m->since, m->force, now->window, now->event);
-    for (;;) {
-        real seen_so_far = now->size;
-        real leak = 0;
-        march(m, law, now->window, now->degree, &seen_so_far, &leak);
-        if (leak <= share * seen_so_far) {
-            now->missed += leak;
-            now->size = seen_so_far;
-            break;
-        }
+    march_window(m, law, now);
+    while (!(now->leak <= share * now->seen)) {
         if (now->degree == NAME_DEGREE) {
-            return finite_number(leak) && finite_number(seen_so_far) ? 2 : 1;
+            return finite_number(now->leak) && finite_number(now->seen) ? 2 : 1;
         }
-        const int higher = now->degree + now->degree / 4;
-        now->degree = higher < NAME_DEGREE ? higher : NAME_DEGREE;
-        tabulate(m, law, now->degree);
+        heighten(m, law, now);
     }
+    return 0;
+}
+
+/* A window that has been marched is good: its outputs; then the next one is due. */
+static void kept(model_of *m, const laws *law, progress *now)
+{
+    now->missed += now->leak;
+    now->size = now->seen;
     for (int k = 0; k < NAME_STATES; ++k) {
         m->state[0][k] = m->state[1][k];
     }
     m->degree[now->window] = now->degree;
     m->place[now->window] = now->place;
-    return 0;
-}
-
-/* The outputs on a window that has been marched; then the next one is due. */
-static void kept(model_of *m, const laws *law, progress *now)
-{
     real *const all = m->series + now->place;
     clear(all, now->degree);
     listen(m, m->waves, law->gain, m->total, now->window, now->degree, all);
@@ -150,7 +175,7 @@ static void kept(model_of *m, const laws *law, progress *now)
 int name_build(name_model *model, const name_parameters *parameters)
 {
     laws law;
-    progress now = {0, LEAST, 0, 0, 0, 0, 0};
+    progress now = {0, LEAST, 0, 0, 0, 0, 0, 0, 0};
     int status = begun(model, parameters, &law);
     while (status == 0 && now.window < NAME_WINDOWS) {
         status = next_window(model, &law, &now);
@@ -175,16 +200,41 @@ static int begun_lane(name_tangent *tangent, const laws *law, const laws *slope,
     start_waves(tangent->waves[lane], slope);
     start_sums(tangent->total[lane], tangent->load[lane], tangent->since[lane]);
     for (int k = 0; k < NAME_STATES; ++k) {
-        tangent->state[lane][k] = slope->begun[k];
+        tangent->state[lane][0][k] = slope->begun[k];
     }
+    tangent->size[lane][0] = 0;
     return 0;
+}
+
+/* The derivatives on a window that has been marched, at a degree that is enough for them, too, or the highest. */
+static void follow_all(name_tangent *tangent, const name_parameters *parameters, const laws *law, progress *now)
+{
+    laws slope;
+    for (;;) {
+        int late = 0;
+        for (int lane = 0; lane < NAME_LANES; ++lane) {
+            slopes_of(parameters, lane, &slope);
+            const real missed = follow(tangent, law, &slope, lane, now->window, now->degree);
+            late |= !(missed <= LENIENT * share * tangent->size[lane][1]);
+        }
+        if (!late || now->degree == NAME_DEGREE) {
+            break;
+        }
+        heighten(&tangent->value, law, now);
+    }
+    for (int lane = 0; lane < NAME_LANES; ++lane) {
+        tangent->size[lane][0] = tangent->size[lane][1];
+        for (int k = 0; k < NAME_STATES; ++k) {
+            tangent->state[lane][0][k] = tangent->state[lane][1][k];
+        }
+    }
 }
 
 int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
 {
     model_of *const m = &tangent->value;
     laws law, slope;
-    progress now = {0, LEAST, 0, 0, 0, 0, 0};
+    progress now = {0, LEAST, 0, 0, 0, 0, 0, 0, 0};
     int status = begun(m, parameters, &law);
     for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
         slopes_of(parameters, lane, &slope);
@@ -194,12 +244,16 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
         const int first = now.event;
         status = next_window(m, &law, &now);
         for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
+            (void)press(tangent->change[lane], tangent->load[lane], tangent->since[lane], tangent->force[lane],
+                        now.window, first);
+        }
+        if (status == 0) {
+            follow_all(tangent, parameters, &law, &now);
+        }
+        for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
             real total[NAME_HEARD + 1];
             real *const all = tangent->series[lane] + now.place;
             slopes_of(parameters, lane, &slope);
-            (void)press(tangent->change[lane], tangent->load[lane], tangent->since[lane], tangent->force[lane],
-                        now.window, first);
-            follow(tangent, &law, &slope, lane, now.window, now.degree);
             clear(all, now.degree);
             listen(m, tangent->waves[lane], law.gain, tangent->total[lane], now.window, now.degree, all);
             /* and where parameters change what outputs weigh, the waves themselves */

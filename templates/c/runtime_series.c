@@ -244,7 +244,17 @@ typedef struct {
     int window, degree, event;
     size_t place;
     real missed, size, heard;
+    real leak, seen; /* what the window of now misses, and `size` with it */
 } progress;
+
+/* A derivative may miss so much more of itself than a value. */
+enum { LENIENT = 64 };
+
+static int higher_than(int degree)
+{
+    const int higher = degree + degree / 4;
+    return higher < NAME_DEGREE ? higher : NAME_DEGREE;
+}
 
 static int ended(model_of *m, const laws *law, const progress *now)
 {

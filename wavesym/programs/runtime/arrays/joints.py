@@ -106,24 +106,24 @@ class ArrayJoints(ArrayMotion[ArrayTracks]):
                 missed += solver.missed(f, x, self._mass[joint.states])
                 self._send(joint, value, window, panel, q)
                 self._moved[panel, joint.number] = s, x
-                for _, _, _, _, send in joint.ports:
-                    size = np.maximum(size, np.abs(value.wave(send, window, 0, panel)[0]))
-                masses = self._after[joint.states][self._mass[joint.states]]
-                size = np.maximum(size, np.max(np.abs(masses), axis=0, initial=0.0))
+                size = np.maximum(size, self._largest(joint, value, self._after, window, panel))
         return WindowTried(missed, size)
 
     def settled(self) -> None:
         """See `ArrayMotion`."""
         self.value.state = self._after
+        if self._lanes is not None:
+            self._lanes.state = self._lanes_after
 
-    def followed(self, window: int, lanes: ArrayTracks, slope: ArrayLaws) -> None:
+    def followed(self, window: int, lanes: ArrayTracks, slope: ArrayLaws) -> WindowTried:
         """See `ArrayMotion`.
 
         dx' = rates dx + pushed ds + drates x + dpushed s, dq = shown dx + passed ds + dshown x + dpassed s.
         """
         law = self._law
         lanes.lengthen(self.value.degree)
-        lanes.state = lanes.state.copy()
+        self._lanes_after = after = lanes.state.copy()
+        missed, size = np.zeros((2, after.shape[0], after.shape[2]))
         for panel, solvers in enumerate(self._solvers):
             for joint, solver in zip(self._joints, solvers, strict=True):
                 s, x = self._moved[panel, joint.number]
@@ -132,10 +132,13 @@ class ArrayJoints(ArrayMotion[ArrayTracks]):
                 lanes.push(ds[:-1], panel, joint.loads)
                 f = _times(joint.matrix(law, "pushed"), ds)
                 f += _changed(joint.matrix(slope, "pushed"), s) + _changed(joint.matrix(slope, "rates"), x)
-                dx, lanes.state[:, joint.states] = solver.moved(f, lanes.state[:, joint.states])
+                dx, after[:, joint.states] = solver.moved(f, after[:, joint.states])
+                missed += solver.missed(f, dx, self._mass[joint.states])
                 dq = _times(joint.matrix(law, "shown"), dx) + _times(joint.matrix(law, "passed"), ds)
                 dq += _changed(joint.matrix(slope, "shown"), x) + _changed(joint.matrix(slope, "passed"), s)
                 self._send(joint, lanes, window, panel, dq)
+                size = np.maximum(size, self._largest(joint, lanes, after, window, panel))
+        return WindowTried(missed, size)
 
     def reached(self) -> NDArray[np.bool_]:
         """See `ArrayMotion`."""
@@ -153,6 +156,13 @@ class ArrayJoints(ArrayMotion[ArrayTracks]):
                 wave = wave[:, None]
             s[:-1, ..., point, :] += push * wave
         return s
+
+    def _largest(self, joint: _Joint, of: ArrayTracks, state: Array, window: int, panel: int) -> Array:
+        """The largest velocity, or mean of what it sends."""
+        masses = state[..., joint.states, :][..., self._mass[joint.states], :]
+        means = [np.abs(of.wave(send, window, 0, panel)[0]) for _, _, _, _, send in joint.ports]
+        found: Array = np.maximum(np.max(np.abs(masses), axis=-2, initial=0.0), np.max(means, axis=0, initial=0.0))
+        return found
 
     def _send(self, joint: _Joint, of: ArrayTracks, window: int, panel: int, q: Array) -> None:
         for _, point, ratio, arrive, send in joint.ports:

@@ -12,6 +12,8 @@ from wavesym.programs.runtime.arrays.tables import ArrayTables
 from wavesym.programs.runtime.degree import raised
 from wavesym.programs.runtime.engine import Array
 
+_LENIENT = 64.0  # a derivative may miss so much more of itself than a value
+
 
 class ArrayMarch:
     """Of the sets that are the rows of `given`: their `status` and `estimate`, and `series`, of each window an array of
@@ -36,6 +38,7 @@ class ArrayMarch:
         self._motion = motion(tables, self._law, array_slopes(laws, given) if lanes else None)
         self._motion.tabulate()
         self._missed, self._size = np.zeros((2, len(given)))
+        self._sizes: Array = np.zeros(1)  # of derivatives
         with np.errstate(all="ignore"):  # sets that are refused on the way may grow beyond all numbers
             self.series = [self._window(window) for window in range(tables.sizes["windows"])]
             heard = sum(4.0 * len(each[0]) * np.abs(each).sum(axis=(0, 1, 2)) for each in self.series)
@@ -48,14 +51,20 @@ class ArrayMarch:
     def _window(self, window: int) -> Array:
         """The series of a window, at the lowest degree, raised by quarters, that misses no more than its share."""
         motion, highest = self._motion, self._tables.sizes["degree"]
-        motion.value.press(window)
+        motion.press(window)
+        share = self._tables.share
         while True:
             leak, here = motion.tried(window)
             size = np.maximum(self._size, here)
-            late = (self.status == 0) & ~(leak <= self._tables.share * size)
-            if not late.any() or motion.value.degree == highest:
-                break
+            late = (self.status == 0) & ~(leak <= share * size)
+            if motion.value.degree == highest or not late.any():
+                missed, here = motion.followed_all(window)
+                sizes = np.maximum(self._sizes, here)
+                behind = (self.status == 0) & ~(missed <= _LENIENT * share * sizes)
+                if motion.value.degree == highest or not behind.any():
+                    break
             motion.lengthen(min(raised(motion.value.degree), highest))
+        self._sizes = sizes
         self.status[late] = np.where(np.isfinite(leak + size), 2, 1)[late]
         self._missed += leak
         self._size = size

@@ -16,7 +16,9 @@ from wavesym.programs.runtime.engine import Array
 
 
 class WindowTried(NamedTuple):
-    """Of each set what the polynomials of a window miss, and the largest velocity or mean of a wave there."""
+    """Of each set what the polynomials of a window miss, and the largest velocity or mean of a wave there; or of each
+    derivative and set.
+    """
 
     missed: Array
     size: Array
@@ -63,8 +65,20 @@ class ArrayMotion(ABC, Generic[S]):
         """It is enough: the next window begins where this one ends."""
 
     @abstractmethod
-    def followed(self, window: int, lanes: S, slope: ArrayLaws) -> None:
+    def followed(self, window: int, lanes: S, slope: ArrayLaws) -> WindowTried:
         """Derivatives, after the window has been marched."""
+
+    def press(self, window: int) -> None:
+        """The loads on a window."""
+        for signals in (self.value, self._lanes):
+            if signals is not None:
+                signals.press(window)
+
+    def followed_all(self, window: int) -> WindowTried:
+        """Derivatives, if there are any."""
+        if self._slope is None or self._lanes is None:
+            return WindowTried(np.zeros(1), np.zeros(1))
+        return self.followed(window, self._lanes, self._slope)
 
     @abstractmethod
     def reached(self) -> NDArray[np.bool_]:
@@ -75,8 +89,6 @@ class ArrayMotion(ABC, Generic[S]):
         gain = self._law["gain"]
         if self._slope is None or self._lanes is None:
             return self.value.listen(window, gain)[:, :, None]
-        self._lanes.press(window)
-        self.followed(window, self._lanes, self._slope)
         found = self._lanes.listen(window, gain)
         if self._slope["gain"].any():  # what outputs weigh changes, too
             total = self.value.total.copy()

@@ -61,8 +61,10 @@ class ArrayNodes(ArrayMotion[ArrayWaves]):
     def settled(self) -> None:
         """See `ArrayMotion`."""
         self.value.velocity = self._after
+        if self._lanes is not None:
+            self._lanes.velocity = self._lanes_after
 
-    def followed(self, window: int, lanes: ArrayWaves, slope: ArrayLaws) -> None:
+    def followed(self, window: int, lanes: ArrayWaves, slope: ArrayLaws) -> WindowTried:
         """See `ArrayMotion`. With q'/rate + q = p,
 
         dq'/rate + dq = dp + drate/rate (p - q).
@@ -70,14 +72,21 @@ class ArrayNodes(ArrayMotion[ArrayWaves]):
         value, law, massive = self.value, self._law, self._massive
         lanes.lengthen(value.degree)
         share = slope["rate"] / np.where(massive, law["rate"], 1.0)
+        velocity = lanes.velocity
+        missed, size = np.zeros((2, velocity.shape[0], velocity.shape[2]))
         for panel, (bodies, (push, q)) in enumerate(zip(self._bodies, self._moved, strict=True)):
             (a, b), (da, db) = value.arriving(window, panel), lanes.arriving(window, panel)
             p = law["alpha"] * da + law["beta"] * db + slope["alpha"] * a[:, None] + slope["beta"] * b[:, None]
             lanes.push(p, panel, self._on)
             p += share * (push - q)[:, None]
-            dq, after = bodies.moved(p, lanes.velocity)
-            lanes.send(window, panel, np.where(massive, dq, p))
-            lanes.velocity = np.where(massive, after, 0.0)
+            dq, after = bodies.moved(p, velocity)
+            dq, velocity = np.where(massive, dq, p), np.where(massive, after, 0.0)
+            lanes.send(window, panel, dq)
+            missed += np.sum(bodies.leak * np.abs(dq[-1] - p[-1]), axis=1)
+            means = np.abs(lanes.sent[window % 2, :, panel, 0, :, 1:-1]).max(axis=(0, 2))
+            size = np.maximum(size, np.maximum(np.abs(velocity).max(axis=1), means))
+        self._lanes_after = velocity
+        return WindowTried(missed, size)
 
     def reached(self) -> NDArray[np.bool_]:
         """See `ArrayMotion`."""

@@ -53,10 +53,10 @@ class ArraySolver:
         """What the polynomials miss, as velocities: the one term that does not fit. What a spring misses of its length
         counts by the acceleration that it makes, for half a panel.
         """
-        rest = f[self._degree] + np.einsum("ijs,js->is", self._rates, x[self._degree])
+        rest = f[self._degree] + np.einsum("ijs,...js->...is", self._rates, x[self._degree])
         pull = np.max(self._half * np.abs(self._rates), axis=0, initial=1.0)
         weight = np.where(is_mass[:, None], 1.0, pull)
-        found: Array = np.sum(weight * np.abs(rest), axis=0) * self._half / (2 * (self._degree + 1))
+        found: Array = np.sum(weight * np.abs(rest), axis=-2) * self._half / (2 * (self._degree + 1))
         return found
 
 
