@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,9 @@ from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.targets.files import runtime_sets
 
 _MANY, _WHERE = ctypes.c_size_t, ctypes.c_void_p
+_LARGEST_BATCH = 1 << 28  # bytes
+
+Memory = NDArray[np.uint8]
 
 
 def sets_engine(program: Program) -> Engine:
@@ -29,7 +32,7 @@ def sets_engine(program: Program) -> Engine:
 
 
 class CompiledSets:
-    """One set after the other, in the memory of one model; misfits of several side by side.
+    """Several sets side by side, derivatives and bounds of one after the other, in the memory of one model.
 
     CompilerError where there is no C compiler.
     """
@@ -38,13 +41,14 @@ class CompiledSets:
         self._name = program.provenance.model.name
         files = runtime_sets(program)
         header = (f"{self._name}.h", files[f"{self._name}.h"])
-        self._loaded = library(files[f"{self._name}.c"], FAST, header)
+        # joints have loops over a few states, which -O3 takes three times as long to compile for a tenth of their time
+        flags = ("-O2", *FAST[1:]) if program.kind == "joints" else FAST
+        self._loaded = library(files[f"{self._name}.c"], flags, header)
         self._outputs = len(program.outputs)
-        self._values, self._tangents = (
-            self._function(f"sets{kind}", [_WHERE, _MANY, _WHERE, _WHERE, ctypes.c_int, _MANY, _WHERE, _WHERE, _WHERE])
-            for kind in ("", "_tangents")
-        )
-        self._peaks = self._function("sets_peaks", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
+        at = [_WHERE, ctypes.c_int, _MANY]  # instants
+        self._values = self._function("sets", [_WHERE, _MANY, _WHERE, _WHERE, *at, _WHERE, _WHERE, _WHERE])
+        self._tangents = self._function("sets_tangents", [_WHERE, _MANY, _WHERE, *at, _WHERE, _WHERE, _WHERE])
+        self._peaks = self._function("sets_peaks", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
         self._bounds = self._function("sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
         self._misfits = self._function("sets_misfits", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
         self._data_size = self._function("data_size", [_WHERE, _MANY], _MANY)
@@ -61,19 +65,20 @@ class CompiledSets:
 
     def values(self, given: Array, tau: Array) -> FoundSets:
         """See `Engine`."""
-        return self._at(self._values, self._size, given, tau, 1)
+        batch = self._batch()
+        return self._at(self._values, [batch, np.empty(self._size, np.uint8)], given, tau, 1)
 
     def tangents(self, given: Array, tau: Array) -> FoundSets:
         """See `Engine`."""
-        return self._at(self._tangents, self._tangent_size, given, tau, 1 + given.shape[1])
+        return self._at(self._tangents, [np.empty(self._tangent_size, np.uint8)], given, tau, 1 + given.shape[1])
 
     def peaks(self, given: Array) -> FoundSets:
         """See `Engine`."""
-        return self._of_each(self._peaks, given, (self._outputs, 4))
+        return self._of_each(self._peaks, [self._batch(), np.empty(self._size, np.uint8)], given, (self._outputs, 4))
 
     def bounds(self, given: Array) -> FoundSets:
         """See `Engine`."""
-        return self._of_each(self._bounds, given, (self._outputs,))
+        return self._of_each(self._bounds, [np.empty(self._size, np.uint8)], given, (self._outputs,))
 
     def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
         """See `Engine`."""
@@ -90,22 +95,41 @@ class CompiledSets:
 
         return misfits
 
-    def _of_each(self, function: ctypes._NamedFuncPointer, given: Array, shape: tuple[int, ...]) -> FoundSets:
+    def _batch(self) -> Memory | None:
+        """Room for sets side by side, of each call its own, so that several may run at once; none for huge models."""
+        return _aligned(self._batch_size) if self._batch_size <= _LARGEST_BATCH else None
+
+    def _of_each(
+        self,
+        function: ctypes._NamedFuncPointer,
+        room: Sequence[Memory | None],
+        given: Array,
+        shape: tuple[int, ...],
+    ) -> FoundSets:
         found = _none(len(given), shape)
-        model = np.empty(self._size, np.uint8)
-        function(address(given), len(given), address(model), *_places(found))
+        function(address(given), len(given), *map(_place, room), *_places(found))
         return found
 
-    def _at(self, function: ctypes._NamedFuncPointer, size: int, given: Array, tau: Array, lanes: int) -> FoundSets:
+    def _at(
+        self,
+        function: ctypes._NamedFuncPointer,
+        room: Sequence[Memory | None],
+        given: Array,
+        tau: Array,
+        lanes: int,
+    ) -> FoundSets:
         even = len(tau) > 1 and _even(tau)
         told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
         found = _none(len(given), (lanes, self._outputs, len(tau)))
-        model = np.empty(size, np.uint8)  # of this call, so that several may run at once
-        function(address(given), len(given), address(model), address(told), even, len(tau), *_places(found))
+        function(address(given), len(given), *map(_place, room), address(told), even, len(tau), *_places(found))
         return found
 
 
-def _aligned(size: int) -> NDArray[np.uint8]:
+def _place(room: Memory | None) -> int | None:
+    return None if room is None else address(room)
+
+
+def _aligned(size: int) -> Memory:
     """Memory from a multiple of 64 bytes on."""
     memory = np.empty(size + 64, np.uint8)
     begin = -memory.ctypes.data % 64
