@@ -2,6 +2,7 @@
  * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
  * the first empty line. */
 #include "stream_tables.h"
+#include "series.h"
 
 /* What a track sent so many panels ago: its own ring, which begins where those of the tracks before end. */
 static const real *wave(const stream *state, int number, int panels)
@@ -29,14 +30,6 @@ static void lose(stream *state, real much)
     state->lost = *missed > state->lost ? *missed : state->lost;
 }
 
-/* y += factor a */
-static void add(real *y, real factor, const real *a, int count)
-{
-    for (int k = 0; k < count; ++k) {
-        y[k] += factor * a[k];
-    }
-}
-
 /* y += M a, M by rows */
 static void multiply(real *y, const real *rows, const real *a, int height, int width)
 {
@@ -45,36 +38,6 @@ static void multiply(real *y, const real *rows, const real *a, int height, int w
             y[k] += rows[k * width + j] * a[j];
         }
     }
-}
-
-/* sum of c_k T_k(u) */
-static real series(const real *c, real u)
-{
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = DEGREE; k > 0; --k) {
-        const real now = (twice * next - after) + c[k];
-        after = next;
-        next = now;
-    }
-    return (u * next - after) + c[0];
-}
-
-/* Its antiderivative, times 1 / half the length of the panel. */
-static real antiderivative(const real *c, real u)
-{
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = DEGREE + 1; k > 0; --k) {
-        const real lower = k == 1 ? 2 * c[0] : c[k - 1];
-        const real upper = k < DEGREE ? c[k + 1] : (real)0;
-        const real now = (twice * next - after) + (lower - upper) / (real)(2 * k);
-        after = next;
-        next = now;
-    }
-    return u * next - after;
 }
 
 /* The integral of a wave from one time in its panel to another. */

@@ -23,6 +23,7 @@ class CStream:
     tables: dict[str, Lines]
     constants: dict[str, str]
     numbers: str
+    series: str
     kernel: str
 
 
@@ -55,6 +56,7 @@ def source(scene: Description, program: Program) -> str:
         tables=c_tables(program.tables, program.real),
         constants=c_constants(program.constants, program.real),
         numbers=kernel("real.h", scene),
+        series=kernel("series.h", scene),
         kernel=kernel("stream.c", scene),
     )
     return render("c/stream.c.j2", context)
