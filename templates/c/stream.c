@@ -435,6 +435,25 @@ static int is_number(real x)
     return x - x == 0;
 }
 
+/* Of a positive number that is finite: the root of a number from 1/4 to 4, by Newton, times a power of 2. */
+static real root(real square)
+{
+    real power = 1;
+    real near = 1;
+    while (square > 4) {
+        square /= 4;
+        power *= 2;
+    }
+    while (square < (real)0.25) {
+        square *= 4;
+        power /= 2;
+    }
+    for (int k = 0; k < 6; ++k) {
+        near = (near + square / near) / 2;
+    }
+    return power * near;
+}
+
 void name_init(stream *state)
 {
     state->time = 0;
@@ -569,25 +588,5 @@ int name_step(stream *state, real dtau, const real *load, real *out)
 
 real name_lost(const stream *state)
 {
-    /* the root of a number from 1/4 to 4, by Newton, times a power of 2 */
-    real square = state->lost;
-    real root = 1;
-    if (!(square > 0) || !is_number(square)) {
-        return square;
-    }
-    while (square > 4) {
-        square /= 4;
-        root *= 2;
-    }
-    while (square < (real)0.25) {
-        square *= 4;
-        root /= 2;
-    }
-    {
-        real near = 1;
-        for (int k = 0; k < 6; ++k) {
-            near = (near + square / near) / 2;
-        }
-        return root * near / against(state);
-    }
+    return state->lost > 0 && is_number(state->lost) ? root(state->lost) / against(state) : state->lost;
 }
