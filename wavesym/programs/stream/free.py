@@ -22,7 +22,7 @@ from wavesym.programs.rings.plan import Heard, MarchedJoint, RingPlan, WatchedPl
 from wavesym.programs.rings.space import JointRows, JointSpace, Rows, joint_rows
 from wavesym.programs.runtime.joints.network import free_network
 from wavesym.programs.runtime.plan import free_chain
-from wavesym.programs.runtime.request import RuntimeField, fields
+from wavesym.programs.runtime.request import NAMES, RuntimeField, fields
 from wavesym.programs.runtime.units import Function, force_kept, load_kept
 from wavesym.programs.stream.plan import Input, InputForce, StreamPlan, acting_inputs, paneled, steps_of
 
@@ -101,6 +101,11 @@ class FreeStream:
             ),
         )
         return replace(joint, space=space)
+
+
+def usual_parameters(model: Model) -> tuple[str, ...]:
+    """Those that a model for simulators has unless others are asked for: all of a named system."""
+    return tuple(name for name in NAMES if model.chain is not None and getattr(model.named.parameters, name, None))
 
 
 def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], real: Real) -> FreeStream:

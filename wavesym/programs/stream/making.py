@@ -31,7 +31,7 @@ from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.rings.bound import judge
 from wavesym.programs.rings.evaluator import first_degree, refuse_long
-from wavesym.programs.stream.free import FreeStream, free_stream
+from wavesym.programs.stream.free import FreeStream, free_stream, usual_parameters
 from wavesym.programs.stream.made import MADE, laws_of, places, sizes, step_lost
 from wavesym.programs.stream.plan import Input, StreamPlan, stream_plan
 from wavesym.programs.stream.tables import StreamTables
@@ -55,7 +55,8 @@ def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, t
         if value != usual:
             raise WavesymError(f"{option}: {value} given with --stream, {usual or 'nothing'} expected")
     real = REALS[request.precision]
-    free = free_stream(model, request.runtime, inputs, real) if request.runtime else None
+    names = request.runtime or (usual_parameters(model) if request.target else ())
+    free = free_stream(model, names, inputs, real) if names else None
     plan = free.plan(request.step) if free else stream_plan(model, inputs, real, request.step)
     tolerance = max(model.tolerance, _ROUNDINGS * real.roundoff)
     degree, verdict = _enough(plan, model, real)
