@@ -1,12 +1,12 @@
 """What is streamed where parameters come at run time: the same march over functions of them.
 
-Lengths, speeds and panels stay. What joints make of waves, what is on its way at tau = 0, how strong inputs are and what
-outputs weigh are rational functions of the parameters.
+Lengths, speeds and panels stay. What joints make of waves, what is on its way at tau = 0, how strong inputs are and
+what outputs weigh are rational functions of the parameters.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -18,7 +18,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network, network_of
 from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
-from wavesym.programs.rings.plan import Heard, MarchedJoint, RingPlan, WatchedPlace, ring_plan
+from wavesym.programs.rings.plan import MarchedJoint, RingPlan, WatchedPlace, ring_plan
 from wavesym.programs.rings.space import JointRows, JointSpace, Rows, joint_rows
 from wavesym.programs.runtime.joints.network import free_network
 from wavesym.programs.runtime.plan import free_chain
@@ -70,11 +70,7 @@ class FreeStream:
 
     @cached_property
     def _values(self) -> Mapping[str, fmpq]:
-        return {
-            label: value
-            for field in self.fields
-            for label, value in zip(field.labels, field.values, strict=True)
-        }
+        return {label: value for field in self.fields for label, value in zip(field.labels, field.values, strict=True)}
 
     def _number(self, function: Any) -> fmpq:
         return function.at(self._values) if isinstance(function, Ratio) else function
@@ -116,9 +112,10 @@ def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], rea
     """
     if "load" in names:
         raise WavesymError("--runtime: load given with a stream, other parameters expected (its inputs are the loads)")
+    kept: Function = _ONE
     if model.chain is None:
         found = free_network(model, names, ())
-        given, network, kept = found.fields, found.network, _ONE
+        given, network = found.fields, found.network
     else:
         given = fields(model, names, ())
         _, chain = free_chain(model, given)
@@ -129,9 +126,7 @@ def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], rea
     rings = ring_plan(steady, real, joint_rows)
     if model.chain is not None:
         rings = replace(rings, outputs=tuple(_forces_kept(model, rings, force_kept(model, chain))))
-    return FreeStream(
-        model, tuple(inputs), given, rings, tuple(acting_inputs(network, rings.pushed, inputs, kept))
-    )
+    return FreeStream(model, tuple(inputs), given, rings, tuple(acting_inputs(network, rings.pushed, inputs, kept)))
 
 
 def _loaded(network: Network, own: Network) -> Network:
@@ -140,11 +135,8 @@ def _loaded(network: Network, own: Network) -> Network:
     return replace(network, points=tuple(replace(point, loads=other.loads) for point, other in points))
 
 
-def _forces_kept(model: Model, rings: RingPlan, kept: Function) -> Any:
+def _forces_kept(model: Model, rings: RingPlan, kept: Any) -> Iterator[WatchedPlace]:
+    """Outputs, forces `kept` times as large."""
     for probe, output in zip(model.probes, rings.outputs, strict=True):
         factor = kept if probe.quantity == "force" else _ONE
-        yield WatchedPlace(output.name, tuple(_louder(one, factor) for one in output.heard))
-
-
-def _louder(one: Heard, factor: Function) -> Heard:
-    return replace(one, gain=one.gain * factor)
+        yield WatchedPlace(output.name, tuple(replace(one, gain=one.gain * factor) for one in output.heard))

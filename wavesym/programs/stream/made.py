@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from flint import fmpq_mat
@@ -49,7 +49,9 @@ def places(free: FreeStream, plan: StreamPlan, degree: int) -> dict[str, tuple[f
         "first_slip": firsts(_slip_size(joint, degree) for joint in joints),
         "law_of": law,
         "first_law": tuple(law[n] for n in plan.loaded),
-        "is_mass": tuple(int(n < rows.masses) for rows in _rows(free) for n in range(len(rows.weights))),
+        "is_mass": tuple(
+            int(n < rows.masses) for rows in map(_rows_of, free.rings.joints) if rows for n in range(len(rows.weights))
+        ),
     }
 
 
@@ -65,8 +67,8 @@ def sizes(plan: StreamPlan, degree: int) -> dict[str, float]:
 
 def step_lost(free: FreeStream, number: int, plan: StreamPlan, slips: Sequence[float], degree: int) -> float:
     """What polynomials lose at most where a wave, or a body, that was at rest jumps to 1; as stream_made.c has it."""
-    space, rows = plan.rings.joints[number].space, free.rings.joints[number].space
-    if not space.states:
+    space, rows = plan.rings.joints[number].space, _rows_of(free.rings.joints[number])
+    if rows is None or not space.states:
         return 0.0
     size = degree + 1
     jumps: NDArray[np.float64] = np.zeros(space.points * size + space.states)
@@ -81,9 +83,9 @@ def _law(space: Any) -> Iterator[Function]:
         yield from matrix.entries() if isinstance(matrix, fmpq_mat) else chain.from_iterable(matrix)
 
 
-def _rows(free: FreeStream) -> Iterator[JointRows]:
-    """The others have no state."""
-    return (joint.space for joint in free.rings.joints if isinstance(joint.space, JointRows))
+def _rows_of(joint: MarchedJoint) -> JointRows | None:
+    """None where a load is read."""
+    return rows if isinstance(rows := cast(Any, joint.space), JointRows) else None
 
 
 def _answer_size(joint: MarchedJoint, degree: int) -> int:

@@ -107,11 +107,12 @@ class StreamPlan:
 
     def quicker(self, times: fmpq) -> StreamPlan:
         """The same with joints that are so many times as fast."""
-        joints = (
-            replace(joint, space=replace(joint.space, rates=times * joint.space.rates, pushed=times * joint.space.pushed))
-            for joint in self.rings.joints
-        )
-        return replace(self, rings=replace(self.rings, joints=tuple(joints)))
+
+        def quick(joint: MarchedJoint) -> MarchedJoint:
+            space = joint.space
+            return replace(joint, space=replace(space, rates=times * space.rates, pushed=times * space.pushed))
+
+        return replace(self, rings=replace(self.rings, joints=tuple(map(quick, self.rings.joints))))
 
     def late(self, delay: fmpq) -> tuple[int, fmpq]:
         """A delay as whole panels and a rest."""

@@ -20,8 +20,8 @@ _ALLOWED = 10  # times the error bound
 class CStream:
     """templates/c/stream.c.j2; every table as the lines between its braces.
 
-    Of parameters that come at run time `fields` are told, `laws` are what is assigned, with the expression, to `arrays`,
-    each with how many numbers it has; else these are empty.
+    Of parameters that come at run time `fields` are told, `laws` are what is assigned, with the expression, to `arrays`
+    of so many numbers each; else these are empty.
     """
 
     scene: Description

@@ -1,4 +1,4 @@
-"""What a simulator sees: time, loads, outputs, what is lost, what the model was made with or may be given, and one choice."""
+"""What a simulator sees: time, loads, outputs, what is lost, parameters, what is fixed, and one choice."""
 
 from __future__ import annotations
 
@@ -92,8 +92,8 @@ def _variables(program: Program) -> Iterator[Variable]:
             about = "what the model was made with; a change takes another one"
             yield Variable(f"{name}_{index}", "local", "constant", about, literal(nearest(value)))
     for field in settable:
-        for label, told, value, of in zip(field.labels, field.told, field.values, field.units, strict=True):
+        for label, told, value, given in zip(field.labels, field.told, field.values, field.units, strict=True):
             about = f"{told}; may be set until initialization is over"
-            yield Variable(label, "parameter", "fixed", about, literal(nearest(value)), of.text)
+            yield Variable(label, "parameter", "fixed", about, literal(nearest(value)), given.text)
     about = "whether a load goes in a straight line to its value at the end of a step; else it is held over the step"
     yield Variable("linear", "parameter", "fixed", about, str(stepped).lower(), kind="Boolean")
