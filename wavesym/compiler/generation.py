@@ -152,7 +152,6 @@ def _fmu(scene: Scene, language: str, request: Request, package: bool) -> bytes:
     for option, given, usual in (
         ("language", language, "c"),
         ("precision", request.precision, "double"),
-        ("runtime", ",".join(request.runtime), ""),
         ("package", str(package), "False"),
     ):
         if given != usual:
@@ -160,6 +159,8 @@ def _fmu(scene: Scene, language: str, request: Request, package: bool) -> bytes:
     model = lower(scene)
     if request.evaluator != "modes" and (model.damping is None or request.evaluator != "auto"):
         return fmu(stream_program(scene, request), request.target)
+    if request.runtime:
+        raise WavesymError(f"runtime: {','.join(request.runtime)} given with modes and --target, nothing expected")
     if request.step is not None:
         raise WavesymError(f"--step: {request.step} given with modes, nothing expected (loads say what it is)")
     if not scene.load:
