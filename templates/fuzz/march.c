@@ -49,7 +49,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
         MUST(status >= 0 && status <= 2);
         MUST(given || status == 2);
         MUST(state.within || status == 2);
-        if (status == 2 && (state.within || !before.within)) {
+        if (!given || (status == 2 && (state.within || !before.within))) {
             MUST(memcmp(&before, &state, sizeof state) == 0);
         }
         if (status < 2) {

@@ -46,7 +46,7 @@ BREAKS = {
     "an edge that belongs to the piece before": ("pieces_double_values", "tau < edge;", "tau <= edge;"),
     "a value out of range": ("closed_double_values", "tau >= 0 && tau <= CLOSED", "tau <= CLOSED"),
     "a march too short": ("march_double_values", "state->window < (int)tau", "state->window + 1 < (int)tau"),
-    "a ring too large": ("rings_double_values", "const int turn = steps[number] + 1;", "const int turn = steps[number] + 2;"),
+    "a sample too far": ("rings_double_values", "dtau < 0 ? count - 1 - i : i;", "dtau < 0 ? count - i : i;"),
     "an alarm that goes": ("march_double_march", "state->alarm |=", "state->alarm ="),
     "a window too many": ("march_double_march", "state->window >= LAST_WINDOW ||", ""),
     "a load that nobody looks at": ("march_double_march", "|| (loads && !given_within_reach(loads))", ""),
@@ -54,10 +54,10 @@ BREAKS = {
     "a refusal that moves": ("stream_double_stream", "    if (wrong) {\n        return 1;", "    state->seen += wrong;\n    if (wrong) {\n        return 1;"),
     "an alarm forgotten": ("stream_double_stream", "state->alarm |= !fine;", "state->alarm = !fine;"),
     "an instant too many": ("stream_double_stream", "k < SIZE && instant[k] <= from", "k <= SIZE && instant[k] <= from"),
-    "a bad parameter": ("runtime_double_runtime", "if (!good(parameters)) {", "if (0) {"),
+    "a bad parameter": ("runtime_double_runtime", "m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);", "m->built = 1;"),
     "a lane of no size": ("runtime_double_runtime", "(lane + 1) * RUNTIME_DOUBLE_OUTPUTS", "lane * RUNTIME_DOUBLE_OUTPUTS"),
     "a section": ("runtime_double_runtime", "t >= from[at] && t < from[at + 1];", "t >= from[at];"),
-    "a set too many": ("runtime_double_batch", "set < 0", "set < -1"),
+    "a set too many": ("runtime_double_batch", "built = set >= 0 && set <", "built = set <"),
     "a weight": ("runtime_double_batch", "missed[i] * missed[i]", "missed[i]"),
 }  # fmt: skip
 

@@ -71,7 +71,7 @@ class FuzzedProgram(NamedTuple):
 
 
 _BY_NAME = {subject.name: subject for subject in CHECKED}
-_CHAIN = PortableProgram("joints", "stepped_shaft", Request(runtime=("mass", "impedance", "load")), "runtime")
+CHAIN = PortableProgram("joints", "stepped_shaft", Request(runtime=("mass", "impedance", "load")), "runtime")
 FUZZED = (
     FuzzedProgram(_BY_NAME["pieces_double"], "values", 64),
     FuzzedProgram(_BY_NAME["closed_double"], "values", 64),
@@ -83,7 +83,7 @@ FUZZED = (
     FuzzedProgram(_BY_NAME["stream_double"], "stream", 512),
     FuzzedProgram(_BY_NAME["stream_double"].single, "stream", 512),
     FuzzedProgram(_BY_NAME["runtime_double"], "runtime", 128),
-    FuzzedProgram(_CHAIN, "runtime", 128),
+    FuzzedProgram(CHAIN, "runtime", 128),
     FuzzedProgram(_BY_NAME["runtime_double"], "batch", 512),
 )
 

@@ -13,7 +13,7 @@ from math import inf, isfinite
 
 from flint import arb, fmpq
 
-from wavesym.errors import CostError, WavesymError
+from wavesym.errors import CostError, RangeError, ToleranceError, WavesymError
 from wavesym.mechanics.loads import Applied, merged
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest
@@ -42,8 +42,17 @@ _SPARE = 4  # of the tolerance one step of each load takes so much less
 def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, tested: bool = False) -> Program:
     """The program of a model whose loads are `inputs`, to be given while it runs.
 
-    WavesymError, CostError as `stream_plan` says, and where other options are given that say otherwise.
+    WavesymError, CostError as `stream_plan` says, and where other options are given that say otherwise; RangeError
+    where numbers would be beyond those of the precision, ToleranceError where rounding is as large as an output.
     """
+    try:
+        return _program(model, request, inputs, tested)
+    except OverflowError:
+        beyond = f"numbers beyond the range of {request.precision} precision"
+        raise RangeError(f"output: a stream needs {beyond}") from None
+
+
+def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bool) -> Program:
     for option, value, usual in (
         ("--evaluator", request.evaluator, "auto"),
         ("--windows", request.windows, None),
@@ -57,6 +66,10 @@ def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, t
     degree, verdict = _enough(plan, model, real)
     made = StreamTables(plan, degree, real)
     tolerance = max(model.tolerance, _ROUNDINGS * real.roundoff)
+    for output, error in zip(plan.rings.outputs, verdict.bounds, strict=True):
+        if not isfinite(error):
+            told = f"output.tolerance: {nearest(tolerance):g} cannot be met: stream: "
+            raise ToleranceError(f"{told}rounding may leave nothing of {output.name} (other outputs help)")
     program = Program(
         "stream",
         real,
