@@ -11,10 +11,11 @@ import pytest
 from tests.support.builds import needs_binutils, needs_zig
 from tests.test_documents import document
 from wavesym.lab.portable import misra, prove, targets
+from wavesym.lab.portable.fuzz import CHAIN
 from wavesym.lab.portable.page import between, put, table
 from wavesym.lab.portable.subjects import CHECKED, COMPILED, PROVED
 from wavesym.lab.portable.tools import absent
-from wavesym.running.toolchain import CompilerError
+from wavesym.running.toolchain import CompilerError, compiler
 
 PAGE = "docs/portability.md"
 (PIECES,) = (subject for subject in PROVED if subject.name == "pieces_double")
@@ -168,3 +169,14 @@ def test_every_program_refuses_fast_math():
         guard = f"!defined({subject.name.upper()}_ALLOW_FAST_MATH)"
         assert guard in text
         assert re.search(r"#error .*bounds of errors no longer hold", text)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flag", ["-ffast-math", "-Ofast"])
+@pytest.mark.parametrize("subject", [*{s.name: s for s in CHECKED + COMPILED}.values(), CHAIN], ids=lambda s: s.name)
+def test_no_program_compiles_so_unless_it_is_told_to(subject, flag, tmp_path):
+    name = written(subject, tmp_path).name
+    compile_ = ["-std=c99", flag, "-fsyntax-only", f"{name}.c"]
+    with pytest.raises(CompilerError, match="bounds of errors no longer hold, nor NaN out of range"):
+        compiler().run(compile_, tmp_path)
+    compiler().run([*compile_, f"-D{name.upper()}_ALLOW_FAST_MATH"], tmp_path)
