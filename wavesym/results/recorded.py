@@ -1,4 +1,4 @@
-"""Extremes of many records through one structure, also between samples, by modes that all of them share.
+"""Many records through one structure, by modes that all of them share: extremes, also between samples, and histories.
 
 Outputs are known at the samples and halfway between, by `RecordResponse`. How far they bend there tells how much higher
 a top in between may be; the steps that may have the highest one are looked at closely (`tops`). Nothing of that is
@@ -8,7 +8,7 @@ proved, as in `sampled`. That the modes are enough is: for each record.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from math import ceil, inf
 from typing import Any, NamedTuple
@@ -62,15 +62,19 @@ class ManyRecords:
 @dataclass(frozen=True)
 class RecordedExtremes:
     """The least and the greatest value of outputs and their tau, (records, outputs, 2), and of each record the bound of
-    the error of values, relative to each output's largest; of those whose bound is too large nothing is to be used."""
+    the error of values, relative to each output's largest; of those whose bound is too large nothing is to be used.
+
+    `histories` are the outputs at the instants that were asked for, (records, outputs, instants).
+    """
 
     values: Numbers
     taus: Numbers
     bounds: Numbers
     modes: int
+    histories: Numbers
 
 
-def recorded_extremes(model: Model, records: ManyRecords) -> RecordedExtremes:
+def recorded_extremes(model: Model, records: ManyRecords, instants: Sequence[float] = ()) -> RecordedExtremes:
     """Those of a model under each of many records; its own load is one of them, or any other that does not jump.
 
     UnservedError for what modes do not serve, ToleranceError as for `modal_system`.
@@ -82,8 +86,11 @@ def recorded_extremes(model: Model, records: ManyRecords) -> RecordedExtremes:
         known = chain.shares(count)
         return _Modes(chain, known, count, RecordResponse(chain.system(known, count), records.spacing, _PARTS))
 
-    few = _enough(modes, chain, records.hardest, chain.fewest)
-    return _enough(modes, chain, records, few.modes) if len(records.samples) > _HARDEST else few
+    found = _enough(modes, chain, records.hardest, chain.fewest)
+    if len(records.samples) > _HARDEST:
+        found = _enough(modes, chain, records, found.modes)
+    histories = _histories(modes(found.modes).response, records, np.array(instants, dtype=np.float64))
+    return replace(found, histories=histories)
 
 
 class _Modes(NamedTuple):
@@ -125,7 +132,26 @@ def _by_modes(modes: _Modes, records: ManyRecords) -> RecordedExtremes:
     errors[:, np.array(chain.silent)] = 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         bounds = np.where(errors > 0, errors / np.maximum(largest - errors, 0.0), 0.0).max(axis=1, initial=0.0)
-    return RecordedExtremes(values, taus, bounds, count)
+    return RecordedExtremes(values, taus, bounds, count, np.empty((*values.shape[:2], 0)))
+
+
+def _histories(response: RecordResponse, records: ManyRecords, taus: Numbers) -> Numbers:
+    """Values at tau, (records, outputs, instants)."""
+    count, n = records.samples.shape
+    made = np.zeros((count, len(response.system.direct), len(taus)))
+    (felt,) = np.nonzero(taus > records.begin)
+    since = taus - records.begin
+    step = np.clip((since / records.spacing).astype(np.intp), 0, n - 2)
+    later = np.maximum(since - step * records.spacing, 0.0)
+    for first in range(0, count, _RECORDS):
+        samples = records.samples[first : first + _RECORDS, :, None]
+        known, rows = response.known(samples), np.arange(len(samples))
+        for begin in range(0, len(felt), _RECORDS):
+            at = felt[begin : begin + _RECORDS]
+            record, steps = (each.ravel() for each in np.meshgrid(rows, step[at]))
+            inside = response.inside(samples, known, record, steps).reshape(len(at), len(rows), -1)
+            made[first : first + _RECORDS, :, at] = (inside @ response.reads(later[at])).transpose(1, 2, 0)
+    return made
 
 
 def _extremes(response: RecordResponse, model: Model, begin: float, records: Numbers) -> tuple[Numbers, Numbers]:
@@ -169,8 +195,8 @@ def _candidates(seen: Numbers, end: float) -> tuple[Places, Places, Places, Plac
     number = np.arange(blocks * steps).reshape(blocks, 1, steps)
     whole = _whole(end)
     after = np.arange(blocks) >= end // steps
-    for part, reached in ((middle, end - 0.5), (last, end - 1.0)):
-        part[:, after] = np.where(number[after] <= reached + 1e-9, part[:, after], 0.0)
+    for values, reached in ((middle, end - 0.5), (last, end - 1.0)):
+        values[:, after] = np.where(number[after] <= reached + 1e-9, values[:, after], 0.0)
     bent = last - 2 * middle
     bent[..., 1:] += last[..., :-1]
     bent[:, 1:, :, 0] += last[:, :-1, :, -1]
