@@ -11,7 +11,7 @@ from zipfile import ZipFile
 import pytest
 
 import wavesym
-from tests.support.builds import LANGUAGES, STRICT
+from tests.support.builds import LANGUAGES, STRICT, needs_zig
 from tests.support.fmus import VERSIONS, made, needs_fmpy
 from tests.test_documents import ROOT
 from wavesym.cli import main
@@ -194,10 +194,10 @@ def test_the_hosts_own_compiler_is_said_in_one_line(tmp_path):
         made(GEARED, tmp_path, "fmu3")
 
 
+@needs_zig
 @pytest.mark.slow
 def test_zig_builds_for_three_machines(tmp_path):
     """By what their headers say they are for, by the functions they show, and by the glibc they need."""
-    assert toolchain.at_hand(()), "ziglang is one of the packages for tests"
     path = made(GEARED, tmp_path, "fmu2", host=False)
     with ZipFile(path) as archive:
         archive.extractall(tmp_path)

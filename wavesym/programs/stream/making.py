@@ -13,7 +13,7 @@ from math import inf, isfinite
 
 from flint import arb, fmpq
 
-from wavesym.errors import CostError, WavesymError
+from wavesym.errors import CostError, RangeError, ToleranceError, WavesymError
 from wavesym.mechanics.loads import Applied, merged
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest
@@ -45,8 +45,17 @@ _SPARE = 4  # of the tolerance one step of each load takes so much less
 def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, tested: bool = False) -> Program:
     """The program of a model whose loads are `inputs`, to be given while it runs.
 
-    WavesymError, CostError as `stream_plan` says, and where other options are given that say otherwise.
+    WavesymError, CostError as `stream_plan` says, and where other options are given that say otherwise; RangeError
+    where numbers would be beyond those of the precision, ToleranceError where rounding is as large as an output.
     """
+    try:
+        return _program(model, request, inputs, tested)
+    except OverflowError:
+        beyond = f"numbers beyond the range of {request.precision} precision"
+        raise RangeError(f"output: a stream needs {beyond}") from None
+
+
+def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bool) -> Program:
     for option, value, usual in (
         ("--evaluator", request.evaluator, "auto"),
         ("--windows", request.windows, None),
@@ -60,6 +69,10 @@ def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, t
     plan = free.plan(request.step) if free else stream_plan(model, inputs, real, request.step)
     tolerance = max(model.tolerance, _ROUNDINGS * real.roundoff)
     degree, verdict = _enough(plan, model, real)
+    for output, error in zip(plan.rings.outputs, verdict.bounds, strict=True):
+        if not isfinite(error):
+            told = f"output.tolerance: {nearest(tolerance):g} cannot be met: stream: "
+            raise ToleranceError(f"{told}rounding may leave nothing of {output.name} (other outputs help)")
     if free:
         degree = _quick_enough(free, plan, degree, nearest(tolerance), real)
     made = StreamTables(plan, degree, real)
@@ -68,7 +81,7 @@ def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, t
         real,
         plan.rings.tau_max,
         tuple(
-            ProgramOutput(output.name, nearest(tolerance) if free else _bound(error), size)
+            ProgramOutput(output.name, nearest(tolerance) if free else bound(arb(error)), size)
             for output, error, size in zip(plan.rings.outputs, verdict.bounds, verdict.largest, strict=True)
         ),
         made.tables(),
@@ -82,10 +95,6 @@ def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, t
     if free:
         program = _freed(program, free, plan, degree)
     return replace(program, reference=_reference(model, plan, program)) if tested else program
-
-
-def _bound(error: float) -> float:
-    return bound(arb(error)) if isfinite(error) else error
 
 
 def _freed(program: Program, free: FreeStream, plan: StreamPlan, degree: int) -> Program:
