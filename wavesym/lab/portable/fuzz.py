@@ -1,4 +1,4 @@
-"""Programs under libFuzzer and sanitizers: bytes become arguments and calls, of which templates/fuzz/ says what must hold.
+"""Programs under libFuzzer and sanitizers: bytes become arguments; templates/fuzz/ says what must hold of what comes.
 
 Without a fuzzer the bytes that were kept can be replayed, by any compiler that has sanitizers.
 """
@@ -107,7 +107,7 @@ def fuzzer() -> str | None:
 
 
 def fuzz(program: FuzzedProgram, clang: str, folder: Path, kept: Path, seconds: int) -> FuzzVerdict:
-    """Let libFuzzer call a program for so long, from the bytes in `kept` on, and those that it has learnt in `folder`."""
+    """Let libFuzzer call a program for so long, from the bytes in `kept` on, and what it has learnt in `folder`."""
     where = program.write(folder)
     made = started(program.command(clang, _WITH_FUZZER), where, _COMPILING)
     if made.status != 0:
