@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from wavesym.compiler import stream_program
 from wavesym.lab.harness import PLAIN, chosen_compiler, compilers
 from wavesym.lab.stream import stream
 from wavesym.lab.timing import least
 from wavesym.programs.request import Request
+from wavesym.programs.stream.making import stream_program
+from wavesym.programs.stream.plan import inputs_of
 from wavesym.running.native import FAST
-from wavesym.scene import Scene
-from wavesym.targets.files import sources
+from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import sources
+from wavesym.targets.files import sources as written
 
 HEAD = ("scene", "degree", "compiler", "flags", "us a panel", "us a step of 0.01")
 _STEPS = 2000
 _DISCS = 10
+_BUILT_IN = ("building_m2", "drive_m1", "geared_drive")
 
 
 def discs(tolerance: str = "1e-9") -> Scene:
