@@ -40,12 +40,10 @@ def discs(tolerance: str = "1e-9") -> Scene:
 
 def rows(steps: int = _STEPS) -> Iterator[Sequence[str]]:
     """Of some scenes the degree, and microseconds of both kinds of steps."""
-    told = {"ten discs": discs()} | {
-        name: Scene.from_toml(name) for name in ("building_m2", "drive_m1", "geared_drive")
-    }
-    for name, scene in told.items():
-        made = stream_program(scene, Request(stream=True))
-        text = sources(made, "c")
+    for name, scene in {"ten discs": discs(), **{name: Scene.from_toml(name) for name in _BUILT_IN}}.items():
+        model = replace(lower(scene), endless=True)
+        made = stream_program(model, Request(stream=True), inputs_of(model, sources(scene)))
+        text = written(made, "c")
         samples = np.random.default_rng(1).standard_normal((steps, int(made.constants["loads"])))
         for compiler in compilers():
             for flags in (FAST, PLAIN):
