@@ -28,7 +28,7 @@ install: .venv/.installed
 	@$(PIP) '.[$(subst $() ,$(COMMA),$(NEEDED))]'
 	@touch $@
 
-.venv/.test .venv/.lint .venv/.simulator: .venv/.%: .venv/.installed
+.venv/.test .venv/.lint .venv/.check: .venv/.%: .venv/.installed
 	@echo '== Python packages into .venv: what `make $*` needs'
 	@$(PIP) '.[$*]'
 	@touch $@
@@ -85,7 +85,7 @@ examples: install
 		( cd $$(dirname $$page) && grep '^wavesym plot' README.md | $(TOLD) sh -e ); \
 	done
 
-check-all: lint .venv/.test .venv/.simulator
+check-all: lint .venv/.test .venv/.check
 	$(BIN)/python -m pytest $(CORES) --run-slow
 
 # speed, as ratios within one run, and the charts of the same scenes
@@ -103,7 +103,7 @@ prove: install
 misra: install
 	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
 
-targets: .venv/.test
+targets: .venv/.check
 	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
 
 # generated C under a fuzzer and sanitizers, so many seconds each program, two at a time; skipped where there is none

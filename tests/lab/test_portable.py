@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
+from tests.support.builds import needs_binutils, needs_zig
 from tests.test_documents import document
 from wavesym.lab.portable import misra, prove, targets
 from wavesym.lab.portable.fuzz import CHAIN
@@ -24,7 +24,6 @@ NATIVE = targets.TARGETS[0]
 
 needs_prover = pytest.mark.skipif(bool(absent(prove.TOOL)), reason="no Frama-C here")
 needs_checker = pytest.mark.skipif(bool(absent(misra.TOOL)), reason="no cppcheck here")
-needs_zig = pytest.mark.skipif(not find_spec("ziglang") or bool(absent("size")), reason="no zig, no size here")
 
 
 class Spoilt:
@@ -129,6 +128,7 @@ def test_the_checker_sees_a_rule_that_is_broken(tmp_path):
 
 
 @needs_zig
+@needs_binutils
 @pytest.mark.slow
 def test_a_program_is_taken_alone_and_its_selftest_passes(tmp_path):
     size = targets.compiled(written(SINGLE, tmp_path), NATIVE, tmp_path)
@@ -140,6 +140,7 @@ def test_a_program_is_taken_alone_and_its_selftest_passes(tmp_path):
 
 
 @needs_zig
+@needs_binutils
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("right", "wrong"),
@@ -155,6 +156,7 @@ def test_what_a_small_machine_lacks_is_refused(right, wrong, tmp_path):
 
 
 @needs_zig
+@needs_binutils
 @pytest.mark.slow
 def test_data_that_can_be_written_is_counted(tmp_path):
     spoilt = Spoilt(SINGLE, "enum { GRIDS", "int pieces_single_flaw = 1;\nenum { GRIDS")
