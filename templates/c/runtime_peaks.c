@@ -119,6 +119,23 @@ static void explore(const part *p, summit *top, real left, real at_left, real ri
     }
 }
 
+/* Whether an output may be beyond what was seen of it, on a section of a window: a sum of c_k T_k is no further from c_0
+ * than the sum of the other |c_k|, and what rounding adds to that. */
+static int beyond(const model_of *m, int window, int at, const summit *least, const summit *greatest)
+{
+    const int degree = m->degree[window];
+    real middle = 0, around = 0;
+    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+        const real *const c = m->series + m->place[window] + (size_t)strand_at[k] * (size_t)(degree + 2);
+        middle += c[0];
+        for (int n = 1; n <= degree + 1; ++n) {
+            around += magnitude(c[n]);
+        }
+    }
+    around += 256 * unit * (magnitude(middle) + around);
+    return !(middle + around <= greatest->best && around - middle <= least->best);
+}
+
 /* First the best of all instants surveyed; then, `slack` given, of all between them that may be higher. */
 static void search(const model_of *m, int output, summit *least, summit *greatest, const real *slack)
 {
@@ -129,7 +146,7 @@ static void search(const model_of *m, int output, summit *least, summit *greates
             const real reach = NAME_TAU_MAX - cycle_begin(window);
             const real end = from[at + 1] < reach ? from[at + 1] : reach;
             part p = {m, window, section, output, from[at], end - from[at], 0};
-            if (p.length < 0) {
+            if (p.length < 0 || !beyond(m, window, section * NAME_OUTPUTS + output, least, greatest)) {
                 continue;
             }
             survey(&p, t, found);

@@ -29,11 +29,36 @@ typedef full_slice slice __attribute__((aligned(sizeof(real)), may_alias));
 #else
 typedef real slice;
 #endif
-enum { BLOCK = 16, SLICES = BLOCK * sizeof(real) / sizeof(slice) };
+enum { BLOCK = 16, SLICES = BLOCK * sizeof(real) / sizeof(slice), LANES = sizeof(slice) / sizeof(real) };
+static const slice nothing = {0};
+#if defined(__GNUC__) && !defined(__FRAMAC__) && !defined(NAME_PLAIN)
+typedef __typeof__(nothing < nothing) bits;
+#define AT(x, lane) ((x)[lane])
+#define MAGNITUDE(x) ((slice)((bits)(x) & (bits)(-(x))))
+#else
+#define AT(x, lane) (x)
+#define MAGNITUDE(x) magnitude(x)
+#endif
 
 static real magnitude(real x)
 {
     return x < 0 ? -x : x;
+}
+
+static const slice *slice_at(const real *x, size_t k)
+{
+    return (const slice *)(x + k);
+}
+
+static real total_of(const slice *x)
+{
+    slice sum = *x;
+    for (int half = LANES / 2; half > 0; half /= 2) {
+        for (int lane = 0; lane < half; ++lane) {
+            AT(sum, lane) += AT(sum, lane + half);
+        }
+    }
+    return AT(sum, 0);
 }
 
 /* False for what is no number. */
@@ -173,9 +198,17 @@ static real infinity(void)
 /* Add what the values of a window's series stay below while they are read; what is no finite number stays in the sum. */
 static void weigh(real *sum, const real *all, int degree)
 {
-    for (size_t k = 0; k < (size_t)NAME_STRANDS * (size_t)(degree + 2); ++k) {
-        *sum += (real)(4 * (degree + 2)) * magnitude(all[k]);
+    const size_t count = (size_t)NAME_STRANDS * (size_t)(degree + 2);
+    slice some = nothing;
+    real others = 0;
+    size_t k = 0;
+    for (; k + LANES <= count; k += LANES) {
+        some += MAGNITUDE(*slice_at(all, k));
     }
+    for (; k < count; ++k) {
+        others += magnitude(all[k]);
+    }
+    *sum += (real)(4 * (degree + 2)) * (total_of(&some) + others);
 }
 
 /* Whether anything can be felt in an output up to TAU_MAX. */

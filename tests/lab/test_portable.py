@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import re
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
+from tests.support.builds import needs_binutils, needs_zig
 from tests.test_documents import document
 from wavesym.lab.portable import misra, prove, targets
+from wavesym.lab.portable.fuzz import CHAIN
 from wavesym.lab.portable.page import between, put, table
 from wavesym.lab.portable.subjects import CHECKED, COMPILED, PROVED
 from wavesym.lab.portable.tools import absent
-from wavesym.running.toolchain import CompilerError
+from wavesym.running.toolchain import CompilerError, compiler
 
 PAGE = "docs/portability.md"
 (PIECES,) = (subject for subject in PROVED if subject.name == "pieces_double")
@@ -23,7 +24,6 @@ NATIVE = targets.TARGETS[0]
 
 needs_prover = pytest.mark.skipif(bool(absent(prove.TOOL)), reason="no Frama-C here")
 needs_checker = pytest.mark.skipif(bool(absent(misra.TOOL)), reason="no cppcheck here")
-needs_zig = pytest.mark.skipif(not find_spec("ziglang") or bool(absent("size")), reason="no zig, no size here")
 
 
 class Spoilt:
@@ -128,6 +128,7 @@ def test_the_checker_sees_a_rule_that_is_broken(tmp_path):
 
 
 @needs_zig
+@needs_binutils
 @pytest.mark.slow
 def test_a_program_is_taken_alone_and_its_selftest_passes(tmp_path):
     size = targets.compiled(written(SINGLE, tmp_path), NATIVE, tmp_path)
@@ -139,6 +140,7 @@ def test_a_program_is_taken_alone_and_its_selftest_passes(tmp_path):
 
 
 @needs_zig
+@needs_binutils
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("right", "wrong"),
@@ -154,6 +156,7 @@ def test_what_a_small_machine_lacks_is_refused(right, wrong, tmp_path):
 
 
 @needs_zig
+@needs_binutils
 @pytest.mark.slow
 def test_data_that_can_be_written_is_counted(tmp_path):
     spoilt = Spoilt(SINGLE, "enum { GRIDS", "int pieces_single_flaw = 1;\nenum { GRIDS")
@@ -166,3 +169,14 @@ def test_every_program_refuses_fast_math():
         guard = f"!defined({subject.name.upper()}_ALLOW_FAST_MATH)"
         assert guard in text
         assert re.search(r"#error .*bounds of errors no longer hold", text)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flag", ["-ffast-math", "-Ofast"])
+@pytest.mark.parametrize("subject", [*{s.name: s for s in CHECKED + COMPILED}.values(), CHAIN], ids=lambda s: s.name)
+def test_no_program_compiles_so_unless_it_is_told_to(subject, flag, tmp_path):
+    name = written(subject, tmp_path).name
+    compile_ = ["-std=c99", flag, "-fsyntax-only", f"{name}.c"]
+    with pytest.raises(CompilerError, match="bounds of errors no longer hold, nor NaN out of range"):
+        compiler().run(compile_, tmp_path)
+    compiler().run([*compile_, f"-D{name.upper()}_ALLOW_FAST_MATH"], tmp_path)

@@ -7,7 +7,6 @@ import json
 import re
 import subprocess
 from fractions import Fraction
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,7 @@ from hypothesis import strategies as st
 
 import wavesym
 from tests.support import drawn
-from tests.support.builds import LANGUAGES, STRICT, needs_binutils, sections
+from tests.support.builds import LANGUAGES, STRICT, needs_binutils, needs_zig, sections
 from tests.support.drives import DRIVE, EVERY, small
 from tests.support.streamed import built, knots, missed, run
 from wavesym.cli import main
@@ -451,7 +450,7 @@ def compact(name, precision, folder):
 
 @needs_binutils
 @pytest.mark.slow
-@pytest.mark.skipif(not find_spec("ziglang"), reason="no ziglang here")
+@needs_zig
 def test_the_sizes_on_a_small_machine_are_those_of_the_page(tmp_path):
     page = (Path(__file__).parents[2] / "docs" / "march.md").read_text()
     rows = re.findall(r"^\| (\w+), (double|single) \| (\d+) \| (\d+) \|$", page, re.MULTILINE)

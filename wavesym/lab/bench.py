@@ -342,5 +342,9 @@ def _growth() -> Iterator[Sequence[str]]:
 
 
 if __name__ == "__main__":
-    text = "\n".join(report(Path(sys.argv[1]))) + "\n"
-    Path(sys.argv[1], "README.md").write_text(text, encoding="utf-8")
+    folder = Path(sys.argv[1])
+    lines = []
+    for line in report(folder):  # each as soon as it is measured: what takes minutes is seen to go on
+        print(line, flush=True)
+        lines.append(f"{line}\n")
+    Path(folder, "README.md").write_text("".join(lines), encoding="utf-8")

@@ -1,4 +1,6 @@
-"""python -m wavesym.lab.portable prove|misra|targets PAGE: run the tool and put its table into the page.
+"""python -m wavesym.lab.portable prove|misra|targets|fuzz PAGE: run the tool and put its table into the page.
+
+`fuzz PAGE KEPT SECONDS` takes the bytes to begin with from the folder KEPT, and so many seconds for each program.
 
 Exit status 1 where something is not as it has to be; 0 with a word where the tool is not on this machine.
 """
@@ -11,15 +13,21 @@ from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from wavesym.lab.portable import misra, prove, targets
+from wavesym.lab.portable import fuzz, misra, prove, targets
 from wavesym.lab.portable.page import put, table
 from wavesym.lab.portable.subjects import CHECKED, COMPILED, PROVED
 from wavesym.lab.portable.tools import absent, version
 
 
-def main(what: str, page: Path) -> int:
+def main(what: str, page: Path, kept: Path = Path(), seconds: int = 0) -> int:
     """Run one of them; what failed is told line by line."""
-    missing = {"prove": absent(prove.TOOL), "misra": absent(misra.TOOL), "targets": absent("size")}[what]
+    clang = fuzz.fuzzer() if what == "fuzz" else None
+    missing = {
+        "prove": absent(prove.TOOL),
+        "misra": absent(misra.TOOL),
+        "targets": absent("size"),
+        "fuzz": [] if clang else ["clang with libFuzzer"],
+    }[what]
     if what == "targets" and not find_spec("ziglang"):
         missing.append("ziglang")
     if missing:
@@ -35,6 +43,11 @@ def main(what: str, page: Path) -> int:
             case "misra":
                 made = table(misra.HEAD, _told(misra.rows(CHECKED, folder, failed)))
                 told = f"{version(misra.TOOL)}, in {', '.join(subject.name for subject in CHECKED)}."
+            case "fuzz":
+                assert clang
+                learning = Path("build", "fuzz").resolve()  # the next run goes on with what this one has learnt
+                made = table(fuzz.HEAD, _told(fuzz.rows(fuzz.FUZZED, clang, learning, kept, seconds, failed)))
+                told = f"{fuzz.tool(clang)}."
             case _:
                 made = table(targets.HEAD, _told(targets.rows(COMPILED, targets.TARGETS, folder, failed)))
                 told = f"{targets.compiler()}, `-Os`."
@@ -51,4 +64,4 @@ def _told(rows: Iterator[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
 
 
 if __name__ == "__main__":
-    raise SystemExit(main(sys.argv[1], Path(sys.argv[2])))
+    raise SystemExit(main(sys.argv[1], *map(Path, sys.argv[2:4]), *map(int, sys.argv[4:])))

@@ -73,10 +73,13 @@ class PortableProgram:
 
     def driven(self, count: int) -> str:
         """The driver for this program, as targets/c/kernel.py makes C of a kernel."""
-        text = text_of(f"proof/{self.driver}.c").partition("\n\n")[2]
-        text = re.sub(r"\bname_real\b", "float" if self.request.precision == "single" else "double", text)
-        text = re.sub(r"\bname_", f"{self.name}_", re.sub(r"\bNAME_", f"{self.name.upper()}_", text))
+        text = self.spelt(text_of(f"proof/{self.driver}.c").partition("\n\n")[2])
         return f'#include "{self.name}.h"\n#define COUNT {count}\n\n{text}'
+
+    def spelt(self, text: str) -> str:
+        """C for a program called `name`, with the name and the numbers of this one."""
+        text = re.sub(r"\bname_real\b", "float" if self.request.precision == "single" else "double", text)
+        return re.sub(r"\bname_", f"{self.name}_", re.sub(r"\bNAME_", f"{self.name.upper()}_", text))
 
     def _program(self) -> Program:
         request = self.request

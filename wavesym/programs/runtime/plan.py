@@ -16,6 +16,7 @@ from typing import Any
 from flint import fmpq
 
 from wavesym.exact.node_rules import node_rule
+from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import network_of
@@ -101,23 +102,7 @@ def runtime_plan(
     model: Model, given: Sequence[RuntimeField], loads: Sequence[Applied], real: Real = DOUBLE
 ) -> RuntimePlan:
     """The plan of a model with the fields `given` at run time; CostError as for a march."""
-    chain = model.named
-    symbols = [label for field in given if field.name != "load" for label in field.labels]
-    ring = Ring(tuple(symbols))
-    symbols_of = ring.symbols()
-    own = {
-        label: symbols_of[label] / unit.size
-        for field in given
-        if field.name != "load"
-        for label, unit in zip(field.labels, field.units, strict=True)
-    }
-
-    def numbers(name: str) -> dict[int, Any] | None:
-        values: dict[int, Any] | None = getattr(chain.parameters, name)
-        return values and {i: own.get(f"{name}_{i}", value) for i, value in values.items()}
-
-    parameters = Parameters(**{name: numbers(name) for name in ("kappa", "inertia", "velocity", "dashpot")})
-    free = replace(chain, parameters=parameters)
+    ring, free = free_chain(model, given)
     chosen = [unit.size for field in given if field.name == "load" for unit in field.units]
     units = chosen or [fmpq(1)] * len(loads)
     acting = [(load.time, number) for number, load in enumerate(loads) if load.time <= rational(model.horizon(real))]
@@ -141,6 +126,27 @@ def runtime_plan(
         heard,
         tuple(_strands(made, heard)),
     )
+
+
+def free_chain(model: Model, given: Sequence[RuntimeField]) -> tuple[Ring, Chain]:
+    """A named chain with symbols for the parameters `given` at run time, which are told in their units."""
+    chain = model.named
+    symbols = [label for field in given if field.name != "load" for label in field.labels]
+    ring = Ring(tuple(symbols))
+    symbols_of = ring.symbols()
+    own = {
+        label: symbols_of[label] / unit.size
+        for field in given
+        if field.name != "load"
+        for label, unit in zip(field.labels, field.units, strict=True)
+    }
+
+    def numbers(name: str) -> dict[int, Any] | None:
+        values: dict[int, Any] | None = getattr(chain.parameters, name)
+        return values and {i: own.get(f"{name}_{i}", value) for i, value in values.items()}
+
+    parameters = Parameters(**{name: numbers(name) for name in ("kappa", "inertia", "velocity", "dashpot")})
+    return ring, replace(chain, parameters=parameters)
 
 
 def _pushes(

@@ -40,7 +40,7 @@ class StreamTables:
         late = [plan.late(one.delay) for one in heard]
         joints = self._rings.joints()
         spaces = [self._joints[n].space for n in plan.loaded]
-        slips = [self._slips(joint) for joint in self._joints]
+        slips = [self.slips(joint) for joint in self._joints]
         laws = [
             [value for matrix in (s.rates, s.pushed, s.shown, s.passed) for value in matrix.entries()] for s in spaces
         ]
@@ -176,7 +176,7 @@ class StreamTables:
             first += joint.space.points
         return found
 
-    def _slips(self, joint: MarchedJoint) -> list[float]:
+    def slips(self, joint: MarchedJoint) -> list[float]:
         """What the polynomials of a joint miss, as velocities of its points, from what its matrix takes."""
         if not joint.space.states:
             return []
