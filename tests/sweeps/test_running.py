@@ -150,9 +150,7 @@ def test_commands_that_start_at_once_do_not_disturb_each_other(tmp_path: Path) -
     run(tmp_path / "sweep.toml", tmp_path / "alone")
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
     go = command("sweep.toml", "out").split()
-    every = [
-        subprocess.Popen(go, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True) for _ in range(4)
-    ]
+    every = [subprocess.Popen(go, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True) for _ in range(4)]
     told = [process.communicate()[1] for process in every]
     for process, line in zip(every, told, strict=True):
         assert line.count("\n") == 1
