@@ -14,8 +14,8 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from wavesym.lab.portable.subjects import CHECKED, PortableProgram
-from wavesym.programs.request import Request
 from wavesym.lab.portable.tools import started, version
+from wavesym.programs.request import Request
 from wavesym.rendering import text_of
 from wavesym.running.toolchain import CompilerError
 
