@@ -14,8 +14,8 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from wavesym.lab.portable.subjects import CHECKED, PortableProgram
-from wavesym.lab.portable.tools import started, version
 from wavesym.programs.request import Request
+from wavesym.lab.portable.tools import started, version
 from wavesym.rendering import text_of
 from wavesym.running.toolchain import CompilerError
 
@@ -83,7 +83,7 @@ class FuzzedProgram(NamedTuple):
 
 
 _BY_NAME = {subject.name: subject for subject in CHECKED}
-CHAIN = PortableProgram("joints", "stepped_shaft", Request(runtime=("mass", "impedance", "load")), "runtime")
+CHAIN = _BY_NAME["joints_double"]
 TUNED = PortableProgram("tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "stream")
 FUZZED = (
     FuzzedProgram(_BY_NAME["pieces_double"], "values", 64),
