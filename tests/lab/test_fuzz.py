@@ -62,6 +62,7 @@ BREAKS = {
         "k < SIZE && instant[k] <= from",
         "k <= SIZE && instant[k] <= from",
     ),
+    "a stream that should give nothing": ("tuned_double_tuned", "gain[k] = not_a_number();", ""),
     "a bad parameter": (
         "runtime_double_runtime",
         "m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);",

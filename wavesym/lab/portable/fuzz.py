@@ -83,7 +83,6 @@ class FuzzedProgram(NamedTuple):
 
 
 _BY_NAME = {subject.name: subject for subject in CHECKED}
-CHAIN = _BY_NAME["joints_double"]
 TUNED = PortableProgram("tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "stream")
 FUZZED = (
     FuzzedProgram(_BY_NAME["pieces_double"], "values", 64),
@@ -97,7 +96,7 @@ FUZZED = (
     FuzzedProgram(_BY_NAME["stream_double"].single, "stream", 512),
     FuzzedProgram(TUNED, "tuned", 512),
     FuzzedProgram(_BY_NAME["runtime_double"], "runtime", 128),
-    FuzzedProgram(CHAIN, "runtime", 128),
+    FuzzedProgram(_BY_NAME["joints_double"], "runtime", 128),
     FuzzedProgram(_BY_NAME["runtime_double"], "batch", 512),
 )
 
