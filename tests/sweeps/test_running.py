@@ -121,9 +121,10 @@ def test_a_process_that_dies_at_any_moment_of_a_batch_loses_that_batch_alone(
             raise KeyboardInterrupt
         return whole(self, *given)
 
-    with monkeypatch.context() as patched, pytest.raises(KeyboardInterrupt):
+    with monkeypatch.context() as patched:
         patched.setattr(where, moment, dies)
-        run(SWEEP, tmp_path / "a")
+        with pytest.raises(KeyboardInterrupt):
+            run(SWEEP, tmp_path / "a")
     assert computed == [0, 1, 2]
     assert status(tmp_path / "a").done == 2
     assert run(SWEEP, tmp_path / "a") == 0
@@ -150,9 +151,7 @@ def test_commands_that_start_at_once_do_not_disturb_each_other(tmp_path: Path) -
     run(tmp_path / "sweep.toml", tmp_path / "alone")
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
     go = command("sweep.toml", "out").split()
-    every = [
-        subprocess.Popen(go, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True) for _ in range(4)
-    ]
+    every = [subprocess.Popen(go, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True) for _ in range(4)]
     told = [process.communicate()[1] for process in every]
     for process, line in zip(every, told, strict=True):
         assert line.count("\n") == 1
