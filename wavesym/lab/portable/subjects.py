@@ -83,8 +83,9 @@ class PortableProgram:
 
     def _program(self) -> Program:
         request = self.request
-        tolerance = _TOLERANCES[request.precision]
-        changes = {"name": self.name, "output.tolerance": tolerance, **dict(self.changes)}
+        changes = {"name": self.name, **dict(self.changes)}
+        if "tolerance" not in changes.get("output", {}):
+            changes["output.tolerance"] = _TOLERANCES[request.precision]
         scene = Scene.from_toml(self.scene).with_(changes)
         model = lower(scene)
         if request.stream:
@@ -99,7 +100,7 @@ _BUILDING = "building_m2"
 _COUNTS = (0, 1, 7)
 _CLOSED = PortableProgram("closed", _BUILDING, Request("closed"), "values", _COUNTS)
 _PIECES = PortableProgram("pieces", _BUILDING, Request("pieces"), "values", (*_COUNTS, 5))  # blocks of 4, read plainly
-_MARCH = PortableProgram("march", _BUILDING, Request("march"), "values", (1,), effort="unrolled")
+_MARCH = PortableProgram("march", _BUILDING, Request("march"), "values", (1,), effort="followed")
 _DRIVEN = PortableProgram("march", _BUILDING, Request("march"), "march")
 _RINGS = PortableProgram("rings", "stepped_shaft", Request("march"), "values", _COUNTS)
 _MODES = PortableProgram("modes", _BUILDING, Request("modes"), "stream", changes=tuple(_SHAKEN.items()), effort="more")
@@ -116,9 +117,7 @@ _SHORT: tuple[tuple[str, Any], ...] = (
     ("load", [{"times": [0, "3/2"], "a": [1, 0], "b": [0, -1]}]),
 )
 _BLOCKS = (0, 1, 7, 17)  # blocks of 16
-_BRIEF_MARCH = PortableProgram(
-    "march_brief", _BUILDING, Request("march"), "values", (0, 1, 7), (*_SHORT, ("output.tolerance", "1/50")), "unrolled"
-)
+_BRIEF_MARCH = PortableProgram("march_brief", _BUILDING, Request("march"), "values", (0, 1, 7), _SHORT, "followed")
 _BRIEF = PortableProgram(
     "runtime_brief",
     _BUILDING,
