@@ -148,7 +148,10 @@ static int press(const real *change, real (*load)[3], int (*since)[2], real (*fo
                 (real)(window - since[f][0]) * window_length + since_panel[panel * NAME_PANELS + since[f][1]];
             c[0] += gone * (c[1] + gone * c[2]);
             c[1] += 2 * gone * c[2];
-            c[event_power[event]] += change[event];
+            for (int k = 0; k < 3 && event_power[event] >= 3; ++k) {
+                c[k] = 0; /* what acts is told anew */
+            }
+            c[event_power[event] % 3] += change[event];
             since[f][0] = window;
             since[f][1] = panel;
             ++event;

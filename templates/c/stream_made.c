@@ -4,7 +4,7 @@
 #define NAME_RUNTIME
 #include "stream.c"
 
-enum { SQUARE = MOST_MOVED * MOST_MOVED, CAUTION = 4, CALM = 4, MOST_PARTS = 100000 };
+enum { SQUARE = MOST_MOVED * MOST_MOVED, CALM = 4, MOST_PARTS = 100000 };
 
 /* A joint on a panel, x' = rates x + f as series: x_k = y_k - down_k x_(k-1), y_k = solve_k r_k + down_k y_(k+1) with
  * r_k = f_(k-1) - f_(k+1), where x_0 and f_0 count twice; and 2 x_0 = start (x at the start - what the rest makes there).
@@ -181,7 +181,7 @@ static void answer_of(stream *state, int joint)
             real *const missed = slip + first_slip[joint] + p * width + column;
             *missed = 0;
             multiply(missed, shown + p * states, left, 1, states);
-            *missed *= CAUTION * (panel / (4 * SIZE));
+            *missed *= (real)CAUTION * (panel / (real)(4 * SIZE));
         }
     }
 }
@@ -263,14 +263,14 @@ static int made_of(stream *state, const name_parameters *parameters)
     for (int joint = 0; joint < JOINTS; ++joint) {
         if (first_state[joint] < first_state[joint + 1]) {
             answer_of(state, joint);
-            fine &= step_lost(state, joint) <= tolerance && speed_of(state, joint, 1) * panel <= CALM;
+            fine &= step_lost(state, joint) <= tolerance && speed_of(state, joint, 1) * panel <= (real)CALM;
         } else {
             scattering_of(state, joint);
         }
     }
     for (int n = 0; n < LOADED; ++n) {
         const real speed = speed_of(state, loaded[n], 0);
-        fine &= speed * panel <= MOST_PARTS;
+        fine &= speed * panel <= (real)MOST_PARTS;
         fastest = speed <= fastest ? fastest : speed;
     }
     return fine ? 0 : 2;

@@ -290,7 +290,7 @@ static verdict allowed(simulation *s, unsigned reference, double value)
         return FINE;
     }
     if (reference < FIRST_INPUT || reference >= FIRST_OUTPUT) {
-        return unknown(s, reference, PARAMETERS ? "an input or a parameter" : "an input");
+        return unknown(s, reference, PARAMETERS > 0 ? "an input or a parameter" : "an input");
     }
     return is_number(value) ? FINE : refuse(s, "an input", value, "a finite number");
 }

@@ -106,7 +106,6 @@ DRIVE = 'scene = "drive_m1"\n'
         (DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nhistories = 1', "keep.histories: 1 samples given"),
         (DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nsummary = []', "keep: nothing given"),
         (DRIVE + 'records = "*.at2"', "records: 0 loads with a record in the scene, 1 expected"),
-        ('scene = "frame.toml"\nrecords = "*.csv"', "records[0]: no file found at *.csv"),
         (DRIVE + '[vary]\n"output" = [{ until = 3, strain = [0] }]', 'vary."output": a whole table given'),
     ],
 )

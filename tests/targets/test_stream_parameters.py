@@ -9,10 +9,11 @@ import pytest
 
 import wavesym
 from tests.running.test_model_units import CASES as WITH_UNITS
+from tests.support.builds import LANGUAGES, STRICT
 from tests.support.drives import EVERY
 from tests.support.streamed import built, missed, run
-from tests.targets.test_stream_c import CASES, GEARS, JUMPS, PANEL, loaded
-from wavesym.compiler import stream_program
+from tests.targets.test_stream_c import CASES, GEARS, JUMPS, PANEL, loaded, selftest
+from wavesym.compiler import check, stream_program
 from wavesym.errors import WavesymError
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.request import Request
@@ -20,6 +21,7 @@ from wavesym.programs.stream.free import QUICKER, free_stream
 from wavesym.programs.stream.plan import inputs_of
 from wavesym.programs.stream.tables import StreamTables
 from wavesym.running.stream import StreamModel
+from wavesym.running.toolchain import at_hand
 from wavesym.scene import lower
 from wavesym.scene.lowering import sources as load_sources
 from wavesym.targets.files import sources
@@ -207,6 +209,31 @@ def test_in_single_precision():
     held = [{"body": 1, "times": [0], "steps": [1]}]
     true = wavesym.evaluator(other.with_({"load": held}))(np.arange(1, 17) / 4)
     assert np.max(np.abs(np.array(found).T - true) / np.max(np.abs(true), axis=1, keepdims=True)) < 1e-4
+
+
+BUILT_IN = {
+    "building_m2": ["kappa"],
+    "drive_equal": ["kappa", "inertia"],
+    "collision_m4": ["kappa", "velocity"],
+    "stepped_shaft": ["mass", "dashpot"],
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("precision", ["double", "single"])
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_built_in_scenes_test_themselves_in_c_and_cpp(name, precision, tmp_path):
+    """With every compiler there is, without a warning; the command in the header makes the same files again."""
+    scene, options = wavesym.Scene.from_toml(name), {"stream": True, "runtime": BUILT_IN[name], "precision": precision}
+    wavesym.generate(scene, tmp_path, **options)
+    assert check(scene, tmp_path, **options) == ""
+    assert f"--stream --runtime {','.join(BUILT_IN[name])}" in (tmp_path / f"{name}.h").read_text()
+    assert selftest(tmp_path, name) == 0
+    assert selftest(tmp_path, name, "-ffp-contract=fast", "-O3") == 0
+    for each in at_hand():
+        for language in ("c99", "c++17"):
+            each.run([*LANGUAGES[language], *STRICT, "-O2", "-c", f"{name}.c", "-o", "made.o"], tmp_path)
+            assert (tmp_path / "made.o").stat().st_size > 0
 
 
 FAULTS = {

@@ -1,4 +1,4 @@
-"""Sweeps: wall times of whole commands, start-up included, with processes and without; and beside rivals.
+"""Sweeps: wall times of whole commands, start-up included, with processes and without; what a batch costs, and memory.
 
 Records are seeded noise and waves, in files. A cluster is a scheduler and workers on this machine, which run already.
 """
@@ -10,20 +10,28 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
+from math import nan
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import perf_counter, sleep
+from time import sleep
+from typing import NamedTuple
 
 import numpy as np
 
-from wavesym.lab.timing import ran
-from wavesym.mechanics.model import Model
-from wavesym.rivals.line import stated
-from wavesym.rivals.specialised import SampleGrid, in_numpy
-from wavesym.scene import Scene, lower
+from wavesym.lab.many_sets import FIRST, LAST, MANY, SETS
+from wavesym.lab.timing import medians, ran
+from wavesym.sweeps.batches import batches
+from wavesym.sweeps.kinds import kind
+from wavesym.sweeps.manifest import settle
+from wavesym.sweeps.marks import Marks
+from wavesym.sweeps.plan import plan
+from wavesym.sweeps.request import SweepRequest
+from wavesym.sweeps.running import keep
+from wavesym.sweeps.work import compute
 
-RECORDS, STRUCTURES, SAMPLES, SETS = 44, 25, 3000, 200
-_GRID, _STRIDE = 2560, 2  # of the rival: samples to the horizon, steps between two of them
+RECORDS, STRUCTURES, SAMPLES = 44, 25, 3000
+GROWING = (100, 1000, 10_000)  # sets along the second dimension
 _STOREYS = list(range(1, 6))
 
 FRAME = f"""
@@ -67,11 +75,17 @@ until = 40
 tolerance = 1e-6
 strain = ["1/2", "3/2", "5/2"]
 """
-SHAFTS = """
+SHAFTS = f"""
 scene = "drive.toml"
 [vary]
-"system.kappa[1]" = {{ from = "1/20", to = "1/2", count = {sets} }}
+"system.kappa[1]" = {{{{ from = "{FIRST}", to = "{LAST}", count = {{sets}} }}}}
 """
+BOTH = (
+    SHAFTS
+    + """
+"system.kappa[2]" = {{ from = "1/2", to = 1, count = 10 }}
+"""
+)
 
 
 def inputs(folder: Path, records: int = RECORDS, samples: int = SAMPLES) -> None:
@@ -92,21 +106,65 @@ def rows() -> Iterator[Sequence[str]]:
     with TemporaryDirectory() as directory:
         folder = Path(directory)
         inputs(folder)
+        frames = FRAMES.format(structures=STRUCTURES)
         few = f"{RECORDS} records x {STRUCTURES} structures"
-        yield few, "this process", *_swept(folder, FRAMES.format(structures=STRUCTURES))
+        yield few, "this process", *swept(folder, frames)
         for workers in (1, 2):
-            with cluster(folder, workers) as address:
-                yield few, f"{workers} running workers", *_swept(folder, FRAMES.format(structures=STRUCTURES), address)
+            with cluster(folder, workers) as running:
+                swept(folder, FRAMES.format(structures=1), running.address)  # so that workers have loaded all they need
+                yield few, f"{workers} running workers", *swept(folder, frames, running.address)
         double = FRAMES.format(structures=2 * STRUCTURES)
-        yield f"{RECORDS} records x {2 * STRUCTURES} structures", "this process", *_swept(folder, double)
-        for sets in (SETS, 100_000):
-            yield f"peaks of {sets} kappa", "this process", *_swept(folder, SHAFTS.format(sets=sets))
-        model = lower(Scene.from_toml(folder / "drive.toml"))
-        yield f"peaks at samples of {SETS} kappa", "NumPy, all at once, by hand", f"{_rival(model, SETS):.2f}", ""
+        yield f"{RECORDS} records x {2 * STRUCTURES} structures", "this process", *swept(folder, double)
+        for sets in (SETS, MANY):
+            yield f"peaks of {sets} kappa, compiling included", "this process", *swept(folder, SHAFTS.format(sets=sets))
+        with cluster(folder, 2) as running:
+            yield (
+                f"peaks of {MANY} kappa",
+                "2 running workers",
+                *swept(folder, SHAFTS.format(sets=MANY), running.address),
+            )
 
 
-def _swept(folder: Path, text: str, address: str | None = None) -> tuple[str, str]:
-    """Of the command, into a new folder."""
+def growth() -> Iterator[Sequence[str]]:
+    """Cases, seconds, peak memory in MB of the command, and of the worker that computes for it so far."""
+    with TemporaryDirectory() as directory:
+        folder = Path(directory)
+        inputs(folder, records=0)
+        with cluster(folder, 1) as running:
+            for sets in GROWING:
+                told = swept(folder, BOTH.format(sets=sets), running.address)
+                yield f"{10 * sets}", *told, f"{running.megabytes:.0f}"
+
+
+def overheads() -> Iterator[Sequence[str]]:
+    """What is done for a batch beside computing it, and milliseconds."""
+    from distributed import Client
+
+    with TemporaryDirectory() as directory, cluster(Path(directory), 1) as running:
+        folder = Path(directory)
+        inputs(folder)
+        (folder / "sweep.toml").write_text(FRAMES.format(structures=STRUCTURES), encoding="ascii")
+        file, request = SweepRequest.read(folder / "sweep.toml")
+        planned = plan(request, file)
+        parts = batches(planned, *kind(planned))
+        values = compute(planned, parts, 0)
+        store, marks = settle(folder, planned, parts), Marks(folder)
+        with Client(running.address, set_as_default=False) as client:
+
+            def through() -> object:
+                return client.submit(partial(_same, values), pure=False).result()
+
+            kept, sent = medians([partial(keep, store, marks, 0, values), through], rounds=5)
+    yield "its chunks written and hashed, its mark", f"{1e3 * kept:.1f}"
+    yield "its values through a scheduler and back, one by one", f"{1e3 * sent:.1f}"
+
+
+def _same(values: object) -> object:
+    return values
+
+
+def swept(folder: Path, text: str, address: str | None = None) -> tuple[str, str]:
+    """Seconds and MB of the command, into a new folder."""
     (folder / "sweep.toml").write_text(text, encoding="ascii")
     given = ["--scheduler", address] if address else []
     with TemporaryDirectory() as out:
@@ -114,18 +172,25 @@ def _swept(folder: Path, text: str, address: str | None = None) -> tuple[str, st
     return f"{done.seconds:.2f}" if done.well else "failed", f"{done.megabytes:.0f}"
 
 
-def _rival(model: Model, sets: int) -> float:
-    """Seconds for the peaks of characteristics of order 4, all sets at once."""
-    problem = stated(model)
-    grid = SampleGrid(problem, _GRID + 1, _STRIDE)
-    start = perf_counter()
-    np.abs(in_numpy(grid, [problem] * sets)).max(axis=2)
-    return perf_counter() - start
+class Running(NamedTuple):
+    """A scheduler's address, and the process of its last worker."""
+
+    address: str
+    worker: int
+
+    @property
+    def megabytes(self) -> float:
+        """The peak memory of that worker so far, NaN where the machine does not tell."""
+        try:
+            told = Path(f"/proc/{self.worker}/status").read_text(encoding="ascii")
+        except OSError:
+            return nan
+        return float(told.partition("VmHWM:")[2].split()[0]) / 1000
 
 
 @contextmanager
-def cluster(folder: Path, workers: int) -> Iterator[str]:
-    """The address of a scheduler with so many workers, all of them processes of this machine."""
+def cluster(folder: Path, workers: int) -> Iterator[Running]:
+    """A scheduler with so many workers, all of them processes of this machine."""
     file = folder / "scheduler.json"
     file.unlink(missing_ok=True)
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -140,7 +205,7 @@ def cluster(folder: Path, workers: int) -> Iterator[str]:
 
         with Client(address, set_as_default=False) as client:
             client.wait_for_workers(workers)
-        yield address
+        yield Running(address, started[-1].pid)
     finally:
         for process in started:
             process.kill()

@@ -21,7 +21,7 @@ from wavesym.lab.portable.tools import absent, version
 from wavesym.writing import write_whole
 
 
-def main(what: str, page: Path, kept: Path = Path(), seconds: int = 0) -> int:
+def main(what: str, page: Path, kept: str = "", seconds: str = "0") -> int:
     """Run one of them; what failed is told line by line."""
     clang = fuzz.fuzzer() if what == "fuzz" else None
     missing = {
@@ -50,7 +50,9 @@ def main(what: str, page: Path, kept: Path = Path(), seconds: int = 0) -> int:
             case "fuzz":
                 assert clang
                 learning = Path("build", "fuzz").resolve()  # the next run goes on with what this one has learnt
-                made = table(fuzz.HEAD, _told(fuzz.rows(fuzz.FUZZED, clang, learning, kept, seconds, failed)))
+                made = table(
+                    fuzz.HEAD, _told(fuzz.rows(fuzz.FUZZED, clang, learning, Path(kept), int(seconds), failed))
+                )
                 told = f"{fuzz.tool(clang)}."
             case _:
                 found = list(_told(targets.rows(COMPILED, targets.TARGETS, folder, KEPT, failed)))
@@ -76,4 +78,4 @@ def _told(rows: Iterator[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
 
 
 if __name__ == "__main__":
-    raise SystemExit(main(sys.argv[1], *map(Path, sys.argv[2:4]), *map(int, sys.argv[4:])))
+    raise SystemExit(main(sys.argv[1], Path(sys.argv[2]), *sys.argv[3:]))

@@ -18,6 +18,7 @@ from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.units import Function
 from wavesym.programs.stream.free import FreeStream
 from wavesym.programs.stream.plan import StreamPlan
+from wavesym.programs.stream.tables import CAUTION
 
 MADE = ("held", "matrix", "begun", "push", "slip", "law", "base", "strength", "gain")
 """The tables that are computed."""
@@ -61,6 +62,7 @@ def sizes(plan: StreamPlan, degree: int) -> dict[str, float]:
     return {
         "answers": sum(_answer_size(joint, degree) for joint in joints),
         "slips": sum(_slip_size(joint, degree) for joint in joints),
+        "caution": CAUTION,
         "most_moved": max(1, *(joint.space.states for joint in joints)),
     }
 

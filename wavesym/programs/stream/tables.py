@@ -20,7 +20,7 @@ from wavesym.programs.stream.plan import StreamPlan
 Array = NDArray[np.float64]
 
 # of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
-_CAUTION = 4
+CAUTION = 4
 _LONGEST = 10**6  # panels of a step, each of which takes its time
 _SHORTEST = fmpq(1, 10**30)  # of steps but 0: no slope of a load is larger than the load times 1e30
 
@@ -183,7 +183,7 @@ class StreamTables:
         missed = self._rings.missed(joint, self._plan.panel)
         weights = np.array([[sqrt(nearest(weight))] for weight in joint.space.weights])
         shown = np.array([[nearest(v) for v in row] for row in joint.space.shown.tolist()])
-        rows = _CAUTION * shown @ (missed / weights)
+        rows = CAUTION * shown @ (missed / weights)
         return [float(f"{value:.3g}") for value in rows.ravel().tolist()]
 
     def _reals(self, values: Iterable[fmpq]) -> tuple[float, ...]:
