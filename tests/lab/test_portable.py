@@ -113,7 +113,15 @@ def test_a_finding_that_nobody_reviewed_is_told():
 
 
 def test_a_finding_is_in_the_function_around_it():
-    lines = ["enum { A = sizeof(int) };", "static const real *g(int a,", "    int b)", "{", "    a;", "}", "int x[] = {"]
+    lines = [
+        "enum { A = sizeof(int) };",
+        "static const real *g(int a,",
+        "    int b)",
+        "{",
+        "    a;",
+        "}",
+        "int x[] = {",
+    ]
     assert [misra.function_at(lines, number) for number in (1, 2, 5, 6, 7)] == ["", "g", "g", "g", ""]
 
 

@@ -14,7 +14,6 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from wavesym.lab.portable.subjects import CHECKED, PortableProgram
-from wavesym.programs.request import Request
 from wavesym.lab.portable.tools import started, version
 from wavesym.rendering import text_of
 from wavesym.running.toolchain import CompilerError
@@ -84,7 +83,7 @@ class FuzzedProgram(NamedTuple):
 
 _BY_NAME = {subject.name: subject for subject in CHECKED}
 CHAIN = _BY_NAME["joints_double"]
-TUNED = PortableProgram("tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "stream")
+TUNED = _BY_NAME["tuned_double"]
 FUZZED = (
     FuzzedProgram(_BY_NAME["pieces_double"], "values", 64),
     FuzzedProgram(_BY_NAME["closed_double"], "values", 64),

@@ -108,6 +108,7 @@ _MODES_SINGLE = replace(
     _MODES.single, changes=tuple({**_SHAKEN, "output": {**_SHAKEN["output"], "tolerance": "1/50"}}.items())
 )
 _STREAM = PortableProgram("stream", _BUILDING, Request(stream=True), "stream")
+_TUNED = PortableProgram("tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "tuned")
 _RUNTIME = PortableProgram("runtime", _BUILDING, Request(runtime=("kappa", "load")), "runtime", (7,), effort="bounds")
 _JOINTS = PortableProgram("joints", "stepped_shaft", Request(runtime=("mass", "impedance", "load")), "runtime", (7,))
 
@@ -147,6 +148,8 @@ PROVED = (
     _MODES_SINGLE,
     _STREAM,
     _STREAM.single,
+    _TUNED,
+    _TUNED.single,
     _RUNTIME,
     _BRIEF,
     _BRIEF.single,
@@ -156,7 +159,7 @@ PROVED = (
     ),
     _BRIEF_JOINTS,
 )
-CHECKED = (_CLOSED, _PIECES, _MARCH, _RINGS, _MODES, _STREAM, _RUNTIME, _JOINTS)
+CHECKED = (_CLOSED, _PIECES, _MARCH, _RINGS, _MODES, _STREAM, _TUNED, _RUNTIME, _JOINTS)
 COMPILED = tuple(
     program for double in CHECKED for program in (double, _MODES_SINGLE if double is _MODES else double.single)
 )
