@@ -112,7 +112,8 @@ static void given_batch(batch_of *b, laws_batch *all, int set, const laws *law)
 {
     spread(all, set, law);
     for (int event = 0; event < NAME_EVENTS; ++event) {
-        LANE(b->change[event], set) = law->load[event_load[event]] * law->strength[event_strength[event]];
+        LANE(b->change[event], set) =
+            event_weight[event] * law->load[event_load[event]] * law->strength[event_strength[event]];
     }
 }
 

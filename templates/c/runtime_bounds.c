@@ -75,11 +75,7 @@ int name_error_bound(name_model *model, const name_parameters *parameters, name_
             /* a hundredth for what is of second order in a rounding, and for the roundings of this here */
             const real error = w.beside.output[output] * (real)1.01;
             const real most = model->largest[output];
-            real weight = 0; /* 0 for an output that is 0 whatever the parameters are */
-            for (int k = 0; k < NAME_HEARD; ++k) {
-                weight += heard_output[k] == output ? magnitude(law.gain[k]) : (real)0;
-            }
-            bound[output] = error < most ? error / (most - error) * (1 + 4 * unit) : weight > 0 ? infinity() : (real)0;
+            bound[output] = error < most ? error / (most - error) * (1 + 4 * unit) : is_silent(&law, output) ? 0 : infinity();
         }
     }
     return status;

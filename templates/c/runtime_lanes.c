@@ -2,7 +2,7 @@
  * Plain C where there is no GNU C, one set at a time. Stands above the text of a march in lanes in generated files, which
  * have what stands below the first empty line. */
 #ifndef NAME_JOINTED
-#include "runtime_bounds.c"
+#include "runtime_bound.c"
 #endif
 
 /* All sets have one degree, the highest that one of them needs. A set that is refused goes along as another, or runs
@@ -48,7 +48,10 @@ static int press_batch(batch_of *b, int window, int event)
                 (real)(window - b->since[f][0]) * window_length + since_panel[panel * NAME_PANELS + b->since[f][1]];
             c[0] += gone * (c[1] + gone * c[2]);
             c[1] += 2 * gone * c[2];
-            c[event_power[event]] += b->change[event];
+            for (int k = 0; k < 3 && event_power[event] >= 3; ++k) {
+                c[k] = none;
+            }
+            c[event_power[event] % 3] += b->change[event];
             b->since[f][0] = window;
             b->since[f][1] = panel;
             ++event;

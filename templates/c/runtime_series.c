@@ -29,11 +29,36 @@ typedef full_slice slice __attribute__((aligned(sizeof(real)), may_alias));
 #else
 typedef real slice;
 #endif
-enum { BLOCK = 16, SLICES = BLOCK * sizeof(real) / sizeof(slice) };
+enum { BLOCK = 16, SLICES = BLOCK * sizeof(real) / sizeof(slice), LANES = sizeof(slice) / sizeof(real) };
+static const slice nothing = {0};
+#if defined(__GNUC__) && !defined(__FRAMAC__) && !defined(NAME_PLAIN)
+typedef __typeof__(nothing < nothing) bits;
+#define AT(x, lane) ((x)[lane])
+#define MAGNITUDE(x) ((slice)((bits)(x) & (bits)(-(x))))
+#else
+#define AT(x, lane) (x)
+#define MAGNITUDE(x) magnitude(x)
+#endif
 
 static real magnitude(real x)
 {
     return x < 0 ? -x : x;
+}
+
+static const slice *slice_at(const real *x, size_t k)
+{
+    return (const slice *)(x + k);
+}
+
+static real total_of(const slice *x)
+{
+    slice sum = *x;
+    for (int half = LANES / 2; half > 0; half /= 2) {
+        for (int lane = 0; lane < half; ++lane) {
+            AT(sum, lane) += AT(sum, lane + half);
+        }
+    }
+    return AT(sum, 0);
 }
 
 /* False for what is no number. */
@@ -123,7 +148,10 @@ static int press(const real *change, real (*load)[3], int (*since)[2], real (*fo
                 (real)(window - since[f][0]) * window_length + since_panel[panel * NAME_PANELS + since[f][1]];
             c[0] += gone * (c[1] + gone * c[2]);
             c[1] += 2 * gone * c[2];
-            c[event_power[event]] += change[event];
+            for (int k = 0; k < 3 && event_power[event] >= 3; ++k) {
+                c[k] = 0; /* what acts is told anew */
+            }
+            c[event_power[event] % 3] += change[event];
             since[f][0] = window;
             since[f][1] = panel;
             ++event;
@@ -208,13 +236,31 @@ static real infinity(void)
 /* Add what the values of a window's series stay below while they are read; what is no finite number stays in the sum. */
 static void weigh(real *sum, const real *all, int degree)
 {
-    for (size_t k = 0; k < (size_t)NAME_STRANDS * (size_t)(degree + 2); ++k) {
-        *sum += (real)(4 * (degree + 2)) * magnitude(all[k]);
+    const size_t count = (size_t)NAME_STRANDS * (size_t)(degree + 2);
+    slice some = nothing;
+    real others = 0;
+    size_t k = 0;
+    for (; k + LANES <= count; k += LANES) {
+        some += MAGNITUDE(*slice_at(all, k));
     }
+    for (; k < count; ++k) {
+        others += magnitude(all[k]);
+    }
+    *sum += (real)(4 * (degree + 2)) * (total_of(&some) + others);
 }
 
 /* Whether anything can be felt in an output up to TAU_MAX. */
 static int reached(const laws *law, int output);
+
+/* Whether an output is 0 whatever the parameters are: no wave counts in it. */
+static int is_silent(const laws *law, int output)
+{
+    real weight = 0;
+    for (int k = 0; k < NAME_HEARD; ++k) {
+        weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
+    }
+    return !(weight > 0);
+}
 
 /* An error relative to what is surely there of an output; of one that waves have reached that may be nothing. */
 static real relative(const laws *law, int output, real error, real largest)

@@ -61,7 +61,7 @@ static int pressed(wrong_beside *w, const real *change, int window, int event)
             const real gone = (real)(window - w->since[f][0] + 1) * window_length;
             c[0] += gone * (c[1] + gone * c[2]);
             c[1] += 2 * gone * c[2];
-            c[event_power[event]] += magnitude(change[event]);
+            c[event_power[event] % 3] += magnitude(change[event]);
             w->since[f][0] = window;
             w->since[f][1] = panel;
             w->roundings[f] += 8;

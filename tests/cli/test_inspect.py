@@ -59,7 +59,7 @@ TRIED = ("program", "precision", "optimize")
 
 
 # a named system and a chain that is written out; the others when there is time
-ALWAYS = ("building_m2", "stepped_shaft")
+ALWAYS = ("collision_m4", "stepped_shaft")
 SCENES = [name if name in ALWAYS else pytest.param(name, marks=pytest.mark.slow) for name in builtin_names()]
 
 

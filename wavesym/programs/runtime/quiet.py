@@ -18,17 +18,21 @@ from wavesym.programs.runtime.request import RuntimeField
 
 def drawn(fields: Sequence[RuntimeField]) -> Mapping[str, fmpq]:
     """A number for each parameter: what is 0 with them is 0 with all of them, but for a chance of one in 2**60."""
-    labels = [label for field in fields for label in field.labels]
-    return {label: fmpq(int(sha256(label.encode()).hexdigest()[:16], 16) + 1, 1 << 62) for label in labels}
+    return {label: _number(label) for field in fields for label in field.labels}
 
 
-def quiet(model: Model, fields: Sequence[RuntimeField], loads: Sequence[Applied], real: Real) -> list[bool]:
-    """Whether each output of a model that has the numbers drawn is 0 up to the horizon, `loads` acting on it: their
-    amplitudes are their own, or parameters.
+def quiet(model: Model, loads: Sequence[Applied], real: Real) -> list[bool]:
+    """Whether each output of a model that has the numbers drawn is 0 up to the horizon, whatever `loads` amount to.
+
+    Of each source the first is enough: others do the same later.
     """
-    numbers = drawn(fields)
-    weights = [numbers[label] for field in fields if field.name == "load" for label in field.labels]
-    weights = weights or [load.weight for load in loads]
-    acting = [replace(load, weight=weight) for load, weight in zip(loads, weights, strict=True)]
-    ordered = tuple(sorted((load for load in acting if load.weight != 0), key=lambda load: load.time))
-    return silent(replace(model, loads=ordered), rational(model.horizon(real)))
+    until = rational(model.horizon(real))
+    first: dict[str, fmpq] = {}
+    for change in (change for load in loads for change in load.changes if change.time <= until):
+        first[change.source] = min(change.time, first.get(change.source, until))
+    acting = (Applied(source, time, _number(source)) for source, time in first.items())
+    return silent(replace(model, loads=tuple(sorted(acting, key=lambda load: load.time))), until)
+
+
+def _number(label: str) -> fmpq:
+    return fmpq(int(sha256(label.encode()).hexdigest()[:16], 16) + 1, 1 << 62)

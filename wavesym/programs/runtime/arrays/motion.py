@@ -100,5 +100,7 @@ class ArrayMotion(ABC, Generic[S]):
 def _changes(tables: ArrayTables, loads: ArrayLaws, strengths: ArrayLaws) -> Array:
     """What each change of a load is: an amplitude times a strength."""
     load, strength = tables.ints("event_load"), tables.ints("event_strength")
-    found: Array = loads["load"][..., load, :] * strengths["strength"][..., strength, :]
+    found: Array = (
+        tables["event_weight"][:, None] * loads["load"][..., load, :] * strengths["strength"][..., strength, :]
+    )
     return found

@@ -202,6 +202,7 @@ def _tables(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[
         "event_panel": tuple(push.panel for push in pushes),
         "event_force": tuple(push.force for push in pushes),
         "event_power": tuple(push.power for push in pushes),
+        "event_weight": reals(push.weight for push in pushes),
         "event_strength": tuple(strengths.index(push.strength) for push in pushes),
         "event_load": tuple(push.load for push in pushes),
         "from": (

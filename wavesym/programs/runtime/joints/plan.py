@@ -73,7 +73,7 @@ def joints_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real:
     all_loads = tuple(sorted((replace(load, weight=fmpq(1)) for load in loads), key=lambda load: load.time))
     own = ring_plan(replace(model, loads=all_loads), real)
     plan = ring_plan(replace(model, network=free.network, loads=all_loads), real, joint_rows)
-    silent = quiet(replace(model, network=free.some), free.fields, loads, real)
+    silent = quiet(replace(model, network=free.some), loads, real)
     heard = tuple(
         (number, replace(wave, gain=fmpq(0)) if silent[number] else wave)
         for number, output in enumerate(plan.outputs)
