@@ -161,11 +161,11 @@ def _records(folder: Path) -> Iterator[str]:
         yield "Whole commands, start-up included: 5 storeys, damped, 3000 samples, true peaks of 16 outputs; a drive of"
         yield "three shafts to tau = 40, true peaks of three strains at 1e-6."
         yield ""
-        yield from _table(("what", "by", "s", "peak MB"), swept.rows())
+        yield from _table(("what", "by", "s", "busy s", "peak MB"), swept.rows())
         yield ""
         yield "As the drive's sweep grows, over two kappa:"
         yield ""
-        yield from _table(("cases", "s", "peak MB", "peak MB of a worker"), swept.growth())
+        yield from _table(("cases", "s", "busy s", "peak MB", "peak MB of a worker"), swept.growth())
         yield ""
         yield "Beside computing, of a batch of 44 records:"
         yield ""

@@ -18,6 +18,7 @@ from wavesym.lab.portable.kept import FOLDER as KEPT
 from wavesym.lab.portable.page import between, put, table
 from wavesym.lab.portable.subjects import CHECKED, COMPILED, PROVED
 from wavesym.lab.portable.tools import absent, version
+from wavesym.writing import write_whole
 
 
 def main(what: str, page: Path, kept: str = "", seconds: str = "0") -> int:
@@ -42,7 +43,9 @@ def main(what: str, page: Path, kept: str = "", seconds: str = "0") -> int:
                 made = table(prove.HEAD, _told(prove.rows(PROVED, folder, KEPT, failed)))
                 told = f"Frama-C {version(prove.TOOL)}, data as of {', '.join(prove.MACHINES)}."
             case "misra":
-                made = table(misra.HEAD, _told(misra.rows(CHECKED, folder, failed)))
+                seen = misra.every(CHECKED, folder, KEPT)
+                made = table(misra.HEAD, _told(misra.rows(seen, failed)))
+                write_whole({page.with_name(misra.LIST): misra.by_function(seen)})
                 told = f"{version(misra.TOOL)}, in {', '.join(subject.name for subject in CHECKED)}."
             case "fuzz":
                 assert clang

@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 from wavesym.lab.portable.subjects import CHECKED, PortableProgram
 from wavesym.lab.portable.tools import started, version
-from wavesym.programs.request import Request
 from wavesym.rendering import text_of
 from wavesym.running.toolchain import CompilerError
 
@@ -83,7 +82,6 @@ class FuzzedProgram(NamedTuple):
 
 
 _BY_NAME = {subject.name: subject for subject in CHECKED}
-TUNED = PortableProgram("tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "stream")
 FUZZED = (
     FuzzedProgram(_BY_NAME["pieces_double"], "values", 64),
     FuzzedProgram(_BY_NAME["closed_double"], "values", 64),
@@ -94,7 +92,7 @@ FUZZED = (
     FuzzedProgram(_BY_NAME["modes_double"], "stream", 512),
     FuzzedProgram(_BY_NAME["stream_double"], "stream", 512),
     FuzzedProgram(_BY_NAME["stream_double"].single, "stream", 512),
-    FuzzedProgram(TUNED, "tuned", 512),
+    FuzzedProgram(_BY_NAME["tuned_double"], "tuned", 512),
     FuzzedProgram(_BY_NAME["runtime_double"], "runtime", 128),
     FuzzedProgram(_BY_NAME["joints_double"], "runtime", 128),
     FuzzedProgram(_BY_NAME["runtime_double"], "batch", 512),

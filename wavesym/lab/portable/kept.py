@@ -16,13 +16,15 @@ from wavesym.writing import write_whole
 FOLDER = Path("build", "portable")
 
 
-def kept(folder: Path, question: Sequence[str], answer: Callable[[], Any]) -> Any:
-    """The answer (JSON) from `folder`, or given now and kept there; None is not kept."""
+def kept(
+    folder: Path, question: Sequence[str], answer: Callable[[], Any], *, worth: Callable[[Any], bool] = lambda _: True
+) -> Any:
+    """The answer (JSON) from `folder`, or given now and, where it is worth it, kept there."""
     file = folder / f"{sha256(json.dumps(list(question)).encode()).hexdigest()[:24]}.json"
     if file.is_file():
         return json.loads(file.read_text(encoding="utf-8"))
     given = answer()
-    if given is not None:
+    if worth(given):
         folder.mkdir(parents=True, exist_ok=True)
         write_whole({file: json.dumps(given)})
     return given

@@ -29,14 +29,16 @@ _OPTIONS = (
 )
 # what the driver repeats for ever is joined at once; loops of the program are unrolled
 _FOR_EVER = ("-eva-slevel-function", "main:0")
+# every loop, for each degree by itself
+_TO_THE_END = (
+    *("-eva-precision", "0", "-eva-slevel", "20000", "-eva-ilevel", "64"),
+    *("-eva-split-return", "auto"),
+)
 _EFFORTS = {
     "usual": ("-eva-precision", "2", *_FOR_EVER),
     "more": ("-eva-precision", "3", *_FOR_EVER),
-    # every loop to its end, for each degree by itself
-    "unrolled": (
-        *("-eva-precision", "0", "-eva-slevel", "20000", "-eva-ilevel", "64"),
-        *("-eva-split-return", "auto", "-inline-calls", "integrate"),
-    ),
+    "followed": _TO_THE_END,
+    "unrolled": (*_TO_THE_END, "-inline-calls", "integrate"),
     # windows and samples one by one, all else at once: which locals were set is not followed then
     "bounds": (
         *("-eva-precision", "0", "-eva-split-return", "auto", "-eva-initialized-locals"),
@@ -86,12 +88,10 @@ def rows(
     def asked(subject: PortableProgram, machine: str, count: int) -> ProofVerdict:
         question = (tool, *command(subject), machine, subject.driven(count), *texts[subject.name].values())
 
-        def answer() -> ProofVerdict | None:
-            found = verdict(subject, count, machine, folder)
-            return None if found.alarms is None else found
+        def answer() -> ProofVerdict:
+            return verdict(subject, count, machine, folder)
 
-        found = kept(kept_in, question, answer)
-        return ProofVerdict(*found) if found else ProofVerdict(None, 0, 0, [f"not finished in {_SECONDS:g} s"])
+        return ProofVerdict(*kept(kept_in, question, answer, worth=lambda found: found.alarms is not None))
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         runs = [

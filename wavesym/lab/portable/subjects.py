@@ -83,8 +83,9 @@ class PortableProgram:
 
     def _program(self) -> Program:
         request = self.request
-        tolerance = _TOLERANCES[request.precision]
-        changes = {"name": self.name, "output.tolerance": tolerance, **dict(self.changes)}
+        changes = {"name": self.name, **dict(self.changes)}
+        if "tolerance" not in changes.get("output", {}):
+            changes["output.tolerance"] = _TOLERANCES[request.precision]
         scene = Scene.from_toml(self.scene).with_(changes)
         model = lower(scene)
         if request.stream:
@@ -99,7 +100,7 @@ _BUILDING = "building_m2"
 _COUNTS = (0, 1, 7)
 _CLOSED = PortableProgram("closed", _BUILDING, Request("closed"), "values", _COUNTS)
 _PIECES = PortableProgram("pieces", _BUILDING, Request("pieces"), "values", (*_COUNTS, 5))  # blocks of 4, read plainly
-_MARCH = PortableProgram("march", _BUILDING, Request("march"), "values", (1,), effort="unrolled")
+_MARCH = PortableProgram("march", _BUILDING, Request("march"), "values", (1,), effort="followed")
 _DRIVEN = PortableProgram("march", _BUILDING, Request("march"), "march")
 _RINGS = PortableProgram("rings", "stepped_shaft", Request("march"), "values", _COUNTS)
 _MODES = PortableProgram("modes", _BUILDING, Request("modes"), "stream", changes=tuple(_SHAKEN.items()), effort="more")
@@ -107,6 +108,7 @@ _MODES_SINGLE = replace(
     _MODES.single, changes=tuple({**_SHAKEN, "output": {**_SHAKEN["output"], "tolerance": "1/50"}}.items())
 )
 _STREAM = PortableProgram("stream", _BUILDING, Request(stream=True), "stream")
+_TUNED = PortableProgram("tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "tuned")
 _RUNTIME = PortableProgram("runtime", _BUILDING, Request(runtime=("kappa", "load")), "runtime", (7,), effort="bounds")
 _JOINTS = PortableProgram("joints", "stepped_shaft", Request(runtime=("mass", "impedance", "load")), "runtime", (7,))
 
@@ -116,9 +118,7 @@ _SHORT: tuple[tuple[str, Any], ...] = (
     ("load", [{"times": [0, "3/2"], "a": [1, 0], "b": [0, -1]}]),
 )
 _BLOCKS = (0, 1, 7, 17)  # blocks of 16
-_BRIEF_MARCH = PortableProgram(
-    "march_brief", _BUILDING, Request("march"), "values", (0, 1, 7), (*_SHORT, ("output.tolerance", "1/50")), "unrolled"
-)
+_BRIEF_MARCH = PortableProgram("march_brief", _BUILDING, Request("march"), "values", (0, 1, 7), _SHORT, "followed")
 _BRIEF = PortableProgram(
     "runtime_brief",
     _BUILDING,
@@ -148,6 +148,8 @@ PROVED = (
     _MODES_SINGLE,
     _STREAM,
     _STREAM.single,
+    _TUNED,
+    _TUNED.single,
     _RUNTIME,
     _BRIEF,
     _BRIEF.single,
@@ -157,7 +159,7 @@ PROVED = (
     ),
     _BRIEF_JOINTS,
 )
-CHECKED = (_CLOSED, _PIECES, _MARCH, _RINGS, _MODES, _STREAM, _RUNTIME, _JOINTS)
+CHECKED = (_CLOSED, _PIECES, _MARCH, _RINGS, _MODES, _STREAM, _TUNED, _RUNTIME, _JOINTS)
 COMPILED = tuple(
     program for double in CHECKED for program in (double, _MODES_SINGLE if double is _MODES else double.single)
 )

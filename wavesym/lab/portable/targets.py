@@ -34,7 +34,8 @@ process.exitCode = wasi.start(await WebAssembly.instantiate(made, wasi.getImport
 
 
 # what compilers call of themselves, where a machine has no instruction for it
-_COPIES = r"mem(cpy|move|set)|__aeabi_mem(cpy|move|set|clr)[48]?|__aeabi_unwind_cpp_pr[01]|___?chkstk(_ms)?|_GLOBAL_OFFSET_TABLE_"
+_COPIES = r"mem(cpy|move|set)|__aeabi_mem(cpy|move|set|clr)[48]?"
+_FRAMES = r"__aeabi_unwind_cpp_pr[01]|___?chkstk(_ms)?|_GLOBAL_OFFSET_TABLE_"
 _INTEGERS = r"__aeabi_(ui?divmod|idivmod|ul?div|i?div|uidiv|l?mul|ldivmod|uldivmod|ll?sl|ll?sr)|__u?(div|mod)[sd]i3"
 _FLOATS = r"__aeabi_(f(add|sub|mul|div|rsub|2iz|2uiz|2lz|2ulz|cmp\w+)|[u]?[il]2f|cf\w+)|_fltused"
 _DOUBLES = r"__aeabi_(d\w+|[uf]?[il]?2d|cd\w+|d2f)"
@@ -175,7 +176,7 @@ def compiled(subject: PortableProgram, target: TargetMachine, folder: Path) -> M
     )
     if size.data:
         raise CompilerError(f"{size.data} bytes of data that can be written")
-    allowed = re.compile("|".join((_COPIES, _INTEGERS, _FLOATS, *(() if single else (_DOUBLES,)))))
+    allowed = re.compile("|".join((_COPIES, _FRAMES, _INTEGERS, _FLOATS, *(() if single else (_DOUBLES,)))))
     lacking = [name for name in undefined(folder / "object") if not allowed.fullmatch(name)]
     if lacking and not subject.calls_exp:
         raise CompilerError(f"needs {', '.join(lacking)}")
