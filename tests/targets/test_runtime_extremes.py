@@ -174,8 +174,8 @@ def beyond_estimates(made, kappas):
 
 
 @pytest.mark.slow
-def test_rounding_of_high_degrees_is_in_the_estimate(tmp_path):
+@pytest.mark.parametrize("changes", [[], [("+ (real)(degree * degree) / 16", "")]], ids=["right", "blind"])
+def test_rounding_of_high_degrees_is_in_the_estimate(changes, tmp_path):
     kappas = [41.653907084189861, 64.66177062800014, 90.06388912129225, 90.676416664731789]  # unlucky ones
-    assert max(beyond_estimates(BuiltModel(LIGHT, ["kappa"], tmp_path), kappas)) < 1
-    blind = [("+ (real)(degree * degree) / 16", "")]
-    assert max(beyond_estimates(BuiltModel(LIGHT, ["kappa"], tmp_path, blind), kappas)) > 1
+    beyond = max(beyond_estimates(BuiltModel(LIGHT, ["kappa"], tmp_path, changes), kappas))
+    assert beyond > 1 if changes else beyond < 1
