@@ -232,7 +232,7 @@ int name_build_batch(name_batch *batch, const name_parameters *parameters, size_
                 add_magnitude_batch(&heard, &most);
             }
         }
-        missed = 4 * missed + unit * (real)(degree + NAME_WINDOWS) * size;
+        missed = 6 * missed + rounded_by(degree) * size;
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
             wide weight = none;
             for (int k = 0; k < NAME_HEARD; ++k) {

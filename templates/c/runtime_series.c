@@ -302,9 +302,17 @@ static int higher_than(int degree)
     return higher < NAME_DEGREE ? higher : NAME_DEGREE;
 }
 
+/* How often a velocity of size 1 is rounded, about: the sums of a body and of a value that is read, both of so many
+ * coefficients, lose up to a sixteenth of the degree squared. */
+static real rounded_by(int degree)
+{
+    return unit * ((real)(degree + NAME_WINDOWS) + (real)(degree * degree) / 16);
+}
+
+/* Errors were up to five times what polynomials miss; docs/march.md of wavesym has what was measured. */
 static int ended(model_of *m, const laws *law, const progress *now)
 {
-    const real missed = 4 * now->missed + unit * (real)(now->degree + NAME_WINDOWS) * now->size;
+    const real missed = 6 * now->missed + rounded_by(now->degree) * now->size;
     m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);
     m->estimate = m->built ? estimated(m, law, missed) : not_a_number();
     return !m->built;

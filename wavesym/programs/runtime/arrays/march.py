@@ -42,8 +42,9 @@ class ArrayMarch:
         with np.errstate(all="ignore"):  # sets that are refused on the way may grow beyond all numbers
             self.series = [self._window(window) for window in range(tables.sizes["windows"])]
             heard = sum(4.0 * len(each[0]) * np.abs(each).sum(axis=(0, 1, 2)) for each in self.series)
-            noise = tables.unit * (self._motion.value.degree + tables.sizes["windows"])
-            missed = 4 * self._missed + noise * self._size
+            degree = self._motion.value.degree
+            rounded = tables.unit * (degree + tables.sizes["windows"] + degree * degree / 16)
+            missed = 6 * self._missed + rounded * self._size
             self.estimate = self._estimated(missed)
         self.status[(self.status == 0) & ~np.isfinite(self._size + missed + heard)] = 1
         self.estimate[self.status != 0] = np.nan
