@@ -17,7 +17,7 @@ COMMA := ,
 DEMO := collision_m4 drive_m1 building_m2
 CORES := -n auto --dist loadfile
 
-.PHONY: install demo test lint generated examples bench prove misra targets mutants peers check-all
+.PHONY: install demo test lint generated examples bench prove misra targets fuzz mutants peers check-all
 
 # what running and plotting need; `make test` and `make lint` add what they need
 install: .venv/.installed
@@ -28,7 +28,7 @@ install: .venv/.installed
 	@$(PIP) '.[$(subst $() ,$(COMMA),$(NEEDED))]'
 	@touch $@
 
-.venv/.test .venv/.lint .venv/.simulator: .venv/.%: .venv/.installed
+.venv/.test .venv/.lint .venv/.check: .venv/.%: .venv/.installed
 	@echo '== Python packages into .venv: what `make $*` needs'
 	@$(PIP) '.[$*]'
 	@touch $@
@@ -85,7 +85,7 @@ examples: install
 		( cd $$(dirname $$page) && grep '^wavesym plot' README.md | $(TOLD) sh -e ); \
 	done
 
-check-all: lint .venv/.test .venv/.simulator
+check-all: lint .venv/.test .venv/.check
 	$(BIN)/python -m pytest $(CORES) --run-slow
 
 # speed, as ratios within one run, and the charts of the same scenes
@@ -103,8 +103,13 @@ prove: install
 misra: install
 	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
 
-targets: .venv/.test
+targets: .venv/.check
 	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
+
+# generated C under a fuzzer and sanitizers, so many seconds each program, two at a time; skipped where there is none
+SECONDS ?= 10
+fuzz: install
+	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md $(abspath tests/fuzz) $(SECONDS)
 
 # which mistakes in the proofs of the bounds the tests would miss: 300 of them, within 45 minutes on 2 cores
 mutants: .venv/.test

@@ -21,6 +21,7 @@ import stat
 import subprocess
 import sys
 from contextlib import chdir, redirect_stderr, redirect_stdout
+from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
@@ -154,13 +155,15 @@ class Reader:
         words = words[:-3] if told else words
         file = words.pop() if words[-2:-1] == [">"] else None
         words = words[:-1] if file else words
+        if self.patience or not words_of_pipe(words):
+            return self.process(["bash", "-c", line])
         given = ""
-        if words[0] == "sed" and words.count("|") == 1 and not self.patience:
-            at = words.index("|")
-            given, words = self.process(words[:at]), words[at + 1 :]
-        if words[0] == "wavesym" and not self.patience and not SHELL & set(" ".join(words)):
-            return self.here(words[1:], file, given, told=told)
-        return self.process(["bash", "-c", line])
+        for stage in words_of_pipe(words):
+            if stage[0] == "wavesym":
+                given = self.here(stage[1:], file, given, told=told)
+            else:
+                given = self.process(stage, given)
+        return given
 
     def here(self, arguments: list[str], file: str | None, given: str, *, told: bool) -> str:
         """What a command of wavesym puts out, without the second that a process takes to start.
@@ -181,9 +184,10 @@ class Reader:
             out = err
         return out.getvalue() + (f"exit status {status}\n" if status else "")
 
-    def process(self, command: list[str]) -> str:
+    def process(self, command: list[str], given: str = "") -> str:
         done = subprocess.run(
             command,
+            input=given,
             cwd=self.folder,
             env=self.environment,
             stdout=subprocess.PIPE,
@@ -193,6 +197,14 @@ class Reader:
         )
         assert done.returncode == 0, f"{command[-1]}\n{done.stdout}"
         return done.stdout
+
+
+def words_of_pipe(words: list[str]) -> list[list[str]]:
+    """The commands of a line one after another; none where there is more to a line than that, or nothing of wavesym."""
+    stages = [list(stage) for bar, stage in groupby(words, "|".__eq__) if not bar]
+    plain = all(stage[0] in {"wavesym", "sed", "head", "tail", "grep", "cmp"} for stage in stages)
+    ours = [stage for stage in stages if stage[0] == "wavesym"]
+    return stages if plain and len(ours) == 1 and not any(SHELL & set(word) for word in ours[0]) else []
 
 
 def reader(name: str, folder: Path, patience: bool) -> Reader:

@@ -11,8 +11,9 @@ import pytest
 
 import wavesym
 from wavesym import compiler
+from wavesym.compiler import generation, pictures, texts, values, verdicts
 from wavesym.mechanics import chain
-from wavesym.scene import Scene
+from wavesym.scene import Scene, lower
 
 PACKAGE = Path(wavesym.__file__).parent
 TEMPLATES = PACKAGE.parent / "templates"
@@ -59,17 +60,18 @@ def room_of(path: Path) -> str:
 def built(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     """How often scenes are lowered, and nodes of chains written out."""
     counted: Counter[str] = Counter()
-    right_lower, right_node = compiler.lower, chain._exact_node
+    right_node = chain._exact_node
 
-    def lower(scene):
+    def counting(scene):
         counted["models"] += 1
-        return right_lower(scene)
+        return lower(scene)
 
     def node(given):
         counted["nodes"] += 1
         return right_node(given)
 
-    monkeypatch.setattr(compiler, "lower", lower)
+    for ways in (generation, pictures, texts, values, verdicts):
+        monkeypatch.setattr(ways, "lower", counting)
     monkeypatch.setattr(chain, "_exact_node", node)
     return counted
 

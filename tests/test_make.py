@@ -58,7 +58,7 @@ def test_a_machine_without_a_compiler_gets_one(fresh: Path) -> None:
 
 @pytest.mark.parametrize(
     ("target", "added"),
-    [("test", ["test"]), ("lint", ["lint"]), ("check-all", ["lint", "test", "simulator"]), ("mutants", ["test"])],
+    [("test", ["test"]), ("lint", ["lint"]), ("check-all", ["lint", "test", "check"]), ("mutants", ["test"])],
 )
 def test_tests_and_linters_add_what_they_need(target: str, added: list[str], fresh: Path) -> None:
     assert extras(commands(fresh, target, ("cc",))) == ["plot", *added]
@@ -66,7 +66,7 @@ def test_tests_and_linters_add_what_they_need(target: str, added: list[str], fre
 
 def test_nothing_is_installed_twice(fresh: Path) -> None:
     (fresh / ".venv").mkdir()
-    for name in (".installed", ".test", ".lint", ".simulator"):
+    for name in (".installed", ".test", ".lint", ".check"):
         (fresh / ".venv" / name).touch()
     for target in ("install", "test", "lint", "check-all"):
         assert extras(commands(fresh, target)) == []

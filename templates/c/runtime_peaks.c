@@ -4,8 +4,9 @@
 #include "runtime_misfit.c"
 #endif
 
-/* How often an interval is halved at most; into how many parts one is cut where it is looked at closely. */
-enum { DEEPEST = 60, CLOSELY = 8 };
+/* How often an interval is halved at most; into how many parts one is cut where it is looked at closely;
+ * how many sums are taken side by side. */
+enum { DEEPEST = 60, CLOSELY = 8, SUMS = 4 };
 
 /* The greatest value of an output, or of its negative where `sign` is -1, of all that were seen, and when. */
 typedef struct {
@@ -119,6 +120,32 @@ static void explore(const part *p, summit *top, real left, real at_left, real ri
     }
 }
 
+/* Whether an output may be beyond what was seen of it, on a section of a window: a sum of c_k T_k is no further from c_0
+ * than the sum of the other |c_k|, and what rounding adds to that. */
+static int beyond(const model_of *m, int window, int at, const summit *least, const summit *greatest)
+{
+    const int degree = m->degree[window];
+    real middle = 0, around = 0, sums[SUMS] = {0}; /* a sum alone would wait for each of its terms */
+    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+        const real *const c = m->series + m->place[window] + (size_t)strand_at[k] * (size_t)(degree + 2);
+        int n = 1;
+        middle += c[0];
+        for (; n + SUMS <= degree + 2; n += SUMS) {
+            for (int j = 0; j < SUMS; ++j) {
+                sums[j] += magnitude(c[n + j]);
+            }
+        }
+        for (; n < degree + 2; ++n) {
+            sums[0] += magnitude(c[n]);
+        }
+    }
+    for (int j = 0; j < SUMS; ++j) {
+        around += sums[j];
+    }
+    around += 256 * unit * (magnitude(middle) + around);
+    return !(middle + around <= greatest->best && around - middle <= least->best);
+}
+
 /* First the best of all instants surveyed; then, `slack` given, of all between them that may be higher. */
 static void search(const model_of *m, int output, summit *least, summit *greatest, const real *slack)
 {
@@ -129,7 +156,7 @@ static void search(const model_of *m, int output, summit *least, summit *greates
             const real reach = NAME_TAU_MAX - cycle_begin(window);
             const real end = from[at + 1] < reach ? from[at + 1] : reach;
             part p = {m, window, section, output, from[at], end - from[at], 0};
-            if (p.length < 0) {
+            if (p.length < 0 || !beyond(m, window, section * NAME_OUTPUTS + output, least, greatest)) {
                 continue;
             }
             survey(&p, t, found);

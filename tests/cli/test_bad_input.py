@@ -160,7 +160,7 @@ def hunt(folder: Path, seeds: range, request: Request) -> tuple[Counter[object],
 
 @pytest.mark.parametrize(
     ("seeds", "request_"),
-    [(range(2000), reading), (range(100_000, 100_120), cheap), (range(200_000, 200_040), any_request)],
+    [(range(1000), reading), (range(100_000, 100_060), cheap), (range(200_000, 200_040), any_request)],
     ids=["read", "cheap", "any"],
 )
 def test_mutants_are_answered_or_refused(
@@ -173,8 +173,8 @@ def test_mutants_are_answered_or_refused(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(1_000_000, 1_100_000, 10_000))
-def test_a_hundred_thousand_mutants(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, first: int) -> None:
+@pytest.mark.parametrize("first", range(1_000_000, 1_020_000, 10_000))
+def test_twenty_thousand_mutants(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, first: int) -> None:
     monkeypatch.chdir(tmp_path)
     for part, request_ in (
         (range(first, first + 9_000), reading),

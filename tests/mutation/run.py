@@ -39,7 +39,7 @@ TESTS += tuple(
 )
 TESTS += ("exact/test_joint.py", "exact/test_network_waves.py", "exact/test_silence.py")
 TESTS += tuple(f"targets/test_{name}.py" for name in ("march_c", "march_hand", "march_short_panels", "selftest"))
-COPIED = ("wavesym", "templates", "tests", "pyproject.toml")
+COPIED = ("wavesym", "templates", "tests", "examples", "pyproject.toml")
 PYTEST = f"""ulimit -v {4 << 20}; exec "$0" -m pytest -x -q --tb=short -p no:cacheprovider --basetemp=tmp/pytest \
 --hypothesis-profile=first_failure -o faulthandler_exit_on_timeout=true "$@" """
 WANTED = 0.95  # of the mutants that make a bound false or a value wrong
@@ -76,7 +76,7 @@ class Project:
         finally:
             _write(path, right)
 
-    def tested(self, tests: Sequence[str], usual: float = 600) -> tuple[int | None, str]:
+    def run(self, tests: Sequence[str], usual: float = 600) -> tuple[int | None, str]:
         """The status of pytest after the first test that fails, None where it hangs, and what it says.
 
         One test may take as long as all of them do on what is right, `usual` seconds, and all of them four times that.
@@ -106,7 +106,7 @@ class Project:
         """Whether the tests see a mutant."""
         begun = perf_counter()
         with self.changed(mutant):
-            status, told = self.tested(related(mutant.file), usual)
+            status, told = self.run(related(mutant.file), usual)
         seconds = perf_counter() - begun
         if status == 0:
             return Verdict(mutant, "survived", "", seconds)
@@ -164,7 +164,7 @@ def judged(chosen: Sequence[Mutant], jobs: int) -> Iterator[Verdict]:
         for job in range(jobs):
             free.put(project := Project(Path(folder) / str(job)))
         begun = perf_counter()
-        status, told = project.tested(related(""))
+        status, told = project.run(related(""))
         if status != 0:
             sys.exit(f"tests fail on the project as it is:\n{told[-3000:]}")
         usual = perf_counter() - begun
@@ -216,7 +216,7 @@ def main() -> int:
     if asked.key:
         (mutant,) = {mutant.names: mutant for place in found for mutant in place if mutant.key == asked.key}.values()
         with TemporaryDirectory(prefix="mutants-") as folder, (project := Project(Path(folder))).changed(mutant):
-            status, told = project.tested(related(mutant.file), 60)
+            status, told = project.run(related(mutant.file), 60)
         print(mutant, told, sep="\n")
         return status or 0
     chosen = sample(found, asked.count, asked.seed)

@@ -118,7 +118,7 @@ def test_a_wrong_value_kills(tmp_path):
     mutant = next(mutant for place in found for mutant in place if mutant.wrong == wrong)
     project = Project(tmp_path)
     with project.changed(mutant):
-        assert project.tested([FRONT])[0] == 1
+        assert project.run([FRONT])[0] == 1
     assert (project.folder / mutant.file).read_text() == (ROOT / mutant.file).read_text()
 
 

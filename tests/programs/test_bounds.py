@@ -28,14 +28,14 @@ def test_floats_hold_their_bounds(scene):
 
 
 @pytest.mark.slow
-@settings(max_examples=150, **DRAWN)
+@settings(max_examples=40, **DRAWN)
 @given(scenes("double"))
 def test_many_doubles_hold_their_bounds(scene):
     check(scene, "double")
 
 
 @pytest.mark.slow
-@settings(max_examples=150, **DRAWN)
+@settings(max_examples=40, **DRAWN)
 @given(scenes("single"))
 def test_many_floats_hold_their_bounds(scene):
     check(scene, "single")

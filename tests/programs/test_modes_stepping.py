@@ -121,17 +121,18 @@ def test_many_records_at_once_are_what_each_is_alone():
     samples = np.random.default_rng(2).uniform(-1, 1, (3, 150)).round(6)
     samples[:, 0] = 0
     response = RecordResponse(system, 3 / 7, parts=2)
-    made = response.respond(samples)
+    made = response.respond(samples[:, :, None])
+    known_of_all = response.known(samples[:, :, None])
     at, s = np.array([0, 5, 63, 64, 65, 127, 147]), np.linspace(0.0, 3 / 7, 7)
     for number, record in enumerate(samples):
         loads = uniform(record.tolist(), fmpq(3, 7))
         alone = evaluator(system, loads, float(loads.times[-1])).scheme
-        size = 1e-12 * np.abs(made.values[number]).max()
+        size = 1e-12 * np.abs(made[number]).max()
         taus = np.arange(1, 2 * 149 + 1) * (3 / 14)
         taus[-1] = alone_end = float(loads.times[-1])
         assert alone_end == pytest.approx(149 * 3 / 7)
-        np.testing.assert_allclose(made.values[number].T, alone.evaluate(taus), rtol=0, atol=size)
-        known = response.inside(samples[:, :, None], made.states, np.full(7, number), at)
+        np.testing.assert_allclose(made[number].T, alone.evaluate(taus), rtol=0, atol=size)
+        known = response.inside(samples[:, :, None], known_of_all, np.full(7, number), at)
         between = alone.evaluate(at * 3 / 7 + s)
         for output in range(len(between)):
             found = response.at(known, s, np.full(7, output))

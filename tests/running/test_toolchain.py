@@ -7,6 +7,7 @@ import sys
 
 import pytest
 
+from tests.support.builds import needs_zig
 from wavesym.cli import main
 from wavesym.running import toolchain
 from wavesym.running.native import library
@@ -45,6 +46,7 @@ def test_the_first_on_the_path_is_taken(bare):
         assert compiler().version == f"{name} 1.2.3"
 
 
+@needs_zig
 def test_without_any_the_python_package_is_taken(bare):
     chosen = compiler()
     assert chosen.command == (sys.executable, "-m", "ziglang", "cc")
@@ -52,6 +54,7 @@ def test_without_any_the_python_package_is_taken(bare):
     assert "clang" in chosen.version
 
 
+@needs_zig
 def test_it_is_all_that_verify_needs(bare, capsys):
     assert main(["verify", "drive_m1"]) == 0
     assert f"The C compiler is {compiler().version}." in capsys.readouterr().out.splitlines()

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 from dataclasses import dataclass
 from functools import cache
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from wavesym.programs.choice import choose
 from wavesym.running.toolchain import Compiler
 from wavesym.scene import Scene, lower
 
+needs_zig = pytest.mark.skipif(not find_spec("ziglang"), reason="no ziglang here; `make check-all` installs it")
 needs_binutils = pytest.mark.skipif(not shutil.which("nm") or not shutil.which("size"), reason="no nm, no size here")
 
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror")

@@ -15,12 +15,14 @@ pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
 
 from wavesym import Scene
 from wavesym.errors import WavesymError
+from wavesym.results.response import Response
 from wavesym.results.summary import Summary, summarised
 from wavesym.scene import lower
 from wavesym.sweeps.batches import batches
 from wavesym.sweeps.kinds import kind
 from wavesym.sweeps.plan import SweepPlan, plan
 from wavesym.sweeps.request import SweepRequest
+from wavesym.sweeps.single import instants
 from wavesym.sweeps.values import BatchValues
 from wavesym.sweeps.work import compute
 
@@ -102,6 +104,73 @@ def test_sets_of_parameters_are_what_each_is_alone() -> None:
         assert values.system.kappa[1] == kappa[place[0]]
 
 
+BAR: dict[str, Any] = {
+    "name": "bar",
+    "system": {
+        "type": "chain",
+        "parts": [
+            {"mass": 4, "velocity": 1},
+            {"spring": 10, "dashpot": "1/10"},
+            {"mass": "1/2"},
+            {"rod": 1},
+            {"rod": "3/2", "impedance": 2},
+            "fixed",
+        ],
+    },
+    "output": {"until": 9, "tolerance": "1e-6", "strain": ["1/2"]},
+}
+SHAFTS: dict[str, Any] = {
+    "name": "shafts",
+    "units": {"moment": "kN*m", "velocity": "rpm", "angle": "deg"},
+    "system": {
+        "type": "drive",
+        "shaft": [
+            {"length": "4 m", "diameter": "160 mm", "G": "80 GPa", "rho": "7850 kg/m^3"},
+            {"length": "4 m", "diameter": "140 mm", "G": "80 GPa", "rho": "7850 kg/m^3"},
+        ],
+        "disc": [{"inertia": "600 kg*m^2"}, {"inertia": "50 kg*m^2"}, {"inertia": "400 kg*m^2"}],
+    },
+    "load": [{"body": 1, "times": ["0 s", "0.01 s"], "steps": ["5 kN*m", "-5 kN*m"]}],
+    "output": {"until": "0.03 s", "tolerance": "1e-6", "velocity": [0], "force": ["1/2"]},
+}
+
+
+@pytest.mark.parametrize(
+    ("scene", "path", "values", "shared"),
+    [
+        (BAR, "system.parts[0].mass", [Fraction(k, 7) for k in range(1, 10)], True),
+        (BAR, "system.parts[1].spring", [*range(1, 9), 50], True),
+        (BAR, "system.parts[4].impedance", range(1, 10), True),
+        (BAR, "system.parts[4].rod", range(1, 10), False),
+        (SHAFTS, "system.disc[1].inertia", [f"{50 + 9 * k} kg*m^2" for k in range(9)], True),
+        (SHAFTS, "system.shaft[1].diameter", [f"{90 + 7 * k} mm" for k in range(9)], True),
+        (SHAFTS, "system.shaft[1].length", [f"{4 + k} m" for k in range(9)], False),
+        (SHAFTS, "load[0].steps[1]", [f"{k} kN*m" for k in range(-3, 6)], True),
+        ("collision_m4", "system.velocity[0]", range(1, 10), True),
+        ("collision_m4", "output.until", range(1, 10), False),
+    ],
+)
+def test_whatever_is_varied_shares_a_program_where_that_is_right(
+    scene: Any, path: str, values: Any, shared: bool
+) -> None:
+    made = planned({"scene": scene, "vary": {path: list(values)}})
+    assert kind(made)[0] == ("parameters" if shared else "single")
+    for place, found, how in computed(made)[::4]:
+        assert ("parameters at run time" in how) == shared
+        assert_alike(made, place, found)
+
+
+def test_a_case_that_is_unlike_the_others_is_computed_alone() -> None:
+    """A mass that is none, and a rod's own velocity: no numbers of the program that the other cases share."""
+    masses: list[Any] = [1, 2, 3, 4, 0, 5, 6, 7, 8]
+    made = planned({"scene": BAR, "vary": {"system.parts[2].mass": masses}})
+    assert kind(made)[0] == "parameters"
+    (_, _, how), *_ = cases = computed(made)
+    assert "'parameters at run time, errors estimated': 8" in how
+    for place, found, _ in cases[3:6]:
+        assert_alike(made, place, found)
+
+
 def test_sets_that_their_program_refuses_are_computed_alone() -> None:
     """Bodies that are far too light for the program, and a number that is none."""
     kappa = ["1/10", "1/5", "3/10", "2/5", "1/2", 1, 2, 100, -1]
@@ -148,6 +217,29 @@ def test_records_are_what_each_is_alone(tmp_path: Path, spacing: str, system: di
     assert sum("together" in how for _, _, how in cases) >= 3
     for place, found, _ in cases:
         assert_alike(made, place, found)
+
+
+@pytest.mark.parametrize("start", ["0", "7/3"])
+def test_histories_of_records_are_those_of_each_alone(tmp_path: Path, start: str) -> None:
+    """At instants that are no samples; also where a record begins late, with a jump to its first sample."""
+    records(tmp_path, np.random.default_rng(6))
+    scene = shaken("1/2", damping="1/20")
+    scene["load"][0]["start"] = start
+    made = planned({"scene": scene, "records": str(tmp_path / "*.csv"), "keep": {"summary": [], "histories": 77}})
+    assert kind(made)[0] == "recorded"
+    cases = computed(made)
+    assert sum("together" in how for _, _, how in cases) >= 3
+    for place, found, _ in cases:
+        alone = Response(model := lower(made.scene(place)))
+        try:
+            true = np.array(alone(instants(model, 77)))
+        except WavesymError:  # a jump
+            assert np.isnan(found["history"]).all()
+            continue
+        largest = np.abs([[each.min.value, each.max.value] for each in summarised(model).outputs]).max(axis=1)
+        both = (alone.error_bound + found["bound"]) * largest[:, None]
+        assert np.all(np.abs(found["history"] - true) <= both), place
+        assert np.abs(np.diff(true)).max() > 100 * both.max() or not true.any()
 
 
 def test_thirty_random_cases_are_what_summary_says(tmp_path: Path) -> None:

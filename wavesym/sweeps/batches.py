@@ -13,7 +13,8 @@ from wavesym.sweeps.plan import SweepPlan
 
 _MOST_BATCHES = 5000  # where each case is computed by itself: so many files of every array at most
 _RECORDS = 1000  # at once: with their values at all samples some hundred MB
-_SETS, _FEWEST_SETS, _PARTS = 512, 64, 8  # of parameters at once: enough of them, and of batches for all workers
+_SETS, _FEWEST_SETS, _PARTS = 2048, 64, 8  # of parameters at once: enough of them, and of batches for all workers
+_NUMBERS = 1 << 23  # of histories in a batch
 
 
 @dataclass(frozen=True)
@@ -57,10 +58,11 @@ class Batches:
 
 def batches(plan: SweepPlan, kind: str, together: tuple[bool, ...] = ()) -> Batches:
     """The batches of a sweep; `together` says of each dimension whether its cases can be parts of one batch."""
+    fit = max(1, _NUMBERS // (len(plan.outputs) * (plan.histories or 1)))
     if kind == "recorded":
-        return Batches(kind, plan.shape, (*(1 for _ in plan.shape[:-1]), min(plan.shape[-1], _RECORDS)))
+        return Batches(kind, plan.shape, (*(1 for _ in plan.shape[:-1]), min(plan.shape[-1], _RECORDS, fit)))
     if kind == "parameters":
-        most = max(_FEWEST_SETS, min(_SETS, plan.cases // _PARTS))
+        most = min(max(_FEWEST_SETS, min(_SETS, plan.cases // _PARTS)), fit)
         return Batches(kind, plan.shape, _blocks(plan.shape, together, most), together)
     return Batches(kind, plan.shape, _blocks(plan.shape, (True,) * len(plan.shape), ceil(plan.cases / _MOST_BATCHES)))
 

@@ -1,145 +1,160 @@
 """Hundreds of sets of parameters at once, by a program whose parameters come at run time: one for each topology.
 
-A dimension can be run through so where its values are numbers of the program's own fields and nothing else of the scene
-depends on them: kappa, inertia, amplitudes of loads. (Velocities of bodies must fit each other; a scene looks at that.)
+Cases share a program where their models differ in numbers of its fields alone (`topology`). For columns that are such
+numbers themselves that is known beforehand (`lanes`); for others the model of each case is made and looked at.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from typing import NamedTuple
 
 import numpy as np
 
 from wavesym.errors import WavesymError
-from wavesym.numbers.doubles import nearest, rational
+from wavesym.numbers.doubles import nearest
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.making import runtime_program
-from wavesym.programs.runtime.request import RuntimeField, fields
 from wavesym.running.model import RuntimeModel
-from wavesym.scene import Scene, lower
+from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes
-from wavesym.scene.paths import changed, steps
-from wavesym.sweeps.dimension import Column, number_of
-from wavesym.sweeps.plan import SweepPlan
-from wavesym.sweeps.single import instants, of_model, output_rows, spread_out
+from wavesym.sweeps.lanes import lane
+from wavesym.sweeps.plan import RECORD, SweepPlan
+from wavesym.sweeps.single import instants, of_model, output_rows
+from wavesym.sweeps.topology import RuntimeCase, differing
 from wavesym.sweeps.values import CaseValues, Numbers
 
 _FEWEST = 8  # sets that are worth a program of their own
-_NAMES = ("kappa", "inertia")
-_FROM_LISTS = ("steps", "ramps", "a", "b")  # of a load
-_PROBES = (2, 3)  # values that a column takes to see which number of the program it is
+_HOW = "parameters at run time, errors estimated"
 
 Place = tuple[int, ...]
 
 
-@dataclass(frozen=True)
-class Lane:
-    """A column whose values are number `place` of a field of the program."""
-
-    field: str
-    place: int
-
-
 def together(plan: SweepPlan) -> tuple[bool, ...] | None:
     """Whether cases can differ in each dimension and still share a program; None where that is worth nothing."""
-    if plan.time_unit is not None or "arrival" in plan.summary:
+    if "arrival" in plan.summary:
         return None
-    joined = tuple(all(_lane(plan, column) for column in dimension.columns) for dimension in plan.dimensions)
-    sets = np.prod([len(d) for d, lane in zip(plan.dimensions, joined, strict=True) if lane], initial=1)
+    names = [_varied(plan, axis) for axis in range(len(plan.dimensions))]
+    joined = tuple(map(bool, names))
+    sets = np.prod([len(d) for d, some in zip(plan.dimensions, joined, strict=True) if some], initial=1)
     if not any(joined) or sets < _FEWEST:
         return None
-    try:
-        _fields(Scene(**plan.fields), _names(plan))
-    except WavesymError:
-        return None
-    return joined
+    with suppress(WavesymError):
+        RuntimeCase.of(Scene(**plan.fields), _names(plan, joined))
+        return joined
+    return None
 
 
 def parameters(plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool]) -> Iterator[tuple[Place, CaseValues]]:
     """The cases of one topology, as far as its program serves them to the tolerance; the others are left out."""
-    topology = tuple(0 if lane else k for k, lane in zip(places[0], joined, strict=True))
-    scene, model = _program(plan, topology)
-    given = {name: np.tile(values, (len(places), 1)) for name, values in model.parameters.items()}
-    for axis, dimension in enumerate(plan.dimensions):
-        if joined[axis]:
-            for column in dimension.columns:
-                lane = _lane(plan, column)
-                assert lane  # as the dimension is joined
-                given[lane.field][:, lane.place] = [_number(column, place[axis]) for place in places]
-    lowered = lower(scene)
-    rows, of_all = output_rows(plan, lowered), of_model(plan, lowered)
+    topology = tuple(0 if joins else k for k, joins in zip(places[0], joined, strict=True))
+    own, model = _program(plan, topology, joined)
+    served, given = _given(plan, places, joined, own, model)
+    if not served:
+        return
+    rows, of_all = output_rows(plan, own.model), of_model(plan, own.model)
     peaks = model.peaks(**given)
     values = {"min": peaks.min, "max": peaks.max, "tau_min": peaks.tau_min, "tau_max": peaks.tau_max}
     if plan.histories:
-        values["history"] = model.run(instants(lowered, plan.histories), **given)
-    tolerance = nearest(lowered.tolerance)
-    for k, place in enumerate(places):
-        bound = float(peaks.checks.estimate[k])
-        if peaks.checks.status[k] == 0 and bound <= tolerance:
-            found: dict[str, Numbers | float] = {name: spread_out(plan, rows, each[k]) for name, each in values.items()}
-            yield place, CaseValues({**of_all, **found, "bound": bound}, "parameters at run time, errors estimated")
+        values["history"] = model.run(instants(own.model, plan.histories), **given)
+    spread = {}
+    for name, found in values.items():
+        spread[name] = np.full((len(served), len(plan.outputs), *found.shape[2:]), np.nan)
+        spread[name][:, rows] = found
+    fine = (peaks.checks.status == 0) & (peaks.checks.estimate <= nearest(own.model.tolerance))
+    for k in np.flatnonzero(fine).tolist():
+        arrays: dict[str, Numbers | float] = {name: each[k] for name, each in spread.items()}
+        yield served[k], CaseValues({**of_all, **arrays, "bound": float(peaks.checks.estimate[k])}, _HOW)
 
 
-_PROGRAMS: dict[tuple[str, Place], tuple[Scene, RuntimeModel]] = {}
+def _given(
+    plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool], own: RuntimeCase, model: RuntimeModel
+) -> tuple[list[Place], dict[str, Numbers]]:
+    """The cases that the program is for, and their numbers by field, (cases, numbers)."""
+    if _plain(plan, joined):
+        given = {name: np.tile(values, (len(places), 1)) for name, values in model.parameters.items()}
+        for axis, dimension in enumerate(plan.dimensions):
+            for column in dimension.columns if joined[axis] else ():
+                at = lane(plan, column)
+                assert at  # as all columns of this dimension are
+                given[at.field][:, at.place] = [column.coordinate[place[axis]] for place in places]
+        return list(places), given
+    served, numbers = [], []
+    for place in places:
+        with suppress(WavesymError):  # by itself it says what is wrong
+            case = RuntimeCase.of(plan.scene(place), _names(plan, joined))
+            if case.rest == own.rest:
+                served.append(place)
+                numbers.append([[nearest(value) for value in field.values] for field in case.fields])
+    return served, {field.name: np.array([each[k] for each in numbers]) for k, field in enumerate(own.fields)}
 
 
-def _program(plan: SweepPlan, topology: Place) -> tuple[Scene, RuntimeModel]:
-    """The scene of the first case of a topology, and its program; the last one is kept."""
+class _Made(NamedTuple):
+    """A case of a topology, and the program of all of them."""
+
+    case: RuntimeCase
+    model: RuntimeModel
+
+
+_PROGRAMS: dict[tuple[str, Place], _Made] = {}
+
+
+def _program(plan: SweepPlan, topology: Place, joined: Sequence[bool]) -> _Made:
+    """That of the first case of a topology; the last one is kept."""
     key = plan.sha256, topology
     if key not in _PROGRAMS:
         _PROGRAMS.clear()
-        scene, names = plan.scene(topology), _names(plan)
-        given = amplitudes(scene) if "load" in names else ()
-        program = runtime_program(lower(scene), Request(runtime=names), given)
-        _PROGRAMS[key] = scene, RuntimeModel(program)
+        scene, names = plan.scene(topology), _names(plan, joined)
+        case, given = RuntimeCase.of(scene, names), amplitudes(scene) if "load" in names else ()
+        _PROGRAMS[key] = _Made(case, RuntimeModel(runtime_program(case.model, Request(runtime=names), given)))
     return _PROGRAMS[key]
 
 
-def _names(plan: SweepPlan) -> tuple[str, ...]:
+def _names(plan: SweepPlan, joined: Sequence[bool]) -> tuple[str, ...]:
     """The fields that are varied."""
-    lanes = (_lane(plan, column) for dimension in plan.dimensions for column in dimension.columns)
-    return tuple(dict.fromkeys(lane.field for lane in lanes if lane))
+    return tuple(dict.fromkeys(name for axis, joins in enumerate(joined) if joins for name in _varied(plan, axis)))
 
 
-def _lane(plan: SweepPlan, column: Column) -> Lane | None:
-    """The number of the program that a column varies, if it is one."""
-    if any(number is None or number[1] for number in map(number_of, column.values)):
-        return None
-    way = steps(column.path)
-    if way[0] == "system" and len(way) == 3 and way[1] in _NAMES:
-        name = str(way[1])
-    elif way[0] == "load" and len(way) == 4 and way[2] in _FROM_LISTS:
-        name = "load"
-    else:
-        return None
-    return _found(plan, column.path, name)
+def _plain(plan: SweepPlan, joined: Sequence[bool]) -> bool:
+    """Whether all that is varied are numbers of the program."""
+    dimensions = (dimension for dimension, joins in zip(plan.dimensions, joined, strict=True) if joins)
+    return all(lane(plan, column) for dimension in dimensions for column in dimension.columns)
 
 
-_LANES: dict[tuple[str, str], Lane | None] = {}
+_VARIED: dict[tuple[str, int], tuple[str, ...]] = {}
 
 
-def _found(plan: SweepPlan, path: str, name: str) -> Lane | None:
-    """Which number of a field changes with a path, and as it does."""
-    key = plan.sha256, path
-    if key not in _LANES:
-        try:
-            first, second = (_fields(Scene(**changed(plan.fields, path, value)), (name,)) for value in _PROBES)
-        except WavesymError:
-            return None
-        before, after = (np.array([nearest(value) for value in each[0].values]) for each in (first, second))
-        (differ,) = np.nonzero(before != after)
-        fits = len(differ) == 1 and (before[differ[0]], after[differ[0]]) == _PROBES
-        _LANES[key] = Lane(name, int(differ[0])) if fits else None
-    return _LANES[key]
+def _varied(plan: SweepPlan, axis: int) -> tuple[str, ...]:
+    """The fields of a program that a dimension varies; none where cases along it have programs of their own."""
+    key = plan.sha256, axis
+    if key not in _VARIED:
+        dimension = plan.dimensions[axis]
+        lanes = [lane(plan, column) for column in dimension.columns]
+        if dimension.name == RECORD:
+            _VARIED[key] = ()
+        elif all(lanes):
+            _VARIED[key] = tuple(each.field for each in lanes if each)
+        else:
+            _VARIED[key] = _seen(_probes(plan, axis))
+    return _VARIED[key]
 
 
-def _fields(scene: Scene, names: tuple[str, ...]) -> tuple[RuntimeField, ...]:
-    given = amplitudes(scene) if "load" in names else ()
-    return fields(lower(scene), names, given)
+def _seen(probes: Sequence[Scene]) -> tuple[str, ...]:
+    """The fields in which scenes differ, where that is all."""
+    names = tuple(dict.fromkeys(name for other in probes[1:] for name in differing(probes[0], other)))
+    if not names:
+        return ()
+    with suppress(WavesymError):
+        first, *others = (RuntimeCase.of(scene, names) for scene in probes)
+        return names if all(other.rest == first.rest for other in others) else ()
+    return ()
 
 
-def _number(column: Column, k: int) -> float:
-    found = number_of(column.values[k])
-    assert found  # or there is no lane
-    return nearest(rational(found[0]))
+def _probes(plan: SweepPlan, axis: int) -> list[Scene]:
+    """Cases along a dimension: the first, one in the middle, the last one, as far as they are scenes."""
+    last, found = len(plan.dimensions[axis]) - 1, []
+    for k in dict.fromkeys((0, last // 2, last)):
+        with suppress(WavesymError):
+            found.append(plan.scene(tuple(k if other == axis else 0 for other in range(len(plan.dimensions)))))
+    return found

@@ -21,7 +21,7 @@ from wavesym.scene import Scene, lower
 from wavesym.scene.paths import changed
 from wavesym.sweeps.measured import Unreadable
 from wavesym.sweeps.plan import SweepPlan
-from wavesym.sweeps.single import of_model, output_rows, spread_out
+from wavesym.sweeps.single import instants, of_model, output_rows, spread_out
 from wavesym.sweeps.values import CaseValues, Numbers
 
 _PROBE = ["0", "1"]
@@ -31,14 +31,10 @@ Place = tuple[int, ...]
 
 
 def serves(plan: SweepPlan) -> bool:
-    """Whether records that share a structure can be computed together: nothing but true extremes of one record."""
+    """Whether records that share a structure can be computed together: true extremes and histories of one record."""
     loads = plan.fields.get("load", ())
     return (
-        plan.records is not None
-        and len(plan.records.values) > 1
-        and not plan.histories
-        and "arrival" not in plan.summary
-        and len(loads) == 1
+        plan.records is not None and len(plan.records.values) > 1 and "arrival" not in plan.summary and len(loads) == 1
     )
 
 
@@ -54,7 +50,7 @@ def recorded(plan: SweepPlan, places: Sequence[Place]) -> Iterator[tuple[Place, 
     for head, some in alike.items():
         try:
             scene = Scene(**changed(plan.fields_at(some[0]), path, {**json.loads(head), "samples": _PROBE}))
-            yield from _together(plan, scene, [(place, _read(_key(values[place[-1]]))) for place in some])
+            yield from _together(plan, scene, [(place, doubles(key(values[place[-1]]))) for place in some])
         except WavesymError:
             continue
 
@@ -83,7 +79,7 @@ def _together(
     factor = nearest(rational(load.record.samples[1] * load.scale))
     rough = [each.late if late else each.early for _, each in fit]
     many = ManyRecords(factor * samples, nearest(begin), nearest(h), rough, factor)
-    found = recorded_extremes(model, many)
+    found = recorded_extremes(model, many, instants(model, plan.histories) if plan.histories else ())
     rows, of_all = output_rows(plan, model), of_model(plan, model)
     for k, (place, _) in enumerate(fit):
         if found.bounds[k] <= nearest(model.tolerance):
@@ -91,6 +87,8 @@ def _together(
             for side, name in enumerate(("min", "max")):
                 made[name] = spread_out(plan, rows, found.values[k, :, side])
                 made[f"tau_{name}"] = spread_out(plan, rows, found.taus[k, :, side])
+            if plan.histories:
+                made["history"] = spread_out(plan, rows, found.histories[k])
             yield place, CaseValues(made, f"{found.modes} modes, all records of a structure together")
 
 
@@ -105,12 +103,12 @@ class _Samples:
     late: Roughness
 
 
-def _key(record: dict[str, Any]) -> tuple[str, ...]:
+def key(record: dict[str, Any]) -> tuple[str, ...]:
     return tuple(record["samples"])
 
 
 @lru_cache(2048)
-def _read(written: tuple[str, ...]) -> _Samples:
+def doubles(written: tuple[str, ...]) -> _Samples:
     values = np.array([_double(each) for each in written])
     return _Samples(bool(values[0]), values, of_samples(values), of_samples(np.concatenate([[0.0], values])))
 

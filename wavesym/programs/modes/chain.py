@@ -93,7 +93,7 @@ class ModalChain(ABC, Generic[K]):
     def cut(self) -> Cut:
         """The network with points wherever outputs are."""
 
-    @property
+    @cached_property
     def seen(self) -> list[Seen]:
         """What outputs are of a mode."""
         return [seen(self.model.network, self.cut, probe) for probe in self.model.probes]

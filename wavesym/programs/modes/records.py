@@ -21,23 +21,17 @@ from wavesym.programs.modes.modal import ModalSystem, Numbers
 from wavesym.programs.modes.panels import Panels
 from wavesym.programs.modes.tables import scheme_tables
 
-_LONGEST = 64  # steps of a block
+_LONGEST = 16  # steps of a block: with more of them products take longer, with fewer what goes block by block
 _MOST = 1 << 22  # numbers of a matrix
 Places = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
-class RecordValues:
-    """What records do, `parts` instants a step, from the first one after the start on: `values` (records, instants,
-    outputs); `states` (records, blocks, 2 modes) are displacements and velocities where blocks begin."""
-
-    values: Numbers
-    states: Numbers
-
-
-@dataclass(frozen=True)
 class RecordResponse:
-    """A system under loads whose samples are `spacing` apart in tau, the first of them 0, and straight in between."""
+    """A system under loads whose samples are `spacing` apart in tau, the first of them 0, and straight in between.
+
+    Samples are (records, n, loads). Outputs are known `parts` times a step, from the first instant after the start on.
+    """
 
     system: ModalSystem
     spacing: float
@@ -78,7 +72,7 @@ class RecordResponse:
     @cached_property
     def _matrices(self) -> tuple[Numbers, Numbers]:
         """What the values in a block take of the state at its start and of the samples, (2 modes + (steps + 1) loads,
-        steps * parts * outputs), and what the state at its end takes of the samples, ((steps + 1) loads, 2 modes)."""
+        outputs * parts * steps), and what the state at its end takes of the samples, ((steps + 1) loads, 2 modes)."""
         count, modes, (turn, push) = self.steps, self._modes, self._step
         loads, outputs = push.shape[2], len(self.system.direct)
         # the state after each step, of one sample that is 1
@@ -89,17 +83,17 @@ class RecordResponse:
             states[k + 1, at : at + loads] += push[0].transpose(1, 0, 2)
             states[k + 1, at + loads : at + 2 * loads] += push[1].transpose(1, 0, 2)
         starts = states[:count].transpose(1, 0, 2, 3).reshape(-1, 2 * modes)
-        values = np.empty((2 * modes + states.shape[1], count, self.parts, outputs))
+        values = np.empty((2 * modes + states.shape[1], outputs, self.parts, count))
         for part, reads in enumerate(self._panels.reads(self._parts)):
             of_state = reads[: 2 * modes].reshape(2, modes, outputs)
-            turned = np.einsum("kabm,amo->bmko", self._powers, of_state)
-            values[: 2 * modes, :, part] = turned.reshape(2 * modes, count, outputs)
-            values[2 * modes :, :, part] = (starts @ reads[: 2 * modes]).reshape(-1, count, outputs)
+            turned = np.einsum("kabm,amo->bmok", self._powers, of_state)
+            values[: 2 * modes, :, part] = turned.reshape(2 * modes, outputs, count)
+            values[2 * modes :, :, part] = (starts @ reads[: 2 * modes]).reshape(-1, count, outputs).transpose(0, 2, 1)
             slope, value = reads[2 * modes :][: 2 * loads].reshape(2, loads, outputs)
             for k in range(count):
                 at = 2 * modes + k * loads
-                values[at : at + loads, k, part] += value - slope / self.spacing
-                values[at + loads : at + 2 * loads, k, part] += slope / self.spacing
+                values[at : at + loads, :, part, k] += value - slope / self.spacing
+                values[at + loads : at + 2 * loads, :, part, k] += slope / self.spacing
         return values.reshape(len(values), -1), states[count].reshape(-1, 2 * modes)
 
     @property
@@ -107,30 +101,40 @@ class RecordResponse:
         """The instants of a step, after its start."""
         return self.spacing * np.arange(1, self.parts + 1) / self.parts
 
-    def respond(self, samples: Numbers) -> RecordValues:
-        """All outputs under records whose `samples` are (records, n), or (records, n, loads); n - 1 steps."""
-        given = np.asarray(samples, dtype=np.float64)
-        given = given.reshape(*given.shape[:2], -1)
-        records, n, loads = given.shape
+    def known(self, samples: Numbers) -> Numbers:
+        """Displacements and velocities of the modes where blocks begin, and the samples in them: (records, blocks,
+        2 modes + (steps + 1) loads)."""
+        records, n, loads = samples.shape
         blocks = max(1, -(-(n - 1) // self.steps))
         padded = np.zeros((records, blocks * self.steps + 1, loads))
-        padded[:, :n] = given
+        padded[:, :n] = samples
         at = np.arange(blocks)[:, None] * self.steps + np.arange(self.steps + 1)
         known = np.zeros((records, blocks, 2 * self._modes + (self.steps + 1) * loads))
         known[:, :, 2 * self._modes :] = padded[:, at].reshape(records, blocks, -1)
-        states = known[:, :, : 2 * self._modes]
-        values, ends = self._matrices
+        _, ends = self._matrices
         added = (known[:, :, 2 * self._modes :] @ ends).reshape(records, blocks, 2, self._modes)
         last = np.einsum("abm,bcm->acm", self._step[0], self._powers[-1])
         state = np.zeros((records, 2, self._modes))
         for block in range(blocks - 1):
-            state = np.einsum("abm,rbm->ram", last, state) + added[:, block]
-            states[:, block + 1] = state.reshape(records, -1)
-        made = (known.reshape(records * blocks, -1) @ values).reshape(records, -1, len(self.system.direct))
-        made = made[:, : (n - 1) * self.parts]
+            state = last[:, 0] * state[:, None, 0] + last[:, 1] * state[:, None, 1] + added[:, block]
+            known[:, block + 1, : 2 * self._modes] = state.reshape(records, -1)
+        return known
+
+    def in_blocks(self, known: Numbers, samples: Numbers) -> Numbers:
+        """All outputs: (records, blocks, outputs, parts, steps), also after the last sample; of records `known`."""
+        records, blocks, numbers = known.shape
+        made = known.reshape(-1, numbers) @ self._matrices[0]
+        made = made.reshape(records, blocks, len(self.system.direct), self.parts, self.steps)
         if self._summing:
-            made += self._sums(given)
-        return RecordValues(made, states.copy())
+            self._add_sums(made, samples)
+        return made
+
+    def respond(self, samples: Numbers) -> Numbers:
+        """All outputs in the order of time: (records, instants, outputs)."""
+        records, n, _ = samples.shape
+        made = self.in_blocks(self.known(samples), samples)
+        instants = made.transpose(0, 1, 4, 3, 2).reshape(records, -1, len(self.system.direct))
+        return instants[:, : (n - 1) * self.parts]
 
     @property
     def _summing(self) -> bool:
@@ -145,20 +149,20 @@ class RecordResponse:
         made[1, :, 1:] = np.cumsum(h * made[0, :, :-1] + h * h * (2 * now + then) / 6, axis=1)
         return made
 
-    def _sums(self, samples: Numbers) -> Numbers:
-        """What the integrals up to the start of its step count in each value: (records, instants, outputs)."""
-        once, twice = self._integrals(samples)[:, :, :-1]
-        records, steps, loads = once.shape
-        made = np.empty((records, steps, self.parts, len(self.system.direct)))
+    def _add_sums(self, values: Numbers, samples: Numbers) -> None:
+        """Add to values in blocks what the integrals up to the start of a step count in them."""
+        records, n, loads = samples.shape
+        padded = np.zeros((2, records, values.shape[1] * self.steps, loads))
+        padded[:, :, : n - 1] = self._integrals(samples)[:, :, :-1]
+        once, twice = padded.reshape(2, records, -1, self.steps, loads)
         for part, reads in enumerate(self._panels.reads(self._parts)):
             first, second = reads[-2 * loads :].reshape(2, loads, -1)
-            made[:, :, part] = once @ first + twice @ second
-        return made.reshape(records, steps * self.parts, -1)
+            values[:, :, :, part] += (once @ first + twice @ second).transpose(0, 1, 3, 2)
 
-    def inside(self, samples: Numbers, states: Numbers, record: Places, step: Places) -> Numbers:
+    def inside(self, samples: Numbers, known: Numbers, record: Places, step: Places) -> Numbers:
         """What is known where a `step` of a `record` begins: (cases, 2 modes + 4 loads), to be multiplied with `reads`.
 
-        `samples` are (records, n, loads), `states` those of `respond`.
+        `known` is that of the samples.
         """
         count, loads, modes = self.steps, samples.shape[2], self._modes
         block, since = step // count, step % count
@@ -167,14 +171,14 @@ class RecordResponse:
         window = padded[record[:, None], step[:, None] + np.arange(count + 1)]
         window[np.arange(count + 1) < count - since[:, None]] = 0.0
         first = window[np.arange(len(step)), count - since]
-        state = states[record, block].reshape(-1, 2, modes)
-        known = np.einsum("cabm,cbm->cam", self._powers[since], state).reshape(len(step), 2 * modes)
-        known += window.reshape(len(step), -1) @ self._matrices[1]
+        state = known[record, block, : 2 * modes].reshape(-1, 2, modes)
+        moved = np.einsum("cabm,cbm->cam", self._powers[since], state).reshape(len(step), 2 * modes)
+        moved += window.reshape(len(step), -1) @ self._matrices[1]
         # the sample with which the block begins ends no step of it
-        known -= np.einsum("cj,ckj->ck", first, self._lead[since])
+        moved -= np.einsum("cj,ckj->ck", first, self._lead[since])
         now, then = samples[record, step], samples[record, step + 1]
         sums = self._integrals(samples)[:, record, step] if self._summing else np.zeros((2, *now.shape))
-        return np.hstack([known, (then - now) / self.spacing, now, *sums])
+        return np.hstack([moved, (then - now) / self.spacing, now, *sums])
 
     def reads(self, s: Numbers) -> Numbers:
         """What outputs take of `inside`, the times s after the start of a step: (times, 2 modes + 4 loads, outputs)."""

@@ -112,23 +112,7 @@ def runtime_plan(
 
     CostError as for a march, UnservedError where the samples of a load have an amplitude beside another one.
     """
-    chain = model.named
-    symbols = [label for field in given if field.name != "load" for label in field.labels]
-    ring = Ring(tuple(symbols))
-    symbols_of = ring.symbols()
-    own = {
-        label: symbols_of[label] / unit.size
-        for field in given
-        if field.name != "load"
-        for label, unit in zip(field.labels, field.units, strict=True)
-    }
-
-    def numbers(name: str) -> dict[int, Any] | None:
-        values: dict[int, Any] | None = getattr(chain.parameters, name)
-        return values and {i: own.get(f"{name}_{i}", value) for i, value in values.items()}
-
-    parameters = Parameters(**{name: numbers(name) for name in ("kappa", "inertia", "velocity", "dashpot")})
-    free = replace(chain, parameters=parameters)
+    ring, free = free_chain(model, given)
     chosen = [unit.size for field in given if field.name == "load" for unit in field.units]
     units = chosen or [fmpq(1)] * len(loads)
     until = rational(model.horizon(real))
@@ -153,10 +137,31 @@ def runtime_plan(
             for load, changes in zip(loads, acting, strict=True)
             for change in changes
         ),
-        _pushes(made, chain, acting, units, load_kept(model, free)),
+        _pushes(made, model.named, acting, units, load_kept(model, free)),
         heard,
         tuple(_strands(made, heard)),
     )
+
+
+def free_chain(model: Model, given: Sequence[RuntimeField]) -> tuple[Ring, Chain]:
+    """A named chain with symbols for the parameters `given` at run time, which are told in their units."""
+    chain = model.named
+    symbols = [label for field in given if field.name != "load" for label in field.labels]
+    ring = Ring(tuple(symbols))
+    symbols_of = ring.symbols()
+    own = {
+        label: symbols_of[label] / unit.size
+        for field in given
+        if field.name != "load"
+        for label, unit in zip(field.labels, field.units, strict=True)
+    }
+
+    def numbers(name: str) -> dict[int, Any] | None:
+        values: dict[int, Any] | None = getattr(chain.parameters, name)
+        return values and {i: own.get(f"{name}_{i}", value) for i, value in values.items()}
+
+    parameters = Parameters(**{name: numbers(name) for name in ("kappa", "inertia", "velocity", "dashpot")})
+    return ring, replace(chain, parameters=parameters)
 
 
 def _pushes(

@@ -146,6 +146,12 @@ def _freed(network: Network, symbols: dict[tuple[str, str, int], Any]) -> Networ
     return Network(tuple(points), bars, links)
 
 
+def without(network: Network, names: Sequence[str]) -> Network:
+    """A network with 0 in the place of every number of some fields."""
+    places = [(name, *key) for name in names if name in _KINDS for key, _ in _KINDS[name](network)]
+    return _freed(network, dict.fromkeys(places, fmpq(0)))
+
+
 def _told(network: Network, kind: str, number: int) -> str:
     """What a number belongs to."""
     if kind == "point":
