@@ -343,7 +343,8 @@ static int begun(model_of *m, const name_parameters *parameters, laws *law)
         return 1;
     }
     for (int event = 0; event < NAME_EVENTS; ++event) {
-        m->change[event] = law->load[event_load[event]] * law->strength[event_strength[event]];
+        m->change[event] =
+            event_weight[event] * law->load[event_load[event]] * law->strength[event_strength[event]];
     }
     start_waves(m->waves, law, LEAST);
     start_sums(m->total, m->load, m->since);
@@ -421,8 +422,9 @@ static int begun_lane(name_tangent *tangent, const laws *law, const laws *slope,
     }
     for (int event = 0; event < NAME_EVENTS; ++event) {
         const int own = LOAD_LANE >= 0 && lane == LOAD_LANE + event_load[event];
-        tangent->change[lane][event] = law->load[event_load[event]] * slope->strength[event_strength[event]] +
-                                       (own ? law->strength[event_strength[event]] : (real)0);
+        tangent->change[lane][event] =
+            event_weight[event] * (law->load[event_load[event]] * slope->strength[event_strength[event]] +
+                                   (own ? law->strength[event_strength[event]] : (real)0));
     }
     start_waves(tangent->waves[lane], slope, LEAST);
     start_sums(tangent->total[lane], tangent->load[lane], tangent->since[lane]);

@@ -86,7 +86,7 @@ static void begun_wrong(wrong *w, const laws *law)
     }
     for (int f = 0; f <= NAME_FORCES; ++f) {
         w->load[f][0] = w->load[f][1] = w->load[f][2] = 0;
-        w->roundings[f] = roundings + 4;
+        w->roundings[f] = roundings + 8;
         w->since[f][0] = w->since[f][1] = 0;
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
             w->force[panel][f] = 0;
@@ -116,6 +116,12 @@ static void weighed(wrong *w, int half, int way, int panel, int node, real size,
     most[1] = panel > 0 && most[1] > weight ? most[1] : weight;
 }
 
+/* The time since a load changed. */
+static real gone_by(const wrong *w, int window, int panel, int f)
+{
+    return (real)(window - w->since[f][0]) + since_panel[panel * NAME_PANELS + w->since[f][1]];
+}
+
 /* As press, with the absolute values of all that is added. */
 static int pressed(wrong *w, const real *change, int window, int event)
 {
@@ -123,10 +129,14 @@ static int pressed(wrong *w, const real *change, int window, int event)
         while (event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel) {
             const int f = event_force[event];
             real *const c = w->load[f];
-            const real gone = (real)(window - w->since[f][0] + 1);
+            const real gone = gone_by(w, window, panel, f);
             c[0] += gone * (c[1] + gone * c[2]);
             c[1] += 2 * gone * c[2];
-            c[event_power[event]] += magnitude(change[event]);
+            for (int k = 0; k < 3 && event_power[event] >= 3; ++k) {
+                c[k] = 0;
+                w->roundings[f] = roundings + 8;
+            }
+            c[event_power[event] % 3] += magnitude(change[event]);
             w->since[f][0] = window;
             w->since[f][1] = panel;
             w->roundings[f] += 8;
@@ -134,7 +144,7 @@ static int pressed(wrong *w, const real *change, int window, int event)
         }
         for (int f = 0; f < NAME_FORCES; ++f) {
             const real *const c = w->load[f];
-            const real gone = (real)(window - w->since[f][0] + 2);
+            const real gone = gone_by(w, window, panel, f) + 2 * half_length[panel];
             w->force[panel][f] = (w->roundings[f] + 12) * unit * (c[0] + 2 * gone * (c[1] + 2 * gone * c[2]));
         }
     }

@@ -4,8 +4,9 @@
 #include "runtime_misfit.c"
 #endif
 
-/* How often an interval is halved at most; into how many parts one is cut where it is looked at closely. */
-enum { DEEPEST = 60, CLOSELY = 8 };
+/* How often an interval is halved at most; into how many parts one is cut where it is looked at closely;
+ * how many sums are taken side by side. */
+enum { DEEPEST = 60, CLOSELY = 8, SUMS = 4 };
 
 /* The greatest value of an output, or of its negative where `sign` is -1, of all that were seen, and when. */
 typedef struct {
@@ -124,13 +125,22 @@ static void explore(const part *p, summit *top, real left, real at_left, real ri
 static int beyond(const model_of *m, int window, int at, const summit *least, const summit *greatest)
 {
     const int degree = m->degree[window];
-    real middle = 0, around = 0;
+    real middle = 0, around = 0, sums[SUMS] = {0}; /* a sum alone would wait for each of its terms */
     for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
         const real *const c = m->series + m->place[window] + (size_t)strand_at[k] * (size_t)(degree + 2);
+        int n = 1;
         middle += c[0];
-        for (int n = 1; n <= degree + 1; ++n) {
-            around += magnitude(c[n]);
+        for (; n + SUMS <= degree + 2; n += SUMS) {
+            for (int j = 0; j < SUMS; ++j) {
+                sums[j] += magnitude(c[n + j]);
+            }
         }
+        for (; n < degree + 2; ++n) {
+            sums[0] += magnitude(c[n]);
+        }
+    }
+    for (int j = 0; j < SUMS; ++j) {
+        around += sums[j];
     }
     around += 256 * unit * (magnitude(middle) + around);
     return !(middle + around <= greatest->best && around - middle <= least->best);

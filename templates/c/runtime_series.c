@@ -148,7 +148,10 @@ static int press(const real *change, real (*load)[3], int (*since)[2], real (*fo
                 (real)(window - since[f][0]) * window_length + since_panel[panel * NAME_PANELS + since[f][1]];
             c[0] += gone * (c[1] + gone * c[2]);
             c[1] += 2 * gone * c[2];
-            c[event_power[event]] += change[event];
+            for (int k = 0; k < 3 && event_power[event] >= 3; ++k) {
+                c[k] = 0; /* what acts is told anew */
+            }
+            c[event_power[event] % 3] += change[event];
             since[f][0] = window;
             since[f][1] = panel;
             ++event;
@@ -244,9 +247,17 @@ typedef struct {
     real missed, size, heard;
 } progress;
 
+/* How often a velocity of size 1 is rounded, about: the sums of a body and of a value that is read, both of so many
+ * coefficients, lose up to a sixteenth of the degree squared. */
+static real rounded_by(int degree)
+{
+    return unit * ((real)(degree + NAME_WINDOWS) + (real)(degree * degree) / 16);
+}
+
+/* Errors were up to five times what polynomials miss; docs/march.md of wavesym has what was measured. */
 static int ended(model_of *m, const laws *law, const progress *now)
 {
-    const real missed = 4 * now->missed + unit * (real)(now->degree + NAME_WINDOWS) * now->size;
+    const real missed = 6 * now->missed + rounded_by(now->degree) * now->size;
     m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);
     m->estimate = m->built ? estimated(m, law, missed) : not_a_number();
     return !m->built;

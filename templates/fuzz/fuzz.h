@@ -1,5 +1,7 @@
 /* fuzz.h: what the bytes of a fuzzer say, and what it is told where something does not hold.
  * Every driver has it; the compiler is given the header of the program, called `name` here, before all else. */
+#ifndef FUZZ_H
+#define FUZZ_H
 #include <float.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -150,3 +152,5 @@ static name_real *room(size_t count)
     MUST(numbers != NULL);
     return numbers;
 }
+
+#endif

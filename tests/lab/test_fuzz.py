@@ -51,15 +51,32 @@ BREAKS = {
     "a window too many": ("march_double_march", "state->window >= LAST_WINDOW ||", ""),
     "a load that nobody looks at": ("march_double_march", "|| (loads && !given_within_reach(loads))", ""),
     "an overflow": ("modes_double_stream", "return wrong ? 2 : 0;", "return 0;"),
-    "a refusal that moves": ("stream_double_stream", "    if (wrong) {\n        return 1;", "    state->seen += wrong;\n    if (wrong) {\n        return 1;"),
+    "a refusal that moves": (
+        "stream_double_stream",
+        "    if (wrong) {\n        return 1;",
+        "    state->seen += wrong;\n    if (wrong) {\n        return 1;",
+    ),
     "an alarm forgotten": ("stream_double_stream", "state->alarm |= !fine;", "state->alarm = !fine;"),
-    "an instant too many": ("stream_double_stream", "k < SIZE && instant[k] <= from", "k <= SIZE && instant[k] <= from"),
-    "a bad parameter": ("runtime_double_runtime", "m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);", "m->built = 1;"),
-    "a lane of no size": ("runtime_double_runtime", "(lane + 1) * RUNTIME_DOUBLE_OUTPUTS", "lane * RUNTIME_DOUBLE_OUTPUTS"),
+    "an instant too many": (
+        "stream_double_stream",
+        "k < SIZE && instant[k] <= from",
+        "k <= SIZE && instant[k] <= from",
+    ),
+    "a stream that should give nothing": ("tuned_double_tuned", "gain[k] = not_a_number();", ""),
+    "a bad parameter": (
+        "runtime_double_runtime",
+        "m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);",
+        "m->built = 1;",
+    ),
+    "a lane of no size": (
+        "runtime_double_runtime",
+        "(lane + 1) * RUNTIME_DOUBLE_OUTPUTS",
+        "lane * RUNTIME_DOUBLE_OUTPUTS",
+    ),
     "a section": ("runtime_double_runtime", "t >= from[at] && t < from[at + 1];", "t >= from[at];"),
     "a set too many": ("runtime_double_batch", "built = set >= 0 && set <", "built = set <"),
     "a weight": ("runtime_double_batch", "missed[i] * missed[i]", "missed[i]"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(

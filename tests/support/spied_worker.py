@@ -1,7 +1,7 @@
 """Loaded by a worker of Dask when it starts: says which batches it computes, and does what a test asks for in one.
 
 SPIED_LOG is a file that gets a line for each batch; SPIED_SECONDS is how long each takes at least; the batch
-SPIED_CRASH kills the worker, and the batch SPIED_EAT fills its memory.
+SPIED_CRASH kills the worker, and the batch SPIED_EAT fills its memory. SPIED_VERSION is that of its wavesym.
 """
 
 from __future__ import annotations
@@ -41,3 +41,4 @@ def compute_case(plan: Any, batches: Any, batch: int, place: tuple[int, ...]) ->
 
 def dask_setup(_: object) -> None:
     worker.compute, worker.compute_case = compute, compute_case
+    worker.__version__ = os.environ.get("SPIED_VERSION", worker.__version__)

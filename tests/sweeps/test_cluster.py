@@ -18,6 +18,7 @@ import pytest
 
 pytest.importorskip("distributed", reason="the extra `sweep` is not installed")
 
+from wavesym import __version__
 from wavesym.sweeps.marks import Marks
 from wavesym.sweeps.running import run
 from wavesym.sweeps.status import status
@@ -30,6 +31,22 @@ SWEEP = f"""
 scene = "drive_m1"
 [vary]
 "output.until" = {{ from = 4, to = 12, count = {BATCHES} }}
+"""
+FRAME = """
+name = "frame"
+[system]
+type = "building"
+m = 1
+kappa = ["1/20", "1/20"]
+base = "ground"
+damping = 0.05
+[[load]]
+spacing = 5
+record = "a.csv"
+[output]
+until = 30
+tolerance = 1e-4
+drift = [1]
 """
 _PATIENCE = 180  # seconds
 
@@ -207,3 +224,51 @@ def test_an_address_where_nobody_listens_is_said(lab: Lab) -> None:
     assert code == 1
     assert "tcp://127.0.0.1:9 given" in err
     assert err.count("\n") == 1
+
+
+def test_a_worker_with_another_wavesym_is_refused(lab: Lab) -> None:
+    lab.scheduler()
+    lab.worker(SPIED_VERSION="99.1")
+    code, err = finished(lab.client())
+    assert code == 2, err
+    assert err.count("\n") == 1
+    assert f"wavesym 99.1 found at a worker, {__version__} expected" in err
+    assert lab.computed() == []
+    assert lab.marks() == 0
+
+
+def test_a_record_that_has_changed_meanwhile_makes_another_sweep(lab: Lab) -> None:
+    """Whose folder is another one; with the record as it was the sweep goes on."""
+    record, scene = lab.folder / "a.csv", lab.folder / "frame.toml"
+    scene.write_text(FRAME)
+    lab.sweep.write_text('scene = "frame.toml"\nrecords = "*.csv"\n[vary]\n"system.damping" = [0.02, 0.03, 0.04, 0.05]')
+    record.write_text("a\n0\n1\n0\n")
+    (lab.folder / "b.csv").write_text("a\n0\n2\n-1\n0\n")
+    undisturbed = lab.undisturbed()
+    lab.scheduler()
+    lab.worker(SPIED_SECONDS="0.5")
+    client = lab.client()
+    until(lambda: lab.marks() >= 1)
+    client.kill()
+    client.wait()
+    record.write_text("a\n0\n3\n0\n")
+    code, err = finished(lab.client())
+    assert code == 2, err
+    assert "the folder of another sweep given" in err
+    record.write_text("a\n0\n1\n0\n")
+    code, err = finished(lab.client())
+    assert code == 0, err
+    assert files(lab.out) == undisturbed
+
+
+def test_a_script_without_a_guard_is_run_once(lab: Lab) -> None:
+    """Processes that are started do not run the script that starts them."""
+    script = lab.folder / "script.py"
+    script.write_text(
+        "import sys, wavesym\nprint('once')\n"
+        f"found = wavesym.sweep({str(lab.sweep)!r}, {str(lab.out)!r}, workers=2)\n"
+        "print(int(found['max'].isnull().sum()), sys.modules['__main__'].__file__ == __file__)\n"
+    )
+    done = subprocess.run([sys.executable, script], env=lab.environment, capture_output=True, text=True, check=False)
+    assert done.stdout == "once\n0 True\n", done.stderr
+    assert files(lab.out) == lab.undisturbed()

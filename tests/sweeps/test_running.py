@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 from collections.abc import Iterator
@@ -19,8 +20,10 @@ from wavesym import Scene, compiler
 from wavesym.cli import main
 from wavesym.errors import SceneError, WavesymError
 from wavesym.sweeps import running
+from wavesym.sweeps.marks import Marks
 from wavesym.sweeps.running import run
 from wavesym.sweeps.status import status
+from wavesym.sweeps.store import Store
 
 SWEEP: dict[str, Any] = {
     "scene": "drive_m1",
@@ -70,6 +73,92 @@ def test_the_folder_of_another_sweep_is_refused(tmp_path: Path, computed: list[i
     with pytest.raises(WavesymError, match=r"the folder of another sweep given .*, its own or a new one expected"):
         run({**SWEEP, "keep": {"summary": ["max"]}}, tmp_path)
     assert files(tmp_path) == before
+
+
+@pytest.mark.slow
+def test_what_is_lost_is_made_again_and_what_is_damaged_is_said(tmp_path: Path, computed: list[int]) -> None:
+    run(SWEEP, tmp_path)
+    before = files(tmp_path)
+    for lost in ("done", "results.zarr", "manifest.json"):
+        path = tmp_path / lost
+        shutil.rmtree(path) if path.is_dir() else path.unlink()
+        assert run(SWEEP, tmp_path) == 0
+        assert files(tmp_path) == before
+    assert len(computed) == 3 * BATCHES  # without a manifest arrays and marks are still those of the sweep
+    mark = next((tmp_path / "done").iterdir())
+    for text in ("{}", "[]", '{"batch": "x"}', '{"batch": 0, "cases": 1, "chunks": {}, "failed": [1]}', "[" * 10**5):
+        mark.write_text(text)
+        (tmp_path / "done" / "stranger.json").write_text(text)
+        assert status(tmp_path).left == 1
+        assert run(SWEEP, tmp_path) == 0
+        assert {**files(tmp_path), "done/stranger.json": b""} == {**before, "done/stranger.json": b""}
+    (tmp_path / "results.zarr" / "max" / ".zarray").write_text("x")
+    with pytest.raises(WavesymError, match=r"results\.zarr: damaged \(JSONDecodeError\), a sweep in a new folder"):
+        run(SWEEP, tmp_path)
+    with pytest.raises(WavesymError, match="damaged"):
+        compiler.sweep_table(tmp_path, tmp_path / "t.csv")
+    shutil.rmtree(tmp_path / "results.zarr" / "max")
+    with pytest.raises(WavesymError, match="no max in it"):
+        run(SWEEP, tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("moment", ["write", "hashes", "put"])
+def test_a_process_that_dies_at_any_moment_of_a_batch_loses_that_batch_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, computed: list[int], moment: str
+) -> None:
+    """Before its chunks, between them and the mark, in the middle of the mark: as a signal does, or a machine's end."""
+    run(SWEEP, tmp_path / "alone")
+    del computed[:]
+    where: Any = Marks if moment == "put" else Store
+    whole, calls = getattr(where, moment), []
+
+    def dies(self: Any, *given: Any) -> Any:
+        calls.append(given)
+        if len(calls) == 3:
+            if moment == "put":
+                (tmp_path / "a" / "done" / f"{given[0]}.part").write_text('{"batch": ')
+            raise KeyboardInterrupt
+        return whole(self, *given)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(where, moment, dies)
+        with pytest.raises(KeyboardInterrupt):
+            run(SWEEP, tmp_path / "a")
+    assert computed == [0, 1, 2]
+    assert status(tmp_path / "a").done == 2
+    assert run(SWEEP, tmp_path / "a") == 0
+    assert computed[3:] == [2, 3, 4, 5]
+    assert files(tmp_path / "a") == files(tmp_path / "alone")
+
+
+@pytest.mark.slow
+def test_a_clock_that_is_set_back_changes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import time
+
+    run(SWEEP, tmp_path / "alone")
+    hours = iter(range(10**6, 0, -1))
+    with monkeypatch.context() as patched:
+        patched.setattr(time, "time", lambda: 3600.0 * next(hours))
+        run(SWEEP, tmp_path / "a")
+    assert files(tmp_path / "a") == files(tmp_path / "alone")
+
+
+@pytest.mark.slow
+def test_commands_that_start_at_once_do_not_disturb_each_other(tmp_path: Path) -> None:
+    """One of them works, the others say so; none does it twice."""
+    (tmp_path / "sweep.toml").write_text('scene = "drive_m1"\n[vary]\n"output.until" = [4, 5, 6, 7, 8, 9]\n')
+    run(tmp_path / "sweep.toml", tmp_path / "alone")
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
+    go = command("sweep.toml", "out").split()
+    every = [subprocess.Popen(go, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True) for _ in range(4)]
+    told = [process.communicate()[1] for process in every]
+    for process, line in zip(every, told, strict=True):
+        assert line.count("\n") == 1
+        assert process.returncode in (0, 2)
+        assert ("6 done" if process.returncode == 0 else "another process computes into it") in line
+    assert any(process.returncode == 0 for process in every)
+    assert files(tmp_path / "out") == files(tmp_path / "alone")
 
 
 @pytest.mark.slow
@@ -195,8 +284,6 @@ def command(source: str, out: str | None) -> str:
 
 def in_namespace(folder: Path, script: str) -> subprocess.CompletedProcess[str]:
     """A script where mounts are its own; skips where that is not allowed."""
-    import os
-
     own = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c"]
     try:
         allowed = subprocess.run([*own, "mount -t tmpfs none /mnt"], capture_output=True, check=False).returncode == 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import platform
 import sys
+import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from importlib.util import find_spec
@@ -15,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from wavesym.lab import parameters, recorded, streamed, swept
+from wavesym.lab import many_sets, panels, parameters, recorded, streamed, swept
 from wavesym.lab.equal_degree import at_degree, fitted, ratios
 from wavesym.lab.harness import CALLS, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
 from wavesym.lab.timing import least, medians, ran
@@ -134,7 +135,7 @@ def _set_up(folder: Path) -> Iterator[str]:
 
 
 def _records(folder: Path) -> Iterator[str]:
-    """Records, one and many, and sweeps."""
+    """Records, one and many, streams, and sweeps."""
     yield "## A record"
     yield ""
     yield f"Ten storeys, damped, 31 outputs at all {recorded.SAMPLES} samples, from the model of the scene on. Errors"
@@ -147,6 +148,12 @@ def _records(folder: Path) -> Iterator[str]:
     yield "All floors of a damped steel frame: of `run`, start-up included, at all samples of the record; and of parts."
     yield ""
     yield from _table(("what", "time", "peak MB", "modes"), streamed.rows(folder.parent / "examples" / "records"))
+    yield ""
+    yield "## Streams"
+    yield ""
+    yield "Waves under loads that come step by step (`generate --stream`): steps as long as a panel, and of 0.01."
+    yield ""
+    yield from _table(panels.HEAD, panels.rows())
     if find_spec("zarr") and find_spec("distributed"):
         yield ""
         yield "## Sweeps"
@@ -154,7 +161,22 @@ def _records(folder: Path) -> Iterator[str]:
         yield "Whole commands, start-up included: 5 storeys, damped, 3000 samples, true peaks of 16 outputs; a drive of"
         yield "three shafts to tau = 40, true peaks of three strains at 1e-6."
         yield ""
-        yield from _table(("what", "by", "s", "peak MB"), swept.rows())
+        yield from _table(("what", "by", "s", "busy s", "peak MB"), swept.rows())
+        yield ""
+        yield "As the drive's sweep grows, over two kappa:"
+        yield ""
+        yield from _table(("cases", "s", "busy s", "peak MB", "peak MB of a worker"), swept.growth())
+        yield ""
+        yield "What a sweep of records is made of; a batch is 44 of them through one structure."
+        yield ""
+        yield from _table(("what", "how much"), swept.overheads())
+    yield ""
+    yield "## Many sets"
+    yield ""
+    yield "The peaks of that drive from kappa on, compiling apart. Rivals have the coarsest grid that keeps 1e-6."
+    yield ""
+    drive = Scene(**tomllib.loads(swept.DRIVE))
+    yield from _table(("sets", "way", "s", "sets a second", "error"), many_sets.rows(drive))
 
 
 def _machine() -> Iterator[str]:

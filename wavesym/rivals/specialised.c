@@ -1,8 +1,9 @@
 /* Characteristics with exponential integration of order 4, by hand for one scene: sizes are constants of the compiler,
- * loads begin at whole tau, samples and outputs lie on the grid. From new parameters to samples in one call.
+ * loads begin at whole tau, samples and outputs lie on the grid. From new parameters to samples in one call, or to peaks.
  *
  * q' + rate q = r at a body, r = alpha a + beta b + load, with r a cubic through four neighbouring points of a window.
- * Defined from outside: NODES, STEPS (of a window), WINDOWS, TERMS, OUTPUTS, EVENTS, STRIDE (steps from sample to sample).
+ * Defined from outside: NODES, STEPS (of a window), WINDOWS, TERMS, OUTPUTS, EVENTS, STRIDE (steps from sample to sample), KINK
+ * (fronts pass outputs at multiples of so many steps).
  */
 #include <math.h>
 #include <stddef.h>
@@ -143,6 +144,49 @@ void parameters_to_samples(const double *inertia, const double *alpha, const dou
                 row[k + j] += sign * from[j * STRIDE];
             }
             k += end;
+        }
+    }
+}
+
+/* How much higher than its beginning a parabola through 0, one and two is between 0 and 2. */
+static double higher(double one, double two)
+{
+    const double bend = 2 * one - two, rise = (4 * one - two) / 2;
+    return bend > 0 && rise > 0 && rise < 2 * bend ? rise * rise / (2 * bend) : 0;
+}
+
+/* The top of a row times the sign: of a parabola through the highest sample and its neighbours, or, where a front may pass
+ * there, through it and the two before or after it. */
+static double top(const double *row, size_t count, double sign)
+{
+    size_t at = 0;
+    double rises = 0;
+    for (size_t k = 1; k < count; ++k) {
+        at = sign * row[k] > sign * row[at] ? k : at;
+    }
+    const double here = row[at];
+    if (at * STRIDE % KINK != 0 && at + 1 < count) {
+        rises = higher(sign * (here - row[at - 1]), sign * (row[at + 1] - row[at - 1])) - sign * (here - row[at - 1]);
+    } else {
+        const double before = at > 1 ? higher(sign * (row[at - 1] - here), sign * (row[at - 2] - here)) : 0;
+        const double after = at + 2 < count ? higher(sign * (row[at + 1] - here), sign * (row[at + 2] - here)) : 0;
+        rises = before > after ? before : after;
+    }
+    return here + sign * (rises > 0 ? rises : 0);
+}
+
+/* Of many sets, each as above, the least and the greatest value of each output: peaks [sets][OUTPUTS][2]. */
+void sets_to_peaks(size_t sets, const double *inertia, const double *alpha, const double *beta, const double *gain,
+                   const double *velocity, const double *before, const double *loads, size_t count, double *rows,
+                   double *peaks)
+{
+    for (size_t set = 0; set < sets; ++set) {
+        const size_t at = set * NODES;
+        parameters_to_samples(inertia + at, alpha + at, beta + at, gain + at, velocity + at, before + 2 * at,
+                              loads + set * EVENTS * 3, count, rows);
+        for (size_t output = 0; output < OUTPUTS; ++output) {
+            peaks[(set * OUTPUTS + output) * 2] = top(rows + output * count, count, -1);
+            peaks[(set * OUTPUTS + output) * 2 + 1] = top(rows + output * count, count, 1);
         }
     }
 }

@@ -1,5 +1,5 @@
 """What a careful engineer writes by hand for one scene whose parameters change: characteristics of order 4, in C and,
-for all sets at once, in NumPy. From new parameters to equally spaced samples.
+for all sets at once, in NumPy. From new parameters to equally spaced samples, or to their peaks.
 
 Only what such a program needs: equal rods, loads that begin at whole tau, strains and velocities, and samples and
 outputs on the grid. It keeps no estimate of its error.
@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Sequence
+from math import gcd
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wavesym.errors import UnservedError
 from wavesym.rivals.characteristics import lagrange
@@ -48,6 +50,11 @@ class SampleGrid:
         if any(event.time % 1 for event in problem.events):
             raise UnservedError("load: an instant between whole tau given, none expected")
 
+    @property
+    def kink(self) -> int:
+        """Fronts pass outputs at multiples of so many steps."""
+        return gcd(self.steps, *(lag for *_, lag in self.terms))
+
     def arguments(self, problem: Problem) -> list[Array]:
         """What changes with parameters."""
         loads = [event.coefficients for event in sorted(problem.events, key=lambda event: (event.time, event.node))]
@@ -58,24 +65,8 @@ class SampleGrid:
 
 def in_c(grid: SampleGrid, problem: Problem) -> Callable[[Problem], Callable[[], Array]]:
     """A call that makes samples of a set of parameters, (outputs, count); compiled for the sizes of this scene."""
-    output, node, way, sign, lag = zip(*grid.terms, strict=True)
-    windows, nodes = zip(*grid.events, strict=True) if grid.events else ((), ())
-    integers = {"of_output": output, "of_node": node, "of_way": way, "of_lag": lag}
-    integers |= {"event_window": windows, "event_node": nodes}
-    tables = "".join(f"const int {name}[] = {{{_listed(values)}}};\n" for name, values in integers.items())
-    sizes = {
-        "NODES": problem.nodes,
-        "STEPS": grid.steps,
-        "WINDOWS": grid.windows,
-        "TERMS": len(grid.terms),
-        "OUTPUTS": grid.outputs,
-        "EVENTS": len(grid.events),
-        "STRIDE": grid.stride,
-    }
-    source = _SOURCE.read_text(encoding="utf-8") + tables + f"const double of_sign[] = {{{_listed(sign)}}};\n"
-    compiled = library(source, (*FAST, *(f"-D{name}={value}" for name, value in sizes.items())))
     out = np.empty((grid.outputs, grid.count))
-    function = compiled.parameters_to_samples
+    function = _compiled(grid, problem).parameters_to_samples
 
     def of(chosen: Problem) -> Callable[[], Array]:
         arguments = grid.arguments(chosen)
@@ -90,6 +81,43 @@ def in_c(grid: SampleGrid, problem: Problem) -> Callable[[Problem], Callable[[],
         return samples
 
     return of
+
+
+def peaks_in_c(grid: SampleGrid, problems: Sequence[Problem]) -> Callable[[], Array]:
+    """A call that makes the least and the greatest value of each output, (sets, outputs, 2), set by set."""
+    rows, out = np.empty((grid.outputs, grid.count)), np.empty((len(problems), grid.outputs, 2))
+    arguments = [np.stack(each) for each in zip(*map(grid.arguments, problems), strict=True)]
+    function = _compiled(grid, problems[0]).sets_to_peaks
+    where = [ctypes.c_void_p(address(each)) for each in (*arguments, rows, out)]
+    call = [ctypes.c_size_t(len(problems)), *where[:-2], ctypes.c_size_t(grid.count), *where[-2:]]
+
+    def peaks() -> Array:
+        _ = arguments, rows  # C reads and writes them, so that they must live as long as this
+        function(*call)
+        return out
+
+    return peaks
+
+
+def _compiled(grid: SampleGrid, problem: Problem) -> ctypes.CDLL:
+    """For the sizes of a scene."""
+    output, node, way, sign, lag = zip(*grid.terms, strict=True)
+    windows, nodes = zip(*grid.events, strict=True) if grid.events else ((), ())
+    integers = {"of_output": output, "of_node": node, "of_way": way, "of_lag": lag}
+    integers |= {"event_window": windows, "event_node": nodes}
+    tables = "".join(f"const int {name}[] = {{{_listed(values)}}};\n" for name, values in integers.items())
+    sizes = {
+        "NODES": problem.nodes,
+        "STEPS": grid.steps,
+        "WINDOWS": grid.windows,
+        "TERMS": len(grid.terms),
+        "OUTPUTS": grid.outputs,
+        "EVENTS": len(grid.events),
+        "STRIDE": grid.stride,
+        "KINK": grid.kink,
+    }
+    source = _SOURCE.read_text(encoding="utf-8") + tables + f"const double of_sign[] = {{{_listed(sign)}}};\n"
+    return library(source, (*FAST, *(f"-D{name}={value}" for name, value in sizes.items())))
 
 
 def _listed(values: Sequence[float]) -> str:
@@ -140,3 +168,27 @@ def in_numpy(grid: SampleGrid, problems: Sequence[Problem]) -> Array:
         at, place = np.divmod(np.arange(grid.count) * grid.stride - lag + steps, steps)
         out[:, output] += sign * wave[at, way, node + 1, place].T
     return out
+
+
+def peaks_in_numpy(grid: SampleGrid, problems: Sequence[Problem]) -> Array:
+    """The least and the greatest value of each output, (sets, outputs, 2), as `peaks_in_c` has them; all at once."""
+    values = in_numpy(grid, problems)
+    return np.stack([_top(grid, -values) * -1.0, _top(grid, values)], axis=-1)
+
+
+def _top(grid: SampleGrid, values: Array) -> Array:
+    """Of a parabola through the highest sample and its neighbours, or, where a front may pass there, through it and the
+    two before or after it."""
+    at = values.argmax(axis=-1)
+
+    def since(begin: NDArray[np.intp], way: int) -> Array:
+        """How much higher a parabola from a sample on is than it."""
+        places = (np.clip(begin + k * way, 0, grid.count - 1)[..., np.newaxis] for k in range(3))
+        first, one, two = (np.take_along_axis(values, place, axis=-1)[..., 0] for place in places)
+        bend, rise = 2 * one - two - first, (4 * one - two - 3 * first) / 2
+        inside = (bend > 0) & (rise > 0) & (rise < 2 * bend)
+        return first + np.where(inside, rise**2 / (2 * np.where(inside, bend, 1.0)), 0.0)
+
+    smooth = (at * grid.stride % grid.kink != 0) & (at + 1 < grid.count)
+    found = np.where(smooth, since(at - 1, 1), np.maximum(since(at, 1), since(at, -1)))
+    return np.asarray(np.maximum(found, values.max(axis=-1)))

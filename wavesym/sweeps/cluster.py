@@ -9,10 +9,12 @@ done.
 from __future__ import annotations
 
 import logging
+import sys
 from collections.abc import Iterable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager
 from itertools import islice
+from types import ModuleType
 from typing import Any
 from uuid import uuid4
 
@@ -46,6 +48,7 @@ def connected(workers: int | None, address: str | None) -> Iterator[Any]:
         stack.enter_context(_quiet())
         if not address:
             stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": _DEATHS}))
+            stack.enter_context(_without_script())
             alone = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": logging.CRITICAL}
             address = stack.enter_context(LocalCluster(n_workers=workers, **alone))
         try:
@@ -54,6 +57,17 @@ def connected(workers: int | None, address: str | None) -> Iterator[Any]:
             expected = "the address of a Dask scheduler that answers expected"
             raise ClusterError(f"--scheduler: {address} given, {expected} ({error})") from None
         yield stack.enter_context(client)
+
+
+@contextmanager
+def _without_script() -> Iterator[None]:
+    """New processes do not run again the script that this one was started with, which may have no guard against it."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
 
 
 @contextmanager

@@ -42,7 +42,7 @@ class Column:
         values = tuple(plain(value) for value in given)
         found = [number_of(value) for value in values]
         units = {each[1] for each in found if each is not None}
-        told = tuple(value if isinstance(value, str) else json.dumps(value) for value in values)
+        told = tuple(value if isinstance(value, str) else json.dumps(value, default=str) for value in values)
         if None in found or len(units) != 1:
             return cls(path, values, told, told)
         numbers = tuple(float(each[0]) for each in found if each is not None)

@@ -14,23 +14,23 @@ from wavesym.sweeps.store import NAME, Store
 from wavesym.writing import write_whole
 
 FILE = "manifest.json"
+_KEYS = {"sha256", "name", "cases", "wavesym", "dimensions", "outputs", "keep", "scene"}
 
 
 def settle(folder: Path, plan: SweepPlan, batches: Batches) -> Store:
-    """The store of a sweep in its folder, made where it is not there. WavesymError for a folder of another sweep."""
+    """The store of a sweep in its folder; what is not there is made. WavesymError for a folder of another sweep."""
     store = Store(folder, plan, batches)
     there = read(folder)
-    if there is None:
-        if (folder / NAME).exists():
-            if store.sha256 != plan.sha256:
-                raise WavesymError(f"{folder}: a {NAME} that is not of this sweep given, a new folder expected")
-        else:
-            store.make()
-        (folder / FOLDER).mkdir(exist_ok=True)
-        write_whole({folder / FILE: json.dumps(_said(plan, batches), indent=1) + "\n"})
-    elif there["sha256"] != plan.sha256:
+    if there and there["sha256"] != plan.sha256:
         was = f'"{there["name"]}", {there["cases"]} cases, wavesym {there["wavesym"]}'
         raise WavesymError(f"{folder}: the folder of another sweep given ({was}), its own or a new one expected")
+    if not (folder / NAME).exists():
+        store.make()
+    elif store.sha256 != plan.sha256:
+        raise WavesymError(f"{folder}: a {NAME} that is not of this sweep given, a new folder expected")
+    (folder / FOLDER).mkdir(exist_ok=True)
+    if not there:
+        write_whole({folder / FILE: json.dumps(_said(plan, batches), indent=1) + "\n"})
     return store
 
 
@@ -41,9 +41,9 @@ def read(folder: Path) -> dict[str, Any] | None:
         manifest = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         return None
-    except (ValueError, NotADirectoryError):
+    except (ValueError, RecursionError, NotADirectoryError):
         manifest = None
-    if not isinstance(manifest, dict) or manifest.get("schema_version") != SCHEMA or "sha256" not in manifest:
+    if not isinstance(manifest, dict) or manifest.get("schema_version") != SCHEMA or not manifest.keys() >= _KEYS:
         raise WavesymError(f"{path}: no manifest of a sweep, one of schema_version {SCHEMA} expected")
     return manifest
 

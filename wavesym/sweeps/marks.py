@@ -39,12 +39,23 @@ class Marks:
     def every(self) -> Iterator[dict[str, Any]]:
         """All marks, in the order of their batches."""
         found = (_read(path) for path in (self.folder / FOLDER).glob("*.json"))
-        yield from sorted((mark for mark in found if mark), key=lambda mark: int(mark["batch"]))
+        yield from sorted((mark for mark in found if mark), key=lambda mark: mark["batch"])
 
 
 def _read(path: Path) -> dict[str, Any] | None:
     try:
         mark = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None
-    return mark if isinstance(mark, dict) else None
+    return mark if _whole(mark) else None
+
+
+def _whole(mark: object) -> bool:
+    """Whether it is what was put there, as far as others build on it."""
+    if not isinstance(mark, dict):
+        return False
+    kinds = {"batch": int, "cases": int, "chunks": dict, "failed": list}
+    return all(isinstance(mark.get(key), kind) for key, kind in kinds.items()) and all(
+        isinstance(each, dict) and each.keys() >= {"case", "values", "reason"} and isinstance(each["values"], dict)
+        for each in mark["failed"]
+    )

@@ -13,6 +13,7 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.errors import SceneError
 from wavesym.fields.numbers import exact
+from wavesym.fields.table import shown
 from wavesym.records.recording import recorded
 from wavesym.scene.physical.loads import Acts, read
 from wavesym.sweeps.dimension import Column
@@ -31,7 +32,7 @@ def found(patterns: Sequence[str], folder: str) -> list[str]:
     for k, pattern in enumerate(patterns):
         some = sorted(glob(os.path.join(folder, pattern)))
         if not some:
-            raise SceneError(f"no file found at {pattern}, one of AT2 or CSV at least expected", f"records[{k}]")
+            raise SceneError(f"no file found at {shown(pattern)}, one of AT2 or CSV at least expected", f"records[{k}]")
         every += [file for file in some if file not in every]
     return every
 

@@ -63,7 +63,7 @@ def run(
         done = before
         watch(planned.cases, done, before)
         for batch, values in _computed(planned, parts, todo, engine):
-            _keep(store, marks, batch, values)
+            keep(store, marks, batch, values)
             done += len(parts.places(batch))
             watch(planned.cases, done, before)
         return sum(len(mark["failed"]) for mark in marks.every())
@@ -82,7 +82,7 @@ def _left(store: Store, marks: Marks, retry_failed: bool) -> list[int]:
     return left
 
 
-def _keep(store: Store, marks: Marks, batch: int, values: BatchValues) -> None:
+def keep(store: Store, marks: Marks, batch: int, values: BatchValues) -> None:
     """First the chunks, then the mark."""
     parts, planned = store.batches, store.plan
     numbers = {place: planned.number(place) for place in values.failed}

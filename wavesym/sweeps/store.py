@@ -51,9 +51,7 @@ class Store:
 
     @cached_property
     def _group(self) -> Any:
-        import zarr
-
-        return zarr.open_group(self.path, mode="r+")
+        return _group(self.path, "r+", [each.name for each in kept_arrays(self.plan)])
 
     @property
     def sha256(self) -> str:
@@ -134,11 +132,23 @@ def _plain(group: Any, name: str, dimension: str, values: Any, **attributes: obj
 def arrays(folder: str | PathLike[str]) -> Any:
     """The arrays of the sweep in a folder as a zarr group, to read. WavesymError where there is none."""
     needed("zarr")
-    import zarr
-
     if not Path(folder, NAME).is_dir():
         raise WavesymError(f"{folder}: no {NAME} in it, the folder of a sweep expected")
-    return zarr.open_group(Path(folder, NAME), mode="r")
+    return _group(Path(folder, NAME), "r", ["bound", OUTPUT])
+
+
+def _group(path: Path, mode: str, names: list[str]) -> Any:
+    """A group of arrays, some of which must be there. WavesymError where what is said of them is damaged."""
+    import zarr
+
+    try:
+        group = zarr.open_group(path, mode=mode)
+        missing = set(names) - {name for name, _ in group.arrays()}
+    except Exception as error:  # whatever comes of files that are not what they were
+        raise WavesymError(f"{path}: damaged ({type(error).__name__}), a sweep in a new folder expected") from None
+    if missing:
+        raise WavesymError(f"{path}: no {min(missing)} in it, a sweep in a new folder expected")
+    return group
 
 
 def opened(folder: str | PathLike[str]) -> Any:

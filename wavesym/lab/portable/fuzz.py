@@ -1,4 +1,4 @@
-"""Programs under libFuzzer and sanitizers: bytes become arguments and calls, of which templates/fuzz/ says what must hold.
+"""Programs under libFuzzer and sanitizers: bytes become arguments; templates/fuzz/ says what must hold of what comes.
 
 Without a fuzzer the bytes that were kept can be replayed, by any compiler that has sanitizers.
 """
@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 from wavesym.lab.portable.subjects import CHECKED, PortableProgram
 from wavesym.lab.portable.tools import started, version
-from wavesym.programs.request import Request
 from wavesym.rendering import text_of
 from wavesym.running.toolchain import CompilerError
 
@@ -26,7 +25,7 @@ _WITH_FUZZER = (f"{SANITIZED[0]},fuzzer", *SANITIZED[1:])
 _TRIED = """
 int LLVMFuzzerTestOneInput(const char *bytes, unsigned long count) { return bytes && count > 99; }
 """
-_SHARED = ("fuzz.h", "models.h", "replay.c")
+_SHARED = ("fuzz.h", "parameters.h", "models.h", "steps.h", "replay.c")
 _AT_ONCE = 2
 _SLOWEST = 30  # seconds: what takes longer with some bytes is a fault, too
 _COMPILING = 300.0
@@ -48,10 +47,13 @@ class FuzzedProgram(NamedTuple):
     def called(self, folder: Path) -> list[str]:
         """What is called of it, without the program's name before it; its files are in the folder."""
         where, name = folder / self.name, self.subject.name
-        own = (where / f"{self.driver}.c").read_text(encoding="utf-8")
-        shared = (where / "models.h").read_text(encoding="utf-8") if "models.h" in own else ""
-        there = set(re.findall(rf"\b{name}_(\w+)\(", (where / f"{name}.h").read_text(encoding="utf-8")))
-        return sorted(there.intersection(re.findall(rf"\b{name}_(\w+)\(", shared + own)))
+
+        def words(file: str) -> set[str]:
+            text = (where / file).read_text(encoding="utf-8")
+            own = set(re.findall(rf"\b{name}_(\w+)\(", text))
+            return own.union(*map(words, re.findall(r'#include "(\w+\.h)"', text)))
+
+        return sorted(words(f"{self.driver}.c") & words(f"{name}.h"))
 
     def write(self, folder: Path) -> Path:
         """Its files and driver, in a folder of its own."""
@@ -66,12 +68,20 @@ class FuzzedProgram(NamedTuple):
     def command(self, compiler: str, sanitizers: Sequence[str], *more: str) -> list[str]:
         """That makes `run` of them."""
         name = self.subject.name
-        flags = ("-std=c99", "-O1", *sanitizers, "-include", f"{name}.h", "-I.")
+        flags = (
+            "-std=c99",
+            "-O1",
+            "-Wall",
+            "-Werror=incompatible-pointer-types",
+            *sanitizers,
+            "-include",
+            f"{name}.h",
+            "-I.",
+        )
         return [compiler, *flags, f"{self.driver}.c", *more, f"{name}.c", "-o", "run", "-lm"]
 
 
 _BY_NAME = {subject.name: subject for subject in CHECKED}
-CHAIN = PortableProgram("joints", "stepped_shaft", Request(runtime=("mass", "impedance", "load")), "runtime")
 FUZZED = (
     FuzzedProgram(_BY_NAME["pieces_double"], "values", 64),
     FuzzedProgram(_BY_NAME["closed_double"], "values", 64),
@@ -82,8 +92,9 @@ FUZZED = (
     FuzzedProgram(_BY_NAME["modes_double"], "stream", 512),
     FuzzedProgram(_BY_NAME["stream_double"], "stream", 512),
     FuzzedProgram(_BY_NAME["stream_double"].single, "stream", 512),
+    FuzzedProgram(_BY_NAME["tuned_double"], "tuned", 512),
     FuzzedProgram(_BY_NAME["runtime_double"], "runtime", 128),
-    FuzzedProgram(CHAIN, "runtime", 128),
+    FuzzedProgram(_BY_NAME["joints_double"], "runtime", 128),
     FuzzedProgram(_BY_NAME["runtime_double"], "batch", 512),
 )
 
@@ -107,7 +118,7 @@ def fuzzer() -> str | None:
 
 
 def fuzz(program: FuzzedProgram, clang: str, folder: Path, kept: Path, seconds: int) -> FuzzVerdict:
-    """Let libFuzzer call a program for so long, from the bytes in `kept` on, and those that it has learnt in `folder`."""
+    """Let libFuzzer call a program for so long, from the bytes in `kept` on, and what it has learnt in `folder`."""
     where = program.write(folder)
     made = started(program.command(clang, _WITH_FUZZER), where, _COMPILING)
     if made.status != 0:
