@@ -17,7 +17,7 @@ COMMA := ,
 DEMO := collision_m4 drive_m1 building_m2
 CORES := -n auto --dist loadfile
 
-.PHONY: install demo test lint generated examples bench prove misra targets mutants peers check-all
+.PHONY: install demo test lint generated examples bench prove misra targets fuzz mutants peers check-all
 
 # what running and plotting need; `make test` and `make lint` add what they need
 install: .venv/.installed
@@ -105,6 +105,11 @@ misra: install
 
 targets: .venv/.check
 	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
+
+# generated C under a fuzzer and sanitizers, so many seconds each program, two at a time; skipped where there is none
+SECONDS ?= 10
+fuzz: install
+	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md $(abspath tests/fuzz) $(SECONDS)
 
 # which mistakes in the proofs of the bounds the tests would miss: 300 of them, within 45 minutes on 2 cores
 mutants: .venv/.test

@@ -24,8 +24,9 @@ def test_a_key_that_is_missing_is_an_error():
 
 
 def test_a_field_that_is_missing_is_an_error():
+    context = make_dataclass("Context", ["scene", "more", "under", "bounded"])
     with pytest.raises(UndefinedError):
-        render("c/header.h.j2", make_dataclass("Context", ["scene", "more", "under"])(object(), "", ""))
+        render("c/header.h.j2", context(object(), "", "", True))
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))

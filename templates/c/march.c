@@ -203,6 +203,7 @@ void name_init(march *state)
     state->window = -1;
     state->half = 0;
     state->within = 1;
+    state->alarm = 0;
     state->event = 0;
     state->leak = 0;
     state->size = 0;
@@ -346,7 +347,8 @@ int name_advance(march *state, const real *loads)
     if (!state->within) {
         return 2;
     }
-    return state->leak > trusted * state->size || state->rough > smooth * state->size;
+    state->alarm |= state->leak > trusted * state->size || state->rough > smooth * state->size;
+    return state->alarm;
 }
 
 int name_read(const march *state, real tau, real out[OUTPUTS])

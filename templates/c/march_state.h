@@ -6,6 +6,7 @@ typedef struct name_state {
     int window;         /* the current one, -1 before the first */
     int half;           /* which half of `waves` is the current window's */
     int within;         /* 0 once what moves is beyond reach */
+    int alarm;          /* whether advance has returned 1 */
     int event;          /* the next change of the scene's own loads */
     name_real leak;        /* what the polynomials have missed so far, */
     name_real size;        /* and the largest velocity or mean of a wave that it is small against */

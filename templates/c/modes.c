@@ -102,5 +102,8 @@ int name_step(stream *state, real dtau, const real *load, real *out)
     }
     add(moved_weight, moved_row, MOVED, state->y, out);
     add(moving_weight, moving_row, MOVING, state->v, out);
-    return 0;
+    for (int output = 0; output < OUTPUTS; ++output) {
+        wrong |= !is_number(out[output]);
+    }
+    return wrong ? 2 : 0;
 }

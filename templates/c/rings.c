@@ -2,6 +2,7 @@
  * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
  * the first empty line. */
 #include "rings_tables.h"
+#include "series.h"
 
 /* A march: `waves` has a ring for each track, its last windows; x are the states of the joints. */
 typedef struct march {
@@ -25,36 +26,6 @@ static const real *wave(const march *state, int number, int windows, int panel)
 {
     const int turn = steps[number] + 1;
     return state->waves[ring[number] + (state->window + turn - windows) % turn][panel];
-}
-
-/* sum of c_k T_k(u) */
-static real series(const real *c, real u)
-{
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = DEGREE; k > 0; --k) {
-        const real now = (twice * next - after) + c[k];
-        after = next;
-        next = now;
-    }
-    return (u * next - after) + c[0];
-}
-
-/* Its antiderivative, times 1 / half the length of the panel. */
-static real antiderivative(const real *c, real u)
-{
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = DEGREE + 1; k > 0; --k) {
-        const real lower = k == 1 ? 2 * c[0] : c[k - 1];
-        const real upper = k < DEGREE ? c[k + 1] : (real)0;
-        const real now = (twice * next - after) + (lower - upper) / (real)(2 * k);
-        after = next;
-        next = now;
-    }
-    return u * next - after;
 }
 
 /* A track where it is heard, t after the start of the cycle. */
@@ -134,14 +105,6 @@ static void change(march *state, int panel)
         state->changed[force][0] = state->window;
         state->changed[force][1] = panel;
         state->event += 1;
-    }
-}
-
-/* y += factor a */
-static void add(real *y, real factor, const real *a, int count)
-{
-    for (int k = 0; k < count; ++k) {
-        y[k] += factor * a[k];
     }
 }
 

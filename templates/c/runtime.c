@@ -6,7 +6,10 @@
 
 enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0, LOSS = 1, LEAK = 2 };
 
-typedef real wave_of[NAME_PANELS][NAME_NODES + 2][NAME_DEGREE + 1];
+typedef real wave_of[NAME_PANELS][NAME_NODES + 2][NAME_ROW];
+
+/* How many numbers of a wave follow its series: zeros. */
+enum { SPARE = NAME_ROW - NAME_DEGREE };
 
 /* Which waves and bodies differ from what they were at first, window by window, as march sends them: what numbers that
  * cancel leave of outputs does not matter. */
@@ -97,7 +100,7 @@ static int laws_to_march(const laws *law)
  * p_(k+1)) from the highest k down. Bodies of equal rate on panels of equal length share them. */
 static void tabulate(model_of *m, const laws *law, int degree)
 {
-    for (int k = 1; k <= degree + 1; ++k) {
+    for (int k = 1; k <= degree + SPARE; ++k) {
         m->inverse[k] = 1 / (real)(2 * k);
     }
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
@@ -139,7 +142,7 @@ static void start_waves(wave_of (*waves)[3], const laws *law, int degree)
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
             for (int node = 0; node < NAME_NODES + 2; ++node) {
                 for (int way = LEFT; way <= LOAD; ++way) {
-                    for (int k = 0; k <= degree; ++k) {
+                    for (int k = 0; k < degree + SPARE; ++k) {
                         waves[half][way][panel][node][k] = 0;
                     }
                 }
@@ -161,7 +164,7 @@ static void lengthen(wave_of (*waves)[3], int degree, int higher)
         for (int way = LEFT; way <= LOAD; ++way) {
             for (int panel = 0; panel < NAME_PANELS; ++panel) {
                 for (int node = 0; node < NAME_NODES + 2; ++node) {
-                    for (int k = degree + 1; k <= higher; ++k) {
+                    for (int k = degree + 1; k < higher + SPARE; ++k) {
                         waves[half][way][panel][node][k] = 0;
                     }
                 }
@@ -340,7 +343,8 @@ static int begun(model_of *m, const name_parameters *parameters, laws *law)
         return 1;
     }
     for (int event = 0; event < NAME_EVENTS; ++event) {
-        m->change[event] = law->load[event_load[event]] * law->strength[event_strength[event]];
+        m->change[event] =
+            event_weight[event] * law->load[event_load[event]] * law->strength[event_strength[event]];
     }
     start_waves(m->waves, law, LEAST);
     start_sums(m->total, m->load, m->since);
@@ -418,8 +422,9 @@ static int begun_lane(name_tangent *tangent, const laws *law, const laws *slope,
     }
     for (int event = 0; event < NAME_EVENTS; ++event) {
         const int own = LOAD_LANE >= 0 && lane == LOAD_LANE + event_load[event];
-        tangent->change[lane][event] = law->load[event_load[event]] * slope->strength[event_strength[event]] +
-                                       (own ? law->strength[event_strength[event]] : (real)0);
+        tangent->change[lane][event] =
+            event_weight[event] * (law->load[event_load[event]] * slope->strength[event_strength[event]] +
+                                   (own ? law->strength[event_strength[event]] : (real)0));
     }
     start_waves(tangent->waves[lane], slope, LEAST);
     start_sums(tangent->total[lane], tangent->load[lane], tangent->since[lane]);

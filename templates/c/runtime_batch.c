@@ -74,7 +74,10 @@ static int press_batch(batch_of *b, int window, int event)
             const real gone = (real)(window - b->since[f][0]) + since_panel[panel * NAME_PANELS + b->since[f][1]];
             c[0] += gone * (c[1] + gone * c[2]);
             c[1] += 2 * gone * c[2];
-            c[event_power[event]] += b->change[event];
+            for (int k = 0; k < 3 && event_power[event] >= 3; ++k) {
+                c[k] = none;
+            }
+            c[event_power[event] % 3] += b->change[event];
             b->since[f][0] = window;
             b->since[f][1] = panel;
             ++event;
@@ -283,7 +286,7 @@ static void spread(batch_of *b, int set, const laws *law)
         LANE(b->gain[k], set) = law->gain[k];
     }
     for (int event = 0; event < NAME_EVENTS; ++event) {
-        LANE(b->change[event], set) = law->load[event_load[event]] * law->strength[event_strength[event]];
+        LANE(b->change[event], set) = event_weight[event] * law->load[event_load[event]] * law->strength[event_strength[event]];
     }
     for (int half = 0; half < 2; ++half) {
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
@@ -442,7 +445,7 @@ int name_build_batch(name_batch *batch, const name_parameters *parameters, size_
                 add_magnitude(&heard, &most);
             }
         }
-        missed = 4 * missed + unit * (real)(degree + NAME_WINDOWS) * size;
+        missed = 6 * missed + rounded_by(degree) * size;
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
             wide weight = none;
             for (int k = 0; k < NAME_HEARD; ++k) {

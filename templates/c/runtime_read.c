@@ -134,6 +134,7 @@ static void block(const real *c, int degree, const real *u, int more, real *out)
 static void output_block(const model_of *m, const real *series, int window, int at, const real *t, real *out)
 {
     const int degree = m->degree[window];
+    int more = 0;
     real u[BLOCK];
     for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
         const int s = strand_at[k];
@@ -143,9 +144,10 @@ static void output_block(const model_of *m, const real *series, int window, int 
         for (int j = 0; j < BLOCK; ++j) {
             u[j] = ((t[j] - begin) + excess) * scale - 1;
         }
-        block(series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u, k > first_strand[at], out);
+        block(series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u, more, out);
+        more = 1;
     }
-    for (int j = 0; first_strand[at] == first_strand[at + 1] && j < BLOCK; ++j) {
+    for (int j = 0; !more && j < BLOCK; ++j) {
         out[j] = 0;
     }
 }
@@ -162,13 +164,12 @@ static void run(const model_of *m, int window, int section, const samples *s, si
         for (int j = 0; j < BLOCK; ++j) {
             t[j] = instant(tau0, dtau, one, first + offset[j]) - begin;
         }
-        const size_t left = s->count - k;
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
             const int at = section * NAME_OUTPUTS + output;
-            real *const row = s->out + (size_t)output * s->count + k;
-            output_block(m, s->series, window, at, t, left < BLOCK ? rest : row);
-            for (size_t j = 0; left < BLOCK && j < left; ++j) {
-                row[j] = rest[j];
+            real *const row = s->out + (size_t)output * s->count;
+            output_block(m, s->series, window, at, t, s->count - k < BLOCK ? rest : row + k);
+            for (size_t j = 0, to = k; s->count - k < BLOCK && to < s->count; ++j, ++to) {
+                row[to] = rest[j];
             }
         }
     }

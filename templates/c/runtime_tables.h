@@ -85,6 +85,7 @@ extern const int event_window[];
 extern const int event_panel[];
 extern const int event_force[];
 extern const int event_power[];
+extern const real event_weight[];
 extern const int event_strength[];
 extern const int event_load[];
 extern const real from[];

@@ -2,6 +2,7 @@
  * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
  * the first empty line. */
 #include "stream_tables.h"
+#include "series.h"
 
 /* What a track sent so many panels ago: its own ring, which begins where those of the tracks before end. */
 static const real *wave(const stream *state, int number, int panels)
@@ -29,14 +30,6 @@ static void lose(stream *state, real much)
     state->lost = *missed > state->lost ? *missed : state->lost;
 }
 
-/* y += factor a */
-static void add(real *y, real factor, const real *a, int count)
-{
-    for (int k = 0; k < count; ++k) {
-        y[k] += factor * a[k];
-    }
-}
-
 /* y += M a, M by rows */
 static void multiply(real *y, const real *rows, const real *a, int height, int width)
 {
@@ -45,36 +38,6 @@ static void multiply(real *y, const real *rows, const real *a, int height, int w
             y[k] += rows[k * width + j] * a[j];
         }
     }
-}
-
-/* sum of c_k T_k(u) */
-static real series(const real *c, real u)
-{
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = DEGREE; k > 0; --k) {
-        const real now = (twice * next - after) + c[k];
-        after = next;
-        next = now;
-    }
-    return (u * next - after) + c[0];
-}
-
-/* Its antiderivative, times 1 / half the length of the panel. */
-static real antiderivative(const real *c, real u)
-{
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = DEGREE + 1; k > 0; --k) {
-        const real lower = k == 1 ? 2 * c[0] : c[k - 1];
-        const real upper = k < DEGREE ? c[k + 1] : (real)0;
-        const real now = (twice * next - after) + (lower - upper) / (real)(2 * k);
-        after = next;
-        next = now;
-    }
-    return u * next - after;
 }
 
 /* The integral of a wave from one time in its panel to another. */
@@ -472,6 +435,25 @@ static int is_number(real x)
     return x - x == 0;
 }
 
+/* Of a positive number that is finite: the root of a number from 1/4 to 4, by Newton, times a power of 2. */
+static real root(real square)
+{
+    real power = 1;
+    real near = 1;
+    while (square > 4) {
+        square /= 4;
+        power *= 2;
+    }
+    while (square < (real)0.25) {
+        square *= 4;
+        power /= 2;
+    }
+    for (int k = 0; k < 6; ++k) {
+        near = (near + square / near) / 2;
+    }
+    return power * near;
+}
+
 void name_init(stream *state)
 {
     state->time = 0;
@@ -606,25 +588,5 @@ int name_step(stream *state, real dtau, const real *load, real *out)
 
 real name_lost(const stream *state)
 {
-    /* the root of a number from 1/4 to 4, by Newton, times a power of 2 */
-    real square = state->lost;
-    real root = 1;
-    if (!(square > 0) || !is_number(square)) {
-        return square;
-    }
-    while (square > 4) {
-        square /= 4;
-        root *= 2;
-    }
-    while (square < (real)0.25) {
-        square *= 4;
-        root /= 2;
-    }
-    {
-        real near = 1;
-        for (int k = 0; k < 6; ++k) {
-            near = (near + square / near) / 2;
-        }
-        return root * near / against(state);
-    }
+    return state->lost > 0 && is_number(state->lost) ? root(state->lost) / against(state) : state->lost;
 }

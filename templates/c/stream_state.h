@@ -1,8 +1,6 @@
-/* stream_state.h: what a stream of waves remembers; part of NAME.h, and of stream_tables.h.
+/* stream_state.h: what a stream of waves remembers, the members of name_state; part of NAME.h, and of stream_tables.h.
  * Below the first empty line, as in stream.c. */
 
-/* A stream. Its owner keeps it; all of it is set by init. Plain data: copy it, and go on from the copy. */
-typedef struct name_state {
     name_real time;      /* since the current panel began, */
     name_real time_low;  /* and what is lost of that by rounding */
     name_real lost;      /* squared: what polynomials have missed so far, on that panel of a window where it is most, */
@@ -22,4 +20,3 @@ typedef struct name_state {
     name_real missed[NAME_PANELS];       /* squared: what polynomials have missed on a panel of all windows */
     name_real total[NAME_OUTPUTS];       /* integrals up to the panel */
     name_real waves[NAME_SLOTS][NAME_DEGREE + 1]; /* Chebyshev coefficients */
-} name_state;

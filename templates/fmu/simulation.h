@@ -23,6 +23,8 @@ typedef struct {
     double time;  /* and now */
     double input[INPUTS + 1];
     double output[OUTPUTS];
+    double parameter[PARAMETERS + 1];
+    int unmade; /* whether parameters were set that the stream does not have yet */
     int phase;
     int linear; /* whether inputs go in straight lines, and are not held */
     int stale;  /* whether outputs may have changed since they were computed */
@@ -70,25 +72,46 @@ static double to_tau(const situation *now, double time)
     return (time - now->start) / SECONDS_PER_TAU;
 }
 
+/* The stream starts anew with parameters that were set. */
+static verdict make(simulation *s)
+{
+    if (s->now.unmade && stream_start(&s->now.stream, s->now.parameter) != 0) {
+        snprintf(s->said, sizeof s->said,
+                 "parameters: bodies too light, or springs too stiff, for the degree of this model (generate it of a scene "
+                 "with such parameters)");
+        return WRONG;
+    }
+    s->now.unmade = 0;
+    return FINE;
+}
+
 /* Outputs as they are with the inputs of now, where these act at once; what is tried is no part of the stream. */
-static void refresh(simulation *s)
+static verdict refresh(simulation *s)
 {
     const int follows = s->now.phase < STEPPING || (DIRECT && !s->now.linear);
+    if (make(s) != FINE) {
+        return WRONG;
+    }
     if (s->now.stale && !STEPPED && follows) {
         memcpy(&s->trial, &s->now.stream, sizeof s->trial);
         stream_step(&s->trial, 0, s->now.input, s->now.output);
     }
     s->now.stale = 0;
+    return FINE;
 }
 
 static void reset(simulation *s)
 {
+    static const double values[] = PARAMETER_VALUES;
     memset(s, 0, sizeof *s);
     s->now.stop = HUGE_VAL;
     s->now.linear = LINEAR;
-    stream_init(&s->now.stream);
+    for (int k = 0; k < PARAMETERS; ++k) {
+        s->now.parameter[k] = values[k];
+    }
+    s->now.unmade = 1;
     s->now.stale = 1;
-    refresh(s);
+    (void)refresh(s);
 }
 
 static verdict set_times(simulation *s, double start, int has_stop, double stop)
@@ -118,7 +141,7 @@ static verdict begin(simulation *s)
 /* Inputs have their first values from the start on. */
 static verdict ready(simulation *s)
 {
-    if (need(s, s->now.phase == INITIALIZING, "leaving initialization") != FINE) {
+    if (need(s, s->now.phase == INITIALIZING, "leaving initialization") != FINE || make(s) != FINE) {
         return WRONG;
     }
     if (STEPPED) {
@@ -180,7 +203,8 @@ static verdict flow(simulation *s, double dtau)
     if (stream_step(&s->now.stream, dtau, s->now.input, s->now.output) == 2 && !s->now.losing) {
         s->now.losing = 1;
         snprintf(s->said, sizeof s->said,
-                 "inputs changed inside of a panel (%.17g long): %.2g of the largest wave may be lost, an estimate",
+                 "inputs changed inside of a panel (%.17g long), or fronts have grown steep: %.2g of the largest wave may be "
+                 "lost, an estimate",
                  PANEL * SECONDS_PER_TAU, stream_lost(&s->now.stream));
         return LOSING;
     }
@@ -222,7 +246,9 @@ static verdict unknown(simulation *s, unsigned reference, const char *kind)
 static verdict get_reals(simulation *s, const unsigned *reference, size_t count, double *value)
 {
     static const double constant[] = CONSTANTS;
-    refresh(s);
+    if (refresh(s) != FINE) {
+        return WRONG;
+    }
     for (size_t k = 0; k < count; ++k) {
         const unsigned r = reference[k];
         if (r >= LINEAR_REFERENCE) {
@@ -234,11 +260,39 @@ static verdict get_reals(simulation *s, const unsigned *reference, size_t count,
             value[k] = s->now.input[r - FIRST_INPUT];
         } else if (r < LOST_REFERENCE) {
             value[k] = s->now.output[r - FIRST_OUTPUT];
+        } else if (r < FIRST_CONSTANT) {
+            value[k] = stream_lost(&s->now.stream);
         } else {
-            value[k] = r < FIRST_CONSTANT ? stream_lost(&s->now.stream) : constant[r - FIRST_CONSTANT];
+            value[k] = r < FIRST_PARAMETER ? constant[r - FIRST_CONSTANT] : s->now.parameter[r - FIRST_PARAMETER];
         }
     }
     return FINE;
+}
+
+static int is_parameter(unsigned reference)
+{
+    return reference >= FIRST_PARAMETER && reference < LINEAR_REFERENCE;
+}
+
+/* Whether a value may be set: inputs at any time, parameters before the first step. */
+static verdict allowed(simulation *s, unsigned reference, double value)
+{
+    static const char *const names[] = PARAMETER_NAMES;
+    static const int positive[] = PARAMETER_POSITIVE;
+    if (is_parameter(reference)) {
+        const unsigned k = reference - FIRST_PARAMETER;
+        if (need(s, s->now.phase <= INITIALIZING, "setting a fixed parameter") != FINE) {
+            return WRONG;
+        }
+        if (!is_number(value) || (positive[k] && !(value > 0))) {
+            return refuse(s, names[k], value, positive[k] ? "a positive number" : "a finite number");
+        }
+        return FINE;
+    }
+    if (reference < FIRST_INPUT || reference >= FIRST_OUTPUT) {
+        return unknown(s, reference, PARAMETERS > 0 ? "an input or a parameter" : "an input");
+    }
+    return is_number(value) ? FINE : refuse(s, "an input", value, "a finite number");
 }
 
 /* All of them, or, where one is wrong, none. */
@@ -248,15 +302,17 @@ static verdict set_reals(simulation *s, const unsigned *reference, size_t count,
         return WRONG;
     }
     for (size_t k = 0; k < count; ++k) {
-        if (reference[k] < FIRST_INPUT || reference[k] >= FIRST_OUTPUT) {
-            return unknown(s, reference[k], "an input");
-        }
-        if (!is_number(value[k])) {
-            return refuse(s, "an input", value[k], "a finite number");
+        if (allowed(s, reference[k], value[k]) != FINE) {
+            return WRONG;
         }
     }
     for (size_t k = 0; k < count; ++k) {
-        s->now.input[reference[k] - FIRST_INPUT] = value[k];
+        if (is_parameter(reference[k])) {
+            s->now.parameter[reference[k] - FIRST_PARAMETER] = value[k];
+            s->now.unmade = 1;
+        } else {
+            s->now.input[reference[k] - FIRST_INPUT] = value[k];
+        }
         s->now.stale = 1;
     }
     return FINE;

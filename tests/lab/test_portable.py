@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -11,14 +12,17 @@ import pytest
 from tests.support.builds import needs_binutils, needs_zig
 from tests.test_documents import document
 from wavesym.lab.portable import misra, prove, targets
+from wavesym.lab.portable.kept import kept
 from wavesym.lab.portable.page import between, put, table
 from wavesym.lab.portable.subjects import CHECKED, COMPILED, PROVED
 from wavesym.lab.portable.tools import absent
-from wavesym.running.toolchain import CompilerError
+from wavesym.running.toolchain import CompilerError, compiler
 
 PAGE = "docs/portability.md"
 (PIECES,) = (subject for subject in PROVED if subject.name == "pieces_double")
+(BRIEF,) = (subject for subject in PROVED if (subject.name, subject.driver) == ("runtime_brief_double", "runtime"))
 (SINGLE,) = (subject for subject in COMPILED if subject.name == "pieces_single")
+INCLUDED = '#include "pieces_double.h"'
 NATIVE = targets.TARGETS[0]
 
 needs_prover = pytest.mark.skipif(bool(absent(prove.TOOL)), reason="no Frama-C here")
@@ -47,20 +51,33 @@ def written(subject, folder):
     return subject
 
 
+def rows_of(name, head):
+    """The lines of a table on the page, by the first line of which it is found."""
+    found = between(document(PAGE), name).partition(table(head, []))[2].partition("\n\n")[0]
+    return [line.strip("| ").split(" | ") for line in found.splitlines()]
+
+
 def test_the_page_says_what_was_proved():
-    lines = between(document(PAGE), "prove").splitlines()[4:]
-    names = [line.split(" | ")[0].removeprefix("| ") for line in lines]
-    assert names == [subject.name for subject in PROVED]
-    assert [name for name, line in zip(names, lines, strict=True) if not line.endswith("| 0 |")] == []
+    rows = rows_of("prove", prove.HEAD)
+    assert [row[0] for row in rows] == [subject.name for subject in PROVED]
+    assert {row[-1] for row in rows} == {"0"}
 
 
 def test_the_page_has_a_reason_for_each_rule():
-    rows = [line.strip("| ").split(" | ") for line in between(document(PAGE), "misra").splitlines()[4:]]
+    rows = rows_of("misra", misra.HEAD)
     assert {rule: reason for rule, _, reason in rows} == misra.deviations()
 
 
+def test_each_finding_is_in_the_list_of_functions():
+    lines = [line.split(",") for line in document("docs/misra.csv").splitlines()[1:]]
+    listed = Counter()
+    for rule, _, _, findings in lines:
+        listed[rule] += int(findings)
+    assert listed == {rule: int(findings) for rule, findings, _ in rows_of("misra", misra.HEAD)}
+
+
 def test_the_page_has_every_machine():
-    rows = [line.strip("| ").split(" | ") for line in between(document(PAGE), "targets").splitlines()[4:]]
+    rows = rows_of("targets", targets.HEAD)
     assert {(row[0], row[1]) for row in rows} == {
         (target.name, subject.name)
         for target in targets.TARGETS
@@ -69,6 +86,14 @@ def test_the_page_has_every_machine():
     }
     assert {row[2] for row in rows} == {"yes"}
     assert {row[6] for row in rows} == {"0"}
+
+
+def test_the_page_has_a_line_for_each_machine():
+    lines = rows_of("targets", targets.STATUS_HEAD)
+    assert [line[0] for line in lines] == [target.name for target in targets.TARGETS]
+    for name, compiled, _, _ in lines:
+        own = [row for row in rows_of("targets", targets.HEAD) if row[0] == name]
+        assert compiled == f"{len(own)} of {len(own)}"
 
 
 def test_a_table_takes_the_place_of_the_one_before(tmp_path: Path):
@@ -83,23 +108,50 @@ def test_a_table_takes_the_place_of_the_one_before(tmp_path: Path):
 
 
 def test_a_finding_that_nobody_reviewed_is_told():
-    assert misra.unreviewed([("10.4", "a.c:1"), ("21.3", "a.c:2")], {"10.4": "so"}) == [
-        "a.c:2: 21.3 is not kept, and no deviation says why"
+    found = [misra.MisraFinding("10.4", "a.c:1", ""), misra.MisraFinding("21.3", "a.c:2", "f")]
+    assert misra.unreviewed(found, {"10.4": "so"}) == ["a.c:2, f: 21.3 is not kept, and no deviation says why"]
+
+
+def test_a_finding_is_in_the_function_around_it():
+    lines = [
+        "enum { A = sizeof(int) };",
+        "static const real *g(int a,",
+        "    int b)",
+        "{",
+        "    a;",
+        "}",
+        "int x[] = {",
     ]
+    assert [misra.function_at(lines, number) for number in (1, 2, 5, 6, 7)] == ["", "g", "g", "g", ""]
+
+
+def test_an_answer_is_asked_for_once_unless_the_question_changes(tmp_path):
+    asked = []
+
+    def ask(question, answer, **how):
+        return kept(tmp_path / "new", question, lambda: asked.append(question) or answer, **how)
+
+    assert (ask(["a", "b"], [1, "x"]), ask(["a", "b"], [2]), ask(["ab"], [3])) == ([1, "x"], [1, "x"], [3])
+    assert asked == [["a", "b"], ["ab"]]
+    assert (ask(["c"], None, worth=bool), ask(["c"], [4], worth=bool)) == (None, [4])
 
 
 @needs_prover
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("right", "wrong"),
+    ("subject", "right", "wrong"),
     [
-        ("tau == tau && tau >= 0 && tau <= PIECES_DOUBLE_TAU_MAX", "tau >= 0"),
-        ("while (piece < last && tau", "while (tau"),
-        ("while (power < lowest)", "while (power <= lowest)"),
+        (PIECES, "tau == tau && tau >= 0 && tau <= PIECES_DOUBLE_TAU_MAX", "tau >= 0"),
+        (PIECES, "while (end < s->count && before", "while (before"),
+        (PIECES, "while (power < lowest)", "while (power <= lowest)"),
+        (BRIEF, "s->count - k < BLOCK ? rest : row + k", "row + k"),
+        (BRIEF, "p[degree + 1] = 0;", ""),  # read, and never set
+        (BRIEF, "now->place += (size_t)", "now->place += 2 * (size_t)"),
+        (BRIEF, "while (event < RUNTIME_BRIEF_DOUBLE_EVENTS && ", "while ("),
     ],
 )
-def test_the_prover_sees_what_is_wrong(right, wrong, tmp_path):
-    spoilt = written(Spoilt(PIECES, right, wrong), tmp_path)
+def test_the_prover_sees_what_is_wrong(subject, right, wrong, tmp_path):
+    spoilt = written(Spoilt(subject, right, wrong), tmp_path)
     found = prove.verdict(spoilt, 1, "gcc_x86_64", tmp_path)
     assert found.alarms is None or found.alarms > 0
 
@@ -122,7 +174,7 @@ def test_what_the_checker_finds_was_reviewed(tmp_path):
 @needs_checker
 @pytest.mark.slow
 def test_the_checker_sees_a_rule_that_is_broken(tmp_path):
-    found = misra.findings(Spoilt(PIECES, "\n#define BLOCK", "\n#include <stdio.h>\n#define BLOCK"), tmp_path)
+    found = misra.findings(Spoilt(PIECES, INCLUDED, f"{INCLUDED}\n#include <stdio.h>"), tmp_path)
     assert misra.unreviewed(found, misra.deviations())
 
 
@@ -147,6 +199,7 @@ def test_a_program_is_taken_alone_and_its_selftest_passes(tmp_path):
         ("real sum = *power;", "real sum = (real)(2.0 * *power);"),  # on doubles
         ("enum { GRIDS", "#include <stdio.h>\nenum { GRIDS"),  # from a C library
         ("real sum = *power;", "real sum = *power; int unused;"),
+        ("real sum = *power;", "extern real other(real);\nreal sum = other(*power);"),
     ],
 )
 def test_what_a_small_machine_lacks_is_refused(right, wrong, tmp_path):
@@ -157,9 +210,10 @@ def test_what_a_small_machine_lacks_is_refused(right, wrong, tmp_path):
 @needs_zig
 @needs_binutils
 @pytest.mark.slow
-def test_data_that_can_be_written_is_counted(tmp_path):
+def test_data_that_can_be_written_are_refused(tmp_path):
     spoilt = Spoilt(SINGLE, "enum { GRIDS", "int pieces_single_flaw = 1;\nenum { GRIDS")
-    assert targets.compiled(written(spoilt, tmp_path), NATIVE, tmp_path).data == 4
+    with pytest.raises(CompilerError, match="4 bytes of data that can be written"):
+        targets.compiled(written(spoilt, tmp_path), NATIVE, tmp_path)
 
 
 def test_every_program_refuses_fast_math():
@@ -168,3 +222,14 @@ def test_every_program_refuses_fast_math():
         guard = f"!defined({subject.name.upper()}_ALLOW_FAST_MATH)"
         assert guard in text
         assert re.search(r"#error .*bounds of errors no longer hold", text)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flag", ["-ffast-math", "-Ofast", "-ffinite-math-only"])
+@pytest.mark.parametrize("subject", list({s.name: s for s in CHECKED + COMPILED}.values()), ids=lambda s: s.name)
+def test_no_program_compiles_so_unless_it_is_told_to(subject, flag, tmp_path):
+    name = written(subject, tmp_path).name
+    compile_ = ["-std=c99", flag, "-fsyntax-only", f"{name}.c"]
+    with pytest.raises(CompilerError, match="bounds of errors no longer hold, nor NaN out of range"):
+        compiler().run(compile_, tmp_path)
+    compiler().run([*compile_, f"-D{name.upper()}_ALLOW_FAST_MATH"], tmp_path)

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 
-from wavesym.lab import streamed
+from wavesym.lab import panels, streamed
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.running.native import FAST
@@ -30,3 +31,12 @@ def test_a_stream_is_measured_sample_by_sample(tmp_path):
     made = choose(model, "modes").evaluator
     assert 0 < streamed._stepping(program(model, made), FAST) < 1e-3
     assert np.isfinite(made.scheme.evaluate(made.tau_max)).all()
+
+
+@pytest.mark.slow
+def test_panels_are_measured_of_scenes_whose_streams_go_on():
+    """Nothing is asserted of the time itself."""
+    found = list(panels.rows(steps=50))
+    assert {row[0] for row in found} == {"ten discs", "building_m2", "drive_m1", "geared_drive"}
+    assert all(len(row) == len(panels.HEAD) and float(row[-2]) > 0 for row in found)
+    assert len(panels.discs().outputs) == 4

@@ -363,9 +363,9 @@ FAULTS = {
         "    }",
     ),
     "a check": ("check != checksum(kept)", "0"),
-    "a number": ("if (!is_number(value[k])) {", "if (0) {"),
+    "a number": ('return is_number(value) ? FINE : refuse(s, "an input", value, "a finite number");', "return FINE;"),
     "an order": ('need(s, s->now.phase == STEPPING, "doStep") != FINE', "0"),
-    "a trial": ("memcpy(&s->trial, &s->now.stream, sizeof s->trial);", "stream_init(&s->trial);"),
+    "a trial": ("memcpy(&s->trial, &s->now.stream, sizeof s->trial);", "stream_start(&s->trial, s->now.parameter);"),
 }
 SEEN_BY = {
     "a time": lambda it: test_steps_of_any_length_give_exact_values(it, "0.1"),

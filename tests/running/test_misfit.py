@@ -57,6 +57,17 @@ def test_a_refused_set_is_nan_and_no_other(model):
     assert misfit(kappa=kappa)[others] == pytest.approx(alone[others], rel=1e-11)
 
 
+def test_extreme_neighbours_refuse_nobody(model):
+    # the degree of a vector of sets is that of the one that needs most, too high for numbers powers of ten apart
+    kappa = np.ones((8, 3))
+    kappa[2:4] = [0.0027, 812.2, 38.9], [0.0065933201041694735, 103.92527635747076, 202.63102786132552]
+    kappa[5:7] = [2.3588, 0.0168, 266.428], [0.7253900713623361, 240.7, 0.075]
+    tau = np.linspace(0, 4, 11)
+    found = model.misfit(tau, np.zeros((len(model.outputs), 11)))(kappa=kappa)
+    assert list(model.check(kappa=kappa).status) == [0, 0, 2, 0, 0, 2, 0, 0]
+    assert found == pytest.approx(np.sum(model.run(kappa=kappa, tau=tau) ** 2, axis=(1, 2)), rel=1e-10, nan_ok=True)
+
+
 def test_other_data_are_refused(model):
     with pytest.raises(WavesymError, match=r"data: an array of shape \(2,\) given, \(\d, 2\) expected"):
         model.misfit([0, 1], [1, 2])

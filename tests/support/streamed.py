@@ -37,10 +37,15 @@ def knots(jumps: Sequence[Sequence[Fraction]], spacing: Fraction) -> list[dict[s
 
 
 def run(
-    model: StreamModel, jumps: Sequence[Sequence[Fraction]], spacing: Fraction, until: Fraction, step: Fraction
+    model: StreamModel,
+    jumps: Sequence[Sequence[Fraction]],
+    spacing: Fraction,
+    until: Fraction,
+    step: Fraction,
+    **parameters: Any,
 ) -> Ran:
     """The stream under such loads, in steps of about `step` that end where loads jump."""
-    stream = model.start()
+    stream = model.start(**parameters)
     now = [Fraction(0)] * len(jumps)
     slope = [Fraction(0)] * len(jumps)
     at, told, tau = Fraction(0), 0.0, []
@@ -71,7 +76,10 @@ def missed(ran: Ran, scene: wavesym.Scene) -> NDArray[np.float64]:
     return np.max(np.abs(ran.found - true), axis=1) / np.where(largest > 0, largest, 1)
 
 
-def built(scene: wavesym.Scene, precision: str = "double", step: Fraction | None = None) -> StreamModel:
+def built(
+    scene: wavesym.Scene, precision: str = "double", step: Fraction | None = None, runtime: Sequence[str] = ()
+) -> StreamModel:
     """The compiled stream of a scene; not as fast as it can be, which takes long to compile."""
-    request = Request(precision=precision, stream=True, step=None if step is None else rational(step))
+    every = None if step is None else rational(step)
+    request = Request(precision=precision, stream=True, step=every, runtime=tuple(runtime))
     return StreamModel(stream_program(scene, request), ("-O1",))

@@ -54,10 +54,12 @@ def test_the_description_says_what_there_is(version):
         *("kappa_1", "inertia_1", "inertia_2", "linear"),
     ]
     assert [one.get("valueReference") for one in found.values()] == [str(k) for k in range(10)]
-    assert {name for name, one in found.items() if one.get("variability") == "constant"} == {
-        *("panel", "kappa_1", "inertia_1", "inertia_2")
-    }
-    assert found["linear"].get("causality") == "parameter"
+    assert {name for name, one in found.items() if one.get("variability") == "constant"} == {"panel"}
+    settable = {name for name, one in found.items() if one.get("causality") == "parameter"}
+    assert settable == {"kappa_1", "inertia_1", "inertia_2", "linear"}
+    assert {one.get("variability") for name, one in found.items() if name in settable} == {"fixed"}
+    starts = [(one if version == "fmu3" else one[0]).get("start") for name, one in found.items() if name in settable]
+    assert starts == ["0.75", "1.0", "2.0", "false"]
     sha = program().provenance.model.labels.sha256
     assert root.get("guid" if version == "fmu2" else "instantiationToken") == sha
     assert f'SCENE_SHA256 "{sha}"' in texts(version)["sources/geared.h"]
@@ -143,7 +145,8 @@ def test_what_no_scene_changes_is_shipped_as_it_stands(name):
 REFUSED = {
     "language": ({"language": "numpy"}, "language: numpy given with --target, c expected"),
     "precision": ({"precision": "single"}, "precision: single given with --target, double expected"),
-    "runtime": ({"runtime": ["kappa"]}, "runtime: kappa given with --target, nothing expected"),
+    "runtime": ({"runtime": ["load"]}, "--runtime: load given with a stream, other parameters expected"),
+    "modes": ({"runtime": ["kappa"], "evaluator": "modes"}, "runtime: kappa given with modes and --target"),
     "package": ({"package": True}, "package: True given with --target, False expected"),
     "evaluator": ({"evaluator": "march"}, "--evaluator: march given with --stream, auto expected"),
     "step": ({"evaluator": "modes", "step": Fraction(1, 8)}, "--step: 1/8 given with --evaluator modes"),

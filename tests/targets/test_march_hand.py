@@ -219,6 +219,9 @@ def test_a_load_too_rough_for_its_points_is_reported_at_once(name):
         assert one.advance(rough(one, source, panel, 0.5, order)) == 1
         assert one.advance(0.5) == 1  # and from then on
         assert one.window.value == 2
+        assert one.advance(1e9) == 1  # even where it is little beside what moves now
+        one.start()
+        assert one.advance(0.5) == 0
         fine = march(name)
         assert fine.advance(0.5) == fine.advance(rough(fine, source, panel, 1e-9, order)) == 0
         assert fine.advance(rough(fine, source, panel, 0.5, 4)) == 0

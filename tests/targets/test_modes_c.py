@@ -111,6 +111,9 @@ def test_what_a_stream_refuses_changes_nothing(tmp_path):
         assert np.isnan(out).all()
         assert np.array_equal(stream.state, before)
     assert stream.step([1.0], 1 - 2.0**-53)[0] == 0
+    told = [stream.step([10.0**power]) for power in range(280, 309)]  # too much, in the end
+    assert {status for status, _ in told} == {0, 2}
+    assert all((status == 2) == (not np.isfinite(out).all()) for status, out in told)
 
 
 @pytest.mark.parametrize("precision", REALS)

@@ -26,6 +26,10 @@ GRIDS = (
     (5.75, -0.25),
     (1.0, 0.0),
     (0.4999999999999999, 1e-17),
+    # steps as small as roundings, or a few of them
+    (5.5 - 20 * 2.0**-54, 0.7 * 2.0**-54),
+    (3.75 + 17 * 2.0**-51, -1.3 * 2.0**-51),
+    (0.75 - 15 * 2.0**-50, 2.0**-50),
     (-0.35, 0.1),
     (6.2, -0.013),
     (float("nan"), 0.1),
@@ -104,17 +108,19 @@ def test_long_runs_have_the_bits_of_single_values(made, flags):
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [
-        ("return (step * s->one + s->tau0) - centred;", "return step + (s->tau0 - centred);"),
+        ("return (step + t->tau0) - middle;", "return step + (t->tau0 - middle);"),
         ("tau >= edge : tau < edge", "tau >= edge : tau <= edge"),
+        ("(16 / exact)", "(0 / exact)"),
     ],
 )
 def test_other_roundings_and_later_fronts_are_seen(made, right, wrong):
-    """Where tau_k is not rounded by itself, or a run goes on behind its piece, the comparison above fails."""
+    """The comparison above fails where tau_k is not rounded by itself, a run goes on behind its piece, or it ends where
+    rounding is not allowed for."""
     text = made["sampled.c"]
     assert right in text
     loaded = built({**made, "sampled.c": text.replace(right, wrong)}, "-O2", "-ffp-contract=off")
     differ = 0
-    for tau0, dtau, count in ((0.1, 0.0011, 5000), (0.0, 0.0625, 90)):
+    for tau0, dtau, count in ((0.1, 0.0011, 5000), (0.0, 0.0625, 90), (5.5 - 2.0**-50, 2.0**-54, 60)):
         expected = evaluated(loaded, instants(tau0, dtau, count).tolist(), 3)
         _, found = sampled(loaded, tau0, dtau, count, 3)
         differ += int((found != expected).sum())

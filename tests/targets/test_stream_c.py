@@ -257,7 +257,11 @@ REFUSED = {
     "damped": ({"stream": True}, "damped", "system.damping: given, none expected"),
     "language": ({"stream": True, "language": "numpy"}, "drive_m1", "numpy given with --stream, c expected"),
     "evaluator": ({"stream": True, "evaluator": "pieces"}, "drive_m1", "pieces given with --stream, auto expected"),
-    "runtime": ({"stream": True, "runtime": ["kappa"]}, "drive_m1", "kappa given with --stream, nothing expected"),
+    "runtime": (
+        {"stream": True, "runtime": ["load"]},
+        "drive_m1",
+        "load given with a stream, other parameters expected",
+    ),
     "step": ({"step": Fraction(1, 8)}, "drive_m1", "1/8 given without --stream"),
     "modes": ({"stream": True, "step": Fraction(1, 8), "evaluator": "modes"}, "drive_m1", "1/8 given with --evaluator"),
     "short": (
@@ -265,12 +269,16 @@ REFUSED = {
         "drive_m1",
         "steps of 1/5000 are edges of 5000 panels in a window of 1, at most 1024 expected",
     ),
+    "beyond": ({"stream": True}, "beyond", "output: a stream needs numbers beyond the range of double precision"),
+    "nothing left": ({"stream": True}, "weak", "rounding may leave nothing of strain@0.5"),
     "near": ({"stream": True}, "near", "strain@1/3000 hears a loaded node after 1/3000, which takes 3000 panels"),
 }
 BOUNCING = {"type": "chain", "parts": [{"mass": 1, "velocity": 1, "name": "a"}, "contact", {"rod": 1}, "fixed"]}
 SCENES = {
     "chained": wavesym.Scene(name="b", system=BOUNCING, output={"until": 3, "velocity": ["0+"]}),
     "damped": GEARS.with_({"system.damping": 0.05, "load": [HELD]}),
+    "beyond": STEPPED.with_({"system.kappa": ["1e200"]}),
+    "weak": STEPPED.with_({"system.kappa": ["1e-30"], "output.strain": ["0.5"]}),
     "near": STEPPED.with_({"output.strain": ["1/3000"]}),
     "drive_m1": STEPPED,
 }
@@ -463,12 +471,15 @@ def test_the_sizes_on_a_small_machine_are_those_of_the_page(tmp_path):
             assert not [symbol for symbol in called if symbol.startswith("__aeabi_d")]
 
 
-def test_tables_are_declared_as_they_are_written(tmp_path):
-    wavesym.generate(STEPPED, tmp_path, stream=True)
+@pytest.mark.parametrize("runtime", [(), pytest.param(("kappa", "inertia"), marks=pytest.mark.slow)])
+def test_tables_are_declared_as_they_are_written(runtime, tmp_path):
+    wavesym.generate(STEPPED, tmp_path, stream=True, runtime=runtime)
     text = (tmp_path / "drive_m1.c").read_text()
     written = set(re.findall(r"^static const (int|real) (\w+)\[\]", text, re.MULTILINE))
     tables = Path(__file__).parents[2] / "templates" / "c" / "stream_tables.h"
-    assert written == set(re.findall(r"^extern const (int|real) (\w+)\[\];", tables.read_text(), re.MULTILINE))
+    compiler().run(["-E", *(["-DNAME_RUNTIME"] if runtime else []), str(tables), "-o", "read.h"], tmp_path)
+    declared = re.findall(r"^extern const (int|real) (\w+)\[\];", (tmp_path / "read.h").read_text(), re.MULTILINE)
+    assert written == set(declared)
     assert not re.search(r"\b(name|NAME)_|_tables\.h", text)
 
 

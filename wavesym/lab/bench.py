@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from wavesym.lab import many_sets, parameters, recorded, streamed, swept
+from wavesym.lab import many_sets, panels, parameters, recorded, streamed, swept
 from wavesym.lab.equal_degree import at_degree, fitted, ratios
 from wavesym.lab.harness import CALLS, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
 from wavesym.lab.timing import least, medians, ran
@@ -135,7 +135,7 @@ def _set_up(folder: Path) -> Iterator[str]:
 
 
 def _records(folder: Path) -> Iterator[str]:
-    """Records, one and many, and sweeps."""
+    """Records, one and many, streams, and sweeps."""
     yield "## A record"
     yield ""
     yield f"Ten storeys, damped, 31 outputs at all {recorded.SAMPLES} samples, from the model of the scene on. Errors"
@@ -148,6 +148,12 @@ def _records(folder: Path) -> Iterator[str]:
     yield "All floors of a damped steel frame: of `run`, start-up included, at all samples of the record; and of parts."
     yield ""
     yield from _table(("what", "time", "peak MB", "modes"), streamed.rows(folder.parent / "examples" / "records"))
+    yield ""
+    yield "## Streams"
+    yield ""
+    yield "Waves under loads that come step by step (`generate --stream`): steps as long as a panel, and of 0.01."
+    yield ""
+    yield from _table(panels.HEAD, panels.rows())
     if find_spec("zarr") and find_spec("distributed"):
         yield ""
         yield "## Sweeps"

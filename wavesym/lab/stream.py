@@ -21,21 +21,26 @@ void steps(const REAL *samples, size_t count, REAL *out)
     static NAME_state state;
     NAME_init(&state);
     for (size_t k = 0; k < count; ++k) {
-        NAME_step(&state, PREFIX_SPACING, samples + k * PREFIX_LOADS, out + k * PREFIX_OUTPUTS);
+        NAME_step(&state, DTAU, samples + k * PREFIX_LOADS, out + k * PREFIX_OUTPUTS);
     }
 }
 """
 
 
 def stream(
-    name: str, made: Mapping[str, str], samples: Values, outputs: int, flags: tuple[str, ...] = FAST
+    name: str,
+    made: Mapping[str, str],
+    samples: Values,
+    outputs: int,
+    flags: tuple[str, ...] = FAST,
+    dtau: str = "PREFIX_SPACING",
 ) -> Callable[[], Values]:
     """A call that goes through samples (n, loads) by the C of scene `name`, in their precision: (outputs, n).
 
-    CompilerError where there is no C compiler.
+    `dtau` is the step, in C. CompilerError where there is no C compiler.
     """
     real = {np.dtype(np.float32): "float", np.dtype(np.float64): "double"}[samples.dtype]
-    harness = _STEPS.replace("REAL", real).replace("NAME", name).replace("PREFIX", name.upper())
+    harness = _STEPS.replace("DTAU", dtau).replace("REAL", real).replace("NAME", name).replace("PREFIX", name.upper())
     steps = library(made[f"{name}.c"] + harness, flags, (f"{name}.h", made[f"{name}.h"])).steps
     steps.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p]
     steps.restype = None

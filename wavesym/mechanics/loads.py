@@ -20,6 +20,23 @@ class Applied:
     time: fmpq
     weight: fmpq
 
+    @property
+    def changes(self) -> tuple[Applied, ...]:
+        """What it is made of where its weight is 1."""
+        return (Applied(self.source, self.time, fmpq(1)),)
+
+
+@dataclass(frozen=True)
+class AppliedRecord(Applied):
+    """`weight` times all `samples` together, each a unit response with a weight, in the order of time."""
+
+    samples: tuple[Applied, ...]
+
+    @property
+    def changes(self) -> tuple[Applied, ...]:
+        """What it is made of where its weight is 1."""
+        return self.samples
+
 
 def merged(loads: Iterable[Applied]) -> tuple[Applied, ...]:
     """Loads of the same source and time as one, none of weight 0, sorted by time and then by source."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wavesym.errors import WavesymError
+from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.running.native import FAST, address, library
 from wavesym.targets.files import sources
@@ -19,7 +20,8 @@ Array = NDArray[np.float64]
 class StreamModel:
     """A scene whose loads come while it runs, in C: `start` gives as many streams of it as are wanted.
 
-    `outputs` and `loads` are the names, those of loads with their units. CompilerError without a C compiler.
+    `outputs` and `loads` are the names, those of loads with their units; `fields` are the parameters. CompilerError
+    without a C compiler.
     """
 
     def __init__(self, program: Program, flags: Sequence[str] = FAST) -> None:
@@ -28,16 +30,18 @@ class StreamModel:
         size = f"\nsize_t {name}_state_size(void);\nsize_t {name}_state_size(void) {{ return sizeof({name}_state); }}\n"
         loaded = library(files[f"{name}.c"] + size, tuple(flags), (f"{name}.h", files[f"{name}.h"]))
         real, where = ctypes.c_double if program.real.bytes == 8 else ctypes.c_float, ctypes.c_void_p
-        self._init, self._step, self._lost, self._size = (
-            getattr(loaded, f"{name}_{word}") for word in ("init", "step", "lost", "state_size")
+        begin = "build" if program.laws else "init"
+        self._begin, self._step, self._lost, self._size = (
+            getattr(loaded, f"{name}_{word}") for word in (begin, "step", "lost", "state_size")
         )
-        self._init.argtypes, self._init.restype = [where], None
+        self._begin.argtypes, self._begin.restype = ([where, where], ctypes.c_int) if program.laws else ([where], None)
         self._step.argtypes = [where, real, where, where]
         self._lost.argtypes, self._lost.restype = [where], real
         self._size.restype = ctypes.c_size_t
         self.dtype = np.dtype(f"f{program.real.bytes}")
         self.outputs = tuple(output.name for output in program.outputs)
         self.loads = program.sources
+        self.fields = program.laws.fields if program.laws else ()
         self.panel = program.constants["panel"]
 
     @property
@@ -45,18 +49,32 @@ class StreamModel:
         """What a stream takes."""
         return int(self._size())
 
-    def start(self) -> Stream:
-        """A stream at tau = 0, its loads 0."""
+    def start(self, **given: ArrayLike) -> Stream:
+        """A stream at tau = 0, its loads 0, with the parameters `given` by field and those of the scene for the others.
+
+        WavesymError for a field that the program has not got, or that has another number of values.
+        """
         state = np.zeros(self.state_bytes, np.uint8)
-        self._init(address(state))
-        return Stream(self, state)
+        for name in given.keys() - {field.name for field in self.fields}:
+            raise WavesymError(f"{name}: given, {', '.join(field.name for field in self.fields) or 'nothing'} expected")
+        rows = []
+        for field in self.fields:
+            row = np.array(given.get(field.name, list(map(nearest, field.values))), self.dtype).ravel()
+            if len(row) != len(field.values):
+                raise WavesymError(f"{field.name}: {len(row)} given, {len(field.values)} expected")
+            rows.append(row)
+        status = self._begin(address(state), *([address(np.concatenate(rows))] if rows else []))
+        return Stream(self, state, int(status or 0))
 
 
 class Stream:
-    """A stream. Its `state` is plain data: a copy goes on from where it was taken."""
+    """A stream. Its `state` is plain data: a copy goes on from where it was taken.
 
-    def __init__(self, model: StreamModel, state: NDArray[np.uint8]) -> None:
-        self._model, self.state = model, state
+    `refused` is 0, 1 for parameters that are bad numbers, or 2 where the degree is too low for them: then it gives NaN.
+    """
+
+    def __init__(self, model: StreamModel, state: NDArray[np.uint8], refused: int = 0) -> None:
+        self._model, self.state, self.refused = model, state, refused
 
     def step(self, dtau: float, loads: ArrayLike) -> tuple[int, Array]:
         """Go on by dtau while loads go straight to `loads`, or jump to them with dtau = 0: the status, and all outputs.
@@ -79,4 +97,4 @@ class Stream:
 
     def copy(self) -> Stream:
         """Another one that goes on from here."""
-        return Stream(self._model, self.state.copy())
+        return Stream(self._model, self.state.copy(), self.refused)

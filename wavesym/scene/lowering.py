@@ -9,10 +9,9 @@ from fractions import Fraction
 
 from flint import fmpq
 
-from wavesym.errors import UnservedError
-from wavesym.fields.loads import TimedLoad
+from wavesym.fields.loads import Load, TimedLoad
 from wavesym.mechanics.damping import Damping
-from wavesym.mechanics.loads import Applied, merged
+from wavesym.mechanics.loads import Applied, AppliedRecord, merged
 from wavesym.mechanics.model import Labels, Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import rational
@@ -77,18 +76,25 @@ def _loads(scene: Scene) -> tuple[Applied, ...]:
 def amplitudes(scene: Scene) -> tuple[tuple[str, Applied], ...]:
     """The numbers of the loads in the order of the scene, each with what it is called; zeros too.
 
-    UnservedError for loads that have samples.
+    Of a load that has samples it is one, the factor of all of them: 1.
     """
     found: list[tuple[str, Applied]] = []
     for number, load in enumerate(scene.load):
         if not isinstance(load, TimedLoad):
-            raise UnservedError(f"load[{number}]: samples given with --runtime load, times expected")
+            samples = AppliedRecord(load.sources[0], fmpq(0), fmpq(1), merged(load.units()))
+            found.append((f"factor of load {number}, samples at {_spacing(scene, load)}", samples))
+            continue
         found += [
             (f"{name}[{k}] of load {number}, {_when(scene, load.times[k])}", unit)
             for name, units in load.by_list()
             for k, unit in enumerate(units)
         ]
     return tuple(found)
+
+
+def _spacing(scene: Scene, load: Load) -> str:
+    assert load.step is not None  # as it has samples
+    return scene.scale.clock.told(rational(load.step)) if scene.scale else str(load.step)
 
 
 def sources(scene: Scene) -> tuple[str, ...]:

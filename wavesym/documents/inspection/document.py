@@ -14,15 +14,16 @@ from wavesym.documents.inspection.summary import summary
 from wavesym.documents.inspection.tabled import tabled
 from wavesym.documents.inspection.text import section_lines
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import sources
 
 SUMMARY = "summary"
 _STAGES: Mapping[str, Callable[[Scene], Iterable[Section]]] = {
-    SUMMARY: lambda scene: summary(lower(scene), scene.physical),
+    SUMMARY: lambda scene: summary(lower(scene), sources(scene), scene.physical),
     "scene": said,
     "model": lambda scene: modelled(lower(scene)),
     "laws": lambda scene: laws(lower(scene)),
     "table": lambda scene: tabled(lower(scene)),
-    "program": lambda scene: programmed(lower(scene)),
+    "program": lambda scene: programmed(lower(scene), sources(scene)),
 }
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told, finite
+from wavesym.documents.inspection.streamed import streamed
 from wavesym.documents.inspection.variants import told_degrees, variants
 from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.contact import contact_ends
@@ -16,14 +17,15 @@ from wavesym.programs.choice import Tried, attempts, best
 from wavesym.programs.program import Program, Provenance
 
 
-def programmed(model: Model) -> Iterator[Section]:
-    """The program in numbers, or why there is none."""
+def programmed(model: Model, sources: Sequence[str]) -> Iterator[Section]:
+    """The program in numbers, or why there is none; and the stream of loads that have these `sources`."""
     tried = attempts(model)
     yield chosen(model, tried)
     with suppress(ToleranceError):  # which is told already
         choice = best(model, tried)
         yield from _numbers(assemble(choice.evaluator, Provenance(model, choice.reason)))
     yield contacts(model)
+    yield streamed(model, sources)
     yield variants(model, tried)
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from wavesym.documents.inspection.modelled import cone, kind, probes, rate
 from wavesym.documents.inspection.networked import counted, joint_laws, not_served
 from wavesym.documents.inspection.programmed import chosen, contacts
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
+from wavesym.documents.inspection.streamed import streamed
 from wavesym.documents.inspection.units import in_units
 from wavesym.documents.inspection.variants import variants
 from wavesym.mechanics.model import Model
@@ -16,8 +17,8 @@ from wavesym.programs.choice import attempts
 from wavesym.scene.physical.scene import PhysicalScene
 
 
-def summary(model: Model, physical: PhysicalScene | None = None) -> Iterator[Section]:
-    """From the chain to the programs that were tried."""
+def summary(model: Model, sources: Sequence[str], physical: PhysicalScene | None = None) -> Iterator[Section]:
+    """From the chain to the programs that were tried; loads have these `sources`."""
     yield Facts(
         "system", "The chain, with the parameters that can matter", {**model.labels.system, **_parameters(model)}
     )
@@ -36,6 +37,7 @@ def summary(model: Model, physical: PhysicalScene | None = None) -> Iterator[Sec
     tried = attempts(model)
     yield chosen(model, tried)
     yield contacts(model)
+    yield streamed(model, sources)
     yield variants(model, tried)
     if model.chain is None:
         yield not_served(model)

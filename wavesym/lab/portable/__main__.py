@@ -1,4 +1,6 @@
-"""python -m wavesym.lab.portable prove|misra|targets PAGE: run the tool and put its table into the page.
+"""python -m wavesym.lab.portable prove|misra|targets|fuzz PAGE: run the tool and put its table into the page.
+
+`fuzz PAGE KEPT SECONDS` takes the bytes to begin with from the folder KEPT, and so many seconds for each program.
 
 Exit status 1 where something is not as it has to be; 0 with a word where the tool is not on this machine.
 """
@@ -11,15 +13,23 @@ from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from wavesym.lab.portable import misra, prove, targets
-from wavesym.lab.portable.page import put, table
+from wavesym.lab.portable import fuzz, misra, prove, targets
+from wavesym.lab.portable.kept import FOLDER as KEPT
+from wavesym.lab.portable.page import between, put, table
 from wavesym.lab.portable.subjects import CHECKED, COMPILED, PROVED
 from wavesym.lab.portable.tools import absent, version
+from wavesym.writing import write_whole
 
 
-def main(what: str, page: Path) -> int:
+def main(what: str, page: Path, kept: str = "", seconds: str = "0") -> int:
     """Run one of them; what failed is told line by line."""
-    missing = {"prove": absent(prove.TOOL), "misra": absent(misra.TOOL), "targets": absent("size")}[what]
+    clang = fuzz.fuzzer() if what == "fuzz" else None
+    missing = {
+        "prove": absent(prove.TOOL),
+        "misra": absent(misra.TOOL),
+        "targets": absent("size", "nm"),
+        "fuzz": [] if clang else ["clang with libFuzzer"],
+    }[what]
     if what == "targets" and not find_spec("ziglang"):
         missing.append("ziglang")
     if missing:
@@ -30,17 +40,34 @@ def main(what: str, page: Path) -> int:
         folder = Path(name)
         match what:
             case "prove":
-                made = table(prove.HEAD, _told(prove.rows(PROVED, folder, failed)))
+                made = table(prove.HEAD, _told(prove.rows(PROVED, folder, KEPT, failed)))
                 told = f"Frama-C {version(prove.TOOL)}, data as of {', '.join(prove.MACHINES)}."
             case "misra":
-                made = table(misra.HEAD, _told(misra.rows(CHECKED, folder, failed)))
+                seen = misra.every(CHECKED, folder, KEPT)
+                made = table(misra.HEAD, _told(misra.rows(seen, failed)))
+                write_whole({page.with_name(misra.LIST): misra.by_function(seen)})
                 told = f"{version(misra.TOOL)}, in {', '.join(subject.name for subject in CHECKED)}."
+            case "fuzz":
+                assert clang
+                learning = Path("build", "fuzz").resolve()  # the next run goes on with what this one has learnt
+                made = table(
+                    fuzz.HEAD, _told(fuzz.rows(fuzz.FUZZED, clang, learning, Path(kept), int(seconds), failed))
+                )
+                told = f"{fuzz.tool(clang)}."
             case _:
-                made = table(targets.HEAD, _told(targets.rows(COMPILED, targets.TARGETS, folder, failed)))
+                found = list(_told(targets.rows(COMPILED, targets.TARGETS, folder, KEPT, failed)))
+                lines = targets.status(found, targets.TARGETS, proved(page))
+                made = f"{table(targets.STATUS_HEAD, lines)}\n{table(targets.HEAD, found)}"
                 told = f"{targets.compiler()}, `-Os`."
     put(page, what, f"{told}\n\n{made}")
     print(*failed, sep="\n", end="\n" if failed else "")
     return 1 if failed else 0
+
+
+def proved(page: Path) -> str:
+    """How many of the programs in the table of `make prove` have no alarm."""
+    lines = [line for line in between(page.read_text(encoding="utf-8"), "prove").splitlines()[4:] if line]
+    return f"{sum(line.endswith('| 0 |') for line in lines)} of {len(lines)} drivers"
 
 
 def _told(rows: Iterator[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
@@ -51,4 +78,4 @@ def _told(rows: Iterator[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
 
 
 if __name__ == "__main__":
-    raise SystemExit(main(sys.argv[1], Path(sys.argv[2])))
+    raise SystemExit(main(sys.argv[1], Path(sys.argv[2]), *sys.argv[3:]))

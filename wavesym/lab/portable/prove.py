@@ -6,27 +6,45 @@ comparison of pointers into different things. Numbers may be any, NaN and infini
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
+from wavesym.lab.portable.kept import kept
 from wavesym.lab.portable.subjects import PortableProgram
-from wavesym.lab.portable.tools import started
+from wavesym.lab.portable.tools import started, version
 
 TOOL = "frama-c"
 HEAD = ("program", "made by", "called, any argument", "counts", "statements reached", "alarms")
 MACHINES = ("gcc_x86_64",)
 """Layouts of data: integers, long and pointers as on these machines."""
 
-_SECONDS = 900.0
+_SECONDS = 600.0
 _OPTIONS = (
     *("-eva", "-eva-no-show-progress", "-eva-msg-key=-final-states,-initial-state"),
     *("-warn-special-float", "none"),
-    # what the driver repeats for ever is joined at once; loops of the program are unrolled
-    *("-eva-slevel-function", "main:0"),
 )
+# what the driver repeats for ever is joined at once; loops of the program are unrolled
+_FOR_EVER = ("-eva-slevel-function", "main:0")
+# every loop, for each degree by itself
+_TO_THE_END = (
+    *("-eva-precision", "0", "-eva-slevel", "20000", "-eva-ilevel", "64"),
+    *("-eva-split-return", "auto"),
+)
+_EFFORTS = {
+    "usual": ("-eva-precision", "2", *_FOR_EVER),
+    "more": ("-eva-precision", "3", *_FOR_EVER),
+    "followed": _TO_THE_END,
+    "unrolled": (*_TO_THE_END, "-inline-calls", "integrate"),
+    # windows and samples one by one, all else at once: which locals were set is not followed then
+    "bounds": (
+        *("-eva-precision", "0", "-eva-split-return", "auto", "-eva-initialized-locals"),
+        *("-eva-slevel-function", "main:100,name_build:100,sampled:100,run:100,output_block:100"),
+    ),
+}
 
 
 class ProofVerdict(NamedTuple):
@@ -38,21 +56,16 @@ class ProofVerdict(NamedTuple):
     told: list[str]
 
 
+def command(subject: PortableProgram) -> list[str]:
+    """The prover with the options that a program needs."""
+    return [TOOL, *_OPTIONS, *(subject.spelt(option) for option in _EFFORTS[subject.effort])]
+
+
 def verdict(subject: PortableProgram, count: int, machine: str, folder: Path) -> ProofVerdict:
     """Prove a program, whose files are in `folder`, under its driver."""
-    driver = f"{subject.name}_{count}_{machine}_driver.c"
+    driver = f"{subject.name}_{subject.driver}_{count}_{machine}_driver.c"
     (folder / driver).write_text(subject.driven(count), encoding="utf-8")
-    command = [
-        TOOL,
-        "-eva-precision",
-        str(subject.precision),
-        *_OPTIONS,
-        "-machdep",
-        machine,
-        driver,
-        f"{subject.name}.c",
-    ]
-    said = started(command, folder, _SECONDS)
+    said = started([*command(subject), "-machdep", machine, driver, f"{subject.name}.c"], folder, _SECONDS)
     found = re.search(r"(\d+) alarms? generated", said.out)
     covered = re.search(r"(\d+) statements reached \(out of (\d+)\)", said.out)
     if said.status != 0 or not found or not covered:
@@ -62,25 +75,38 @@ def verdict(subject: PortableProgram, count: int, machine: str, folder: Path) ->
     return ProofVerdict(int(found[1]), int(covered[1]), int(covered[2]), alarms)
 
 
-def rows(subjects: Sequence[PortableProgram], folder: Path, failed: list[str]) -> Iterator[tuple[str, ...]]:
+def rows(
+    subjects: Sequence[PortableProgram], folder: Path, kept_in: Path, failed: list[str]
+) -> Iterator[tuple[str, ...]]:
     """A row for each program, its counts together; what was not proved is added to `failed`."""
-    for subject in subjects:
-        for file, text in subject.files().items():
+    tool = version(TOOL)
+    texts = {subject.name: subject.files() for subject in subjects}
+    for files in texts.values():
+        for file, text in files.items():
             (folder / file).write_text(text, encoding="utf-8")
 
-    def verdicts(subject: PortableProgram) -> list[ProofVerdict]:
-        return [verdict(subject, count, machine, folder) for machine in MACHINES for count in subject.counts or (0,)]
+    def asked(subject: PortableProgram, machine: str, count: int) -> ProofVerdict:
+        question = (tool, *command(subject), machine, subject.driven(count), *texts[subject.name].values())
 
-    with ThreadPoolExecutor() as started_at_once:
-        every = list(started_at_once.map(verdicts, subjects))
-    for subject, found in zip(subjects, every, strict=True):
-        alarms = [one.alarms for one in found]
-        failed += [f"{subject.name}, {subject.driver}: {line}" for one in found if one.alarms != 0 for line in one.told]
-        yield (
-            subject.name,
-            f"`{subject.asked}`",
-            ", ".join(f"`{name}`" for name in subject.called),
-            ", ".join(map(str, subject.counts)) or "",
-            f"{min(one.reached for one in found)} of {max(one.statements for one in found)}",
-            "not finished" if None in alarms else str(max(one for one in alarms if one is not None)),
-        )
+        def answer() -> ProofVerdict:
+            return verdict(subject, count, machine, folder)
+
+        return ProofVerdict(*kept(kept_in, question, answer, worth=lambda found: found.alarms is not None))
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = [
+            [pool.submit(asked, subject, machine, count) for machine in MACHINES for count in subject.counts or (0,)]
+            for subject in subjects
+        ]
+        for subject, run in zip(subjects, runs, strict=True):
+            found = [one.result() for one in run]
+            alarms = [one.alarms for one in found]
+            failed += [f"{subject.name}, {subject.driver}: {line}" for one in found for line in one.told]
+            yield (
+                subject.name,
+                f"`{subject.asked}`",
+                ", ".join(f"`{name}`" for name in subject.called),
+                ", ".join(map(str, subject.counts)) or "",
+                f"{max(one.reached for one in found)} of {max(one.statements for one in found)}",
+                "not finished" if None in alarms else str(max(one for one in alarms if one is not None)),
+            )

@@ -30,8 +30,8 @@ _SHAKEN: dict[str, Any] = {
 class PortableProgram:
     """What is asked for of a built-in scene; `driver`, a file of templates/proof/, calls all that it exports.
 
-    `precision` is that of the prover, from 0 to 11. Where the driver asks for samples, `counts` are the numbers of
-    them, each in a run of its own.
+    `effort` is the prover's, as in prove.py. Where the driver asks for samples, `counts` are the numbers of them, each
+    in a run of its own.
     """
 
     template: str
@@ -40,7 +40,7 @@ class PortableProgram:
     driver: str
     counts: tuple[int, ...] = ()
     changes: tuple[tuple[str, Any], ...] = ()
-    precision: int = 2
+    effort: str = "usual"
 
     @property
     def name(self) -> str:
@@ -73,15 +73,19 @@ class PortableProgram:
 
     def driven(self, count: int) -> str:
         """The driver for this program, as targets/c/kernel.py makes C of a kernel."""
-        text = text_of(f"proof/{self.driver}.c").partition("\n\n")[2]
-        text = re.sub(r"\bname_real\b", "float" if self.request.precision == "single" else "double", text)
-        text = re.sub(r"\bname_", f"{self.name}_", re.sub(r"\bNAME_", f"{self.name.upper()}_", text))
+        text = self.spelt(text_of(f"proof/{self.driver}.c").partition("\n\n")[2])
         return f'#include "{self.name}.h"\n#define COUNT {count}\n\n{text}'
+
+    def spelt(self, text: str) -> str:
+        """C for a program called `name`, with the name and the numbers of this one."""
+        text = re.sub(r"\bname_real\b", "float" if self.request.precision == "single" else "double", text)
+        return re.sub(r"\bname_", f"{self.name}_", re.sub(r"\bNAME_", f"{self.name.upper()}_", text))
 
     def _program(self) -> Program:
         request = self.request
-        tolerance = _TOLERANCES[request.precision]
-        changes = {"name": self.name, "output.tolerance": tolerance, **dict(self.changes)}
+        changes = {"name": self.name, **dict(self.changes)}
+        if "tolerance" not in changes.get("output", {}):
+            changes["output.tolerance"] = _TOLERANCES[request.precision]
         scene = Scene.from_toml(self.scene).with_(changes)
         model = lower(scene)
         if request.stream:
@@ -92,17 +96,70 @@ class PortableProgram:
         return make(model, request, tested=True)
 
 
-_CLOSED = PortableProgram("closed", "building_m2", Request("closed"), "values", (7,))
-_PIECES = PortableProgram("pieces", "building_m2", Request("pieces"), "values", (7,))
-_MARCH = PortableProgram("march", "building_m2", Request("march"), "values", (7,))
-_DRIVEN = PortableProgram("march", "building_m2", Request("march"), "march")
-_RINGS = PortableProgram("rings", "stepped_shaft", Request("march"), "values", (7,))
-_MODES = PortableProgram(
-    "modes", "building_m2", Request("modes"), "stream", changes=tuple(_SHAKEN.items()), precision=3
+_BUILDING = "building_m2"
+_COUNTS = (0, 1, 7)
+_CLOSED = PortableProgram("closed", _BUILDING, Request("closed"), "values", _COUNTS)
+_PIECES = PortableProgram("pieces", _BUILDING, Request("pieces"), "values", (*_COUNTS, 5))  # blocks of 4, read plainly
+_MARCH = PortableProgram("march", _BUILDING, Request("march"), "values", (1,), effort="followed")
+_DRIVEN = PortableProgram("march", _BUILDING, Request("march"), "march")
+_RINGS = PortableProgram("rings", "stepped_shaft", Request("march"), "values", _COUNTS)
+_MODES = PortableProgram("modes", _BUILDING, Request("modes"), "stream", changes=tuple(_SHAKEN.items()), effort="more")
+_MODES_SINGLE = replace(
+    _MODES.single, changes=tuple({**_SHAKEN, "output": {**_SHAKEN["output"], "tolerance": "1/50"}}.items())
 )
-_STREAM = PortableProgram("stream", "building_m2", Request(stream=True), "stream")
-_RUNTIME = PortableProgram("runtime", "building_m2", Request(runtime=("kappa", "load")), "runtime", (7,))
+_STREAM = PortableProgram("stream", _BUILDING, Request(stream=True), "stream")
+_TUNED = PortableProgram("tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "tuned")
+_RUNTIME = PortableProgram("runtime", _BUILDING, Request(runtime=("kappa", "load")), "runtime", (7,), effort="bounds")
+_JOINTS = PortableProgram("joints", "stepped_shaft", Request(runtime=("mass", "impedance", "load")), "runtime", (7,))
 
-PROVED = (_CLOSED, _PIECES, _DRIVEN, _RINGS, _MODES, _STREAM)
-CHECKED = (_CLOSED, _PIECES, _MARCH, _RINGS, _MODES, _STREAM, _RUNTIME)
-COMPILED = (_STREAM, _PIECES.single, _MARCH.single)
+# short, of low degree: each way through the same C can be followed to its end
+_SHORT: tuple[tuple[str, Any], ...] = (
+    ("output", {"until": 2, "strain": ["1/2"], "velocity": [2], "displacement": ["3/2"]}),
+    ("load", [{"times": [0, "3/2"], "a": [1, 0], "b": [0, -1]}]),
+)
+_BLOCKS = (0, 1, 7, 17)  # blocks of 16
+_BRIEF_MARCH = PortableProgram("march_brief", _BUILDING, Request("march"), "values", (0, 1, 7), _SHORT, "followed")
+_BRIEF = PortableProgram(
+    "runtime_brief",
+    _BUILDING,
+    Request(runtime=("load",)),
+    "runtime",
+    _BLOCKS,
+    (*_SHORT, ("system.kappa", [3, 2, 3])),
+    "unrolled",
+)
+_BRIEF_JOINTS = PortableProgram(
+    "joints_brief", "stepped_shaft", Request(runtime=("load",)), "runtime", (7,), (("output.until", 2),), "unrolled"
+)
+
+PROVED = (
+    _CLOSED,
+    _CLOSED.single,
+    _PIECES,
+    _PIECES.single,
+    _DRIVEN,
+    _DRIVEN.single,
+    _MARCH,
+    _BRIEF_MARCH,
+    _BRIEF_MARCH.single,
+    _RINGS,
+    _RINGS.single,
+    _MODES,
+    _MODES_SINGLE,
+    _STREAM,
+    _STREAM.single,
+    _TUNED,
+    _TUNED.single,
+    _RUNTIME,
+    _BRIEF,
+    _BRIEF.single,
+    *(
+        replace(_BRIEF, driver=driver, counts=counts)
+        for driver, counts in (("tangent", (7,)), ("bound", ()), ("batch", ()), ("misfit", (2,)))
+    ),
+    _BRIEF_JOINTS,
+)
+CHECKED = (_CLOSED, _PIECES, _MARCH, _RINGS, _MODES, _STREAM, _TUNED, _RUNTIME, _JOINTS)
+COMPILED = tuple(
+    program for double in CHECKED for program in (double, _MODES_SINGLE if double is _MODES else double.single)
+)

@@ -37,6 +37,7 @@ MOST_PANELS = 16
 # of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
 _ESTIMATED = 100
 _LONG = 30  # characters of a number that nobody reads
+_HELPS = "fewer samples, modes, or for what does not jump NumPy or run"
 _NONE, _ONE = fmpq(0), fmpq(1)
 
 
@@ -225,14 +226,15 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
     )
 
 
-def panels(times: Sequence[fmpq]) -> tuple[MarchPanel, ...]:
-    """The parts of every window between which loads begin or bend. SpacingError where there are too many."""
+def panels(times: Sequence[fmpq], helps: str = _HELPS) -> tuple[MarchPanel, ...]:
+    """The parts of every window between which loads begin or bend. SpacingError where there are too many, with what
+    helps beside another spacing.
+    """
     cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise SpacingError(
             f"load: times at a spacing of {told(common(times))} have {len(cuts) - 1} different fractional parts, at "
-            f"most {MOST_PANELS} expected in a march ({suiting(times)}, fewer samples, modes, or for what does not "
-            "jump NumPy or run, helps)"
+            f"most {MOST_PANELS} expected in a march ({suiting(times)}, {helps}, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 

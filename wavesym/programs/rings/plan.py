@@ -240,7 +240,7 @@ class _Loads:
         self.changes: list[tuple[fmpq, int, fmpq_poly]] = []
         for number in points:
             point = model.network.points[number]
-            units = {unit.source: moved_by(point, unit) for unit in point.loads}
+            units = {unit.source: fmpq_poly(list(moved_by(point, unit))) for unit in point.loads}
             for load in model.acting(until):
                 if load.source in units:
                     self.changes.append((load.time, number, load.weight * units[load.source]))
@@ -265,12 +265,11 @@ class _Loads:
             yield LoadEvent(window, places[time - window * step], force, _three(total))
 
 
-def moved_by(point: Point, unit: UnitLoad) -> fmpq_poly:
-    """The force that a unit load makes of itself at a point, or the velocity that it prescribes."""
-    polynomial = fmpq_poly(list(unit.coefficients))
+def moved_by(point: Point, unit: UnitLoad) -> tuple[Any, ...]:
+    """The force that a unit load makes of itself at a point, or the velocity that it prescribes, by powers of tau."""
     if point.motion == "acceleration":
-        return polynomial.integral()
-    return polynomial if point.motion else joint_rule().load * polynomial
+        return (_ZERO, *(coefficient / (power + 1) for power, coefficient in enumerate(unit.coefficients)))
+    return unit.coefficients if point.motion else tuple(joint_rule().load * each for each in unit.coefficients)
 
 
 def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:

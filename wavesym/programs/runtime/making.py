@@ -8,8 +8,8 @@ from itertools import accumulate
 
 from flint import fmpq
 
-from wavesym.errors import WavesymError
-from wavesym.mechanics.loads import Applied
+from wavesym.errors import UnservedError, WavesymError
+from wavesym.mechanics.loads import Applied, AppliedRecord
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
@@ -47,11 +47,13 @@ def runtime_program(
     real = REALS[request.precision]
     tolerance = max(model.tolerance, FINEST[real.name])
     if model.chain is None:
+        if any(isinstance(load, AppliedRecord) for _, load in amplitudes):
+            raise UnservedError("--runtime: load given with samples in a chain, loads with times expected")
         program = joints_program(model, request, amplitudes, tolerance, real)
         return _with_reference(program) if tested else program
     given = fields(model, request.runtime, amplitudes)
     chosen = any(field.name == "load" for field in given)
-    loads = [load for _, load in amplitudes] if chosen else [load for load in model.loads if load.source != "impact"]
+    loads = [load for _, load in amplitudes] if chosen else _as_one(model)
     made = runtime_plan(model, given, loads, real)
     least, degree = degrees(made, tolerance, real)
     light = f" and for kappa up to {STIFF}" if any(field.positive for field in given) else ""
@@ -60,7 +62,7 @@ def runtime_program(
         f"scene's own parameters{light}; errors are estimated"
     )
     tables = _tables(made, real)
-    laws = _laws(made, () if chosen else tuple(real.nearest(load.weight) for load in loads))
+    laws = _laws(made, () if chosen else (1.0,) * len(loads))
     positive = [label for field in given if field.positive for label in field.labels]
     rounded = most_roundings(laws.functions, positive)
     constants = {
@@ -83,6 +85,12 @@ def runtime_program(
         laws=laws,
     )
     return _with_reference(program) if tested else program
+
+
+def _as_one(model: Model) -> list[Applied]:
+    """All loads of a model, which have no amplitude of their own."""
+    loads = tuple(load for load in model.loads if load.source != "impact")
+    return [AppliedRecord(loads[0].source, loads[0].time, fmpq(1), loads)] if loads else []
 
 
 def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:
@@ -130,6 +138,7 @@ def _tables(made: RuntimePlan, real: Real) -> dict[str, tuple[float, ...]]:
     sections, outputs = len(made.sections) - 1, len(plan.outputs)
     listening = [made.listening(section, output) for section in range(sections) for output in range(outputs)]
     forces = {column: force for force, column in enumerate(plan.loaded)}
+    places = {strength: place for place, strength in enumerate(strengths)}
 
     def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
         return tuple(map(real.nearest, values))
@@ -143,8 +152,10 @@ def _tables(made: RuntimePlan, real: Real) -> dict[str, tuple[float, ...]]:
         "event_window": tuple(push.window for push in pushes),
         "event_panel": tuple(push.panel for push in pushes),
         "event_force": tuple(push.force for push in pushes),
-        "event_power": tuple(push.power for push in pushes),
-        "event_strength": tuple(strengths.index(push.strength) for push in pushes),
+        # of a load that is told anew 3 more
+        "event_power": tuple(push.power + 3 * push.anew for push in pushes),
+        "event_weight": reals(push.weight for push in pushes),
+        "event_strength": tuple(places[push.strength] for push in pushes),
         "event_load": tuple(push.load for push in pushes),
         "from": tuple(real.not_below(begin) for begin in made.sections),
         "first_strand": _firsts(map(len, listening)),

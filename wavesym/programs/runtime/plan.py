@@ -9,17 +9,20 @@ sent at the same instant, on panels of the same length, are added up once, to a 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import groupby
 from typing import Any
 
-from flint import fmpq
+from flint import fmpq, fmpq_poly
 
+from wavesym.errors import UnservedError
 from wavesym.exact.node_rules import node_rule
+from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import network_of
-from wavesym.mechanics.node import Parameters
+from wavesym.mechanics.node import Node, Parameters
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ring
 from wavesym.numbers.reals import DOUBLE, Real
@@ -27,11 +30,14 @@ from wavesym.programs.march.plan import HeardWave, Plan, Stretch, panels, plan
 from wavesym.programs.runtime.request import RuntimeField
 from wavesym.programs.runtime.units import Function, force_kept, load_kept
 
+_HELPS = "to which samples may be interpolated"
+
 
 @dataclass(frozen=True)
 class Push:
-    """From panel `panel` of window `window` on, `strength` times amplitude `load` times the `power` of the time since
-    acts as load `force` (in the units of a law that is divided by g).
+    """From panel `panel` of window `window` on, `strength` and `weight` times amplitude `load` times the `power` of the
+    time since acts as load `force` (in the units of a law that is divided by g): added to what acts there, or, `anew`,
+    in its place.
     """
 
     window: int
@@ -40,6 +46,8 @@ class Push:
     power: int
     strength: Function
     load: int
+    weight: fmpq = field(default_factory=lambda: fmpq(1))
+    anew: bool = False
 
 
 @dataclass(frozen=True)
@@ -75,7 +83,7 @@ class Strand:
 
 @dataclass(frozen=True)
 class RuntimePlan:
-    """`plan` has symbols for parameters and no loads; `model` is the scene's own, `loads` have an amplitude each."""
+    """`plan` has symbols for parameters and no loads; `model` is the scene's own, `loads` are what acts, but for 0."""
 
     model: Model
     plan: Plan
@@ -100,7 +108,43 @@ class RuntimePlan:
 def runtime_plan(
     model: Model, given: Sequence[RuntimeField], loads: Sequence[Applied], real: Real = DOUBLE
 ) -> RuntimePlan:
-    """The plan of a model with the fields `given` at run time; CostError as for a march."""
+    """The plan of a model with the fields `given` at run time; each of `loads` has an amplitude.
+
+    CostError as for a march, UnservedError where the samples of a load have an amplitude beside another one.
+    """
+    ring, free = free_chain(model, given)
+    chosen = [unit.size for field in given if field.name == "load" for unit in field.units]
+    units = chosen or [fmpq(1)] * len(loads)
+    until = rational(model.horizon(real))
+    acting = [[change for change in load.changes if change.time <= until] for load in loads]
+    made = replace(
+        plan(replace(model, chain=free, network=network_of(free), loads=()), real),
+        panels=panels([change.time for changes in acting for change in changes], _HELPS),
+    )
+    kept: list[Any] = [force_kept(model, free) if probe.quantity == "force" else fmpq(1) for probe in model.probes]
+    heard = tuple(
+        (number, replace(wave, gain=wave.gain * kept[number]))
+        for number, output in enumerate(made.outputs)
+        for wave in output.heard
+    )
+    return RuntimePlan(
+        model,
+        made,
+        ring,
+        tuple(given),
+        tuple(
+            replace(change, weight=change.weight * (load.weight or 1))
+            for load, changes in zip(loads, acting, strict=True)
+            for change in changes
+        ),
+        _pushes(made, model.named, acting, units, load_kept(model, free)),
+        heard,
+        tuple(_strands(made, heard)),
+    )
+
+
+def free_chain(model: Model, given: Sequence[RuntimeField]) -> tuple[Ring, Chain]:
+    """A named chain with symbols for the parameters `given` at run time, which are told in their units."""
     chain = model.named
     symbols = [label for field in given if field.name != "load" for label in field.labels]
     ring = Ring(tuple(symbols))
@@ -117,48 +161,52 @@ def runtime_plan(
         return values and {i: own.get(f"{name}_{i}", value) for i, value in values.items()}
 
     parameters = Parameters(**{name: numbers(name) for name in ("kappa", "inertia", "velocity", "dashpot")})
-    free = replace(chain, parameters=parameters)
-    chosen = [unit.size for field in given if field.name == "load" for unit in field.units]
-    units = chosen or [fmpq(1)] * len(loads)
-    acting = [(load.time, number) for number, load in enumerate(loads) if load.time <= rational(model.horizon(real))]
-    made = replace(
-        plan(replace(model, chain=free, network=network_of(free), loads=()), real),
-        panels=panels([time for time, _ in acting]),
-    )
-    kept: list[Any] = [force_kept(model, free) if probe.quantity == "force" else fmpq(1) for probe in model.probes]
-    heard = tuple(
-        (number, replace(wave, gain=wave.gain * kept[number]))
-        for number, output in enumerate(made.outputs)
-        for wave in output.heard
-    )
-    return RuntimePlan(
-        model,
-        made,
-        ring,
-        tuple(given),
-        tuple(loads),
-        tuple(_pushes(made, loads, [number for _, number in sorted(acting)], units, load_kept(model, free))),
-        heard,
-        tuple(_strands(made, heard)),
-    )
+    return ring, replace(chain, parameters=parameters)
 
 
 def _pushes(
-    made: Plan, loads: Sequence[Applied], acting: Sequence[int], units: Sequence[fmpq], kept: Function
-) -> Iterator[Push]:
-    places = {panel.start: number for number, panel in enumerate(made.panels)}
-    nodes = made.model.named.nodes
-    for number in acting:
-        load = loads[number]
-        window = int(load.time.floor())
-        for force, column in enumerate(made.loaded):
-            node = nodes[made.first + column]
-            rule = node_rule(node)
-            for unit in node.loads:
-                for power, coefficient in enumerate(unit.coefficients):
-                    if unit.source == load.source and coefficient != 0:
-                        strength = coefficient * (rule.load / rule.same) * kept / units[number]
-                        yield Push(window, places[load.time - window], force, power, strength, number)
+    made: Plan, own: Chain, acting: Sequence[Sequence[Applied]], units: Sequence[fmpq], kept: Function
+) -> tuple[Push, ...]:
+    """In the order of time; `own` has the scene's numbers."""
+    found = []
+    for force, column in enumerate(made.loaded):
+        node = made.model.named.nodes[made.first + column]
+        rule = node_rule(node)
+        powers, size = _unit_loads(own.nodes[made.first + column], node)
+        for number, changes in enumerate(acting):
+            strength = size * (rule.load / rule.same) * kept / units[number]
+            for time, power, weight, anew in _told(changes, powers):
+                window = int(time.floor())
+                panel = next(place for place, panel in enumerate(made.panels) if panel.start == time - window)
+                found.append(Push(window, panel, force, power, strength, number, weight, anew))
+    for force in {push.force for push in found if push.anew}:
+        if len({push.load for push in found if push.force == force}) > 1:
+            raise UnservedError(
+                "--runtime: load given where samples act beside another load on the same body, one load expected "
+                "there (samples that are added up, or loads as in the scene, help)"
+            )
+    return tuple(sorted(found, key=lambda push: (push.window, push.panel)))
+
+
+def _unit_loads(own: Node, node: Node) -> tuple[dict[str, fmpq_poly], Function]:
+    """Polynomials in time for each source, and the function that all of them are multiplied by."""
+    first = next(k for k, coefficient in enumerate(own.loads[0].coefficients) if coefficient != 0)
+    size = own.loads[0].coefficients[first]
+    powers = {unit.source: fmpq_poly([coefficient / size for coefficient in unit.coefficients]) for unit in own.loads}
+    return powers, node.loads[0].coefficients[first]
+
+
+def _told(changes: Sequence[Applied], powers: Mapping[str, fmpq_poly]) -> Iterator[tuple[fmpq, int, fmpq, bool]]:
+    """When, which power and how much of it: at each change all that acts, so that nothing adds up."""
+    since, acts, begun = fmpq(0), fmpq_poly(), False
+    for time, same in groupby(changes, key=lambda change: change.time):
+        new = sum((change.weight * powers[change.source] for change in same if change.source in powers), fmpq_poly())
+        if new:
+            since, acts = time, acts(fmpq_poly([time - since, 1])) + new
+            told = [(power, acts[power]) for power in range(3) if acts[power]] or [(0, fmpq(0))]
+            for place, (power, weight) in enumerate(told):
+                yield time, power, weight, begun and place == 0
+            begun = True
 
 
 def _strands(made: Plan, heard: Sequence[tuple[int, HeardWave]]) -> Iterator[Strand]:

@@ -13,7 +13,7 @@ from math import inf, isfinite
 
 from flint import arb, fmpq
 
-from wavesym.errors import CostError, WavesymError
+from wavesym.errors import CostError, RangeError, ToleranceError, WavesymError
 from wavesym.mechanics.loads import Applied, merged
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest
@@ -31,7 +31,10 @@ from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.rings.bound import judge
 from wavesym.programs.rings.evaluator import first_degree, refuse_long
+from wavesym.programs.stream.free import FreeStream, free_stream, usual_parameters
+from wavesym.programs.stream.made import MADE, laws_of, places, sizes
 from wavesym.programs.stream.plan import Input, StreamPlan, stream_plan
+from wavesym.programs.stream.quick import quick_enough, refuse_stiff
 from wavesym.programs.stream.tables import StreamTables
 
 _ONE = fmpq(1)
@@ -42,27 +45,44 @@ _SPARE = 4  # of the tolerance one step of each load takes so much less
 def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, tested: bool = False) -> Program:
     """The program of a model whose loads are `inputs`, to be given while it runs.
 
-    WavesymError, CostError as `stream_plan` says, and where other options are given that say otherwise.
+    WavesymError, CostError as `stream_plan` says, and where other options are given that say otherwise; RangeError
+    where numbers would be beyond those of the precision, ToleranceError where rounding is as large as an output.
     """
+    try:
+        return _program(model, request, inputs, tested)
+    except OverflowError:
+        beyond = f"numbers beyond the range of {request.precision} precision"
+        raise RangeError(f"output: a stream needs {beyond}") from None
+
+
+def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bool) -> Program:
     for option, value, usual in (
         ("--evaluator", request.evaluator, "auto"),
         ("--windows", request.windows, None),
         ("--optimize", request.optimize, None),
-        ("--runtime", ",".join(request.runtime) or None, None),
     ):
         if value != usual:
             raise WavesymError(f"{option}: {value} given with --stream, {usual or 'nothing'} expected")
     real = REALS[request.precision]
-    plan = stream_plan(model, inputs, real, request.step)
-    degree, verdict = _enough(plan, model, real)
-    made = StreamTables(plan, degree, real)
+    names = request.runtime or (usual_parameters(model) if request.target else ())
+    free = free_stream(model, names, inputs, real) if names else None
+    plan = free.plan(request.step) if free else stream_plan(model, inputs, real, request.step)
     tolerance = max(model.tolerance, _ROUNDINGS * real.roundoff)
+    degree, verdict = _enough(plan, model, real)
+    for output, error in zip(plan.rings.outputs, verdict.bounds, strict=True):
+        if not isfinite(error):
+            told = f"output.tolerance: {nearest(tolerance):g} cannot be met: stream: "
+            raise ToleranceError(f"{told}rounding may leave nothing of {output.name} (other outputs help)")
+    if free:
+        refuse_stiff(plan)
+        degree, quicker = quick_enough(free, plan, degree, nearest(tolerance), real)
+    made = StreamTables(plan, degree, real)
     program = Program(
         "stream",
         real,
         plan.rings.tau_max,
         tuple(
-            ProgramOutput(output.name, bound(arb(error)) if isfinite(error) else error, size)
+            ProgramOutput(output.name, nearest(tolerance) if free else bound(arb(error)), size)
             for output, error, size in zip(plan.rings.outputs, verdict.bounds, verdict.largest, strict=True)
         ),
         made.tables(),
@@ -73,7 +93,27 @@ def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, t
         proved=False,
         direct=plan.direct,
     )
+    if free:
+        program = _freed(program, free, plan, degree, quicker)
     return replace(program, reference=_reference(model, plan, program)) if tested else program
+
+
+def _freed(program: Program, free: FreeStream, plan: StreamPlan, degree: int, quicker: fmpq) -> Program:
+    """With functions for the tables that parameters make, enough for joints so much `quicker` than the scene's."""
+    names, laws, more = ", ".join(field.name for field in free.fields), laws_of(free), sizes(plan, degree)
+    kept = sum(map(len, laws.functions.values())) + int(more["answers"] + more["slips"])
+    also = f" and for joints {quicker} times as fast" if quicker != 1 else ""
+    kib = -(-kept * program.real.bytes // 1024)
+    reason = f"{names} at run time, {kib} KiB more, enough for the scene's own{also}; errors are estimated"
+    tables = {name: table for name, table in program.tables.items() if name not in MADE} | places(free, plan, degree)
+    return replace(
+        program,
+        tables=tables,
+        constants=program.constants | more,
+        bytes=sum((4 if isinstance(v, int) else program.real.bytes) for row in tables.values() for v in row),
+        provenance=replace(program.provenance, reason=f"{program.provenance.reason}; {reason}"),
+        laws=laws,
+    )
 
 
 def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:

@@ -11,10 +11,11 @@ such that
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
-from flint import fmpq, fmpq_poly
+from flint import fmpq
 
 from wavesym.errors import CostError, UnservedError
 from wavesym.mechanics.loads import Applied
@@ -104,6 +105,15 @@ class StreamPlan:
         for j in range(len(self.inputs)):
             yield [(k, force.gains[j]) for k, force in acting if not force.summed]
 
+    def quicker(self, times: fmpq) -> StreamPlan:
+        """The same with joints that are so many times as fast."""
+
+        def quick(joint: MarchedJoint) -> MarchedJoint:
+            space = joint.space
+            return replace(joint, space=replace(space, rates=times * space.rates, pushed=times * space.pushed))
+
+        return replace(self, rings=replace(self.rings, joints=tuple(map(quick, self.rings.joints))))
+
     def late(self, delay: fmpq) -> tuple[int, fmpq]:
         """A delay as whole panels and a rest."""
         whole = int((delay / self.panel).floor())
@@ -120,26 +130,41 @@ def inputs_of(model: Model, sources: Sequence[str]) -> tuple[Input, ...]:
     return tuple(Input(source, *model.inputs.get(source, (_ONE, ""))) for source in chosen)
 
 
+def steps_of(inputs: Sequence[Input]) -> tuple[Applied, ...]:
+    """Steps of all inputs at tau = 0."""
+    return tuple(Applied(given.source, _ZERO, _ONE) for given in sorted(inputs, key=lambda given: given.source))
+
+
 def stream_plan(model: Model, inputs: Sequence[Input], real: Real, spacing: fmpq | None = None) -> StreamPlan:
     """The plan of a model in `real` numbers, for calls at any time or `spacing` apart.
 
     UnservedError for contacts and damped modes; CostError where panels would be too short.
     """
-    steps = tuple(Applied(given.source, _ZERO, _ONE) for given in sorted(inputs, key=lambda given: given.source))
-    rings = ring_plan(replace(model, loads=steps), real)
-    count = _panels(rings, spacing)
+    rings = ring_plan(replace(model, loads=steps_of(inputs)), real)
+    acting = acting_inputs(model.network, rings.pushed, inputs)
+    return StreamPlan(paneled(rings, spacing), tuple(inputs), tuple(acting))
+
+
+def paneled(rings: RingPlan, spacing: fmpq | None, quicker: fmpq = _ONE) -> RingPlan:
+    """On the panels of a stream, for joints that may be `quicker` than they are."""
+    count = _panels(rings, spacing, quicker)
     length = rings.step / count
-    rings = replace(rings, panels=tuple(MarchPanel(k * length, length) for k in range(count)))
-    return StreamPlan(rings, tuple(inputs), tuple(_acting(model.network, rings, inputs)))
+    return replace(rings, panels=tuple(MarchPanel(k * length, length) for k in range(count)))
 
 
-def _acting(network: Network, rings: RingPlan, inputs: Sequence[Input]) -> Iterator[InputForce]:
-    for number in rings.pushed:
+def acting_inputs(
+    network: Network, pushed: Iterable[int], inputs: Sequence[Input], kept: Any = _ONE
+) -> Iterator[InputForce]:
+    """What inputs do to the points that are pushed, `kept` times as much as their sizes say; numbers or functions."""
+    for number in pushed:
         point = network.points[number]
         units = {unit.source: moved_by(point, unit) for unit in point.loads}
-        responses = [units.get(given.source, fmpq_poly()) for given in inputs]
-        summed = any(response.degree() > 0 for response in responses)
-        gains = (response[int(summed)] / given.size for response, given in zip(responses, inputs, strict=True))
+        responses = [units.get(given.source, ()) for given in inputs]
+        summed = any(coefficient != 0 for response in responses for coefficient in response[1:])
+        gains = (
+            sum(response[int(summed) :][:1], _ZERO) * kept / given.size
+            for response, given in zip(responses, inputs, strict=True)
+        )
         yield InputForce(point.velocity if point.motion is not None else _ZERO, tuple(gains), summed)
 
 
@@ -151,13 +176,13 @@ def _loaded(joints: Sequence[MarchedJoint]) -> tuple[int, ...]:
     return tuple(n for n, joint in enumerate(joints) if any(force >= 0 for force in joint.forces))
 
 
-def _panels(rings: RingPlan, spacing: fmpq | None) -> int:
+def _panels(rings: RingPlan, spacing: fmpq | None, quicker: fmpq) -> int:
     """How many are a step of the march."""
     step, joints = rings.step, rings.joints
     sent = {track for n in _loaded(joints) for track in joints[n].sends}
     near = {heard.delay: output for output in reversed(rings.outputs) for heard in output.heard if heard.track in sent}
     shortest = min((delay for delay in near if delay != 0), default=step)
-    fastest = max(joint.space.norm for joint in joints)
+    fastest = nearest(quicker) * max(joint.space.norm for joint in joints)
     few = 1 if spacing is None else int((step / spacing).p)
     longest, most = min(LONGEST, shortest), max(int((step / FINEST).floor()), 8)
     count = few * int((step / (few * longest)).ceil())

@@ -20,7 +20,7 @@ from wavesym.programs.stream.plan import StreamPlan
 Array = NDArray[np.float64]
 
 # of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
-_CAUTION = 4
+CAUTION = 4
 _LONGEST = 10**6  # panels of a step, each of which takes its time
 _SHORTEST = fmpq(1, 10**30)  # of steps but 0: no slope of a load is larger than the load times 1e30
 
@@ -40,7 +40,7 @@ class StreamTables:
         late = [plan.late(one.delay) for one in heard]
         joints = self._rings.joints()
         spaces = [self._joints[n].space for n in plan.loaded]
-        slips = [self._slips(joint) for joint in self._joints]
+        slips = [self.slips(joint) for joint in self._joints]
         laws = [
             [value for matrix in (s.rates, s.pushed, s.shown, s.passed) for value in matrix.entries()] for s in spaces
         ]
@@ -176,14 +176,14 @@ class StreamTables:
             first += joint.space.points
         return found
 
-    def _slips(self, joint: MarchedJoint) -> list[float]:
+    def slips(self, joint: MarchedJoint) -> list[float]:
         """What the polynomials of a joint miss, as velocities of its points, from what its matrix takes."""
         if not joint.space.states:
             return []
         missed = self._rings.missed(joint, self._plan.panel)
         weights = np.array([[sqrt(nearest(weight))] for weight in joint.space.weights])
         shown = np.array([[nearest(v) for v in row] for row in joint.space.shown.tolist()])
-        rows = _CAUTION * shown @ (missed / weights)
+        rows = CAUTION * shown @ (missed / weights)
         return [float(f"{value:.3g}") for value in rows.ravel().tolist()]
 
     def _reals(self, values: Iterable[fmpq]) -> tuple[float, ...]:

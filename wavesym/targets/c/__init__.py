@@ -38,7 +38,7 @@ class CTarget:
         name = description.name
         more = _MORE[program.kind](description, program) if program.kind in _MORE else ""
         made = {
-            f"{name}.h": header(description, more, under=_UNDER.get(program.kind, "")),
+            f"{name}.h": header(description, more, under=_UNDER.get(program.kind, ""), bounded=program.laws is None),
             f"{name}.c": _SOURCES[program.kind](description, program),
         }
         match program.reference:

@@ -19,6 +19,7 @@ class CRings:
     tables: dict[str, Lines]
     constants: dict[str, str]
     numbers: str
+    series: str
     kernel: str
 
 
@@ -29,6 +30,7 @@ def source(scene: Description, program: Program) -> str:
         tables=c_tables(program.tables, program.real),
         constants=c_constants(program.constants, program.real),
         numbers=kernel("real.h", scene),
+        series=kernel("series.h", scene),
         kernel=kernel("rings.c", scene),
     )
     return render("c/rings.c.j2", context)

@@ -9,6 +9,7 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.program import Program, SteppedValues
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assigned, parameter_fields
 from wavesym.targets.description import Description, constants
 from wavesym.targets.literals import Lines, c_constants, c_literals, c_tables
 
@@ -17,45 +18,68 @@ _ALLOWED = 10  # times the error bound
 
 @dataclass(frozen=True)
 class CStream:
-    """templates/c/stream.c.j2; every table as the lines between its braces."""
+    """templates/c/stream.c.j2; every table as the lines between its braces.
+
+    Of parameters that come at run time `fields` are told, `laws` are what is assigned, with the expression, to `arrays`
+    of so many numbers each; else these are empty.
+    """
 
     scene: Description
     tables: dict[str, Lines]
     constants: dict[str, str]
     numbers: str
+    series: str
     kernel: str
+    fields: tuple[CRuntimeField, ...]
+    arrays: tuple[tuple[str, str], ...]
+    laws: tuple[tuple[str, str], ...]
+    heard: str
+    largest: str
+    made: str
 
 
 @dataclass(frozen=True)
 class CStreamHeader:
     """templates/c/stream.h.j2: the loads and their units as text, and as constants; outputs with those that act on them
-    at once.
+    at once; parameters as `CStream` has them.
     """
 
     scene: Description
     constants: dict[str, str]
     sources: tuple[tuple[str, str], ...]
     direct: tuple[tuple[str, str], ...]
+    fields: tuple[CRuntimeField, ...]
+    arrays: tuple[tuple[str, str], ...]
     state: str
 
 
 @dataclass(frozen=True)
 class CStreamSelfTest:
-    """templates/c/stream_selftest.c.j2: `expected` by step, then by output; doubles whatever the program's type is."""
+    """templates/c/stream_selftest.c.j2: `expected` by step, then by output; doubles whatever the program's type is;
+    what takes parameters is `built` with the scene's own."""
 
     scene: Description
+    built: bool
     count: str
     tables: dict[str, Lines]
 
 
 def source(scene: Description, program: Program) -> str:
     """NAME.c."""
+    laws = program.laws
     context = CStream(
         scene=scene,
         tables=c_tables(program.tables, program.real),
         constants=c_constants(program.constants, program.real),
         numbers=kernel("real.h", scene),
+        series=kernel("series.h", scene),
         kernel=kernel("stream.c", scene),
+        fields=_fields(program),
+        arrays=_arrays(program),
+        laws=tuple(assigned(laws, laws.functions, program.real)) if laws else (),
+        heard=str(len(laws.functions["gain"])) if laws else "",
+        largest=f"{LIMITS[program.real.name]}_MAX",
+        made=kernel("stream_made.c", scene) if laws else "",
     )
     return render("c/stream.c.j2", context)
 
@@ -72,9 +96,25 @@ def streaming(scene: Description, program: Program) -> str:
             for output, of in zip(program.outputs, program.direct, strict=True)
             if of
         ),
+        fields=_fields(program),
+        arrays=_arrays(program),
         state=kernel("stream_state.h", scene),
     )
     return render("c/stream.h.j2", context)
+
+
+def _fields(program: Program) -> tuple[CRuntimeField, ...]:
+    """The parameters that come at run time."""
+    return tuple(parameter_fields(program.laws, program.real)) if program.laws else ()
+
+
+def _arrays(program: Program) -> tuple[tuple[str, str], ...]:
+    """What they make, with how many numbers each has."""
+    if not program.laws:
+        return ()
+    made = {name: len(functions) for name, functions in program.laws.functions.items()}
+    more = {"matrix": program.constants["answers"], "slip": program.constants["slips"]}
+    return tuple((name, str(count)) for name, count in (made | more).items())
 
 
 def selftest(scene: Description, program: Program, reference: SteppedValues) -> str:
@@ -91,6 +131,7 @@ def selftest(scene: Description, program: Program, reference: SteppedValues) -> 
     places = accumulate((len(row.values) for row in rows), initial=0)
     context = CStreamSelfTest(
         scene=scene,
+        built=program.laws is not None,
         count=str(len(rows)),
         tables={
             "dtau": c_literals((row.dtau for row in rows), program.real),

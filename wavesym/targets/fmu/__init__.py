@@ -12,13 +12,16 @@ from wavesym.rendering import render, text_of
 from wavesym.targets.c import TARGET as C
 from wavesym.targets.description import Description
 from wavesym.targets.fmu.units import DefinedUnit, defined
-from wavesym.targets.fmu.variables import Variable, variables
+from wavesym.targets.fmu.variables import Variable, parameters, variables
 from wavesym.targets.literals import literal
 
 
 @dataclass(frozen=True)
 class FmuModel:
-    """templates/fmu/model.h.j2: times in tau, as C writes them; `stepped` streams go on in equal steps."""
+    """templates/fmu/model.h.j2: times in tau, as C writes them; `stepped` streams go on in equal steps.
+
+    `positive` says of each of the `parameters` whether it has to be: "1" or "0".
+    """
 
     scene: Description
     seconds: str
@@ -27,6 +30,8 @@ class FmuModel:
     linear: str
     stepped: str
     constants: tuple[str, ...]
+    parameters: tuple[Variable, ...]
+    positive: tuple[str, ...]
     step: str
     longest: str
 
@@ -80,6 +85,7 @@ def fmu_files(scene: Description, program: Program, version: str) -> dict[str, s
 
 
 def _model(scene: Description, program: Program) -> FmuModel:
+    found = variables(program)
     return FmuModel(
         scene=scene,
         seconds=scene.seconds or "1.0",
@@ -87,7 +93,9 @@ def _model(scene: Description, program: Program) -> FmuModel:
         direct=str(int(any(program.direct))),
         linear=str(int(_stepped(program))),
         stepped=str(int(_stepped(program))),
-        constants=tuple(one.start for one in variables(program) if one.variability == "constant"),
+        constants=tuple(one.start for one in found if one.variability == "constant"),
+        parameters=tuple(one for one in found if one.causality == "parameter" and one.kind == "Real"),
+        positive=tuple(str(int(field.positive)) for field in parameters(program) for _ in field.values),
         step=literal(program.constants["spacing" if _stepped(program) else "panel"]),
         longest=literal(program.constants.get("longest", 0.0)),
     )

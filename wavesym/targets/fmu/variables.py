@@ -1,4 +1,4 @@
-"""What a simulator sees: time, loads, outputs, what is lost, what the model was made with, and one choice."""
+"""What a simulator sees: time, loads, outputs, what is lost, parameters, what is fixed, and one choice."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from flint import fmpq
 
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.program import Program
+from wavesym.programs.runtime.request import RuntimeField
 from wavesym.targets.literals import literal
 
 
@@ -57,6 +58,11 @@ def variables(program: Program) -> tuple[Variable, ...]:
     return tuple(replace(one, reference=reference) for reference, one in enumerate(_variables(program)))
 
 
+def parameters(program: Program) -> tuple[RuntimeField, ...]:
+    """What of the model may be set."""
+    return program.laws.fields if program.laws else ()
+
+
 def _variables(program: Program) -> Iterator[Variable]:
     model, stepped = program.provenance.model, program.kind == "modes"
     seconds = "s" if model.clock else ""
@@ -80,9 +86,14 @@ def _variables(program: Program) -> Iterator[Variable]:
         about, length = "inputs that change at its multiples alone cost no accuracy", program.constants["panel"]
     name = "spacing" if stepped else "panel"
     yield Variable(name, "local", "constant", about, f"{nearest(rational(length) * clock):.15g}", seconds)
+    settable = parameters(program)
     for name, numbers in model.felt.items():
-        for index, value in numbers.items():
+        for index, value in numbers.items() if name not in {field.name for field in settable} else ():
             about = "what the model was made with; a change takes another one"
             yield Variable(f"{name}_{index}", "local", "constant", about, literal(nearest(value)))
+    for field in settable:
+        for label, told, value, given in zip(field.labels, field.told, field.values, field.units, strict=True):
+            about = f"{told}; may be set until initialization is over"
+            yield Variable(label, "parameter", "fixed", about, literal(nearest(value)), given.text)
     about = "whether a load goes in a straight line to its value at the end of a step; else it is held over the step"
     yield Variable("linear", "parameter", "fixed", about, str(stepped).lower(), kind="Boolean")

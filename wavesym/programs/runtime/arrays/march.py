@@ -48,7 +48,9 @@ class ArrayMarch:
         with np.errstate(all="ignore"):  # sets that are refused on the way may grow beyond all numbers
             self.series = [self._window(window) for window in range(tables.sizes["windows"])]
             heard = sum(4.0 * len(each[0]) * np.abs(each).sum(axis=(0, 1, 2)) for each in self.series)
-            missed = 4 * self._missed + tables.unit * (self._value.degree + tables.sizes["windows"]) * self._size
+            degree = self._value.degree
+            rounded = tables.unit * (degree + tables.sizes["windows"] + degree * degree / 16)
+            missed = 6 * self._missed + rounded * self._size
             self.estimate = self._estimated(missed)
         self.status[(self.status == 0) & ~np.isfinite(self._size + missed + heard)] = 1
         self.estimate[self.status != 0] = np.nan
@@ -142,5 +144,5 @@ class ArrayMarch:
 def _changes(tables: ArrayTables, loads: ArrayLaws, strengths: ArrayLaws) -> Array:
     """What each change of a load is: an amplitude times a strength."""
     load, strength = tables.ints("event_load"), tables.ints("event_strength")
-    found: Array = loads.load[..., load, :] * strengths.strength[..., strength, :]
+    found: Array = tables["event_weight"][:, None] * loads.load[..., load, :] * strengths.strength[..., strength, :]
     return found

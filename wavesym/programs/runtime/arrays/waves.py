@@ -55,7 +55,8 @@ class ArrayWaves:
                 gone = self._gone(window, panel)[force]
                 c[0] += gone * (c[1] + gone * c[2])
                 c[1] += 2 * gone * c[2]
-                c[power] += self._change[..., self._event, :]
+                c *= power < 3  # else what acts is told anew
+                c[power % 3] += self._change[..., self._event, :]
                 self._since[:, force] = window, panel
                 self._event += 1
             middle = (self._gone(window, panel) + half)[:, None]

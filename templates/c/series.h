@@ -1,0 +1,40 @@
+/* series.h: Chebyshev series of DEGREE, as marches of chains and streams read them.
+ * Plain C of a program of a scene called `name`. Generated files have what stands below the first empty line. */
+
+/* y += factor a */
+static void add(real *y, real factor, const real *a, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        y[k] += factor * a[k];
+    }
+}
+
+/* sum of c_k T_k(u) */
+static real series(const real *c, real u)
+{
+    const real twice = u + u;
+    real next = 0;
+    real after = 0;
+    for (int k = DEGREE; k > 0; --k) {
+        const real now = (twice * next - after) + c[k];
+        after = next;
+        next = now;
+    }
+    return (u * next - after) + c[0];
+}
+
+/* Its antiderivative, times 1 / half the length of the panel. */
+static real antiderivative(const real *c, real u)
+{
+    const real twice = u + u;
+    real next = 0;
+    real after = 0;
+    for (int k = DEGREE + 1; k > 0; --k) {
+        const real lower = k == 1 ? 2 * c[0] : c[k - 1];
+        const real upper = k < DEGREE ? c[k + 1] : (real)0;
+        const real now = (twice * next - after) + (lower - upper) / (real)(2 * k);
+        after = next;
+        next = now;
+    }
+    return u * next - after;
+}

@@ -1,0 +1,75 @@
+/* runtime.c: models of any parameters, and their derivatives, read anywhere. A model that is refused has no values; of one
+ * that is built all are numbers, `sample` and `eval` agree but for rounding, and derivatives leave values as they are. */
+#include "models.h"
+
+enum { MOST = 40 };
+
+static void sampled(const name_model *model, int status, name_real tau0, name_real dtau, size_t count)
+{
+    name_real *const rows = room(NAME_OUTPUTS * count);
+    const name_real slack = status ? 0 : rounded(model);
+    const int found = name_model_sample(model, tau0, dtau, count, rows);
+    int outside = 0;
+    for (size_t k = 0; k < count; ++k) {
+        const volatile name_real step = (name_real)k * dtau;
+        const name_real tau = tau0 + step;
+        name_real out[NAME_OUTPUTS];
+        look(model, status, tau, out);
+        for (size_t output = 0; output < NAME_OUTPUTS; ++output) {
+            const name_real value = rows[output * count + k];
+            MUST(status || !in_range(tau) ? value != value : size_of(value - out[output]) <= slack);
+        }
+        outside |= status || !in_range(tau);
+    }
+    MUST(found == outside);
+    free(rows);
+}
+
+static void derived(const name_parameters *set, const name_model *model, int status, name_real tau0, name_real dtau,
+                    size_t count)
+{
+    static name_tangent tangent;
+    name_real *const rows = room((NAME_LANES + 1) * NAME_OUTPUTS * count);
+    name_real out[NAME_OUTPUTS];
+    memset(&tangent, 0xff, sizeof tangent);
+    const int found = name_build_tangent(&tangent, set);
+    const int outside = name_tangent_sample(&tangent, tau0, dtau, count, rows);
+    look(&tangent.value, found, tau0, out);
+    MUST(status == 0 || found != 0);
+    if (found == 0) {
+        MUST(name_error_estimate(&tangent.value) >= name_error_estimate(model) &&
+             name_error_estimate(&tangent.value) <= name_error_estimate(model));
+    }
+    for (size_t k = 0; k < count; ++k) {
+        const volatile name_real step = (name_real)k * dtau;
+        const int fine = found == 0 && in_range(tau0 + step);
+        MUST(fine || outside);
+        for (size_t row = 0; row < (NAME_LANES + 1) * NAME_OUTPUTS; ++row) {
+            const name_real value = rows[row * count + k];
+            MUST(fine ? finite(value) : value != value);
+        }
+        if (fine) {
+            (void)name_model_eval(model, tau0 + step, out);
+            for (size_t output = 0; output < NAME_OUTPUTS; ++output) {
+                MUST(size_of(rows[output * count + k] - out[output]) <= rounded(model));
+            }
+        }
+    }
+    free(rows);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
+{
+    told t = {bytes, count};
+    static name_model model;
+    name_parameters set;
+    some_parameters(&t, &set);
+    const name_real tau0 = number(&t);
+    const name_real dtau = number(&t);
+    const size_t samples = (size_t)choice(&t, MOST);
+    memset(&model, 0xff, sizeof model);
+    const int status = name_build(&model, &set);
+    sampled(&model, status, tau0, dtau, samples);
+    derived(&set, &model, status, tau0, dtau, samples);
+    return 0;
+}

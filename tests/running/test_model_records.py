@@ -1,0 +1,133 @@
+"""Records among the loads of many sets: times their factor they are what the scene has, whatever kappa is."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import wavesym
+from tests.support.without_compiler import without_compiler
+from wavesym.errors import SpacingError, UnservedError
+from wavesym.programs.march import plan
+from wavesym.programs.request import Request
+from wavesym.programs.runtime.arrays.engine import ArraySets
+from wavesym.programs.runtime.making import runtime_program
+from wavesym.running import sets
+from wavesym.scene.lowering import amplitudes, lower
+
+SAMPLES = ["1/3", 1, "-3/2", 0, "1/7", 2, -1, "1/2"]
+SHAKEN = wavesym.Scene(
+    name="shaken",
+    system={"type": "building", "m": 2, "kappa": [1, "3/5", "1/5"], "base": "ground"},
+    load=[{"spacing": "2/3", "samples": SAMPLES}],
+    output={"until": 6, "tolerance": "1e-11", "drift": [1], "acceleration": [2], "displacement": [1]},
+)
+PULLED = SHAKEN.with_({"system.base": "force", "load": [{"spacing": 2, "samples": SAMPLES[:4]}]})
+TURNED = wavesym.Scene(
+    name="turned",
+    system={"type": "drive", "m": 2, "kappa": [1, "1/2"], "inertia": [1, 2, 1]},
+    load=[
+        {"body": 1, "spacing": "1/16", "samples": SAMPLES * 4},
+        {"body": 3, "record": {"samples": SAMPLES}, "spacing": "3/4", "start": "3/2", "scale": "1/2"},
+        {"body": 2, "times": [1, 2], "steps": [1, -1]},
+    ],
+    output={"until": 5, "tolerance": "1e-11", "strain": ["1/2", "3/2"], "velocity": [1], "acceleration": [0]},
+)
+KAPPA = {"shaken": [2, 0.25, 0.75], "turned": [0.25, 30]}
+TAU = np.linspace(0, 5, 41)
+
+
+def times(scene, factors):
+    """The scene with kappa as it is given, each load times its factor, and these as numbers of the field `load`."""
+    changes, given = {"system.kappa": KAPPA[scene.name]}, []
+    for number, (load, factor) in enumerate(zip(scene.load, factors, strict=True)):
+        steps = getattr(load, "steps", ())
+        if hasattr(load, "record"):
+            changes[f"load[{number}].scale"] = load.scale * factor
+        else:
+            name = "steps" if steps else "samples"
+            changes[f"load[{number}].{name}"] = [factor * value for value in getattr(load, name)]
+        given += [float(factor * value) for value in steps] or [float(factor)]
+    return scene.with_(changes), {"kappa": KAPPA[scene.name], "load": given}
+
+
+def check(model, scene, factors):
+    """Values and derivatives."""
+    scaled, given = times(scene, factors)
+    true = wavesym.evaluator(scaled)(TAU)
+    slopes = model.gradients(TAU, **given)
+    wrong = np.max(np.abs(slopes.values[0] - true), axis=1) / np.max(np.abs(true), axis=1)
+    assert np.max(wrong) <= slopes.checks.estimate[0] < 1e-10
+    # values are linear in the factors
+    summed = np.tensordot(given["load"], slopes.by["load"][0], 1)
+    assert np.max(np.abs(summed - slopes.values[0])) < 1e-11 * np.max(np.abs(summed))
+    return given, wrong
+
+
+@pytest.mark.parametrize("scene", [SHAKEN, pytest.param(TURNED, marks=pytest.mark.slow)])
+def test_a_record_counts_times_its_factor(scene):
+    factors = [Fraction(-2), Fraction(1, 2), Fraction(3)][: len(scene.load)]
+    with without_compiler():
+        model = wavesym.model(scene, runtime=["kappa", "load"])
+    assert model.labels["load"][0].startswith("factor of load 0, samples at ")
+    assert model.parameters["load"][0] == 1
+    check(model, scene, factors)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", [SHAKEN, PULLED, TURNED], ids=["ground", "force", "drive"])
+@pytest.mark.parametrize("runtime", [["kappa"], ["kappa", "load"]])
+def test_a_record_in_c(scene, runtime, monkeypatch):
+    monkeypatch.setattr(sets, "FAST", ("-O1",))
+    model = wavesym.model(scene, runtime=runtime)
+    if "load" not in runtime:
+        scaled, given = times(scene, [1] * len(scene.load))
+        true = wavesym.evaluator(scaled)(TAU)
+        found = model.run(TAU, kappa=given["kappa"])[0]
+        wrong = np.max(np.abs(found - true), axis=1) / np.max(np.abs(true), axis=1)
+        del given["load"]
+    else:
+        given, wrong = check(model, scene, [Fraction(5, 2)] * len(scene.load))
+    assert np.all(wrong <= model.bounds(**given)[0])
+    assert np.max(model.bounds(**given)) < 1e-7
+    # and beside other sets
+    data = model.run(TAU, **given)[0]
+    both = {name: np.array([numbers, 2 * np.array(numbers)]) for name, numbers in given.items()}
+    same, other = model.misfit(TAU, data)(**both)
+    assert same < 1e-20 * np.sum(data**2) < other
+
+
+def test_samples_that_only_add_up_are_seen():
+    program = runtime_program(lower(SHAKEN), Request(runtime=("load",)), amplitudes(SHAKEN))
+    added = replace(
+        program, tables=program.tables | {"event_power": tuple(k % 3 for k in program.tables["event_power"])}
+    )
+    true = wavesym.evaluator(SHAKEN)(TAU)
+    right, wrong = (ArraySets(each).values(np.ones((1, 1)), TAU).values[0, 0] - true for each in (program, added))
+    assert np.max(np.abs(right)) < 1e-11 < 0.1 < np.max(np.abs(wrong))
+
+
+MANY = {"load[0].spacing": "0.3017"}
+BESIDE = {"load": [{"spacing": "2/3", "samples": SAMPLES}, {"times": [1], "a": [1]}]}
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        (MANY, "load: times at a spacing of 0.3017 have 8 different fractional parts, at most 7 expected"),
+        (BESIDE, "--runtime: load given where samples act beside another load on the same body"),
+    ],
+)
+def test_records_that_are_refused(changes, expected, monkeypatch):
+    monkeypatch.setattr(plan, "MOST_PANELS", 7)
+    with pytest.raises((SpacingError, UnservedError)) as refused:
+        wavesym.model(SHAKEN.with_(changes), runtime=["kappa", "load"])
+    assert str(refused.value).startswith(expected)
+
+
+def test_a_chain_has_no_factor_of_a_record():
+    scene = wavesym.Scene.from_toml("stepped_shaft")
+    sampled = {"at": scene.load[0].at, "spacing": 1, "samples": [0, 1]}
+    with pytest.raises(UnservedError, match="--runtime: load given with samples in a chain, loads with times expected"):
+        wavesym.model(scene.with_({"load": [sampled]}), runtime=["load"])

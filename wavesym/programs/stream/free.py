@@ -1,0 +1,142 @@
+"""What is streamed where parameters come at run time: the same march over functions of them.
+
+Lengths, speeds and panels stay. What joints make of waves, what is on its way at tau = 0, how strong inputs are and
+what outputs weigh are rational functions of the parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from flint import fmpq, fmpq_mat
+
+from wavesym.errors import UnservedError, WavesymError
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Network, network_of
+from wavesym.numbers.ratio import Ratio
+from wavesym.numbers.reals import Real
+from wavesym.programs.rings.plan import MarchedJoint, RingPlan, WatchedPlace, ring_plan
+from wavesym.programs.rings.space import JointRows, JointSpace, Rows, joint_rows
+from wavesym.programs.runtime.joints.network import free_network
+from wavesym.programs.runtime.plan import free_chain
+from wavesym.programs.runtime.request import NAMES, RuntimeField, fields
+from wavesym.programs.runtime.units import Function, force_kept, load_kept
+from wavesym.programs.stream.plan import Input, InputForce, StreamPlan, acting_inputs, paneled, steps_of
+
+QUICKER = fmpq(10)
+"""Panels and the degree are enough for joints that parameters make so many times as fast as the scene's own are."""
+
+_ONE = fmpq(1)
+
+
+@dataclass(frozen=True)
+class FreeStream:
+    """`rings` and `acting` have functions of the parameters, whose numbers in the scene are those of `fields`."""
+
+    model: Model
+    inputs: tuple[Input, ...]
+    fields: tuple[RuntimeField, ...]
+    rings: RingPlan
+    acting: tuple[InputForce, ...]
+
+    @property
+    def quicker(self) -> fmpq:
+        """How many times as fast as those of the scene joints may be."""
+        return QUICKER if any(field.positive for field in self.fields) else _ONE
+
+    def plan(self, spacing: fmpq | None) -> StreamPlan:
+        """With the numbers of the scene, as any other stream; CostError where panels would be too short."""
+        rings = replace(
+            self.rings,
+            model=replace(self.model, loads=steps_of(self.inputs)),
+            tracks=tuple(
+                replace(track, held=self._number(track.held), impedance=self._number(track.impedance))
+                for track in self.rings.tracks
+            ),
+            joints=tuple(map(self._joint, self.rings.joints)),
+            outputs=tuple(
+                WatchedPlace(output.name, tuple(replace(one, gain=self._number(one.gain)) for one in output.heard))
+                for output in self.rings.outputs
+            ),
+        )
+        acting = (
+            InputForce(self._number(force.base), tuple(map(self._number, force.gains)), force.summed)
+            for force in self.acting
+        )
+        return StreamPlan(paneled(rings, spacing, self.quicker), self.inputs, tuple(acting))
+
+    @cached_property
+    def _values(self) -> Mapping[str, fmpq]:
+        return {label: value for field in self.fields for label, value in zip(field.labels, field.values, strict=True)}
+
+    def _number(self, function: Any) -> fmpq:
+        return function.at(self._values) if isinstance(function, Ratio) else function
+
+    def _joint(self, joint: MarchedJoint) -> MarchedJoint:
+        rows = joint.space
+        if not isinstance(rows, JointRows):  # a load that is read
+            return joint
+        states, points = len(rows.weights), len(rows.passed)
+
+        def matrix(of: Rows, across: int) -> fmpq_mat:
+            return fmpq_mat(len(of), across, [self._number(value) for row in of for value in row])
+
+        space = JointSpace(
+            matrix(rows.rates, states),
+            matrix(rows.pushed, points),
+            matrix(rows.shown, states),
+            matrix(rows.passed, points),
+            tuple(map(self._number, rows.weights)),
+            tuple(map(self._number, rows.begun)),
+            tuple(
+                replace(port, impedance=self._number(port.impedance), push=self._number(port.push))
+                for port in rows.ports
+            ),
+        )
+        return replace(joint, space=space)
+
+
+def usual_parameters(model: Model) -> tuple[str, ...]:
+    """Those that a model for simulators has unless others are asked for: all of a named system."""
+    return tuple(name for name in NAMES if model.chain is not None and getattr(model.named.parameters, name, None))
+
+
+def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], real: Real) -> FreeStream:
+    """The stream of a model with the parameters `names` at run time.
+
+    WavesymError for a name that the scene does not have, and for loads; UnservedError, CostError as `fields`,
+    `free_network` and `ring_plan` say.
+    """
+    if "load" in names:
+        raise WavesymError("--runtime: load given with a stream, other parameters expected (its inputs are the loads)")
+    kept: Function = _ONE
+    if model.chain is None:
+        found = free_network(model, names, ())
+        given, network = found.fields, found.network
+    else:
+        given = fields(model, names, ())
+        _, chain = free_chain(model, given)
+        network, kept = network_of(chain), load_kept(model, chain)
+    if any(point.motion is not None and isinstance(point.velocity, Ratio) for point in network.points):
+        raise UnservedError("--runtime: velocity given where an end moves as it is told, other parameters expected")
+    steady = replace(model, network=_loaded(network, model.network), loads=steps_of(inputs))
+    rings = ring_plan(steady, real, joint_rows)
+    if model.chain is not None:
+        rings = replace(rings, outputs=tuple(_forces_kept(model, rings, force_kept(model, chain))))
+    return FreeStream(model, tuple(inputs), given, rings, tuple(acting_inputs(network, rings.pushed, inputs, kept)))
+
+
+def _loaded(network: Network, own: Network) -> Network:
+    """With loads that are numbers: which points they act on is all that counts of them here."""
+    points = zip(network.points, own.points, strict=True)
+    return replace(network, points=tuple(replace(point, loads=other.loads) for point, other in points))
+
+
+def _forces_kept(model: Model, rings: RingPlan, kept: Any) -> Iterator[WatchedPlace]:
+    """Outputs, forces `kept` times as large."""
+    for probe, output in zip(model.probes, rings.outputs, strict=True):
+        factor = kept if probe.quantity == "force" else _ONE
+        yield WatchedPlace(output.name, tuple(replace(one, gain=one.gain * factor) for one in output.heard))

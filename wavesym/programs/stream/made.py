@@ -1,0 +1,81 @@
+"""Of a stream's tables those that parameters make when they come at run time: where they are, and the functions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import chain
+from typing import Any
+
+from flint import fmpq_mat
+
+from wavesym.programs.rings.plan import MarchedJoint
+from wavesym.programs.rings.tables import firsts
+from wavesym.programs.runtime.laws import RuntimeLaws
+from wavesym.programs.runtime.units import Function
+from wavesym.programs.stream.free import FreeStream
+from wavesym.programs.stream.plan import StreamPlan
+from wavesym.programs.stream.quick import CALM, rows_of
+from wavesym.programs.stream.tables import CAUTION
+
+MADE = ("held", "matrix", "begun", "push", "slip", "law", "base", "strength", "gain")
+"""The tables that are computed."""
+
+
+def laws_of(free: FreeStream) -> RuntimeLaws:
+    """The functions of the parameters from which all of `MADE` follow, as templates/c/stream_made.c takes them."""
+    rings = free.rings
+    spaces = [joint.space for joint in rings.joints]
+    functions: dict[str, Iterable[Function]] = {
+        "law": chain.from_iterable(map(_law, spaces)),
+        "weight": (weight for space in spaces for weight in space.weights),
+        "begun": (value for space in spaces for value in space.begun),
+        "push": (port.push for space in spaces for port in space.ports),
+        "held": (track.held for track in rings.tracks),
+        "base": (force.base for force in free.acting),
+        "strength": (gain for force in free.acting for gain in force.gains),
+        "gain": (one.gain for output in rings.outputs for one in output.heard),
+    }
+    return RuntimeLaws(free.fields, {name: tuple(of) for name, of in functions.items()}, ())
+
+
+def places(free: FreeStream, plan: StreamPlan, degree: int) -> dict[str, tuple[float, ...]]:
+    """Where in them what belongs to a joint begins, and which of its states are velocities."""
+    joints = plan.rings.joints
+    law = firsts(len(list(_law(joint.space))) for joint in joints)
+    return {
+        "answer": firsts(_answer_size(joint, degree) for joint in joints),
+        "first_slip": firsts(_slip_size(joint, degree) for joint in joints),
+        "law_of": law,
+        "first_law": tuple(law[n] for n in plan.loaded),
+        "is_mass": tuple(
+            int(n < rows.masses) for rows in map(rows_of, free.rings.joints) if rows for n in range(len(rows.weights))
+        ),
+    }
+
+
+def sizes(plan: StreamPlan, degree: int) -> dict[str, float]:
+    """How many numbers of them there are."""
+    joints = plan.rings.joints
+    return {
+        "answers": sum(_answer_size(joint, degree) for joint in joints),
+        "slips": sum(_slip_size(joint, degree) for joint in joints),
+        "caution": CAUTION,
+        "calm": CALM,
+        "most_moved": max(1, *(joint.space.states for joint in joints)),
+    }
+
+
+def _law(space: Any) -> Iterator[Function]:
+    for matrix in (space.rates, space.pushed, space.shown, space.passed):
+        yield from matrix.entries() if isinstance(matrix, fmpq_mat) else chain.from_iterable(matrix)
+
+
+def _answer_size(joint: MarchedJoint, degree: int) -> int:
+    space = joint.space
+    wide = space.points * (degree + 1) + space.states
+    return wide**2 if space.states else len(space.ports) ** 2
+
+
+def _slip_size(joint: MarchedJoint, degree: int) -> int:
+    space = joint.space
+    return space.points * (space.points * (degree + 1) + space.states) if space.states else 0
