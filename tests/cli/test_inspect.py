@@ -422,7 +422,7 @@ def _toml(name: str) -> str:
     return (Path(wavesym.__file__).parent / "scene" / "builtin" / f"{name}.toml").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", ["drive_m1", "geared_drive"])
+@pytest.mark.parametrize("name", ["drive_m1", pytest.param("geared_drive", marks=pytest.mark.slow)])
 def test_a_stream_is_told_as_it_would_be_made(name: str, tmp_path: Path) -> None:
     """By the header, which counts for those who call it, and by its manifest."""
     said = builtin(name, "program")["stream"]
