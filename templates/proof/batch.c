@@ -15,6 +15,13 @@ int main(void)
         ((name_real *)&parameters)[k] = any_number;
     }
     int status = name_build_batch(&batch, &parameters, any_choice ? 1 : 0);
+    /* through a pointer Eva sees the end of a batch, not that of its series */
+    for (int k = 0; k < NAME_WINDOWS; ++k) {
+        const size_t end = batch.place[k] + (size_t)NAME_STRANDS * (size_t)(batch.degree[k] + 2);
+        if (batch.degree[k] > NAME_DEGREE || end > sizeof batch.series / sizeof *batch.series) {
+            return out[NAME_OUTPUTS] > 0; /* an alarm */
+        }
+    }
     status |= name_batch_model(&batch, any_choice, &model);
     return status | name_model_eval(&model, any_number, out);
 }

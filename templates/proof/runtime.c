@@ -14,6 +14,13 @@ int main(void)
         ((name_real *)&parameters)[k] = any_number;
     }
     int status = name_build(&model, &parameters);
+    /* through a pointer Eva sees the end of a model, not that of its series */
+    for (int k = 0; k < NAME_WINDOWS; ++k) {
+        const size_t end = model.place[k] + (size_t)NAME_STRANDS * (size_t)(model.degree[k] + 2);
+        if (model.degree[k] > NAME_DEGREE || end > sizeof model.series / sizeof *model.series) {
+            return rows[NAME_OUTPUTS * COUNT + 1] > 0; /* an alarm */
+        }
+    }
     status |= name_model_eval(&model, any_number, out);
     status |= name_model_sample(&model, any_number, any_number, COUNT, rows);
     return status + (name_error_estimate(&model) > 0);

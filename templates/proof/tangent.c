@@ -13,5 +13,12 @@ int main(void)
         ((name_real *)&parameters)[k] = any_number;
     }
     int status = name_build_tangent(&tangent, &parameters);
+    /* through a pointer Eva sees the end of what it is given, not that of its series */
+    for (int k = 0; k < NAME_WINDOWS; ++k) {
+        const size_t end = tangent.value.place[k] + (size_t)NAME_STRANDS * (size_t)(tangent.value.degree[k] + 2);
+        if (tangent.value.degree[k] > NAME_DEGREE || end > sizeof tangent.series[0] / sizeof *tangent.series[0]) {
+            return rows[(NAME_LANES + 1) * NAME_OUTPUTS * COUNT + 1] > 0; /* an alarm */
+        }
+    }
     return status | name_tangent_sample(&tangent, any_number, any_number, COUNT, rows);
 }

@@ -269,12 +269,16 @@ REFUSED = {
         "drive_m1",
         "steps of 1/5000 are edges of 5000 panels in a window of 1, at most 1024 expected",
     ),
+    "beyond": ({"stream": True}, "beyond", "output: a stream needs numbers beyond the range of double precision"),
+    "nothing left": ({"stream": True}, "weak", "rounding may leave nothing of strain@0.5"),
     "near": ({"stream": True}, "near", "strain@1/3000 hears a loaded node after 1/3000, which takes 3000 panels"),
 }
 BOUNCING = {"type": "chain", "parts": [{"mass": 1, "velocity": 1, "name": "a"}, "contact", {"rod": 1}, "fixed"]}
 SCENES = {
     "chained": wavesym.Scene(name="b", system=BOUNCING, output={"until": 3, "velocity": ["0+"]}),
     "damped": GEARS.with_({"system.damping": 0.05, "load": [HELD]}),
+    "beyond": STEPPED.with_({"system.kappa": ["1e200"]}),
+    "weak": STEPPED.with_({"system.kappa": ["1e-30"], "output.strain": ["0.5"]}),
     "near": STEPPED.with_({"output.strain": ["1/3000"]}),
     "drive_m1": STEPPED,
 }

@@ -167,9 +167,9 @@ def _records(folder: Path) -> Iterator[str]:
         yield ""
         yield from _table(("cases", "s", "busy s", "peak MB", "peak MB of a worker"), swept.growth())
         yield ""
-        yield "Beside computing, of a batch of 44 records:"
+        yield "What a sweep of records is made of; a batch is 44 of them through one structure."
         yield ""
-        yield from _table(("what is done", "ms"), swept.overheads())
+        yield from _table(("what", "how much"), swept.overheads())
     yield ""
     yield "## Many sets"
     yield ""

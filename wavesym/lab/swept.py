@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -15,18 +16,19 @@ from functools import partial
 from math import nan
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import sleep
+from time import process_time, sleep
 from typing import NamedTuple
 
 import numpy as np
 
 from wavesym.lab.many_sets import FIRST, LAST, MANY, SETS
 from wavesym.lab.timing import medians, ran
+from wavesym.sweeps import recorded
 from wavesym.sweeps.batches import batches
 from wavesym.sweeps.kinds import kind
 from wavesym.sweeps.manifest import settle
 from wavesym.sweeps.marks import Marks
-from wavesym.sweeps.plan import plan
+from wavesym.sweeps.plan import SweepPlan, plan
 from wavesym.sweeps.request import SweepRequest
 from wavesym.sweeps.running import keep
 from wavesym.sweeps.work import compute
@@ -139,26 +141,52 @@ def growth() -> Iterator[Sequence[str]]:
 
 
 def overheads() -> Iterator[Sequence[str]]:
-    """What is done for a batch beside computing it, and milliseconds."""
+    """What a sweep of records is made of: how long each part takes (what computes, of a processor), how large it is."""
     from distributed import Client
 
     with TemporaryDirectory() as directory, cluster(Path(directory), 1) as running:
         folder = Path(directory)
         inputs(folder)
         (folder / "sweep.toml").write_text(FRAMES.format(structures=STRUCTURES), encoding="ascii")
-        file, request = SweepRequest.read(folder / "sweep.toml")
-        planned = plan(request, file)
+
+        def read() -> SweepPlan:
+            file, request = SweepRequest.read(folder / "sweep.toml")
+            return plan(request, file)
+
+        planned = read()
         parts = batches(planned, *kind(planned))
-        values = compute(planned, parts, 0)
         store, marks = settle(folder, planned, parts), Marks(folder)
+        values, sent = compute(planned, parts, 0), pickle.dumps(planned)
+
+        def unpacked() -> object:
+            recorded.doubles.cache_clear()
+            records = pickle.loads(sent).records
+            return [recorded.doubles(recorded.key(each)) for each in records.values]
+
         with Client(running.address, set_as_default=False) as client:
 
             def through() -> object:
                 return client.submit(partial(_same, values), pure=False).result()
 
-            kept, sent = medians([partial(keep, store, marks, 0, values), through], rounds=5)
-    yield "its chunks written and hashed, its mark", f"{1e3 * kept:.1f}"
-    yield "its values through a scheduler and back, one by one", f"{1e3 * sent:.1f}"
+            kept, passed = medians([partial(keep, store, marks, 0, values), through])
+        computing, reading, unpacking = _busy(partial(compute, planned, parts, 1)), _busy(read), _busy(unpacked)
+    samples = RECORDS * SAMPLES
+    yield "a record through a structure", f"{1e3 * computing / RECORDS:.2f} ms"
+    yield "the chunks of a batch written and hashed, its mark", f"{1e3 * kept:.1f} ms"
+    yield "its values through a scheduler and back, nothing else under way", f"{1e3 * passed:.1f} ms"
+    yield "a sample of a record, read exactly from its file", f"{1e6 * reading / samples:.1f} us"
+    yield "sent to a worker", f"{len(sent) / samples:.1f} bytes"
+    yield "unpacked and rounded there", f"{1e6 * unpacking / samples:.1f} us"
+
+
+def _busy(call: Callable[[], object]) -> float:
+    """For how many seconds a call keeps a processor busy, the least of a few."""
+    times = []
+    for _ in range(5):
+        start = process_time()
+        call()
+        times.append(process_time() - start)
+    return min(times)
 
 
 def _same(values: object) -> object:
