@@ -1,6 +1,5 @@
 """What is measured of sweeps is sweeps that are done, and rivals that are right."""
 
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +11,9 @@ from wavesym.lab import many_sets, swept
 from wavesym.results.summary import summarised
 from wavesym.rivals.line import stated
 from wavesym.rivals.specialised import SampleGrid, peaks_in_c, peaks_in_numpy
-from wavesym.scene import Scene, lower
+from wavesym.scene import lower
 
-DRIVE = Scene(**tomllib.loads(swept.DRIVE))
+DRIVE = swept.drive()
 pytestmark = pytest.mark.slow
 
 

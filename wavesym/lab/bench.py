@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import platform
 import sys
-import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from importlib.util import find_spec
@@ -175,8 +174,7 @@ def _records(folder: Path) -> Iterator[str]:
     yield ""
     yield "The peaks of that drive from kappa on, compiling apart. Rivals have the coarsest grid that keeps 1e-6."
     yield ""
-    drive = Scene(**tomllib.loads(swept.DRIVE))
-    yield from _table(("sets", "way", "s", "sets a second", "error"), many_sets.rows(drive))
+    yield from _table(("sets", "way", "s", "sets a second", "error"), many_sets.rows(swept.drive()))
 
 
 def _machine() -> Iterator[str]:

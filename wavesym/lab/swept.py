@@ -23,6 +23,7 @@ import numpy as np
 
 from wavesym.lab.many_sets import FIRST, LAST, MANY, SETS
 from wavesym.lab.timing import medians, ran
+from wavesym.scene import Scene
 from wavesym.sweeps import recorded
 from wavesym.sweeps.batches import batches
 from wavesym.sweeps.kinds import kind
@@ -103,6 +104,13 @@ def inputs(folder: Path, records: int = RECORDS, samples: int = SAMPLES) -> None
         (folder / f"{number:02}.csv").write_text(f"a\n{lines}", encoding="ascii")
     (folder / "frame.toml").write_text(FRAME, encoding="ascii")
     (folder / "drive.toml").write_text(DRIVE, encoding="ascii")
+
+
+def drive() -> Scene:
+    """The drive whose parameters are varied."""
+    with TemporaryDirectory() as directory:
+        (Path(directory) / "drive.toml").write_text(DRIVE, encoding="ascii")
+        return Scene.from_toml(Path(directory) / "drive.toml")
 
 
 def rows() -> Iterator[Sequence[str]]:
