@@ -43,7 +43,8 @@ EXAMPLES = sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "example
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", *PAGES, *EXAMPLES)
 READ_ELSEWHERE = {"order", "exceptions", "walls"}  # of architecture.md, by test_architecture.py
 TREE = re.compile(r"(wavesym|tests|templates|docs|bench|generated|examples)/[\w./-]*$")
-LONG = re.compile(r"wavesym (chart|stability|verify|plot --published|generate \S+ --target)\b")  # seconds and more
+LONG = re.compile(r"wavesym (chart|verify|plot --published|generate \S+ --target)\b")  # seconds and more
+ELSEWHERE = re.compile(r"wavesym stability\b")  # minutes: slow tests in tests/lab draw the same curves
 COMPILED = "wavesym.model("  # of a block of Python: it waits for a compiler
 SHELL = set("|<>;&$`*?~=")  # what a line is for a shell with, but for these two endings
 UNREAD = "..."  # what a command that takes long puts out, for whom has no patience
@@ -147,7 +148,7 @@ class Reader:
         if words[0] == "make":
             assert_made(words[1:])
             return None
-        if LONG.match(line) and not self.patience:
+        if ELSEWHERE.match(line) or (LONG.match(line) and not self.patience):
             assert_spelt(words[: words.index("|")] if "|" in words else words)
             self.unread = True
             return UNREAD

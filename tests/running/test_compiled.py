@@ -51,7 +51,7 @@ def test_sample_is_eval_on_a_grid(made):
 
 def test_the_self_test_can_fail(made):
     source = made["small.c"]
-    changed = source.replace("return sum;", "return sum + 1e-9;")
+    changed = source.replace("return sum;", "return sum + 1e-9;", 1)
     assert changed != source
     with compiled({**made, "small.c": changed}, len(OUTPUTS)) as program:
         assert program.selftest() == 1

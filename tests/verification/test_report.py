@@ -87,7 +87,7 @@ def test_wrong_values_fail(monkeypatch, file):
     def tampered(program, language):
         made = right(program, language)
         assert wrong[0] in made[file]
-        return {**made, file: made[file].replace(*wrong)}
+        return {**made, file: made[file].replace(*wrong, 1)}
 
     monkeypatch.setattr(checks, "files", tampered)
     text, passed = verify(map(lower, [drive()]))
