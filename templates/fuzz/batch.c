@@ -23,11 +23,10 @@ static void bounded(const name_parameters *set, const name_model *alone, int sta
 static void alike(const name_model *one, const name_model *other, name_real tau)
 {
     name_real here[NAME_OUTPUTS], there[NAME_OUTPUTS];
-    const name_real estimate = name_error_estimate(one) + name_error_estimate(other);
+    const name_real slack = apart(one, other);
     look(one, 0, tau, here);
     look(other, 0, tau, there);
     for (int output = 0; in_range(tau) && output < NAME_OUTPUTS; ++output) {
-        const name_real slack = 16 * estimate * sizes(one) + rounded(one);
         MUST(!(size_of(here[output] - there[output]) > slack));
     }
 }

@@ -21,6 +21,12 @@ static name_real rounded(const name_model *model)
     return rounding() * NAME_DEGREE * NAME_DEGREE * sizes(model) + least;
 }
 
+/* What values of two models of one set may differ by. */
+static name_real apart(const name_model *one, const name_model *other)
+{
+    return 16 * (name_error_estimate(one) + name_error_estimate(other)) * sizes(one) + rounded(one);
+}
+
 /* A model where it was built, at tau. */
 static void look(const name_model *model, int status, name_real tau, name_real *out)
 {

@@ -96,6 +96,7 @@ FUZZED = (
     FuzzedProgram(_BY_NAME["runtime_double"], "runtime", 128),
     FuzzedProgram(_BY_NAME["joints_double"], "runtime", 128),
     FuzzedProgram(_BY_NAME["runtime_double"], "batch", 512),
+    FuzzedProgram(_BY_NAME["joints_double"], "batch", 512),
 )
 
 
