@@ -5,7 +5,8 @@
  */
 #include "collision_m4.h"
 
-#if (defined(__FAST_MATH__) || defined(_M_FP_FAST)) && !defined(COLLISION_M4_ALLOW_FAST_MATH)
+#if (defined(__FAST_MATH__) || defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)) && \
+    !defined(COLLISION_M4_ALLOW_FAST_MATH)
 #error "-ffast-math: bounds of errors no longer hold, nor NaN out of range (-DNAME_ALLOW_FAST_MATH takes it all the same)"
 #endif
 
@@ -500,8 +501,8 @@ static const real coefficient[] = {
 /* Up to here numbers of samples are exact. */
 static const real exact = 9007199254740992.0;
 
-/* Samples are computed in the widest vectors that the compiler may use; as numbers where it knows none, and where size
- * counts more than speed. */
+/* Samples are computed in the widest vectors that the compiler may use, or in numbers where it knows none; as single
+ * values where size counts more than speed. */
 #if !defined(__GNUC__) || defined(__OPTIMIZE_SIZE__) || defined(__FRAMAC__)
 #define VECTOR 0
 #elif defined(__AVX512F__)
@@ -518,23 +519,48 @@ static const real exact = 9007199254740992.0;
 typedef real lanes __attribute__((vector_size(VECTOR)));
 typedef real stored __attribute__((vector_size(VECTOR), aligned(sizeof(real)), may_alias)); /* anywhere in an array */
 #define LANES ((size_t)(VECTOR / sizeof(real)))
-#define APART __attribute__((noinline)) /* so that its vectors stay in registers */
+#define APART static __attribute__((noinline)) /* so that its vectors stay in registers */
 #else
 typedef real lanes;
 typedef real stored;
 #define LANES ((size_t)1)
-#define APART
+#define APART static
 #endif
-#define BLOCK (4 * LANES)
+
+/* Of functions whose counts of vectors and outputs are known where they are called. */
+#if defined(__GNUC__) && !defined(__FRAMAC__)
+#define WITHIN static inline __attribute__((always_inline))
+#elif defined(_MSC_VER)
+#define WITHIN static __forceinline
+#else
+#define WITHIN static
+#endif
+
+#ifdef __OPTIMIZE_SIZE__
+enum { IN_RUNS = 0 };
+#else
+enum { IN_RUNS = 1 };
+#endif
 
 static const real offset[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/* tau_k, both operations rounded. `one` is 1, which no compiler knows: so the product is rounded by itself, contracted
- * into the next operation or not. */
-static real instant(real tau0, real dtau, real one, real k)
+/* Machines turn signed integers into numbers sooner. */
+static real number(size_t k)
 {
-    const real step = k * dtau;
-    return step * one + tau0;
+    return (real)(ptrdiff_t)k;
+}
+
+/* When samples are. `one` is 1, which no compiler knows. */
+typedef struct {
+    real tau0, dtau, one;
+} instants;
+
+/* tau_k, both operations rounded: multiplied by `one` the product is rounded by itself, contracted into the next
+ * operation or not. */
+static real instant(const instants *t, real k)
+{
+    const real step = k * t->dtau;
+    return step * t->one + t->tau0;
 }
 
 static int piece_at(int grid, real tau)
@@ -571,13 +597,24 @@ static void at(int grid, int piece, real tau, real *out, size_t stride)
     }
 }
 
-/* The samples that are asked for: `out` has `count` for each output. Blocks start before `blocks`, vectors before
- * `vectors`: so they end with their row, and their numbers are exact. */
+/* The samples that are asked for: `out` has `count` for each output, in rows as `member` has them. Four vectors start
+ * before `fours`, and so on: so they end with their row, and the numbers of samples are exact. Where `apart` is not 0,
+ * all numbers are, and half a step is longer than what is rounded from an edge to `nearest`, in run_end, and in tau_k:
+ * less than 8 times what |tau0| + TAU_MAX can be rounded by. A run ends at edge `later` of its piece; then comes the
+ * piece `next` to it. */
 typedef struct {
-    real tau0, dtau, one, per_tau;
-    size_t count, blocks, vectors;
+    instants at;
+    real per_tau;
+    size_t count, fours, twos, ones;
+    int apart, next, later;
     real *out;
+    real *rows[COLLISION_M4_OUTPUTS];
 } samples;
+
+/* Up to four vectors side by side. How many are in use is `width`: 1, 2 or 4. */
+typedef struct {
+    lanes a, b, c, d;
+} block;
 
 static lanes everywhere(real x)
 {
@@ -585,106 +622,197 @@ static lanes everywhere(real x)
     return x - zero;
 }
 
-/* w of the samples from k on. */
-static lanes places(const samples *s, size_t k, real centred)
+/* tau_k as `instant` has it, less the centre of a piece. */
+WITHIN lanes place(const instants *t, lanes k, real middle)
 {
-    const lanes step = ((real)k + *(const stored *)offset) * s->dtau;
-    return (step * s->one + s->tau0) - centred;
+    lanes step = k * t->dtau;
+#if VECTOR && defined(__SSE2__)
+    __asm__("" : "+v"(step)); /* so it is contracted into nothing: `one` would cost a multiplication */
+#else
+    step = step * t->one;
+#endif
+    return (step + t->tau0) - middle;
 }
 
-/* Samples k ... end - 1, all of them on one piece. Whole vectors are written: what is beyond the end is written anew by
- * the runs that follow. Returns the first sample that is left, at the end of a row. That is left to others: a call after
- * vectors makes gcc 12 return with their upper halves in use, which slows down all that follows. */
-static APART size_t run(int grid, int piece, const samples *s, size_t k, size_t end)
+WITHIN block places(int width, const instants *t, lanes k, real middle)
 {
-    const int *const rows = member + first_member[grid];
-    const int members = first_member[grid + 1] - first_member[grid];
-    const real *const first = coefficient + first_power[piece];
-    const real *const last = coefficient + first_power[piece + 1] - members;
-    const real middle = centre[piece];
-    const size_t count = s->count;
-    const size_t long_before = end > 2 * LANES ? end - 2 * LANES : 0;
-    const size_t blocks = long_before < s->blocks ? long_before : s->blocks;
-    const size_t vectors = end < s->vectors ? end : s->vectors;
-    for (; k < blocks; k += BLOCK) {
-        const lanes w0 = places(s, k, middle);
-        const lanes w1 = places(s, k + LANES, middle);
-        const lanes w2 = places(s, k + 2 * LANES, middle);
-        const lanes w3 = places(s, k + 3 * LANES, middle);
-        for (int m = 0; m < members; ++m) {
-            real *const row = s->out + (size_t)rows[m] * count + k;
-            const real *power = first + m;
-            const real *const lowest = last + m;
-            lanes sum0 = everywhere(*power);
-            lanes sum1 = sum0;
-            lanes sum2 = sum0;
-            lanes sum3 = sum0;
-            while (power < lowest) {
-                power += members;
-                sum0 = sum0 * w0 + *power;
-                sum1 = sum1 * w1 + *power;
-                sum2 = sum2 * w2 + *power;
-                sum3 = sum3 * w3 + *power;
-            }
-            *(stored *)row = sum0;
-            *(stored *)(row + LANES) = sum1;
-            *(stored *)(row + 2 * LANES) = sum2;
-            *(stored *)(row + 3 * LANES) = sum3;
+    block w;
+    w.a = place(t, k, middle);
+    w.b = width > 1 ? place(t, k + (real)LANES, middle) : w.a;
+    w.c = width > 2 ? place(t, k + (real)(2 * LANES), middle) : w.a;
+    w.d = width > 2 ? place(t, k + (real)(3 * LANES), middle) : w.a;
+    return w;
+}
+
+WITHIN block constant(real x)
+{
+    const lanes same = everywhere(x);
+    const block sum = {same, same, same, same};
+    return sum;
+}
+
+/* One more step of Horner's rule. */
+WITHIN block onward(int width, block sum, block w, real power)
+{
+    sum.a = sum.a * w.a + power;
+    if (width > 1) {
+        sum.b = sum.b * w.b + power;
+    }
+    if (width > 2) {
+        sum.c = sum.c * w.c + power;
+        sum.d = sum.d * w.d + power;
+    }
+    return sum;
+}
+
+WITHIN void store(int width, block sum, real *to)
+{
+    *(stored *)to = sum.a;
+    if (width > 1) {
+        *(stored *)(to + LANES) = sum.b;
+    }
+    if (width > 2) {
+        *(stored *)(to + 2 * LANES) = sum.c;
+        *(stored *)(to + 3 * LANES) = sum.d;
+    }
+}
+
+/* A piece: its outputs, where their samples go, and the polynomials' highest and lowest powers. */
+typedef struct {
+    int members;
+    real *const *rows;
+    const real *first, *last;
+} polynomials;
+
+/* `count` outputs from number m on, 1 to 4, side by side. */
+WITHIN void together(int count, int width, const polynomials *p, int m, block w, size_t k)
+{
+    const real *power = p->first + m;
+    const real *const lowest = p->last + m;
+    block sum0 = constant(power[0]);
+    block sum1 = count > 1 ? constant(power[1]) : sum0;
+    block sum2 = count > 2 ? constant(power[2]) : sum0;
+    block sum3 = count > 3 ? constant(power[3]) : sum0;
+    while (power < lowest) {
+        power += p->members;
+        sum0 = onward(width, sum0, w, power[0]);
+        if (count > 1) {
+            sum1 = onward(width, sum1, w, power[1]);
+        }
+        if (count > 2) {
+            sum2 = onward(width, sum2, w, power[2]);
+        }
+        if (count > 3) {
+            sum3 = onward(width, sum3, w, power[3]);
         }
     }
-    for (; k < vectors; k += LANES) {
-        const lanes w = places(s, k, middle);
-        real *const column = s->out + k;
-        /* four outputs at once; the last one again where there are fewer */
-        for (int m = 0; m < members; m += 4) {
-            const int rest = members - 1 - m;
-            const int m1 = rest < 1 ? rest : 1;
-            const int m2 = rest < 2 ? rest : 2;
-            const int m3 = rest < 3 ? rest : 3;
-            const real *power = first + m;
-            const real *const lowest = last + m;
-            lanes sum0 = everywhere(power[0]);
-            lanes sum1 = everywhere(power[m1]);
-            lanes sum2 = everywhere(power[m2]);
-            lanes sum3 = everywhere(power[m3]);
-            while (power < lowest) {
-                power += members;
-                sum0 = sum0 * w + power[0];
-                sum1 = sum1 * w + power[m1];
-                sum2 = sum2 * w + power[m2];
-                sum3 = sum3 * w + power[m3];
-            }
-            *(stored *)(column + (size_t)rows[m] * count) = sum0;
-            *(stored *)(column + (size_t)rows[m + m1] * count) = sum1;
-            *(stored *)(column + (size_t)rows[m + m2] * count) = sum2;
-            *(stored *)(column + (size_t)rows[m + m3] * count) = sum3;
-        }
+    store(width, sum0, p->rows[m] + k);
+    if (count > 1) {
+        store(width, sum1, p->rows[m + 1] + k);
     }
-    return k < end ? k : end;
+    if (count > 2) {
+        store(width, sum2, p->rows[m + 2] + k);
+    }
+    if (count > 3) {
+        store(width, sum3, p->rows[m + 3] + k);
+    }
+}
+
+/* One vector of each output, or two: so few that several outputs are computed together. */
+WITHIN void few(int width, const polynomials *p, block w, size_t k)
+{
+    int m = 0;
+    for (; m + 4 <= p->members; m += 4) {
+        together(4, width, p, m, w, k);
+    }
+    if (p->members - m == 3) {
+        together(3, width, p, m, w, k);
+    }
+    if (p->members - m == 2) {
+        together(2, width, p, m, w, k);
+    }
+    if (p->members - m == 1) {
+        together(1, width, p, m, w, k);
+    }
 }
 
 /* Whether sample k comes before an edge, on the way that samples go. */
-static int before(const samples *s, real edge, size_t k)
+WITHIN int before(const instants *t, real edge, size_t k)
 {
-    const real tau = instant(s->tau0, s->dtau, s->one, (real)k);
-    return s->dtau < 0 ? tau >= edge : tau < edge;
+    const real tau = instant(t, number(k));
+    return t->dtau < 0 ? tau >= edge : tau < edge;
 }
 
 /* The first sample from k on that is not before an edge, or count. */
-static size_t run_end(const samples *s, real edge, size_t k)
+WITHIN size_t run_end(const samples *s, real edge, size_t k)
 {
-    const real reach = (edge - s->tau0) * s->per_tau; /* about where */
+    const real reach = (edge - s->at.tau0) * s->per_tau; /* about where */
     size_t end = s->count;
-    if (reach == reach && reach < (real)s->count) {
-        end = reach > (real)k ? (size_t)reach + 1 : k;
+    if (s->apart) {
+        const real nearest = reach + (real)0.5;
+        if (nearest == nearest && nearest < number(end)) {
+            end = nearest > 0 ? (size_t)(ptrdiff_t)nearest : 0;
+            end += before(&s->at, edge, end) ? 1 : 0;
+        }
+        return end;
     }
-    while (end > k && !before(s, edge, end - 1)) {
+    if (reach == reach && reach < number(end)) {
+        end = reach > number(k) ? (size_t)(ptrdiff_t)reach + 1 : k;
+    }
+    while (end > k && !before(&s->at, edge, end - 1)) {
         --end;
     }
-    while (end < s->count && before(s, edge, end)) {
+    while (end < s->count && before(&s->at, edge, end)) {
         ++end;
     }
     return end;
+}
+
+/* The outputs of a grid from sample k on, which is on a piece: piece after piece, until one has no samples. Whole
+ * vectors are written: what is beyond a piece is written anew by the next one. Returns the first sample that is left. */
+APART size_t run(int grid, int piece, const samples *s, size_t k)
+{
+    const int begin = first_piece[grid];
+    const int pieces = first_piece[grid + 1] - begin;
+    const instants t = s->at; /* rows might be where *s is, for all that a compiler knows */
+    const real *const edges = start + begin + grid;
+    polynomials p;
+    p.members = first_member[grid + 1] - first_member[grid];
+    p.rows = s->rows + first_member[grid];
+    for (; piece >= 0 && piece < pieces; piece += s->next) {
+        const real middle = centre[begin + piece];
+        const size_t end = run_end(s, edges[piece + s->later], k);
+        if (end <= k) {
+            break;
+        }
+        p.first = coefficient + first_power[begin + piece];
+        p.last = coefficient + first_power[begin + piece + 1] - p.members;
+        if (end > k + 2 * LANES && k < s->fours) {
+            const size_t left = end - 2 * LANES; /* from here on there are two vectors at most */
+            const size_t fours = left < s->fours ? left : s->fours;
+            lanes numbers = number(k) + *(const stored *)offset;
+            for (; k < fours; k += 4 * LANES) {
+                const block w = places(4, &t, numbers, middle);
+                numbers = numbers + (real)(4 * LANES);
+                for (int m = 0; m < p.members; ++m) {
+                    together(1, 4, &p, m, w, k);
+                }
+            }
+        }
+        if (end > k + LANES && k < s->twos) {
+            few(2, &p, places(2, &t, number(k) + *(const stored *)offset, middle), k);
+            k += 2 * LANES;
+        }
+        if (end > k && k < s->ones) {
+            few(1, &p, places(1, &t, number(k) + *(const stored *)offset, middle), k);
+            k += LANES;
+        }
+        for (; k < end; ++k) {
+            at(grid, begin + piece, instant(&s->at, number(k)), s->out + k, s->count);
+        }
+        k = end;
+    }
+    return k;
 }
 
 int collision_m4_eval(real tau, real out[COLLISION_M4_OUTPUTS])
@@ -701,45 +829,49 @@ int collision_m4_eval(real tau, real out[COLLISION_M4_OUTPUTS])
     return 0;
 }
 
+/* Where the last `many` of the `counted` first samples start, and one more; 0 where there are fewer. */
+static size_t starts(size_t counted, size_t many)
+{
+    return counted < many ? 0 : counted - many + 1;
+}
+
 int collision_m4_sample(real tau0, real dtau, size_t count, real *out)
 {
     const volatile real unity = 1;
+    const real per_tau = dtau < 0 || dtau > 0 ? 1 / dtau : 0;
+    const real farthest = (tau0 < 0 ? -tau0 : tau0) + COLLISION_M4_TAU_MAX;
     const size_t counted = (real)count < exact ? count : (size_t)exact;
-    const samples s = {
-        tau0,
-        dtau,
-        unity,
-        dtau < 0 || dtau > 0 ? 1 / dtau : 0,
-        count,
-        counted < BLOCK ? 0 : counted - BLOCK + 1,
-        counted < LANES ? 0 : counted - LANES + 1,
-        out,
-    };
-    const int onward = dtau < 0 ? -1 : 1;
     int outside = 0;
+    samples s;
+    s.at.tau0 = tau0;
+    s.at.dtau = dtau;
+    s.at.one = unity;
+    s.per_tau = per_tau;
+    s.count = count;
+    s.fours = starts(counted, 4 * LANES);
+    s.twos = starts(counted, 2 * LANES);
+    s.ones = starts(counted, LANES);
+    s.apart = (dtau < 0 ? -dtau : dtau) >= farthest * (16 / exact) && per_tau - per_tau == 0 && counted == count;
+    s.next = dtau < 0 ? -1 : 1;
+    s.later = dtau < 0 ? 0 : 1;
+    s.out = out;
+    for (int m = 0; m < COLLISION_M4_OUTPUTS; ++m) {
+        s.rows[m] = out + (size_t)member[m] * count;
+    }
     for (int grid = 0; grid < GRIDS; ++grid) {
-        const int begin = first_piece[grid];
-        const int pieces = first_piece[grid + 1] - begin;
-        const real *const edges = start + begin + grid + (dtau < 0 ? 0 : 1);
         size_t k = 0;
         while (k < count) {
-            const real tau = instant(tau0, dtau, s.one, (real)k);
-            if (tau == tau && tau >= 0 && tau <= COLLISION_M4_TAU_MAX) {
-                /* pieces in order, until one has no samples */
-                for (int piece = piece_at(grid, tau); piece >= 0 && piece < pieces; piece += onward) {
-                    const size_t end = run_end(&s, edges[piece], k);
-                    if (end == k) {
-                        break;
-                    }
-                    for (k = run(grid, begin + piece, &s, k, end); k < end; ++k) {
-                        at(grid, begin + piece, instant(tau0, dtau, s.one, (real)k), out + k, count);
-                    }
-                }
-            } else {
+            const real tau = instant(&s.at, number(k));
+            if (!(tau == tau && tau >= 0 && tau <= COLLISION_M4_TAU_MAX)) {
                 for (int m = first_member[grid]; m < first_member[grid + 1]; ++m) {
-                    out[(size_t)member[m] * count + k] = not_a_number();
+                    s.rows[m][k] = not_a_number();
                 }
                 outside = 1;
+                ++k;
+            } else if (IN_RUNS) {
+                k = run(grid, piece_at(grid, tau), &s, k);
+            } else {
+                at(grid, first_piece[grid] + piece_at(grid, tau), tau, out + k, count);
                 ++k;
             }
         }

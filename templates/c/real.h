@@ -2,7 +2,8 @@
  * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
  * the first empty line. */
 
-#if (defined(__FAST_MATH__) || defined(_M_FP_FAST)) && !defined(NAME_ALLOW_FAST_MATH)
+#if (defined(__FAST_MATH__) || defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)) && \
+    !defined(NAME_ALLOW_FAST_MATH)
 #error "-ffast-math: bounds of errors no longer hold, nor NaN out of range (-DNAME_ALLOW_FAST_MATH takes it all the same)"
 #endif
 

@@ -280,13 +280,21 @@ static void listen(const model_of *m, wave_of (*waves)[3], const real *gains, re
 
 /* One window of the derivatives by a parameter, of which `slope` is what the laws change by. With q'/rate + q = p,
  *
- *     dq'/rate + dq = dp + drate/rate (p - q). */
-static void follow(name_tangent *tangent, const laws *law, const laws *slope, int lane, int half, int degree)
+ *     dq'/rate + dq = dp + drate/rate (p - q).
+ *
+ * What its polynomials miss. */
+static real follow(name_tangent *tangent, const laws *law, const laws *slope, int lane, int half, int degree)
 {
     const model_of *const m = &tangent->value;
     wave_of(*const waves)[3] = tangent->waves[lane];
+    real *const size = &tangent->size[lane][1];
+    real missed = 0;
     real p[NAME_DEGREE + 2];
     real q[NAME_DEGREE + 1];
+    *size = tangent->size[lane][0];
+    for (int node = 0; node < NAME_NODES; ++node) {
+        tangent->velocity[lane][1][node] = tangent->velocity[lane][0][node];
+    }
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         for (int f = 0; f < NAME_FORCES; ++f) {
             for (int k = 0; k < 3; ++k) {
@@ -319,15 +327,18 @@ static void follow(name_tangent *tangent, const laws *law, const laws *slope, in
                     p[k] += share_of_rate * (pushed - (back[k] + a[k]));
                 }
                 const int row = m->row[panel * NAME_NODES + node];
-                (void)moved(m, row, degree, p, q, &tangent->velocity[lane][node]);
+                missed += moved(m, row, degree, p, q, &tangent->velocity[lane][1][node]);
+                *size = larger(*size, tangent->velocity[lane][1][node]);
                 sent = q;
             }
             for (int k = 0; k <= degree; ++k) {
                 left[k] = sent[k] - da[k];
                 right[k] = sent[k] - db[k];
             }
+            *size = larger(larger(*size, left[0]), right[0]);
         }
     }
+    return missed;
 }
 
 /* What begins a model. 0, or 1 for a bad number. */
@@ -358,43 +369,51 @@ static int begun(model_of *m, const name_parameters *parameters, laws *law)
     return 0;
 }
 
+/* The window of now at the degree of now. */
+static void march_window(model_of *m, const laws *law, progress *now)
+{
+    now->seen = now->size;
+    now->leak = march(m, law, now->window % 2, now->degree, &now->seen);
+}
+
+/* The same at a higher degree. */
+static void heighten(model_of *m, const laws *law, progress *now)
+{
+    const int higher = higher_than(now->degree);
+    lengthen(m->waves, now->degree, higher);
+    tabulate(m, law, higher);
+    now->degree = higher;
+    march_window(m, law, now);
+}
+
 /* The next window, at the lowest degree, raised by quarters, that misses no more than its share. */
 static int next_window(model_of *m, const laws *law, progress *now)
 {
-    const int half = now->window % 2;
     now->event = press(m->change, m->load, m->since, m->force, now->window, now->event);
-    for (;;) {
-        real seen = now->size;
-        const real leak = march(m, law, half, now->degree, &seen);
-        if (leak <= share * seen) {
-            now->missed += leak;
-            now->size = seen;
-            break;
-        }
+    march_window(m, law, now);
+    while (!(now->leak <= share * now->seen)) {
         if (now->degree == NAME_DEGREE) {
-            return finite_number(leak) && finite_number(seen) ? 2 : 1;
+            return finite_number(now->leak) && finite_number(now->seen) ? 2 : 1;
         }
-        const int higher = now->degree + now->degree / 4;
-        const int next = higher < NAME_DEGREE ? higher : NAME_DEGREE;
-        lengthen(m->waves, now->degree, next);
-        tabulate(m, law, next);
-        now->degree = next;
+        heighten(m, law, now);
     }
+    return 0;
+}
+
+/* A window that has been marched is good: its outputs; then the next one is due. */
+static void kept(model_of *m, const laws *law, progress *now)
+{
+    now->missed += now->leak;
+    now->size = now->seen;
     for (int node = 0; node < NAME_NODES; ++node) {
         m->velocity[0][node] = m->velocity[1][node];
     }
     m->degree[now->window] = now->degree;
     m->place[now->window] = now->place;
-    return 0;
-}
-
-/* The outputs on a window that has been marched; then the next one is due. */
-static void kept(model_of *m, const laws *law, progress *now)
-{
     real *const all = m->series + now->place;
     clear(all, now->degree);
     listen(m, m->waves, law->gain, m->total, now->window % 2, now->degree, all);
-    look(m, all, now->degree);
+    look(m, now->window);
     weigh(&now->heard, all, now->degree);
     now->place += (size_t)NAME_STRANDS * (size_t)(now->degree + 2);
     now->window += 1;
@@ -403,7 +422,7 @@ static void kept(model_of *m, const laws *law, progress *now)
 int name_build(name_model *model, const name_parameters *parameters)
 {
     laws law;
-    progress now = {0, LEAST, 0, 0, 0, 0, 0};
+    progress now = {0, LEAST, 0, 0, 0, 0, 0, 0, 0};
     int status = begun(model, parameters, &law);
     while (status == 0 && now.window < NAME_WINDOWS) {
         status = next_window(model, &law, &now);
@@ -429,16 +448,43 @@ static int begun_lane(name_tangent *tangent, const laws *law, const laws *slope,
     start_waves(tangent->waves[lane], slope, LEAST);
     start_sums(tangent->total[lane], tangent->load[lane], tangent->since[lane]);
     for (int node = 0; node < NAME_NODES; ++node) {
-        tangent->velocity[lane][node] = slope->motion[node];
+        tangent->velocity[lane][0][node] = slope->motion[node];
     }
+    tangent->size[lane][0] = 0;
     return 0;
+}
+
+/* The derivatives on a window that has been marched, at a degree that is enough for them, too, or the highest. */
+static void follow_all(name_tangent *tangent, const name_parameters *parameters, const laws *law, progress *now, int degree)
+{
+    laws slope;
+    for (;;) {
+        int late = 0;
+        for (int lane = 0; lane < NAME_LANES; ++lane) {
+            slopes_of(parameters, lane, &slope);
+            lengthen(tangent->waves[lane], degree, now->degree);
+            const real missed = follow(tangent, law, &slope, lane, now->window % 2, now->degree);
+            late |= !(missed <= LENIENT * share * tangent->size[lane][1]);
+        }
+        if (!late || now->degree == NAME_DEGREE) {
+            break;
+        }
+        degree = now->degree;
+        heighten(&tangent->value, law, now);
+    }
+    for (int lane = 0; lane < NAME_LANES; ++lane) {
+        tangent->size[lane][0] = tangent->size[lane][1];
+        for (int node = 0; node < NAME_NODES; ++node) {
+            tangent->velocity[lane][0][node] = tangent->velocity[lane][1][node];
+        }
+    }
 }
 
 int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
 {
     model_of *const m = &tangent->value;
     laws law, slope;
-    progress now = {0, LEAST, 0, 0, 0, 0, 0};
+    progress now = {0, LEAST, 0, 0, 0, 0, 0, 0, 0};
     int status = begun(m, parameters, &law);
     for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
         slopes_of(parameters, lane, &slope);
@@ -447,18 +493,20 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
     while (status == 0 && now.window < NAME_WINDOWS) {
         const int before = now.degree;
         const int first = now.event;
-        const int half = now.window % 2;
         status = next_window(m, &law, &now);
+        for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
+            (void)press(tangent->change[lane], tangent->load[lane], tangent->since[lane], tangent->force[lane],
+                        now.window, first);
+        }
+        if (status == 0) {
+            follow_all(tangent, parameters, &law, &now, before);
+        }
         for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
             real total[NAME_HEARD + 1];
             real *const all = tangent->series[lane] + now.place;
             slopes_of(parameters, lane, &slope);
-            lengthen(tangent->waves[lane], before, now.degree);
-            (void)press(tangent->change[lane], tangent->load[lane], tangent->since[lane], tangent->force[lane],
-                        now.window, first);
-            follow(tangent, &law, &slope, lane, half, now.degree);
             clear(all, now.degree);
-            listen(m, tangent->waves[lane], law.gain, tangent->total[lane], half, now.degree, all);
+            listen(m, tangent->waves[lane], law.gain, tangent->total[lane], now.window % 2, now.degree, all);
             /* and where parameters change what outputs weigh, the waves themselves */
             int weighs = 0;
             for (int k = 0; k < NAME_HEARD; ++k) {
@@ -466,7 +514,7 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
                 weighs |= magnitude(slope.gain[k]) > 0;
             }
             if (weighs) {
-                listen(m, m->waves, slope.gain, total, half, now.degree, all);
+                listen(m, m->waves, slope.gain, total, now.window % 2, now.degree, all);
             }
             weigh(&now.heard, all, now.degree);
         }

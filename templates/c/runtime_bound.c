@@ -355,7 +355,7 @@ int name_error_bound(name_model *model, const name_parameters *parameters, name_
 {
     laws law;
     wrong w;
-    progress now = {0, LEAST, 0, 0, 0, 0, 0};
+    progress now = {0, LEAST, 0, 0, 0, 0, 0, 0, 0};
     int status = begun(model, parameters, &law);
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
         bound[output] = not_a_number();
@@ -381,7 +381,7 @@ int name_error_bound(name_model *model, const name_parameters *parameters, name_
         /* a hundredth for what is of second order in a rounding, and for the roundings of this here */
         const real error = w.output[output] * (real)1.01;
         const real size = size_seen(model, &w, output);
-        bound[output] = error < size ? error / (size - error) * (1 + 4 * unit) : infinity();
+        bound[output] = error < size ? error / (size - error) * (1 + 4 * unit) : is_silent(&law, output) ? 0 : infinity();
     }
     return status;
 }

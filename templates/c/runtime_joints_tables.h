@@ -28,10 +28,13 @@ enum {
     NAME_FORCES = 1,
     NAME_HEARD = 4,
     NAME_EVENTS = 3,
-    NAME_LANES = 3
+    NAME_LANES = 3,
+    NAME_GROUPS = 6
 };
 
 #include "runtime_joints_model.h"
+#include "runtime_joints_batch.h"
+#include "runtime_data.h"
 
 typedef struct {
     name_real mass[3];
@@ -62,6 +65,8 @@ typedef struct {
     real push[4 + 1];
     real held[4 + 1];
     real begun[3 + 1];
+    real weight[3 + 1];
+    real impedance[4 + 1];
     real strength[1 + 1];
     real gain[4 + 1];
     const real *load;
@@ -73,6 +78,8 @@ int laws_within_reach(const laws *law);
 void slopes_of(const name_parameters *p, int lane, laws *law);
 
 extern const real largest_number;
+extern const real least_number;
+extern const real roundings;
 extern const real share;
 extern const real unit;
 extern const real window_length;
@@ -99,6 +106,7 @@ extern const int event_window[];
 extern const int event_panel[];
 extern const int event_force[];
 extern const int event_power[];
+extern const real event_weight[];
 extern const int event_strength[];
 extern const int event_load[];
 extern const real from[];

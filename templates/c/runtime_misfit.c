@@ -1,7 +1,9 @@
 /* runtime_misfit.c: sums of squares of what models miss of data, taken from coefficients.
- * Plain C that stands below the text of runtime_batch.c in generated files, which have what stands below the first empty
- * line. */
-#include "runtime_batch.c"
+ * Plain C that stands below the text of runtime_batches.c in generated files, which have what stands below the first
+ * empty line. */
+#ifndef NAME_JOINTED
+#include "runtime_batches.c"
+#endif
 
 /* A group is an output on a section of a window. `numbers` has of each blocks of ROWS rows of its triangle R, interlaced:
  * their weights, z, lowest degrees and all columns; then what all rows from some one on add to the rest, by that row. The
@@ -20,8 +22,9 @@ static int columns_of(int group)
 
 static int belongs(real tau, int window, int section)
 {
-    const real t = tau - (real)window;
-    return tau >= 0 && tau <= NAME_TAU_MAX && t >= from[section] && t < from[section + 1];
+    const real t = tau - cycle_begin(window);
+    const int at = in_cycle(window, section);
+    return tau >= 0 && tau <= NAME_TAU_MAX && t >= from[at] && t < from[at + 1];
 }
 
 /* Whole blocks. */
@@ -100,13 +103,15 @@ static int triangle(const real *tau, const real *values, size_t count, int windo
     for (size_t k = 0; k < cell(group, most, 0); ++k) {
         cells[k] = 0;
     }
-    for (int column = 0; column < columns; ++column) {
+    for (int column = 0; points > 0 && column < columns; ++column) {
         real *const v = work + row * points;
         const int s = strand_at[first_strand[group] + column % strands];
+        const int here = window % CYCLE * NAME_STRANDS + s;
         size_t point = 0;
         for (size_t k = 0; k < count; ++k) {
             if (belongs(tau[k], window, section) && values[k] - values[k] == 0) {
-                const real u = (((tau[k] - (real)window) - strand_start[s]) + strand_excess[s]) * strand_scale[s] - 1;
+                const real t = tau[k] - cycle_begin(window);
+                const real u = ((t - strand_start[here]) + strand_excess[here]) * strand_scale[s] - 1;
                 real now = 1, next = u;
                 for (int n = 0; n < column / strands; ++n) {
                     const real after = 2 * u * next - now;

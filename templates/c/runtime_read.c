@@ -14,18 +14,6 @@ static int inside(const model_of *m, real tau)
     return m->built && tau == tau && tau >= 0 && tau <= NAME_TAU_MAX;
 }
 
-/* When the cycle of a window begins: after CYCLE windows, which are `span` long, tau is a whole number again. */
-static real cycle_begin(int window)
-{
-    return (real)(window / CYCLE) * span;
-}
-
-/* Where a section of a window is among those of its cycle. */
-static int in_cycle(int window, int section)
-{
-    return window % CYCLE * SECTIONS + section;
-}
-
 /* The section at tau, of those of all windows. */
 static int section_at(real tau)
 {
@@ -44,21 +32,6 @@ static int section_at(real tau)
         ++at;
     }
     return cycle * CYCLE * SECTIONS + at;
-}
-
-/* An output on a section of a window, t after the start of its cycle. */
-static real value(const model_of *m, int window, int section, int output, real t)
-{
-    const int at = section * NAME_OUTPUTS + output;
-    const int degree = m->degree[window];
-    real sum = 0;
-    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-        const int s = strand_at[k];
-        const int now = window % CYCLE * NAME_STRANDS + s;
-        const real u = ((t - strand_start[now]) + strand_excess[now]) * strand_scale[s] - 1;
-        sum += series_at(m->series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u);
-    }
-    return sum;
 }
 
 int name_model_eval(const name_model *model, name_real tau, name_real *out)

@@ -177,17 +177,52 @@ static void clear(real *all, int degree)
     }
 }
 
-/* Look for the largest mean of each output. */
-static void look(model_of *m, const real *all, int degree)
+/* When the cycle of a window begins: after CYCLE windows, which are `span` long, tau is a whole number again. */
+static real cycle_begin(int window)
 {
+    return (real)(window / CYCLE) * span;
+}
+
+/* Where a section of a window is among those of its cycle. */
+static int in_cycle(int window, int section)
+{
+    return window % CYCLE * SECTIONS + section;
+}
+
+/* An output on a section of a window, t after the start of its cycle. */
+static real value(const model_of *m, int window, int section, int output, real t)
+{
+    const int at = section * NAME_OUTPUTS + output;
+    const int degree = m->degree[window];
+    real sum = 0;
+    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+        const int s = strand_at[k];
+        const int now = window % CYCLE * NAME_STRANDS + s;
+        const real u = ((t - strand_start[now]) + strand_excess[now]) * strand_scale[s] - 1;
+        sum += series_at(m->series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u);
+    }
+    return sum;
+}
+
+/* Look for the largest value of each output: in the middle of sections, where their mean may be more than was seen. What
+ * lies beyond TAU_MAX does not count. */
+static void look(model_of *m, int window)
+{
+    const real *const all = m->series + m->place[window];
     for (int section = 0; section < SECTIONS; ++section) {
-        for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        const int here = in_cycle(window, section);
+        const real reach = NAME_TAU_MAX - cycle_begin(window);
+        const real end = from[here + 1] < reach ? from[here + 1] : reach;
+        for (int output = 0; output < NAME_OUTPUTS && from[here] <= end; ++output) {
             const int at = section * NAME_OUTPUTS + output;
             real mean = 0;
             for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-                mean += all[(size_t)strand_at[k] * (size_t)(degree + 2)];
+                mean += all[(size_t)strand_at[k] * (size_t)(m->degree[window] + 2)];
             }
-            m->largest[output] = larger(m->largest[output], mean);
+            if (magnitude(mean) > m->largest[output]) {
+                const real middle = from[here] + (end - from[here]) / 2;
+                m->largest[output] = larger(m->largest[output], value(m, window, section, output, middle));
+            }
         }
     }
 }
@@ -217,6 +252,16 @@ static void weigh(real *sum, const real *all, int degree)
 /* Whether anything can be felt in an output up to TAU_MAX. */
 static int reached(const laws *law, int output);
 
+/* Whether an output is 0 whatever the parameters are: no wave counts in it. */
+static int is_silent(const laws *law, int output)
+{
+    real weight = 0;
+    for (int k = 0; k < NAME_HEARD; ++k) {
+        weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
+    }
+    return !(weight > 0);
+}
+
 /* An error relative to what is surely there of an output; of one that waves have reached that may be nothing. */
 static real relative(const laws *law, int output, real error, real largest)
 {
@@ -245,11 +290,29 @@ typedef struct {
     int window, degree, event;
     size_t place;
     real missed, size, heard;
+    real leak, seen; /* what the window of now misses, and `size` with it */
 } progress;
 
+/* A derivative may miss so much more of itself than a value. */
+enum { LENIENT = 64 };
+
+static int higher_than(int degree)
+{
+    const int higher = degree + degree / 4;
+    return higher < NAME_DEGREE ? higher : NAME_DEGREE;
+}
+
+/* How often a velocity of size 1 is rounded, about: the sums of a body and of a value that is read, both of so many
+ * coefficients, lose up to a sixteenth of the degree squared. */
+static real rounded_by(int degree)
+{
+    return unit * ((real)(degree + NAME_WINDOWS) + (real)(degree * degree) / 16);
+}
+
+/* Errors were up to five times what polynomials miss; docs/march.md of wavesym has what was measured. */
 static int ended(model_of *m, const laws *law, const progress *now)
 {
-    const real missed = 4 * now->missed + unit * (real)(now->degree + NAME_WINDOWS) * now->size;
+    const real missed = 6 * now->missed + rounded_by(now->degree) * now->size;
     m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);
     m->estimate = m->built ? estimated(m, law, missed) : not_a_number();
     return !m->built;

@@ -1,22 +1,10 @@
-/* runtime_sets_batch.c: many sets of parameters with what only models of named systems have: bounds, batches, misfits.
+/* runtime_sets_batch.c: many sets of parameters side by side: misfits.
  * Plain C that is put below runtime_sets.c; what stands below the first empty line. */
 #include "runtime_sets.c"
 
-void name_sets_bounds(const name_parameters *parameters, size_t sets, name_model *model, int *status,
-                      name_real *estimate, name_real *out);
 void name_sets_sizes(size_t *sizes);
 void name_sets_misfits(const name_parameters *parameters, size_t sets, name_batch *batch, const name_data *data,
                        int *status, name_real *estimate, name_real *out);
-
-/* Of each set the status, the estimate, and the bounds: out[set*OUTPUTS + output]. */
-void name_sets_bounds(const name_parameters *parameters, size_t sets, name_model *model, int *status,
-                      name_real *estimate, name_real *out)
-{
-    for (size_t set = 0; set < sets; ++set) {
-        status[set] = name_error_bound(model, parameters + set, out + set * NAME_OUTPUTS);
-        estimate[set] = name_error_estimate(model);
-    }
-}
 
 /* Of a batch and of data, in bytes. */
 void name_sets_sizes(size_t *sizes)

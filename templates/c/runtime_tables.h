@@ -26,6 +26,7 @@ enum {
 #include "runtime_model.h"
 
 #include "runtime_batch.h"
+#include "runtime_data.h"
 
 typedef struct {
     name_real kappa[3];

@@ -4,7 +4,7 @@
 #define NAME_RUNTIME
 #include "stream.c"
 
-enum { SQUARE = MOST_MOVED * MOST_MOVED, CALM = 4, MOST_PARTS = 100000 };
+enum { SQUARE = MOST_MOVED * MOST_MOVED, MOST_PARTS = 100000 };
 
 /* A joint on a panel, x' = rates x + f as series: x_k = y_k - down_k x_(k-1), y_k = solve_k r_k + down_k y_(k+1) with
  * r_k = f_(k-1) - f_(k+1), where x_0 and f_0 count twice; and 2 x_0 = start (x at the start - what the rest makes there).

@@ -64,7 +64,7 @@ enum {
 };
 
 #ifdef NAME_RUNTIME
-enum { MOST_MOVED = 2, HEARD = NAME_HEARD, CAUTION = 4 };
+enum { MOST_MOVED = 2, HEARD = NAME_HEARD, CAUTION = 4, CALM = 4 };
 
 extern const name_parameters name_defaults;
 extern const real largest_number;

@@ -246,13 +246,13 @@ static verdict unknown(simulation *s, unsigned reference, const char *kind)
 static verdict get_reals(simulation *s, const unsigned *reference, size_t count, double *value)
 {
     static const double constant[] = CONSTANTS;
-    if (refresh(s) != FINE) {
-        return WRONG;
-    }
     for (size_t k = 0; k < count; ++k) {
         const unsigned r = reference[k];
         if (r >= LINEAR_REFERENCE) {
             return unknown(s, r, "a number");
+        }
+        if (r >= FIRST_OUTPUT && r < FIRST_CONSTANT && refresh(s) != FINE) {
+            return WRONG;
         }
         if (r == TIME_REFERENCE) {
             value[k] = s->now.time;

@@ -420,3 +420,26 @@ def test_bad_input_is_one_line(
 
 def _toml(name: str) -> str:
     return (Path(wavesym.__file__).parent / "scene" / "builtin" / f"{name}.toml").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["drive_m1", pytest.param("geared_drive", marks=pytest.mark.slow)])
+def test_a_stream_is_told_as_it_would_be_made(name: str, tmp_path: Path) -> None:
+    """By the header, which counts for those who call it, and by its manifest."""
+    said = builtin(name, "program")["stream"]
+    wavesym.generate(Scene.from_toml(name), tmp_path, stream=True)
+    header = " ".join((tmp_path / f"{name}.h").read_text().replace("\n *", "").split())
+    manifest = json.loads((tmp_path / f"{name}.json").read_text())
+    assert f"_DEGREE = {said['degree']}," in header
+    assert f"costs at most {said['panel_work']} multiplications" in header
+    assert f"within a panel about {said['step_work']}," in header
+    slots = int(re.findall(r"_SLOTS = (\d+)", header)[0])
+    assert said["state_bytes"] == 8 * slots * (said["degree"] + 1)
+    assert (said["panel"], said["inputs"], said["direct"]) == tuple(
+        manifest[key] for key in ("panel", "loads", "direct")
+    )
+
+
+def test_a_scene_that_is_no_stream_says_why() -> None:
+    samples = {"body": 1, "spacing": "1/2", "samples": [0, 1, 0]}
+    damped = Scene.from_toml("drive_m1").with_({"system.damping": 0.05, "load": [samples], "output.tolerance": "1e-2"})
+    assert told(damped)["stream"] == {"refusal": "system.damping: given, none expected (only modes serve it)"}

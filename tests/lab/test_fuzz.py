@@ -16,7 +16,8 @@ from wavesym.running.toolchain import CompilerError
 
 KEPT = Path(__file__).parents[1] / "fuzz"
 COMPILER = next(filter(shutil.which, ("gcc", "cc", *fuzz.CLANGS)), None)
-FIRST = FUZZED[0]
+BY_NAME = {program.name: program for program in FUZZED}
+QUICK = "closed_double_values"
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no gcc, no clang here")
 
@@ -34,13 +35,14 @@ def replayed(program: FuzzedProgram, folder: Path) -> str:
 
 
 @pytest.mark.parametrize(
-    "program", [FIRST, *(pytest.param(each, marks=pytest.mark.slow) for each in FUZZED[1:])], ids=lambda each: each.name
+    "name", [name if name == QUICK else pytest.param(name, marks=pytest.mark.slow) for name in BY_NAME]
 )
-def test_what_was_kept_breaks_nothing(program, tmp_path):
-    assert replayed(program, tmp_path) == ""
+def test_what_was_kept_breaks_nothing(name, tmp_path):
+    assert replayed(BY_NAME[name], tmp_path) == ""
 
 
 BREAKS = {
+    "an index before the first": (QUICK, "while (power > first_power", "while (power >= first_power"),
     "an index too far": ("pieces_double_values", "while (power < lowest)", "while (power <= lowest)"),
     "a row too long": ("pieces_double_values", "end < s->vectors ? end : s->vectors", "end"),
     "an edge that belongs to the piece before": ("pieces_double_values", "tau < edge;", "tau <= edge;"),
@@ -62,6 +64,7 @@ BREAKS = {
         "k < SIZE && instant[k] <= from",
         "k <= SIZE && instant[k] <= from",
     ),
+    "a stream that should give nothing": ("tuned_double_tuned", "gain[k] = not_a_number();", ""),
     "a bad parameter": (
         "runtime_double_runtime",
         "m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);",
@@ -83,7 +86,7 @@ BREAKS = {
 )
 def test_what_is_broken_on_purpose_is_seen(fault, tmp_path):
     name, right, wrong = BREAKS[fault]
-    (program,) = (each for each in FUZZED if each.name == name)
+    program = BY_NAME[name]
     assert replayed(program._replace(subject=Spoilt(program.subject, right, wrong)), tmp_path) != ""
 
 
@@ -99,7 +102,8 @@ def test_the_page_says_what_was_fuzzed():
 @pytest.mark.slow
 @pytest.mark.skipif(not fuzz.fuzzer(), reason="no clang with libFuzzer here")
 def test_a_fuzzer_finds_a_fault_by_itself(tmp_path):
-    program = FIRST._replace(subject=Spoilt(FIRST.subject, "while (power < lowest)", "while (power <= lowest)"))
+    name, right, wrong = BREAKS["an index before the first"]
+    program = BY_NAME[name]._replace(subject=Spoilt(BY_NAME[name].subject, right, wrong))
     found = fuzz.fuzz(program, fuzz.fuzzer(), tmp_path, tmp_path / "nothing", 30)
     assert "AddressSanitizer" in found.found
     assert "bytes " in found.found

@@ -22,7 +22,7 @@ def check(family):
             assert not error.error <= 1
         else:
             assert error.error <= error.bound < 1e-6
-            assert error.error <= 4 * estimate.error
+            assert error.error <= estimate.error
     return errors
 
 

@@ -1,6 +1,5 @@
 """What is measured of sweeps is sweeps that are done, and rivals that are right."""
 
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +11,9 @@ from wavesym.lab import many_sets, swept
 from wavesym.results.summary import summarised
 from wavesym.rivals.line import stated
 from wavesym.rivals.specialised import SampleGrid, peaks_in_c, peaks_in_numpy
-from wavesym.scene import Scene, lower
+from wavesym.scene import lower
 
-DRIVE = Scene(**tomllib.loads(swept.DRIVE))
+DRIVE = swept.drive()
 pytestmark = pytest.mark.slow
 
 
@@ -22,9 +21,7 @@ def test_sweeps_are_measured_that_fail_nowhere(tmp_path: Path) -> None:
     """Nothing is asserted of the time itself."""
     swept.inputs(tmp_path, records=3, samples=300)
     for text in (swept.FRAMES.format(structures=2), swept.SHAFTS.format(sets=9)):
-        seconds, megabytes = swept.swept(tmp_path, text)
-        assert float(seconds) > 0
-        assert float(megabytes) > 0
+        assert all(float(each) > 0 for each in swept.swept(tmp_path, text))
 
 
 def test_what_a_batch_costs_and_what_memory_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -33,7 +30,7 @@ def test_what_a_batch_costs_and_what_memory_is_measured(monkeypatch: pytest.Monk
     rows = list(swept.growth())
     assert [cases for cases, *_ in rows] == ["20", "30"]
     assert all(float(each) > 0 for _, *told in rows for each in told)
-    assert all(float(ms) > 0 for _, ms in swept.overheads())
+    assert all(float(told.split()[0]) > 0 for _, told in swept.overheads())
 
 
 def test_rivals_of_many_sets_find_the_peaks_that_the_exact_response_has() -> None:

@@ -39,7 +39,7 @@ TESTS += tuple(
 )
 TESTS += ("exact/test_joint.py", "exact/test_network_waves.py", "exact/test_silence.py")
 TESTS += tuple(f"targets/test_{name}.py" for name in ("march_c", "march_hand", "march_short_panels", "selftest"))
-COPIED = ("wavesym", "templates", "tests", "pyproject.toml")
+COPIED = ("wavesym", "templates", "tests", "examples", "pyproject.toml")
 PYTEST = f"""ulimit -v {4 << 20}; exec "$0" -m pytest -x -q --tb=short -p no:cacheprovider --basetemp=tmp/pytest \
 --hypothesis-profile=first_failure -o faulthandler_exit_on_timeout=true "$@" """
 WANTED = 0.95  # of the mutants that make a bound false or a value wrong

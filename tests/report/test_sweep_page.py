@@ -153,3 +153,28 @@ def test_a_scene_of_any_case_is_that_of_the_plan(folder: Path) -> None:
 @pytest.mark.slow
 def test_axe_finds_nothing(page: str, tmp_path: Path) -> None:
     assert reported(page, axe() + test_page.LOOK, tmp_path) == []
+
+
+@pytest.mark.slow
+def test_a_large_sweep_with_long_names_has_a_small_page_that_fits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """400 cases and 200 letters for each record: what the page shows is cut, and does not scroll sideways."""
+    for k in range(20):
+        (tmp_path / f"{k}{'x' * 200}.csv").write_text("a\n0\n1\n0\n-1\n0\n")
+    scene = {
+        "name": "n" * 60,
+        "system": {"type": "building", "m": 2, "kappa": ["1/20"] * 3, "base": "ground", "damping": 0.05},
+        "load": [{"spacing": 5, "record": {"samples": [0, 1]}}],
+        "output": {"until": 30, "tolerance": 1e-4, "drift": [1, 2]},
+    }
+    ratios = {"from": 0.02, "to": 0.1, "count": 20}
+    monkeypatch.setattr(running, "_several", lambda: False)
+    sweep = {"scene": scene, "records": str(tmp_path / "*.csv"), "vary": {"system.damping": ratios}}
+    assert compiler.run_sweep(sweep, tmp_path / "out", None, None, False) == 0
+    large = sweep_page(tmp_path / "out")
+    assert len(large.encode()) < 400_000
+    assert faults(large) == []
+    wide = "const all = document.documentElement; report([all.scrollWidth, all.clientWidth]);"
+    needed, given = reported(large, wide, tmp_path)
+    assert needed == given

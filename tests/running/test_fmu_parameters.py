@@ -98,6 +98,7 @@ def test_bad_parameters_are_refused_and_change_nothing(gears):
     # numbers by themselves, but too light for the degree: seen when all of them are known
     instance.put({"kappa_1": 1e6})
     refused(instance, lambda: instance.get(OUTPUTS))
+    assert instance.get(["kappa_1", "kappa_2"]) == [1e6, 0.5]
     if instance.two:
         instance.slave.setupExperiment(startTime=0.0)
         instance.slave.enterInitializationMode()

@@ -106,6 +106,16 @@ DRIVE = 'scene = "drive_m1"\n'
         (DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nhistories = 1', "keep.histories: 1 samples given"),
         (DRIVE + '[vary]\n"output.until" = [3]\n[keep]\nsummary = []', "keep: nothing given"),
         (DRIVE + 'records = "*.at2"', "records: 0 loads with a record in the scene, 1 expected"),
+        (
+            DRIVE + "[vary]\n" + "".join(f'"load[{k}].body" = [1]\n' for k in range(31)),
+            "vary: 31 dimensions given, at most",
+        ),
+        (
+            DRIVE + '[vary]\n"output.until" = ["\\u0000", 1979-05-27]\n"output.tolerance" = ["x"]\nx = [1]',
+            'vary."x": a whole table',
+        ),
+        ('scene = "frame.toml"\nrecords = "\\u0000"', 'records[0]: no file found at "\\x00"'),
+        ('scene = "frame.toml"\nrecords = "*.csv"', 'records[0]: no file found at "*.csv"'),
         (DRIVE + '[vary]\n"output" = [{ until = 3, strain = [0] }]', 'vary."output": a whole table given'),
     ],
 )

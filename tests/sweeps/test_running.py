@@ -121,9 +121,10 @@ def test_a_process_that_dies_at_any_moment_of_a_batch_loses_that_batch_alone(
             raise KeyboardInterrupt
         return whole(self, *given)
 
-    with monkeypatch.context() as patched, pytest.raises(KeyboardInterrupt):
+    with monkeypatch.context() as patched:
         patched.setattr(where, moment, dies)
-        run(SWEEP, tmp_path / "a")
+        with pytest.raises(KeyboardInterrupt):
+            run(SWEEP, tmp_path / "a")
     assert computed == [0, 1, 2]
     assert status(tmp_path / "a").done == 2
     assert run(SWEEP, tmp_path / "a") == 0

@@ -167,7 +167,7 @@ def test_in_single_precision_too(case, tmp_path):
     [
         ("*total += high - low;", "*total += high;"),
         ("b->edge[row][LOSS] * mean", "b->edge[row][SLACK] * mean"),
-        ("b->rate[node], set) = law->rate[node]", "b->rate[node], 0) = law->rate[node]"),
+        ("all->rate[node], set) = law->rate[node]", "all->rate[node], 0) = law->rate[node]"),
     ],
 )
 def test_a_mistake_is_seen(change, tmp_path):

@@ -1,5 +1,7 @@
 """Parameters far from all others: what is not there is not claimed, and what overflows is refused by all builds."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
@@ -150,3 +152,30 @@ def test_status_0_is_finite_and_a_refusal_has_no_estimate(tmp_path):
         told, lanes = made.tangents(given, 0.0, 0.2, 101)
         assert told or np.isfinite(lanes).all()
     assert min(counts[:2]) > 5
+
+
+LIGHT = wavesym.Scene(
+    name="light",
+    system={"type": "drive", "m": 6, "kappa": [1] * 6, "inertia": [1] * 7},
+    load=[{"body": 1, "times": [0], "steps": [1]}],
+    output={"until": 10, "tolerance": "1e-12", "strain": ["1/2"], "velocity": [0, 6]},
+)
+
+
+def beyond_estimates(made, kappas):
+    """Errors over estimates, of equal shafts."""
+    tau = np.linspace(0, 10, 1001)
+    for kappa in kappas:
+        assert made.build(*[kappa] * 6) == 0
+        found = made.sample(0.0, 0.01, 1001)[1]
+        true = wavesym.evaluator(LIGHT.with_({"system.kappa": [Fraction(kappa)] * 6, "output.tolerance": "1e-14"}))(tau)
+        errors = np.max(np.abs(found - true), axis=1) / np.max(np.abs(true), axis=1)
+        yield float(np.max(errors) / made.estimate)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("changes", [[], [("+ (real)(degree * degree) / 16", "")]], ids=["right", "blind"])
+def test_rounding_of_high_degrees_is_in_the_estimate(changes, tmp_path):
+    kappas = [41.653907084189861, 64.66177062800014, 90.06388912129225, 90.676416664731789]  # unlucky ones
+    beyond = max(beyond_estimates(BuiltModel(LIGHT, ["kappa"], tmp_path, changes), kappas))
+    assert beyond > 1 if changes else beyond < 1

@@ -6,11 +6,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import assume, given, reject, settings
 
 import wavesym
 from tests.running.test_model_units import CASES as WITH_UNITS
 from tests.support.builds import LANGUAGES, STRICT
-from tests.support.drives import EVERY
+from tests.support.drives import EVERY, small
 from tests.support.streamed import built, missed, run
 from tests.targets.test_stream_c import CASES, GEARS, JUMPS, PANEL, loaded, selftest
 from wavesym.compiler import check, stream_program
@@ -265,3 +266,45 @@ def test_a_fault_in_the_tables_is_seen(fault, monkeypatch):
     with np.errstate(invalid="ignore"):
         found, error = ran(built(scene, runtime=["kappa"]), scene)
     assert not error < 1e-9 or max(found.status) > 0
+
+
+SCALES = {"mass": Fraction(1, 3), "spring": Fraction(2), "dashpot": Fraction(5, 4)}
+
+
+def scaled(value):
+    """A system with all masses, springs and dashpots so many times as large."""
+    if isinstance(value, dict):
+        return {
+            key: Fraction(str(each)) * SCALES[key] if key in SCALES else scaled(each) for key, each in value.items()
+        }
+    return [scaled(each) for each in value] if isinstance(value, list) else value
+
+
+@pytest.mark.slow
+@settings(settings.get_profile("first_failure"), max_examples=12)
+@given(small(until=3))
+def test_chains_with_other_parts(table):
+    """Beside the stream without parameters, and so with tables from balls, of the chain that has these parts."""
+    scene, other = wavesym.Scene(**table), wavesym.Scene(**table | {"system": scaled(table["system"])})
+    names = [name for name in SCALES if f"'{name}'" in str(table["system"])]
+    assume(names)
+    try:
+        model, fixed = built(scene, runtime=names), built(other)
+    except WavesymError:
+        reject()
+    changed = {
+        field.name: [float(SCALES[field.name] * Fraction(str(value))) for value in field.values]
+        for field in model.fields
+    }
+    ours, theirs = model.start(**changed), fixed.start()
+    assert ours.refused == 0
+    found = []
+    for k in range(40):
+        load = [((3 * j + k // 5) % 5 - 2) / 2 for j in range(len(model.loads))]
+        ours.step(0.0, load)
+        theirs.step(0.0, load)
+        found.append([stream.step(fixed.panel, load) for stream in (ours, theirs)])
+    statuses, rows = zip(*((pair[0][0], [out for _, out in pair]) for pair in found), strict=True)
+    one, two = np.array(rows).transpose(1, 0, 2)
+    assume(max(statuses) == 0)
+    assert np.max(np.abs(one - two)) <= 1e-11 * np.max(np.abs(two), initial=0.0)

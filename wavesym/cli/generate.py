@@ -71,7 +71,8 @@ STEP = StepParameter()
     "--runtime",
     metavar="LIST",
     help="Parameters that come at run time, with commas between: of kappa, inertia, velocity and load; of a chain that "
-    "is written out mass, dashpot, spring, impedance, velocity and load.",
+    "is written out mass, dashpot, spring, impedance, velocity and load. A stream takes them when it starts, all but "
+    "load.",
 )
 @click.option("--stream", is_flag=True, help="Take the loads sample by sample, from a controller, without end.")
 @click.option(

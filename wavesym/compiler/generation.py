@@ -44,10 +44,10 @@ def generate(
     `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
     "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters that C takes when it
     runs: "kappa", "inertia", "velocity", "load". A `stream` takes the loads sample by sample, at any time, or best at
-    multiples of `step`, in tau. `package` adds what CMake builds, tests and installs C with. `target` "fmu2" or "fmu3"
-    makes one file, NAME.fmu, a stream for simulators; CompilerError without a C compiler. Files that wavesym did not
-    write are replaced only by `force`; WavesymError else, and for a language, evaluator, precision or aim that there is
-    not.
+    multiples of `step`, in tau, and `runtime` when it starts. `package` adds what CMake builds, tests and installs C
+    with. `target` "fmu2" or "fmu3" makes one file, NAME.fmu, a stream for simulators, whose parameters are `runtime`,
+    or all of a named system; CompilerError without a C compiler. Files that wavesym did not write are replaced only by
+    `force`; WavesymError else, and for a language, evaluator, precision or aim that there is not.
 
     >>> import wavesym
     >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):

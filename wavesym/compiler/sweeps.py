@@ -24,9 +24,9 @@ def sweep(
     """Compute many scenes into a folder, as `wavesym sweep` does; what is there goes on where it was.
 
     `source` is a file of TOML or the same fields: `scene` (a Scene, or a path), `vary`, `records`, `keep`. By
-    `workers` processes of this machine (in a program under `if __name__ == "__main__":`, as these import it), those of
-    a Dask `scheduler`, or whoever is best. An xarray.Dataset: extremes over the varied paths, `record` and `output`,
-    NaN for a case that failed. SceneError for a request that is wrong, WavesymError for the folder of another sweep.
+    `workers` processes of this machine, those of a Dask `scheduler`, or whoever is best. An xarray.Dataset: extremes
+    over the varied paths, `record` and `output`, NaN for a case that failed. SceneError for a request that is wrong,
+    WavesymError for the folder of another sweep.
 
     >>> import wavesym
     >>> request = {"scene": "drive_m1", "vary": {"output.until": [4, 5], "system.kappa[0]": ["1/2", 1, 2]}}

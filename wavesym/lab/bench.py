@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import platform
 import sys
-import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from importlib.util import find_spec
@@ -161,22 +160,21 @@ def _records(folder: Path) -> Iterator[str]:
         yield "Whole commands, start-up included: 5 storeys, damped, 3000 samples, true peaks of 16 outputs; a drive of"
         yield "three shafts to tau = 40, true peaks of three strains at 1e-6."
         yield ""
-        yield from _table(("what", "by", "s", "peak MB"), swept.rows())
+        yield from _table(("what", "by", "s", "busy s", "peak MB"), swept.rows())
         yield ""
         yield "As the drive's sweep grows, over two kappa:"
         yield ""
-        yield from _table(("cases", "s", "peak MB", "peak MB of a worker"), swept.growth())
+        yield from _table(("cases", "s", "busy s", "peak MB", "peak MB of a worker"), swept.growth())
         yield ""
-        yield "Beside computing, of a batch of 44 records:"
+        yield "What a sweep of records is made of; a batch is 44 of them through one structure."
         yield ""
-        yield from _table(("what is done", "ms"), swept.overheads())
+        yield from _table(("what", "how much"), swept.overheads())
     yield ""
     yield "## Many sets"
     yield ""
     yield "The peaks of that drive from kappa on, compiling apart. Rivals have the coarsest grid that keeps 1e-6."
     yield ""
-    drive = Scene(**tomllib.loads(swept.DRIVE))
-    yield from _table(("sets", "way", "s", "sets a second", "error"), many_sets.rows(drive))
+    yield from _table(("sets", "way", "s", "sets a second", "error"), many_sets.rows(swept.drive()))
 
 
 def _machine() -> Iterator[str]:

@@ -47,7 +47,7 @@ def _turn(call: Call, count: int) -> float:
 
 
 class Ran(NamedTuple):
-    """A command that has run: whether it did what it was asked for, wall time in s, peak memory in MB, and the time that
+    """A command that has run: whether it did what it was asked for, wall time in s, peak memory in MB, and for how long
     it kept processors busy, in s."""
 
     well: bool

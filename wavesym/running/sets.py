@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.errors import UnservedError
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.arrays.engine import ArraySets
 from wavesym.programs.runtime.engine import Array, Engine, FoundSets
@@ -18,34 +17,45 @@ from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.targets.files import runtime_sets
 
 _MANY, _WHERE = ctypes.c_size_t, ctypes.c_void_p
-_AT_ONCE = 1 << 22  # numbers
+_LARGEST_BATCH = 1 << 28  # bytes
+
+Memory = NDArray[np.uint8]
 
 
 def sets_engine(program: Program) -> Engine:
-    """What computes a program here: C, or NumPy where there is no compiler. CompilerError for a chain there."""
-    if program.kind == "joints":
-        return CompiledSets(program)
+    """What computes a program here: C, or NumPy where there is no compiler."""
     try:
         compiler()
     except CompilerError:
         return ArraySets(program)
-    return BatchedSets(program)
+    return CompiledSets(program)
 
 
 class CompiledSets:
-    """One set after the other, in the memory of one model. CompilerError where there is no C compiler."""
+    """Several sets side by side, derivatives and bounds of one after the other, in the memory of one model.
+
+    CompilerError where there is no C compiler.
+    """
 
     def __init__(self, program: Program) -> None:
         self._name = program.provenance.model.name
         files = runtime_sets(program)
         header = (f"{self._name}.h", files[f"{self._name}.h"])
-        self._loaded = library(files[f"{self._name}.c"], FAST, header)
+        # joints have loops over a few states, which -O3 takes three times as long to compile for a tenth of their time
+        flags = ("-O2", *FAST[1:]) if program.kind == "joints" else FAST
+        self._loaded = library(files[f"{self._name}.c"], flags, header)
         self._outputs = len(program.outputs)
-        self._values, self._tangents = (
-            self._function(f"sets{kind}", [_WHERE, _MANY, _WHERE, _WHERE, ctypes.c_int, _MANY, _WHERE, _WHERE, _WHERE])
-            for kind in ("", "_tangents")
-        )
-        self._peaks = self._function("sets_peaks", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
+        at = [_WHERE, ctypes.c_int, _MANY]  # instants
+        self._values = self._function("sets", [_WHERE, _MANY, _WHERE, _WHERE, *at, _WHERE, _WHERE, _WHERE])
+        self._tangents = self._function("sets_tangents", [_WHERE, _MANY, _WHERE, *at, _WHERE, _WHERE, _WHERE])
+        self._peaks = self._function("sets_peaks", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._bounds = self._function("sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._misfits = self._function("sets_misfits", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
+        self._data_size = self._function("data_size", [_WHERE, _MANY], _MANY)
+        self._data = self._function("data_init", [_WHERE, _WHERE, _WHERE, _WHERE, _MANY], ctypes.c_int)
+        sizes = (_MANY * 2)()
+        self._function("sets_sizes", [_MANY * 2])(sizes)
+        self._batch_size, self._data_bytes = sizes
         self._size, self._tangent_size = (self._function(f"{kind}_size", [], _MANY)() for kind in ("model", "tangent"))
 
     def _function(self, name: str, arguments: list[Any], result: Any = None) -> ctypes._NamedFuncPointer:
@@ -55,67 +65,20 @@ class CompiledSets:
 
     def values(self, given: Array, tau: Array) -> FoundSets:
         """See `Engine`."""
-        return self._at(self._values, self._size, given, tau, 1)
+        batch = self._batch()
+        return self._at(self._values, [batch, np.empty(self._size, np.uint8)], given, tau, 1)
 
     def tangents(self, given: Array, tau: Array) -> FoundSets:
         """See `Engine`."""
-        return self._at(self._tangents, self._tangent_size, given, tau, 1 + given.shape[1])
+        return self._at(self._tangents, [np.empty(self._tangent_size, np.uint8)], given, tau, 1 + given.shape[1])
 
     def peaks(self, given: Array) -> FoundSets:
         """See `Engine`."""
-        return self._of_each(self._peaks, given, (self._outputs, 4))
+        return self._of_each(self._peaks, [self._batch(), np.empty(self._size, np.uint8)], given, (self._outputs, 4))
 
     def bounds(self, given: Array) -> FoundSets:
         """See `Engine`."""
-        raise UnservedError(f"bounds: {len(given)} sets of a chain given, collision, drive or building expected")
-
-    def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
-        """See `Engine`; sample by sample, some sets at a time."""
-        step = max(1, _AT_ONCE // max(1, data.size))
-
-        def misfits(given: Array) -> FoundSets:
-            found = _none(len(given), ())
-            for begin in range(0, len(given), step):
-                here = slice(begin, begin + step)
-                some = self.values(given[here], tau)
-                found.status[here], found.estimate[here] = some.status, some.estimate
-                sums = np.nansum((some.values[:, 0] - data) ** 2, axis=(1, 2))
-                found.values[here] = np.where(some.status == 0, sums, np.nan)
-            return found
-
-        return misfits
-
-    def _of_each(self, function: ctypes._NamedFuncPointer, given: Array, shape: tuple[int, ...]) -> FoundSets:
-        found = _none(len(given), shape)
-        model = np.empty(self._size, np.uint8)
-        function(address(given), len(given), address(model), *_places(found))
-        return found
-
-    def _at(self, function: ctypes._NamedFuncPointer, size: int, given: Array, tau: Array, lanes: int) -> FoundSets:
-        even = len(tau) > 1 and _even(tau)
-        told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
-        found = _none(len(given), (lanes, self._outputs, len(tau)))
-        model = np.empty(size, np.uint8)  # of this call, so that several may run at once
-        function(address(given), len(given), address(model), address(told), even, len(tau), *_places(found))
-        return found
-
-
-class BatchedSets(CompiledSets):
-    """Those of the named systems: with bounds, and with misfits of several sets side by side."""
-
-    def __init__(self, program: Program) -> None:
-        super().__init__(program)
-        self._misfits = self._function("sets_misfits", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
-        self._bounds = self._function("sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
-        self._data_size = self._function("data_size", [_WHERE, _MANY], _MANY)
-        self._data = self._function("data_init", [_WHERE, _WHERE, _WHERE, _WHERE, _MANY], ctypes.c_int)
-        sizes = (_MANY * 2)()
-        self._function("sets_sizes", [_MANY * 2])(sizes)
-        self._batch_size, self._data_bytes = sizes
-
-    def bounds(self, given: Array) -> FoundSets:
-        """See `Engine`."""
-        return self._of_each(self._bounds, given, (self._outputs,))
+        return self._of_each(self._bounds, [np.empty(self._size, np.uint8)], given, (self._outputs,))
 
     def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
         """See `Engine`."""
@@ -132,8 +95,41 @@ class BatchedSets(CompiledSets):
 
         return misfits
 
+    def _batch(self) -> Memory | None:
+        """Room for sets side by side, of each call its own, so that several may run at once; none for huge models."""
+        return _aligned(self._batch_size) if self._batch_size <= _LARGEST_BATCH else None
 
-def _aligned(size: int) -> NDArray[np.uint8]:
+    def _of_each(
+        self,
+        function: ctypes._NamedFuncPointer,
+        room: Sequence[Memory | None],
+        given: Array,
+        shape: tuple[int, ...],
+    ) -> FoundSets:
+        found = _none(len(given), shape)
+        function(address(given), len(given), *map(_place, room), *_places(found))
+        return found
+
+    def _at(
+        self,
+        function: ctypes._NamedFuncPointer,
+        room: Sequence[Memory | None],
+        given: Array,
+        tau: Array,
+        lanes: int,
+    ) -> FoundSets:
+        even = len(tau) > 1 and _even(tau)
+        told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
+        found = _none(len(given), (lanes, self._outputs, len(tau)))
+        function(address(given), len(given), *map(_place, room), address(told), even, len(tau), *_places(found))
+        return found
+
+
+def _place(room: Memory | None) -> int | None:
+    return None if room is None else address(room)
+
+
+def _aligned(size: int) -> Memory:
     """Memory from a multiple of 64 bytes on."""
     memory = np.empty(size + 64, np.uint8)
     begin = -memory.ctypes.data % 64

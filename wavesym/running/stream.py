@@ -20,7 +20,8 @@ Array = NDArray[np.float64]
 class StreamModel:
     """A scene whose loads come while it runs, in C: `start` gives as many streams of it as are wanted.
 
-    `outputs` and `loads` are the names, those of loads with their units. CompilerError without a C compiler.
+    `outputs` and `loads` are the names, those of loads with their units; `fields` are the parameters. CompilerError
+    without a C compiler.
     """
 
     def __init__(self, program: Program, flags: Sequence[str] = FAST) -> None:
@@ -29,7 +30,7 @@ class StreamModel:
         size = f"\nsize_t {name}_state_size(void);\nsize_t {name}_state_size(void) {{ return sizeof({name}_state); }}\n"
         loaded = library(files[f"{name}.c"] + size, tuple(flags), (f"{name}.h", files[f"{name}.h"]))
         real, where = ctypes.c_double if program.real.bytes == 8 else ctypes.c_float, ctypes.c_void_p
-        self._laws, begin = program.laws, "build" if program.laws else "init"
+        begin = "build" if program.laws else "init"
         self._begin, self._step, self._lost, self._size = (
             getattr(loaded, f"{name}_{word}") for word in (begin, "step", "lost", "state_size")
         )
@@ -40,6 +41,7 @@ class StreamModel:
         self.dtype = np.dtype(f"f{program.real.bytes}")
         self.outputs = tuple(output.name for output in program.outputs)
         self.loads = program.sources
+        self.fields = program.laws.fields if program.laws else ()
         self.panel = program.constants["panel"]
 
     @property
@@ -53,11 +55,10 @@ class StreamModel:
         WavesymError for a field that the program has not got, or that has another number of values.
         """
         state = np.zeros(self.state_bytes, np.uint8)
-        fields = self._laws.fields if self._laws else ()
-        for name in given.keys() - {field.name for field in fields}:
-            raise WavesymError(f"{name}: given, {', '.join(field.name for field in fields) or 'nothing'} expected")
+        for name in given.keys() - {field.name for field in self.fields}:
+            raise WavesymError(f"{name}: given, {', '.join(field.name for field in self.fields) or 'nothing'} expected")
         rows = []
-        for field in fields:
+        for field in self.fields:
             row = np.array(given.get(field.name, list(map(nearest, field.values))), self.dtype).ravel()
             if len(row) != len(field.values):
                 raise WavesymError(f"{field.name}: {len(row)} given, {len(field.values)} expected")

@@ -27,6 +27,7 @@ from wavesym.sweeps.request import SweepRequest
 SCHEMA = 1
 MOST = 10_000_000
 """Cases of a sweep."""
+_DIMENSIONS = 30  # with outputs and samples as many as an array of NumPy can have
 RECORD, CASE, OUTPUT, SAMPLE = "record", "case", "output", "sample"
 """Names of dimensions."""
 _UNCHANGED = ("until", "tolerance")  # fields of the output that make no other outputs
@@ -173,6 +174,10 @@ def _refuse_many(request: SweepRequest, records: int) -> None:
         told = ", ".join(f"{count} of {path}" for path, count in counts.items())
         raise SceneError(f"{told} given, as many of each expected (they are run through side by side)", "vary")
     cases = records * (next(iter(counts.values()), 1) if request.zip else prod(counts.values()))
+    dimensions = 1 if request.zip else len(counts) + (records > 1)
+    if dimensions > _DIMENSIONS:
+        expected = f"at most {_DIMENSIONS} expected (zip = true runs fields side by side, in one dimension)"
+        raise SceneError(f"{dimensions} dimensions given, {expected}", "vary")
     if cases > MOST:
         raise SceneError(f"{cases} cases given, at most {MOST} expected (fewer values help)", "vary")
 

@@ -50,7 +50,7 @@ def recorded(plan: SweepPlan, places: Sequence[Place]) -> Iterator[tuple[Place, 
     for head, some in alike.items():
         try:
             scene = Scene(**changed(plan.fields_at(some[0]), path, {**json.loads(head), "samples": _PROBE}))
-            yield from _together(plan, scene, [(place, _read(_key(values[place[-1]]))) for place in some])
+            yield from _together(plan, scene, [(place, doubles(key(values[place[-1]]))) for place in some])
         except WavesymError:
             continue
 
@@ -103,12 +103,12 @@ class _Samples:
     late: Roughness
 
 
-def _key(record: dict[str, Any]) -> tuple[str, ...]:
+def key(record: dict[str, Any]) -> tuple[str, ...]:
     return tuple(record["samples"])
 
 
 @lru_cache(2048)
-def _read(written: tuple[str, ...]) -> _Samples:
+def doubles(written: tuple[str, ...]) -> _Samples:
     values = np.array([_double(each) for each in written])
     return _Samples(bool(values[0]), values, of_samples(values), of_samples(np.concatenate([[0.0], values])))
 

@@ -40,7 +40,7 @@ def by_kappa(progress: Progress, kappas: Sequence[Fraction] = KAPPAS, shafts: Se
         _Y,
         tuple(points),
         _NOTE,
-        most=1.0,
+        most=1e-6,
     )
 
 
@@ -60,7 +60,7 @@ def by_reflections(
         _Y,
         tuple(points),
         _NOTE,
-        most=1.0,
+        most=1e-4,
     )
 
 

@@ -82,8 +82,6 @@ class FuzzedProgram(NamedTuple):
 
 
 _BY_NAME = {subject.name: subject for subject in CHECKED}
-CHAIN = _BY_NAME["joints_double"]
-TUNED = _BY_NAME["tuned_double"]
 FUZZED = (
     FuzzedProgram(_BY_NAME["pieces_double"], "values", 64),
     FuzzedProgram(_BY_NAME["closed_double"], "values", 64),
@@ -94,9 +92,9 @@ FUZZED = (
     FuzzedProgram(_BY_NAME["modes_double"], "stream", 512),
     FuzzedProgram(_BY_NAME["stream_double"], "stream", 512),
     FuzzedProgram(_BY_NAME["stream_double"].single, "stream", 512),
-    FuzzedProgram(TUNED, "tuned", 512),
+    FuzzedProgram(_BY_NAME["tuned_double"], "tuned", 512),
     FuzzedProgram(_BY_NAME["runtime_double"], "runtime", 128),
-    FuzzedProgram(CHAIN, "runtime", 128),
+    FuzzedProgram(_BY_NAME["joints_double"], "runtime", 128),
     FuzzedProgram(_BY_NAME["runtime_double"], "batch", 512),
 )
 

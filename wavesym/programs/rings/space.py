@@ -69,11 +69,15 @@ class JointSpace:
         return _norm(self._balanced)
 
     @cached_property
+    def swing(self) -> float:
+        """How fast its bodies swing on their springs, at most, as if nothing took their energy."""
+        return _norm((self._balanced - self._balanced.T) / 2)
+
+    @cached_property
     def turning(self) -> float:
         """About how fast its bodies swing on their springs, where nothing takes their energy; 0 where that is more."""
-        swing = _norm((self._balanced - self._balanced.T) / 2)
         decay = float(np.max(-np.diag(self._balanced), initial=0.0))
-        return sqrt(max(swing**2 - decay**2 / 4, 0.0))
+        return sqrt(max(self.swing**2 - decay**2 / 4, 0.0))
 
     @cached_property
     def _balanced(self) -> NDArray[np.float64]:

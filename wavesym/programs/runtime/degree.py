@@ -21,7 +21,7 @@ from wavesym.programs.runtime.plan import RuntimePlan
 
 STIFF = fmpq(100)
 LEAST = 8
-MARGIN = 16  # outputs are often smaller than waves
+MARGIN = 24  # outputs are often smaller than waves, and errors a few times what is missed
 _HIGHEST = 1000
 _MOST_WORK = 3e8  # nodes * coefficients * windows, for each degree
 LARGEST_MODEL = 1 << 28  # bytes

@@ -27,6 +27,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ring
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.plan import HeardWave, Plan, Stretch, panels, plan
+from wavesym.programs.runtime.quiet import drawn, quiet
 from wavesym.programs.runtime.request import RuntimeField
 from wavesym.programs.runtime.units import Function, force_kept, load_kept
 
@@ -113,6 +114,8 @@ def runtime_plan(
     CostError as for a march, UnservedError where the samples of a load have an amplitude beside another one.
     """
     ring, free = free_chain(model, given)
+    some = _with(model.named, given, drawn(given))
+    silent = quiet(replace(model, chain=some, network=network_of(some)), loads, real)
     chosen = [unit.size for field in given if field.name == "load" for unit in field.units]
     units = chosen or [fmpq(1)] * len(loads)
     until = rational(model.horizon(real))
@@ -123,7 +126,7 @@ def runtime_plan(
     )
     kept: list[Any] = [force_kept(model, free) if probe.quantity == "force" else fmpq(1) for probe in model.probes]
     heard = tuple(
-        (number, replace(wave, gain=wave.gain * kept[number]))
+        (number, replace(wave, gain=fmpq(0) if silent[number] else wave.gain * kept[number]))
         for number, output in enumerate(made.outputs)
         for wave in output.heard
     )
@@ -148,9 +151,13 @@ def free_chain(model: Model, given: Sequence[RuntimeField]) -> tuple[Ring, Chain
     chain = model.named
     symbols = [label for field in given if field.name != "load" for label in field.labels]
     ring = Ring(tuple(symbols))
-    symbols_of = ring.symbols()
+    return ring, _with(chain, given, ring.symbols())
+
+
+def _with(chain: Chain, given: Sequence[RuntimeField], values: Mapping[str, Any]) -> Chain:
+    """The chain with these values of the parameters, in their units."""
     own = {
-        label: symbols_of[label] / unit.size
+        label: values[label] / unit.size
         for field in given
         if field.name != "load"
         for label, unit in zip(field.labels, field.units, strict=True)
@@ -160,8 +167,8 @@ def free_chain(model: Model, given: Sequence[RuntimeField]) -> tuple[Ring, Chain
         values: dict[int, Any] | None = getattr(chain.parameters, name)
         return values and {i: own.get(f"{name}_{i}", value) for i, value in values.items()}
 
-    parameters = Parameters(**{name: numbers(name) for name in ("kappa", "inertia", "velocity", "dashpot")})
-    return ring, replace(chain, parameters=parameters)
+    names = ("kappa", "inertia", "velocity", "dashpot")
+    return replace(chain, parameters=Parameters(**{name: numbers(name) for name in names}))
 
 
 def _pushes(

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from itertools import chain
-from typing import Any, cast
+from typing import Any
 
-import numpy as np
 from flint import fmpq_mat
-from numpy.typing import NDArray
 
-from wavesym.numbers.doubles import nearest
 from wavesym.programs.rings.plan import MarchedJoint
-from wavesym.programs.rings.space import JointRows
 from wavesym.programs.rings.tables import firsts
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.units import Function
 from wavesym.programs.stream.free import FreeStream
 from wavesym.programs.stream.plan import StreamPlan
+from wavesym.programs.stream.quick import CALM, rows_of
 from wavesym.programs.stream.tables import CAUTION
 
 MADE = ("held", "matrix", "begun", "push", "slip", "law", "base", "strength", "gain")
@@ -51,7 +48,7 @@ def places(free: FreeStream, plan: StreamPlan, degree: int) -> dict[str, tuple[f
         "law_of": law,
         "first_law": tuple(law[n] for n in plan.loaded),
         "is_mass": tuple(
-            int(n < rows.masses) for rows in map(_rows_of, free.rings.joints) if rows for n in range(len(rows.weights))
+            int(n < rows.masses) for rows in map(rows_of, free.rings.joints) if rows for n in range(len(rows.weights))
         ),
     }
 
@@ -63,31 +60,14 @@ def sizes(plan: StreamPlan, degree: int) -> dict[str, float]:
         "answers": sum(_answer_size(joint, degree) for joint in joints),
         "slips": sum(_slip_size(joint, degree) for joint in joints),
         "caution": CAUTION,
+        "calm": CALM,
         "most_moved": max(1, *(joint.space.states for joint in joints)),
     }
-
-
-def step_lost(free: FreeStream, number: int, plan: StreamPlan, slips: Sequence[float], degree: int) -> float:
-    """What polynomials lose at most where a wave, or a body, that was at rest jumps to 1; as stream_made.c has it."""
-    space, rows = plan.rings.joints[number].space, _rows_of(free.rings.joints[number])
-    if rows is None or not space.states:
-        return 0.0
-    size = degree + 1
-    jumps: NDArray[np.float64] = np.zeros(space.points * size + space.states)
-    for port in space.ports:
-        jumps[port.point * size] += abs(nearest(port.push))
-    jumps[space.points * size :][: rows.masses] = 1
-    return float(np.max(np.abs(np.reshape(slips, (space.points, -1))) @ jumps))
 
 
 def _law(space: Any) -> Iterator[Function]:
     for matrix in (space.rates, space.pushed, space.shown, space.passed):
         yield from matrix.entries() if isinstance(matrix, fmpq_mat) else chain.from_iterable(matrix)
-
-
-def _rows_of(joint: MarchedJoint) -> JointRows | None:
-    """None where a load is read."""
-    return rows if isinstance(rows := cast(Any, joint.space), JointRows) else None
 
 
 def _answer_size(joint: MarchedJoint, degree: int) -> int:

@@ -32,13 +32,13 @@ from wavesym.programs.request import Request
 from wavesym.programs.rings.bound import judge
 from wavesym.programs.rings.evaluator import first_degree, refuse_long
 from wavesym.programs.stream.free import FreeStream, free_stream, usual_parameters
-from wavesym.programs.stream.made import MADE, laws_of, places, sizes, step_lost
+from wavesym.programs.stream.made import MADE, laws_of, places, sizes
 from wavesym.programs.stream.plan import Input, StreamPlan, stream_plan
+from wavesym.programs.stream.quick import quick_enough, refuse_stiff
 from wavesym.programs.stream.tables import StreamTables
 
 _ONE = fmpq(1)
 _ROUNDINGS = 64  # no tolerance is smaller
-_HIGH = 48  # degrees: no more of them for joints that are only allowed to be quick
 _SPARE = 4  # of the tolerance one step of each load takes so much less
 
 
@@ -74,7 +74,8 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
             told = f"output.tolerance: {nearest(tolerance):g} cannot be met: stream: "
             raise ToleranceError(f"{told}rounding may leave nothing of {output.name} (other outputs help)")
     if free:
-        degree = _quick_enough(free, plan, degree, nearest(tolerance), real)
+        refuse_stiff(plan)
+        degree, quicker = quick_enough(free, plan, degree, nearest(tolerance), real)
     made = StreamTables(plan, degree, real)
     program = Program(
         "stream",
@@ -93,38 +94,26 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
         direct=plan.direct,
     )
     if free:
-        program = _freed(program, free, plan, degree)
+        program = _freed(program, free, plan, degree, quicker)
     return replace(program, reference=_reference(model, plan, program)) if tested else program
 
 
-def _freed(program: Program, free: FreeStream, plan: StreamPlan, degree: int) -> Program:
-    """With functions for the tables that parameters make."""
-    names = ", ".join(field.name for field in free.fields)
-    quicker = f" and for joints {free.quicker} times as fast" if free.quicker != 1 else ""
-    reason = f"{program.provenance.reason}; {names} at run time, enough for the scene's own{quicker}, errors estimated"
+def _freed(program: Program, free: FreeStream, plan: StreamPlan, degree: int, quicker: fmpq) -> Program:
+    """With functions for the tables that parameters make, enough for joints so much `quicker` than the scene's."""
+    names, laws, more = ", ".join(field.name for field in free.fields), laws_of(free), sizes(plan, degree)
+    kept = sum(map(len, laws.functions.values())) + int(more["answers"] + more["slips"])
+    also = f" and for joints {quicker} times as fast" if quicker != 1 else ""
+    kib = -(-kept * program.real.bytes // 1024)
+    reason = f"{names} at run time, {kib} KiB more, enough for the scene's own{also}; errors are estimated"
     tables = {name: table for name, table in program.tables.items() if name not in MADE} | places(free, plan, degree)
     return replace(
         program,
         tables=tables,
-        constants=program.constants | sizes(plan, degree),
+        constants=program.constants | more,
         bytes=sum((4 if isinstance(v, int) else program.real.bytes) for row in tables.values() for v in row),
-        provenance=replace(program.provenance, reason=reason),
-        laws=laws_of(free),
+        provenance=replace(program.provenance, reason=f"{program.provenance.reason}; {reason}"),
+        laws=laws,
     )
-
-
-def _quick_enough(free: FreeStream, plan: StreamPlan, degree: int, tolerance: float, real: Real) -> int:
-    """The least degree from one on for the scene's joints, and, if it is not too high, for quicker ones."""
-
-    def fine(of: StreamPlan, least: float) -> bool:
-        tables = StreamTables(of, degree, real)
-        slips = (step_lost(free, n, of, tables.slips(joint), degree) for n, joint in enumerate(of.rings.joints))
-        return max(slips) <= least
-
-    quick = plan.quicker(free.quicker)
-    while not fine(plan, tolerance / _SPARE) or (degree < _HIGH and not fine(quick, tolerance / _SPARE)):
-        degree += 1
-    return degree
 
 
 def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:

@@ -17,6 +17,7 @@ from wavesym.sweeps.results import StoredAxis, SweepResults
 _TALL, _MAP = 230.0, 360.0  # pixels high
 _CELLS = 120  # of a map, in each direction; of more the greatest of some is shown
 _NUMBERED = 10
+_LONGEST = 60  # characters of a text in a picture
 
 
 @dataclass(frozen=True)
@@ -164,5 +165,12 @@ def _told(value: float, unit: str) -> str:
 def _named(x: float, y: float, words: str, *, above: bool) -> list[Svg]:
     """A spot and what it is, written towards the middle."""
     right = x < (LEFT + WIDTH - RIGHT) / 2
-    said = text(x + (8 if right else -8), y + (-7 if above else 15), words, "start" if right else "end", class_="halo")
+    short = _short(words)
+    said = text(x + (8 if right else -8), y + (-7 if above else 15), short, "start" if right else "end", class_="halo")
     return [spot(x, y), said]
+
+
+def _short(words: str) -> str:
+    """A text without its middle, where it is too long for a picture."""
+    half = _LONGEST // 2
+    return words if len(words) <= _LONGEST else f"{words[:half]}\u2026{words[-half:]}"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.rendering import render
-from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.c.runtime import (
     LIMITS,
     CRuntimeField,
@@ -37,6 +37,7 @@ _SIZES = (
     "heard",
     "events",
     "lanes",
+    "groups",
 )
 
 
@@ -54,11 +55,19 @@ class CRuntimeJoints:
     constants: dict[str, str]
     amplitudes: Lines
     largest: str
+    least: str
     loads: str
     numbers: str
     series: str
-    kernel: str
+    joints: str
+    march: str
+    build: str
     read: str
+    bound: str
+    lanes: str
+    march_in_lanes: str
+    batch: str
+    misfit: str
 
 
 def files(scene: Description, program: Program) -> dict[str, str]:
@@ -68,12 +77,13 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     fields = tuple(parameter_fields(laws, real))
     constants = c_constants(program.constants, real)
     own = not any(field.name == "load" for field in fields)
+    march = kernel("runtime_joints_march.c", scene)
     header = CRuntimeHeader(
         scene=scene,
         fields=fields,
         sizes=tuple((name.upper(), constants[name]) for name in _SIZES),
         model=kernel("runtime_joints_model.h", scene),
-        batch="",
+        batch=kernels(scene, "runtime_wide.h", "runtime_joints_batch.h", "runtime_data.h"),
     )
     context = CRuntimeJoints(
         scene=scene,
@@ -86,11 +96,19 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         constants=constants,
         amplitudes=c_literals(laws.amplitudes or (0.0,), real) if own else (),
         largest=f"{LIMITS[real.name]}_MAX",
+        least=f"{LIMITS[real.name]}_MIN",
         loads="amplitude" if own else "p->load",
         numbers=kernel("real.h", scene),
         series=kernel("runtime_series.c", scene),
-        kernel=kernel("runtime_joints.c", scene),
+        joints=kernel("runtime_joints.c", scene),
+        march=march,
+        build=kernel("runtime_joints_build.c", scene),
         read=kernel("runtime_read.c", scene),
+        bound=kernels(scene, "runtime_wrong.c", "runtime_joints_bound.c", "runtime_bounds.c"),
+        lanes=kernel("runtime_lanes.c", scene),
+        march_in_lanes=f"{kernel('runtime_joints_lanes.c', scene)}\n\n{march}",
+        batch=kernels(scene, "runtime_joints_batch.c", "runtime_batches.c"),
+        misfit=kernel("runtime_misfit.c", scene),
     )
     made = {
         f"{scene.name}.h": render("c/runtime.h.j2", header),
@@ -105,5 +123,5 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what runs many sets of parameters in NAME.c."""
     made = files(scene, program)
     name = f"{scene.name}.c"
-    more = "\n\n".join(kernel(file, scene) for file in ("runtime_peaks.c", "runtime_sets.c"))
+    more = kernels(scene, "runtime_peaks.c", "runtime_sets.c", "runtime_sets_batch.c", "runtime_sets_bounds.c")
     return made | {name: f"{made[name]}\n{more}\n"}

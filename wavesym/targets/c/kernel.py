@@ -16,3 +16,8 @@ def kernel(file: str, scene: Description) -> str:
     text = text_of(f"c/{file}").partition("\n\n")[2].rstrip()
     text = re.sub(r"\bname_real\b", scene.real, text)
     return re.sub(r"\bname_", f"{scene.name}_", re.sub(r"\bNAME_", f"{scene.prefix}_", text))
+
+
+def kernels(scene: Description, *files: str) -> str:
+    """Some of them, one below the other."""
+    return "\n\n".join(kernel(file, scene) for file in files)

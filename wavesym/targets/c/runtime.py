@@ -13,7 +13,7 @@ from wavesym.programs.program import Program, ReferenceValues
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.units import Function, ParameterUnit
 from wavesym.rendering import render
-from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.kernel import kernel, kernels
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_constants, c_literal, c_literals, c_tables
 
@@ -92,7 +92,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         fields=fields,
         sizes=tuple((name.upper(), constants[name]) for name in _SIZES),
         model=kernel("runtime_model.h", scene),
-        batch=kernel("runtime_batch.h", scene),
+        batch=kernels(scene, "runtime_wide.h", "runtime_batch.h", "runtime_data.h"),
     )
     context = CRuntime(
         scene=scene,
@@ -111,7 +111,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         kernel=kernel("runtime.c", scene),
         read=kernel("runtime_read.c", scene),
         bound=kernel("runtime_bound.c", scene),
-        batch=kernel("runtime_batch.c", scene),
+        batch=kernels(scene, "runtime_lanes.c", "runtime_batch.c", "runtime_batches.c"),
         misfit=kernel("runtime_misfit.c", scene),
     )
     made = {
@@ -127,7 +127,7 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what runs many sets of parameters in NAME.c."""
     made = files(scene, program)
     name = f"{scene.name}.c"
-    more = "\n\n".join(kernel(file, scene) for file in ("runtime_peaks.c", "runtime_sets.c", "runtime_sets_batch.c"))
+    more = kernels(scene, "runtime_peaks.c", "runtime_sets.c", "runtime_sets_batch.c", "runtime_sets_bounds.c")
     return made | {name: f"{made[name]}\n{more}\n"}
 
 

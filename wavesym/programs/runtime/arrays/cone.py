@@ -16,11 +16,11 @@ def reached(tables: ArrayTables, law: ArrayLaws) -> Bools:
     """Of each output and set (outputs, sets), whether anything can be felt there up to the horizon, as waves are sent
     from window to window.
     """
-    sizes, (nodes, sets) = tables.sizes, law.alpha.shape
+    sizes, (nodes, sets) = tables.sizes, law["alpha"].shape
     body, on = tables.ints("is_body")[:, None] > 0, tables.ints("force_on")
-    left, right = law.alpha != 0, law.beta != 0
-    beside = np.where(left, law.rod[:-1], law.rod[1:])
-    stirred = left & right & (law.rod[:-1] != law.rod[1:]) | body & (law.motion != beside)
+    left, right = law["alpha"] != 0, law["beta"] != 0
+    beside = np.where(left, law["rod"][:-1], law["rod"][1:])
+    stirred = left & right & (law["rod"][:-1] != law["rod"][1:]) | body & (law["motion"] != beside)
     lit = np.zeros((2, 3, sizes["panels"], nodes + 2, sets), bool)
     pushed = np.zeros((sizes["forces"] + 1, sets), bool)  # the last one: a node without a load
     found = np.zeros((tables.outputs, sets), bool)
@@ -29,12 +29,12 @@ def reached(tables: ArrayTables, law: ArrayLaws) -> Bools:
         now, before = window % 2, 1 - window % 2
         for panel in range(sizes["panels"]):
             for event in np.flatnonzero((begins == window) & (panels == panel)):
-                pushed[tables.ints("event_force")[event]] |= law.load[tables.ints("event_load")[event]] != 0
+                pushed[tables.ints("event_force")[event]] |= law["load"][tables.ints("event_load")[event]] != 0
             lit[now, LOAD, panel, : sizes["forces"]] = pushed[:-1]
             a, b = lit[before, RIGHT, panel, :-2], lit[before, LEFT, panel, 2:]
             stirred = stirred | pushed[on] | body & (a & left | b & right)
-            lit[now, LEFT, panel, 1:-1] = stirred | b & right | a & (law.alpha != 1)
-            lit[now, RIGHT, panel, 1:-1] = stirred | a & left | b & (law.beta != 1)
+            lit[now, LEFT, panel, 1:-1] = stirred | b & right | a & (law["alpha"] != 1)
+            lit[now, RIGHT, panel, 1:-1] = stirred | a & left | b & (law["beta"] != 1)
         found |= _heard(tables, law, lit, window)
     return found
 
@@ -52,5 +52,5 @@ def _heard(tables: ArrayTables, law: ArrayLaws, lit: Bools, window: int) -> Bool
                     way, panel, sender, back, heard = (
                         int(tables.ints(f"term_{name}")[term]) for name in ("way", "panel", "sender", "back", "heard")
                     )
-                    found[output] |= lit[(window + back) % 2, way, panel, sender] & (law.gain[heard] != 0)
+                    found[output] |= lit[(window + back) % 2, way, panel, sender] & (law["gain"][heard] != 0)
     return found

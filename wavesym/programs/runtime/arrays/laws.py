@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from math import prod
 
 import numpy as np
@@ -16,28 +15,17 @@ from wavesym.programs.runtime.engine import Array
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.units import Function
 
+ArrayLaws = Mapping[str, Array]
+"""The functions of `RuntimeLaws` by name, each array of shape (functions, sets), and "load", the amplitudes of loads;
+or their derivatives, of shape (lanes, functions, sets).
+"""
 
-@dataclass(frozen=True)
-class ArrayLaws:
-    """The functions of `RuntimeLaws`, each array of shape (functions, sets), and `load`, the amplitudes of loads; or
-    their derivatives, of shape (lanes, functions, sets).
-    """
 
-    alpha: Array
-    beta: Array
-    rate: Array
-    motion: Array
-    rod: Array
-    strength: Array
-    gain: Array
-    load: Array
-
-    @property
-    def finite(self) -> NDArray[np.bool_]:
-        """Of each set, whether all are numbers."""
-        every = [np.isfinite(values).reshape(-1, values.shape[-1]).all(axis=0) for values in vars(self).values()]
-        found: NDArray[np.bool_] = np.logical_and.reduce(every)
-        return found
+def finite(laws: ArrayLaws) -> NDArray[np.bool_]:
+    """Of each set, whether all are numbers."""
+    every = [np.isfinite(values).reshape(-1, values.shape[-1]).all(axis=0) for values in laws.values()]
+    found: NDArray[np.bool_] = np.logical_and.reduce(every)
+    return found
 
 
 def allowed(laws: RuntimeLaws, given: Array) -> NDArray[np.bool_]:
@@ -55,7 +43,7 @@ def array_laws(laws: RuntimeLaws, given: Array) -> ArrayLaws:
     arrays = {name: _evaluated(functions, symbols, sets) for name, functions in laws.functions.items()}
     own = np.broadcast_to(np.array(laws.amplitudes)[:, None], (len(laws.amplitudes), sets))
     lanes = _load_lanes(laws)
-    return ArrayLaws(**arrays, load=given.T[lanes] if len(lanes) else own)
+    return {**arrays, "load": given.T[lanes] if len(lanes) else own}
 
 
 def array_slopes(laws: RuntimeLaws, given: Array) -> ArrayLaws:
@@ -69,7 +57,7 @@ def array_slopes(laws: RuntimeLaws, given: Array) -> ArrayLaws:
     lanes = _load_lanes(laws)
     load = np.zeros((len(labels), len(lanes) or len(laws.amplitudes), sets))
     load[lanes, np.arange(len(lanes))] = 1
-    return ArrayLaws(**arrays, load=load)
+    return {**arrays, "load": load}
 
 
 def _symbols(laws: RuntimeLaws, given: Array) -> dict[str, Array]:

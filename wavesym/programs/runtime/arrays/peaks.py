@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from wavesym.programs.runtime.arrays.march import ArrayMarch
@@ -16,15 +18,21 @@ _AT_ONCE = 1 << 10
 
 
 class _Part:
-    """An output on a section of all windows: of all sets, one polynomial on each."""
+    """An output on a section of all windows of a phase: of all sets, one polynomial on each."""
 
-    def __init__(self, tables: ArrayTables, series: Array, section: int, output: int) -> None:
-        self._tables, self._series = tables, series
+    def __init__(self, tables: ArrayTables, series: Array, phase: int, section: int, output: int) -> None:
+        self._tables, self._series, self._phase = tables, series, phase
         self._strands = [int(strand) for strand in tables.strands(section, output)]
-        begin, end = tables["from"][section : section + 2]
-        ends = np.minimum(end, tables.tau_max - np.arange(len(series)))
-        self.windows = np.flatnonzero(ends >= begin)
-        self.t = begin + (ends[self.windows] - begin)[:, None] * np.linspace(0, 1, _POINTS)
+        begin, end = tables.section(phase, section)
+        windows = tables.windows(phase)
+        ends = np.minimum(end, tables.tau_max - tables.begins(windows))
+        self.windows = windows[ends >= begin]
+        self.t = begin + (ends[ends >= begin] - begin)[:, None] * np.linspace(0, 1, _POINTS)
+
+    def tau(self, windows: Ints, t: Array) -> Array:
+        """The instants that are t in the cycles of windows."""
+        found: Array = self._tables.begins(windows) + t
+        return found
 
     def survey(self) -> Array:
         """At `t`: of shape (windows, points, sets)."""
@@ -52,7 +60,7 @@ class _Part:
         return found
 
     def _weights(self, strand: int, t: Array) -> Array:
-        return chebyshev(self._tables.on(strand, t), self._series.shape[2] - 1)
+        return chebyshev(self._tables.on(strand, t, self._phase), self._series.shape[2] - 1)
 
 
 class _Summit:
@@ -88,7 +96,7 @@ class _Summit:
             t = (left[:, None, None] + width[:, None, None] * places).reshape(-1, _POINTS)
             window, members = (np.repeat(of[some], _CLOSELY) for of in (part.windows[row], sets))
             values = part.at(np.repeat(window, _POINTS), np.repeat(members, _POINTS), t.ravel()).reshape(t.shape)
-            self.see(np.repeat(members, _POINTS), values.ravel(), (window[:, None] + t).ravel())
+            self.see(np.repeat(members, _POINTS), values.ravel(), part.tau(window[:, None], t).ravel())
             each = np.repeat(width, _CLOSELY) / (_CLOSELY * (_POINTS - 1))
             seen = 4 * np.abs(np.diff(values, 2, axis=1)).max(axis=1) / (each * each)
             bends = np.minimum(seen, np.repeat(bend[row[some], sets[some]], _CLOSELY))
@@ -122,7 +130,7 @@ class _Summit:
             left, right, at_left, at_right = left[some], right[some], at_left[some], at_right[some]
             middle = left + (right - left) / 2
             values = part.at(window, sets, middle)
-            self.see(sets, values, window + middle)
+            self.see(sets, values, part.tau(window, middle))
             at_middle = self.sign * values
             left, right = np.concatenate([left, middle]), np.concatenate([middle, right])
             at_left, at_right = np.concatenate([at_left, at_middle]), np.concatenate([at_middle, at_right])
@@ -138,7 +146,9 @@ def array_peaks(tables: ArrayTables, march: ArrayMarch) -> Array:
         series[window, :, : of.shape[1]] = of[:, :, 0]
     series[..., march.status != 0] = 0
     for output in range(tables.outputs):
-        parts = [_Part(tables, series, section, output) for section in range(tables.sizes["sections"])]
+        places = product(range(tables.cycle), range(tables.sizes["sections"]))
+        every = (_Part(tables, series, phase, section, output) for phase, section in places)
+        parts = [part for part in every if len(part.windows)]
         least, greatest = _extremes(parts, len(found), tables.unit)
         found[:, output] = np.stack([-least.best, least.tau, greatest.best, greatest.tau], axis=1)
     found[march.status != 0] = np.nan
@@ -151,7 +161,7 @@ def _extremes(parts: list[_Part], sets: int, unit: float) -> tuple[_Summit, _Sum
     surveys = [part.survey() for part in parts]
     every = np.arange(sets)
     for part, survey in zip(parts, surveys, strict=True):
-        flat, tau = survey.reshape(-1, sets), (part.windows[:, None] + part.t).ravel()
+        flat, tau = survey.reshape(-1, sets), part.tau(part.windows[:, None], part.t).ravel()
         for summit in (least, greatest):
             highest = np.argmax(summit.sign * flat, axis=0)
             summit.see(every, flat[highest, every], tau[highest])

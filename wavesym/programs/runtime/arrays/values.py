@@ -20,17 +20,15 @@ def array_values(tables: ArrayTables, march: ArrayMarch, tau: Array) -> Array:
     lanes, sets = march.series[0].shape[2:]
     found = np.full((sets, lanes, tables.outputs, len(tau)), np.nan)
     inside = np.flatnonzero((tau >= 0) & (tau <= tables.tau_max))
-    window = tau[inside].astype(np.int64)
-    t = tau[inside] - window
-    section = np.searchsorted(tables["from"][1:-1], t, side="right")
+    window, section, t = tables.places(tau[inside])
     for place in np.unique(np.stack([window, section]), axis=1).T:
         here = (window == place[0]) & (section == place[1])
         for output in range(tables.outputs):
             total = np.zeros((lanes, sets, int(here.sum())))
             for strand in tables.strands(int(place[1]), output):
                 series = march.series[place[0]][strand]
-                weights = chebyshev(tables.on(strand, t[here]), len(series) - 1)
-                total += np.tensordot(series, weights, axes=(0, 1))
+                u = tables.on(strand, t[here], int(place[0]) % tables.cycle)
+                total += np.tensordot(series, chebyshev(u, len(series) - 1), axes=(0, 1))
             found[:, :, output, inside[here]] = np.moveaxis(total, 1, 0)
     found[march.status != 0] = np.nan
     return found

@@ -22,6 +22,7 @@ from wavesym.programs.runtime.degree import LARGEST_MODEL, LEAST, MARGIN
 from wavesym.programs.runtime.joints.network import free_network
 from wavesym.programs.runtime.joints.plan import JointsPlan, joints_plan
 from wavesym.programs.runtime.laws import RuntimeLaws
+from wavesym.programs.runtime.roundings import most_roundings
 from wavesym.programs.runtime.units import Function
 
 _LIGHT = 100.0
@@ -49,7 +50,14 @@ def joints_program(
     share = max(nearest(tolerance / (MARGIN * made.plan.windows)), 2 * nearest(real.roundoff))
     laws = _laws(made, () if chosen else tuple(real.nearest(load.weight) for load in loads))
     tables = _tables(made, laws, real)
-    constants = {**_constants(made, laws, real), "degree": degree, "least": least, "share": share}
+    positive = [label for field in laws.fields if field.positive for label in field.labels]
+    constants = {
+        **_constants(made, laws, real),
+        "roundings": most_roundings(laws.functions, positive),
+        "degree": degree,
+        "least": least,
+        "share": share,
+    }
     reason = (
         f"march with {', '.join(request.runtime)} at run time, degrees from {least} to {degree} on steps of "
         f"{made.plan.step}; errors are estimated"
@@ -110,6 +118,8 @@ def _laws(made: JointsPlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:
         "push": tuple(port.push for space in spaces for port in space.ports),
         "held": tuple(track.held for track in made.plan.tracks),
         "begun": tuple(value for space in spaces for value in space.begun),
+        "weight": tuple(value for space in spaces for value in space.weights),
+        "impedance": tuple(port.impedance for space in spaces for port in space.ports),
         "strength": _strengths(made),
         "gain": tuple(wave.gain for _, wave in made.heard),
     }
@@ -148,6 +158,7 @@ def _constants(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, flo
         "events": len(made.pushes),
         "lanes": sum(len(field.values) for field in laws.fields),
         "sections": len(made.sections) - 1,
+        "groups": (len(made.sections) - 1) * len(plan.outputs),
         "cycle": cycle,
         "span": real.nearest(fmpq(span)),
         "step": real.nearest(plan.step),
@@ -191,6 +202,7 @@ def _tables(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[
         "event_panel": tuple(push.panel for push in pushes),
         "event_force": tuple(push.force for push in pushes),
         "event_power": tuple(push.power for push in pushes),
+        "event_weight": reals(push.weight for push in pushes),
         "event_strength": tuple(strengths.index(push.strength) for push in pushes),
         "event_load": tuple(push.load for push in pushes),
         "from": (

@@ -13,6 +13,7 @@ from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.ratio import Ring
+from wavesym.programs.runtime.quiet import drawn
 from wavesym.programs.runtime.request import RuntimeField, field_of, refuse_others
 from wavesym.programs.runtime.units import unit_of, unit_of_load
 
@@ -22,11 +23,12 @@ Numbers = dict[tuple[str, int], fmpq]
 
 @dataclass(frozen=True)
 class FreeNetwork:
-    """`network` has functions of the ring's symbols, `fields` their numbers."""
+    """`network` has functions of the ring's symbols, `fields` their numbers; `some` is it with the numbers drawn."""
 
     fields: tuple[RuntimeField, ...]
     ring: Ring
     network: Network
+    some: Network
 
 
 def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]]) -> FreeNetwork:
@@ -60,9 +62,11 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
     if "load" in names:
         fields.append(field_of("load", [(told, load.weight, unit_of_load(model, load)) for told, load in amplitudes]))
     ring = Ring(tuple(label for label, _ in symbols.values()))
-    made = ring.symbols()
-    plain = {key: made[label] / size for key, (label, size) in symbols.items()}
-    return FreeNetwork(tuple(fields), ring, _freed(network, plain))
+    made, some = (
+        _freed(network, {key: values[label] / size for key, (label, size) in symbols.items()})
+        for values in (ring.symbols(), drawn(fields))
+    )
+    return FreeNetwork(tuple(fields), ring, made, some)
 
 
 def _masses(network: Network) -> Iterator[tuple[tuple[str, int], fmpq]]:

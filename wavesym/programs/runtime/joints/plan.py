@@ -18,6 +18,7 @@ from wavesym.programs.rings.plan import Heard, RingPlan, ring_plan
 from wavesym.programs.rings.space import joint_rows
 from wavesym.programs.runtime.joints.network import FreeNetwork
 from wavesym.programs.runtime.plan import Push
+from wavesym.programs.runtime.quiet import quiet
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,12 @@ def joints_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real:
     all_loads = tuple(sorted((replace(load, weight=fmpq(1)) for load in loads), key=lambda load: load.time))
     own = ring_plan(replace(model, loads=all_loads), real)
     plan = ring_plan(replace(model, network=free.network, loads=all_loads), real, joint_rows)
-    heard = tuple((number, wave) for number, output in enumerate(plan.outputs) for wave in output.heard)
+    silent = quiet(replace(model, network=free.some), loads, real)
+    heard = tuple(
+        (number, replace(wave, gain=fmpq(0)) if silent[number] else wave)
+        for number, output in enumerate(plan.outputs)
+        for wave in output.heard
+    )
     units = [unit.size for field in free.fields if field.name == "load" for unit in field.units]
     sizes = units or [fmpq(1)] * len(loads)
     pushes = tuple(_pushes(plan, model, loads, [number for _, number in sorted(acting)], sizes))

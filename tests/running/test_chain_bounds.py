@@ -1,0 +1,97 @@
+"""The proved bound of a model of a chain: no error is larger, whatever the parameters, and whatever is wrong."""
+
+import numpy as np
+import pytest
+
+import wavesym
+from tests.running.test_chain_sets import drawn
+from tests.running.test_model_chains import EVERY, HARD, NUMBERS, exact, frame, model_of, shaft, tree
+from tests.support.built_model import BuiltModel
+
+pytestmark = pytest.mark.slow
+
+
+def wrong_by(made, scene, count=201):
+    """Of each output the largest error relative to its largest value; below, by no more than what samples miss."""
+    step = made.until / (count - 1)
+    _, found = made.sample(0.0, step, count)
+    true = wavesym.evaluator(scene)(np.array([k * step for k in range(count)]))
+    largest, wrong = np.max(np.abs(true), axis=1), np.max(np.abs(found - true), axis=1)
+    assert np.all(wrong[largest == 0] == 0)
+    return wrong / np.where(largest > 0, largest, 1)
+
+
+def check(made, make, numbers):
+    """Bounds are no smaller than errors."""
+    status, bound = made.bound(*(value for values in numbers.values() for value in values))
+    assert status == 0
+    wrong = wrong_by(made, make(exact(numbers)))
+    assert np.all(wrong <= bound)
+    return bound, wrong
+
+
+@EVERY
+@pytest.mark.parametrize("flags", [("-O1",), ("-O3", "-march=native", "-ffp-contract=fast")])
+def test_no_error_is_larger(make, flags, tmp_path):
+    made = BuiltModel(make(NUMBERS[make]), list(NUMBERS[make]), tmp_path, flags=flags)
+    bound, _ = check(made, make, {name: [float(value) for value in of] for name, of in NUMBERS[make].items()})
+    assert np.all(bound < 1e-8)
+    check(made, make, {name: [float(value) for value in of] for name, of in HARD[make].items()})
+    sets = drawn(make, 9, seed=11, spread=1.5)
+    for k in range(2, 9):
+        numbers = {name: values[k].tolist() for name, values in sets.items()}
+        if made.build(*(value for values in numbers.values() for value in values)) == 0:
+            check(made, make, numbers)
+
+
+def test_from_python():
+    found = model_of(tree).bounds(mass=[[1, 1], [-1, 1]])
+    assert found.shape == (2, len(model_of(tree).outputs))
+    assert np.all(found[0] < 1e-8)
+    assert np.isnan(found[1]).all()
+
+
+# what is computed wrong, so that errors are far above rounding: what is sent is judged, not how it was found
+WRONG = [
+    ("now[i] = one - (real)(k == 0 ? 2 : 1) * now[i]", "now[i] = one - (real)(k == 0 ? 2.0000001 : 1) * now[i]"),
+    ("half * ((k == 1 ? 2 * f[i][0]", "half * ((k == 1 ? 1.9999999 * f[i][0]"),
+    ("x[i][k] = now[i];\n            before", "x[i][k] = now[i] * (k == 3 ? 1.0000001 : 1);\n            before"),
+    (
+        "ratio[port] * q[point_of[port]][k] - a[k]",
+        "ratio[port] * q[point_of[port]][k] - (k == 1 ? 1.0000001 : 1) * a[k]",
+    ),
+    ("s[k] += factor * a[k];", "s[k] += (k == 0 ? 1.0000001 : 1) * factor * a[k];"),
+    ("acting[point][k] += force[force_on[point]][k];", "acting[point][k] += 1.0000001 * force[force_on[point]][k];"),
+]
+
+
+@pytest.mark.parametrize("make", [shaft, frame, tree])
+@pytest.mark.parametrize("change", WRONG)
+def test_what_is_computed_wrong_is_in_the_bound(change, make, tmp_path):
+    made = BuiltModel(make(NUMBERS[make]), list(NUMBERS[make]), tmp_path, [change])
+    bound, wrong = check(made, make, {name: [float(value) for value in of] for name, of in NUMBERS[make].items()})
+    assert np.max(wrong) > 1e-12
+    assert np.all(bound >= wrong)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        (
+            WRONG[3],
+            ("w->apart[port] = larger(w->apart[port], apart);", ""),
+            ("sent += law->impedance", "sent += 0 * law->impedance"),
+        ),
+        (WRONG[4], ("rest += magnitude((k <= degree", "rest += 1e-12 * magnitude((k <= degree")),
+        (WRONG[0], ("w->energy += defect(m", "w->energy += 1e-9 * defect(m")),
+        (
+            WRONG[2],
+            ("error += magnitude(ratio[port]) * shown_by", "error += 1e-9 * magnitude(ratio[port]) * shown_by"),
+            ("w->apart[port] = larger(w->apart[port], apart);", ""),
+        ),
+    ],
+)
+def test_a_mistake_in_the_bound_is_seen(changes, tmp_path):
+    made = BuiltModel(frame(NUMBERS[frame]), list(NUMBERS[frame]), tmp_path, changes)
+    with pytest.raises(AssertionError):
+        check(made, frame, {name: [float(value) for value in of] for name, of in NUMBERS[frame].items()})

@@ -1,0 +1,67 @@
+"""How quick parameters may make the joints of a stream: the degree for that, and when springs are too stiff for it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, cast
+
+import numpy as np
+from flint import fmpq
+from numpy.typing import NDArray
+
+from wavesym.errors import CostError
+from wavesym.numbers.doubles import nearest
+from wavesym.numbers.reals import Real
+from wavesym.programs.rings.plan import MarchedJoint
+from wavesym.programs.rings.space import JointRows
+from wavesym.programs.stream.free import FreeStream
+from wavesym.programs.stream.plan import StreamPlan
+from wavesym.programs.stream.tables import StreamTables
+
+CALM = 4
+"""By what angle springs may turn on a panel: beyond it the elimination is not known to keep its digits."""
+
+_HIGH = 48  # degrees: no more of them for joints that are only allowed to be quick
+_SPARE = 4  # one jump loses so much less than the tolerance
+
+
+def refuse_stiff(plan: StreamPlan) -> None:
+    """CostError where springs of the scene itself are too stiff for tables in the numbers of the program."""
+    angle = nearest(plan.panel) * max(joint.space.swing for joint in plan.rings.joints)
+    if angle > CALM:
+        raise CostError(
+            f"system.parts: springs turn by {angle:.3g} on a panel of {plan.panel}, at most {CALM} expected with "
+            "--runtime (softer springs, or a stream without it, helps)"
+        )
+
+
+def quick_enough(free: FreeStream, plan: StreamPlan, degree: int, tolerance: float, real: Real) -> tuple[int, fmpq]:
+    """The least degree from one on for the scene's joints, and, if it is not too high, for quicker ones; how quick."""
+
+    def fine(of: StreamPlan) -> bool:
+        tables = StreamTables(of, degree, real)
+        slips = (step_lost(free, n, of, tables.slips(joint), degree) for n, joint in enumerate(of.rings.joints))
+        return max(slips) <= tolerance / _SPARE
+
+    quick = plan.quicker(free.quicker)
+    while not fine(plan) or (degree < _HIGH and not fine(quick)):
+        degree += 1
+    return degree, free.quicker if fine(quick) else fmpq(1)
+
+
+def step_lost(free: FreeStream, number: int, plan: StreamPlan, slips: Sequence[float], degree: int) -> float:
+    """What polynomials lose at most where a wave, or a body, that was at rest jumps to 1; as stream_made.c has it."""
+    space, rows = plan.rings.joints[number].space, rows_of(free.rings.joints[number])
+    if rows is None or not space.states:
+        return 0.0
+    size = degree + 1
+    jumps: NDArray[np.float64] = np.zeros(space.points * size + space.states)
+    for port in space.ports:
+        jumps[port.point * size] += abs(nearest(port.push))
+    jumps[space.points * size :][: rows.masses] = 1
+    return float(np.max(np.abs(np.reshape(slips, (space.points, -1))) @ jumps))
+
+
+def rows_of(joint: MarchedJoint) -> JointRows | None:
+    """None where a load is read."""
+    return rows if isinstance(rows := cast(Any, joint.space), JointRows) else None
