@@ -29,7 +29,7 @@ _COMMAND = (
     "--template={file}:{line}:{id}",
 )
 _SECONDS = 600.0
-_FUNCTION = re.compile(r"(?!enum|typedef|struct)[a-z](?:[\w *]*[ *])?(\w+)\([^;=]*$")
+_FUNCTION = re.compile(r"(?!enum|typedef|struct)[A-Za-z](?:[\w *]*[ *])?(\w+)\([^;=]*$")
 
 
 def deviations() -> dict[str, str]:
@@ -82,7 +82,7 @@ def every(subjects: Sequence[PortableProgram], folder: Path, kept_in: Path) -> l
     def of(subject: PortableProgram) -> list[MisraFinding]:
         own = folder / subject.name
         own.mkdir()
-        question = (tool, *_COMMAND, *subject.files().values())
+        question = (tool, *_COMMAND, _FUNCTION.pattern, *subject.files().values())
         return [MisraFinding(*found) for found in kept(kept_in, question, lambda: findings(subject, own))]
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:

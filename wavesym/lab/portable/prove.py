@@ -34,16 +34,15 @@ _TO_THE_END = (
     *("-eva-precision", "0", "-eva-slevel", "20000", "-eva-ilevel", "64"),
     *("-eva-split-return", "auto"),
 )
+_AT_ONCE = ("-eva-precision", "0", "-eva-split-return", "auto", "-eva-initialized-locals")
+_ONE_BY_ONE = "main:100,name_build:100,sampled:100,run:100,output_block:100"
 _EFFORTS = {
     "usual": ("-eva-precision", "2", *_FOR_EVER),
     "more": ("-eva-precision", "3", *_FOR_EVER),
     "followed": _TO_THE_END,
     "unrolled": (*_TO_THE_END, "-inline-calls", "integrate"),
     # windows and samples one by one, all else at once: which locals were set is not followed then
-    "bounds": (
-        *("-eva-precision", "0", "-eva-split-return", "auto", "-eva-initialized-locals"),
-        *("-eva-slevel-function", "main:100,name_build:100,sampled:100,run:100,output_block:100"),
-    ),
+    "bounds": (*_AT_ONCE, "-eva-slevel-function", _ONE_BY_ONE),
 }
 
 

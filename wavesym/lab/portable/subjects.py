@@ -108,9 +108,9 @@ _MODES_SINGLE = replace(
     _MODES.single, changes=tuple({**_SHAKEN, "output": {**_SHAKEN["output"], "tolerance": "1/50"}}.items())
 )
 _STREAM = PortableProgram("stream", _BUILDING, Request(stream=True), "stream")
-_TUNED = PortableProgram("tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "tuned")
+_TUNED = PortableProgram("tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "stream")
 _RUNTIME = PortableProgram("runtime", _BUILDING, Request(runtime=("kappa", "load")), "runtime", (7,), effort="bounds")
-_JOINTS = PortableProgram("joints", "stepped_shaft", Request(runtime=("mass", "impedance", "load")), "runtime", (7,))
+_JOINTS = PortableProgram("joints", "stepped_shaft", Request(runtime=("mass", "impedance", "load")), "runtime")
 
 # short, of low degree: each way through the same C can be followed to its end
 _SHORT: tuple[tuple[str, Any], ...] = (
@@ -127,9 +127,6 @@ _BRIEF = PortableProgram(
     _BLOCKS,
     (*_SHORT, ("system.kappa", [3, 2, 3])),
     "unrolled",
-)
-_BRIEF_JOINTS = PortableProgram(
-    "joints_brief", "stepped_shaft", Request(runtime=("load",)), "runtime", (7,), (("output.until", 2),), "unrolled"
 )
 
 PROVED = (
@@ -148,8 +145,6 @@ PROVED = (
     _MODES_SINGLE,
     _STREAM,
     _STREAM.single,
-    _TUNED,
-    _TUNED.single,
     _RUNTIME,
     _BRIEF,
     _BRIEF.single,
@@ -157,7 +152,6 @@ PROVED = (
         replace(_BRIEF, driver=driver, counts=counts)
         for driver, counts in (("tangent", (7,)), ("bound", ()), ("batch", ()), ("misfit", (2,)))
     ),
-    _BRIEF_JOINTS,
 )
 CHECKED = (_CLOSED, _PIECES, _MARCH, _RINGS, _MODES, _STREAM, _TUNED, _RUNTIME, _JOINTS)
 COMPILED = tuple(

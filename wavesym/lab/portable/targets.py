@@ -138,9 +138,11 @@ def rows(
                 yield target.name, subject.name, "no", "", "", "", "", ""
 
 
-def status(made: Sequence[tuple[str, ...]], targets: Sequence[TargetMachine], proved: str) -> Iterator[tuple[str, ...]]:
-    """A line for each target, from its rows: how many programs were compiled, passed, and, which `proved` says, are
-    proved for its layout of data."""
+def status(
+    made: Sequence[tuple[str, ...]], targets: Sequence[TargetMachine], proved: set[str]
+) -> Iterator[tuple[str, ...]]:
+    """A line for each target, from its rows: how many programs were compiled, passed, and are `proved` for its layout
+    of data."""
     for target in targets:
         own = [row for row in made if row[0] == target.name]
         passed = sum(row[3] == "passes" for row in own)
@@ -148,7 +150,9 @@ def status(made: Sequence[tuple[str, ...]], targets: Sequence[TargetMachine], pr
             target.name,
             f"{sum(row[2] == 'yes' for row in own)} of {len(own)}",
             f"{passed} of {len(own)}" if passed else "not run",
-            proved if target.layout in MACHINES else "no, for other sizes of integers and pointers",
+            f"{sum(row[1] in proved for row in own)} of {len(own)}"
+            if target.layout in MACHINES
+            else "no, for other sizes of integers and pointers",
         )
 
 
