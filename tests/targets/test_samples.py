@@ -114,8 +114,8 @@ def test_long_runs_have_the_bits_of_single_values(made, flags):
     ],
 )
 def test_other_roundings_and_later_fronts_are_seen(made, right, wrong):
-    """The comparison above fails where tau_k is not rounded by itself, a run goes on behind its piece, or it ends where
-    rounding is not allowed for."""
+    """Where tau_k is not rounded by itself, a run goes on behind its piece, or it ends as if nothing were rounded, the
+    comparison above fails."""
     text = made["sampled.c"]
     assert right in text
     loaded = built({**made, "sampled.c": text.replace(right, wrong)}, "-O2", "-ffp-contract=off")

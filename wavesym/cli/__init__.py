@@ -5,6 +5,8 @@ What the commands need is imported inside them, so that no `--help` waits for Sy
 
 from __future__ import annotations
 
+import atexit
+import gc
 import os
 import sys
 from collections.abc import Sequence
@@ -42,6 +44,11 @@ for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
 
 DONE, FAILED, WRONG_REQUEST, INTERRUPTED = 0, 1, 2, 130
+
+# what modules are made of stays: Python's look-out for cycles, so often, takes a tenth of a short command
+_SELDOM = (50_000, 20, 100)
+# nor for what the end of the process frees: a quarter of one
+atexit.register(gc.freeze)
 
 
 class _Commands(click.Group):
@@ -89,6 +96,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _refused("wavesym: standard output is closed, an open one expected", WRONG_REQUEST)
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors="surrogateescape")  # the name of a file may be no UTF-8
+    gc.set_threshold(*_SELDOM)
     try:
         status = cli.main(arguments, prog_name="wavesym", standalone_mode=False)
         sys.stdout.flush()  # here, where a reader that has gone can still be met in silence

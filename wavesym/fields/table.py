@@ -79,7 +79,8 @@ def listed(value: object) -> tuple[object, ...]:
 class SceneTable(BaseModel):
     """A table of a scene: every key is known, none that is needed is missing; a field's description says what it is."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, serialize_by_alias=True)
+    # built when it is first used: most scenes have few kinds of tables
+    model_config = ConfigDict(extra="forbid", frozen=True, serialize_by_alias=True, defer_build=True)
 
     @model_validator(mode="before")
     @classmethod
