@@ -40,7 +40,8 @@ _EFFORTS = {
     "usual": ("-eva-precision", "2", *_FOR_EVER),
     "more": ("-eva-precision", "3", *_FOR_EVER),
     "followed": _TO_THE_END,
-    "unrolled": (*_TO_THE_END, "-inline-calls", "integrate"),
+    # of models: a batch of none has no laws
+    "unrolled": (*_TO_THE_END, "-inline-calls", "integrate", "-eva-split-return-function", "begun_batch:0"),
     # windows and samples one by one, all else at once: which locals were set is not followed then
     "bounds": (*_AT_ONCE, "-eva-slevel-function", _ONE_BY_ONE),
 }
