@@ -90,7 +90,7 @@ static void look_batch(batch_of *b, int window, int degree)
                 mean += all[(size_t)strand_at[k] * size];
             }
             for (int set = 0; set < NAME_WIDTH; ++set) {
-                more |= magnitude(LANE(mean, set)) > LANE(b->largest[output], set);
+                more |= 4 * magnitude(LANE(mean, set)) > 5 * LANE(b->largest[output], set);
             }
             mean = none;
             for (int k = first_strand[at]; more && k < first_strand[at + 1]; ++k) {

@@ -204,8 +204,8 @@ static real value(const model_of *m, int window, int section, int output, real t
     return sum;
 }
 
-/* Look for the largest value of each output: in the middle of sections, where their mean may be more than was seen. What
- * lies beyond TAU_MAX does not count. */
+/* Look for the largest value of each output, or nearly: in the middle of sections, where their mean may be a quarter more
+ * than was seen. What lies beyond TAU_MAX does not count. */
 static void look(model_of *m, int window)
 {
     const real *const all = m->series + m->place[window];
@@ -219,7 +219,7 @@ static void look(model_of *m, int window)
             for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
                 mean += all[(size_t)strand_at[k] * (size_t)(m->degree[window] + 2)];
             }
-            if (magnitude(mean) > m->largest[output]) {
+            if (4 * magnitude(mean) > 5 * m->largest[output]) {
                 const real middle = from[here] + (end - from[here]) / 2;
                 m->largest[output] = larger(m->largest[output], value(m, window, section, output, middle));
             }
