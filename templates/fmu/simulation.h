@@ -184,7 +184,10 @@ static verdict march(simulation *s, double dtau)
         for (int j = 0; j < INPUTS; ++j) {
             load[j] = k < steps ? from[j] + (s->now.input[j] - from[j]) * (k / all) : s->now.input[j];
         }
-        stream_step(&s->now.stream, STEP_LENGTH, load, s->now.output);
+        if (stream_step(&s->now.stream, STEP_LENGTH, load, s->now.output) == 2) {
+            snprintf(s->said, sizeof s->said, "doStep: outputs have grown beyond all numbers, a reset expected");
+            return WRONG;
+        }
     }
     return FINE;
 }
