@@ -1,8 +1,7 @@
 /* runtime_joints_bound.c: how wrong the waves of a model of a chain may be, from what it sends itself.
- * Plain C that stands below the text of runtime_wrong.c in generated files, which have what stands below the first empty
+ * Plain C that stands below the text of runtime_joints_wrong.c in generated files, which have what stands below the first empty
  * line. */
-#include "runtime_joints_build.c"
-#include "runtime_wrong.c"
+#include "runtime_joints_wrong.c"
 
 /* What may be wrong, at most; docs/march.md of wavesym has the proof. In short: let x be how the state of a joint moves.
  * How far x, and what its ends send, are from its law is computed here, rounding included. That starts an error on this

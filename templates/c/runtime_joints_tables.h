@@ -42,6 +42,7 @@ typedef struct {
 
 int name_build(name_model *model, const name_parameters *parameters);
 name_real name_error_estimate(const name_model *model);
+int name_error_bound(name_model *model, const name_parameters *parameters, name_real *bound);
 int name_model_eval(const name_model *model, name_real tau, name_real *out);
 int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out);
 int name_build_tangent(name_tangent *tangent, const name_parameters *parameters);
@@ -72,10 +73,26 @@ typedef struct {
     const real *load;
 } laws;
 
+/* The same of each set in its lane. */
+typedef struct {
+    name_wide rates[5 + 1];
+    name_wide pushed[5 + 1];
+    name_wide shown[5 + 1];
+    name_wide passed[5 + 1];
+    name_wide push[4 + 1];
+    name_wide held[4 + 1];
+    name_wide begun[3 + 1];
+    name_wide weight[3 + 1];
+    name_wide impedance[4 + 1];
+    name_wide strength[1 + 1];
+    name_wide gain[4 + 1];
+} laws_batch;
+
 int good(const name_parameters *p);
 void laws_of(const name_parameters *p, laws *law);
 int laws_within_reach(const laws *law);
 void slopes_of(const name_parameters *p, int lane, laws *law);
+void spread(laws_batch *all, int set, const laws *law);
 
 extern const real largest_number;
 extern const real least_number;

@@ -274,9 +274,8 @@ def test_damped_modes_in_seconds_and_millimetres(version, tmp_path):
     assert variables["load@a"].unit == "m/s^2"
     assert variables["drift@1"].unit == "mm"
     instance.put({"load@a": 1.7e308})
-    with pytest.raises(Exception, match="status 3"):  # beyond all numbers
-        for k in range(16, 60):
-            instance.step(0.02 * k, 0.02)
+    with pytest.raises(Exception, match="status 3"):
+        instance.step(0.32, 20.0)  # beyond all numbers, on the way
     instance.end()
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import os
-import pickle
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -151,6 +150,7 @@ def growth() -> Iterator[Sequence[str]]:
 def overheads() -> Iterator[Sequence[str]]:
     """What a sweep of records is made of: how long each part takes (what computes, of a processor), how large it is."""
     from distributed import Client
+    from distributed.protocol import deserialize, serialize
 
     with TemporaryDirectory() as directory, cluster(Path(directory), 1) as running:
         folder = Path(directory)
@@ -164,11 +164,11 @@ def overheads() -> Iterator[Sequence[str]]:
         planned = read()
         parts = batches(planned, *kind(planned))
         store, marks = settle(folder, planned, parts), Marks(folder)
-        values, sent = compute(planned, parts, 0), pickle.dumps(planned)
+        values, sent = compute(planned, parts, 0), serialize(planned)
 
         def unpacked() -> object:
             recorded.doubles.cache_clear()
-            records = pickle.loads(sent).records
+            records = deserialize(*sent).records
             return [recorded.doubles(recorded.key(each)) for each in records.values]
 
         with Client(running.address, set_as_default=False) as client:

@@ -1,9 +1,7 @@
-/* runtime_bounds.c: a proved bound of the errors of a model.
+/* runtime_joints_bounds.c: a proved bound of the errors of a model.
  * Plain C that stands below what says how wrong its waves may be in generated files, which have what stands below the
  * first empty line. */
-#ifndef NAME_JOINTED
-#include "runtime_bound.c"
-#endif
+#include "runtime_joints_bound.c"
 
 /* What the outputs of a window may be wrong by. */
 static void outputs_wrong(const model_of *m, const laws *law, wrong *w, int window, int degree)

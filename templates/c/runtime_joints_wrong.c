@@ -1,9 +1,7 @@
-/* runtime_wrong.c: what may be wrong of loads and outputs, beside waves.
- * Plain C that stands below the text of runtime_read.c in generated files, which have what stands below the first empty
+/* runtime_joints_wrong.c: what may be wrong of loads and outputs, beside waves.
+ * Plain C that stands below the text of runtime_joints_build.c in generated files, which have what stands below the first empty
  * line. */
-#ifndef NAME_JOINTED
-#include "runtime_read.c"
-#endif
+#include "runtime_joints_build.c"
 
 typedef struct {
     real force[NAME_PANELS][NAME_FORCES + 1]; /* of a load, on this window */
