@@ -364,6 +364,7 @@ static int begun(model_of *m, const name_parameters *parameters, laws *law)
     }
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
         m->largest[output] = 0;
+        m->mean[output] = 0;
     }
     tabulate(m, law, LEAST);
     return 0;

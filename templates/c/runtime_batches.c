@@ -73,37 +73,63 @@ static void series_at_batch(const wide *c, int degree, real u, wide *value)
     *value = (u * next - after) + c[0];
 }
 
-/* As look. */
+/* The mean of an output on a section, and `beyond` grows to what makes it worth a look. */
+static void mean_batch(const batch_of *b, const wide *all, size_t size, int at, wide *mean, wide *beyond)
+{
+    const int output = at % NAME_OUTPUTS;
+    wide sum = none, some = -3 * b->mean[output], much = -4 * b->largest[output];
+    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+        sum += all[(size_t)strand_at[k] * size];
+    }
+    *mean = sum;
+    add_magnitude_batch(&much, &sum);
+    sum *= 2;
+    add_magnitude_batch(&some, &sum);
+    const mask larger_one = some > *beyond;
+    *beyond = CHOSEN(larger_one, some, *beyond);
+    const mask much_larger = much > *beyond;
+    *beyond = CHOSEN(much_larger, much, *beyond);
+}
+
+static int positive_in_some(const wide *x)
+{
+    int found = 0;
+    for (int set = 0; set < NAME_WIDTH; ++set) {
+        found |= LANE(*x, set) > 0;
+    }
+    return found;
+}
+
+/* As look; first whether there is anything to be looked at on a window. */
 static void look_batch(batch_of *b, int window, int degree)
 {
     const wide *const all = b->series + b->place[window];
     const size_t size = (size_t)(degree + 2);
-    for (int section = 0; section < SECTIONS; ++section) {
-        const int here = in_cycle(window, section);
+    wide mean, beyond = none;
+    for (int at = 0; at < SECTIONS * NAME_OUTPUTS; ++at) {
+        mean_batch(b, all, size, at, &mean, &beyond);
+    }
+    for (int at = 0; positive_in_some(&beyond) && at < SECTIONS * NAME_OUTPUTS; ++at) {
+        const int output = at % NAME_OUTPUTS;
+        const int here = in_cycle(window, at / NAME_OUTPUTS);
         const real reach = NAME_TAU_MAX - cycle_begin(window);
         const real end = from[here + 1] < reach ? from[here + 1] : reach;
-        for (int output = 0; output < NAME_OUTPUTS && from[here] <= end; ++output) {
-            const int at = section * NAME_OUTPUTS + output;
-            wide mean = none;
-            int more = 0;
-            for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-                mean += all[(size_t)strand_at[k] * size];
-            }
-            for (int set = 0; set < NAME_WIDTH; ++set) {
-                more |= 4 * magnitude(LANE(mean, set)) > 5 * LANE(b->largest[output], set);
-            }
-            mean = none;
-            for (int k = first_strand[at]; more && k < first_strand[at + 1]; ++k) {
-                const int s = strand_at[k];
-                const int now = window % CYCLE * NAME_STRANDS + s;
-                const real middle = from[here] + (end - from[here]) / 2;
-                wide found;
-                series_at_batch(all + (size_t)s * size, degree + 1,
-                                ((middle - strand_start[now]) + strand_excess[now]) * strand_scale[s] - 1, &found);
-                mean += found;
-            }
-            enlarge_batch(&b->largest[output], &mean);
+        const real middle = from[here] + (end - from[here]) / 2;
+        wide worth = none, sum = none;
+        mean_batch(b, all, size, at, &mean, &worth);
+        if (from[here] > end || !positive_in_some(&worth)) {
+            continue;
         }
+        for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+            const int s = strand_at[k];
+            const int now = window % CYCLE * NAME_STRANDS + s;
+            wide found;
+            series_at_batch(all + (size_t)s * size, degree + 1,
+                            ((middle - strand_start[now]) + strand_excess[now]) * strand_scale[s] - 1, &found);
+            sum += found;
+        }
+        enlarge_batch(&b->mean[output], &mean);
+        enlarge_batch(&b->largest[output], &sum);
     }
 }
 
@@ -135,6 +161,7 @@ static int begun_batch(batch_of *b, laws_batch *all, const name_parameters *para
     }
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
         b->largest[output] = none;
+        b->mean[output] = none;
     }
     for (int set = 0; set < NAME_WIDTH; ++set) {
         good_one[set] = 0;

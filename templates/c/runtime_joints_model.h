@@ -23,6 +23,7 @@ typedef struct {
     int since[NAME_FORCES + 1][2];
     name_real force[NAME_PANELS][NAME_FORCES + 1][3];
     name_real largest[NAME_OUTPUTS];
+    name_real mean[NAME_OUTPUTS];
 } name_model;
 
 /* A model with its derivatives by every parameter, in the order of the parameters: their series lie as the model's. */

@@ -204,8 +204,8 @@ static real value(const model_of *m, int window, int section, int output, real t
     return sum;
 }
 
-/* Look for the largest value of each output, or nearly: in the middle of sections, where their mean may be a quarter more
- * than was seen. What lies beyond TAU_MAX does not count. */
+/* Look for the largest value of each output, or nearly: in the middle of sections whose mean is half as much again as
+ * that of those looked at, or much more than what was found. What lies beyond TAU_MAX does not count. */
 static void look(model_of *m, int window)
 {
     const real *const all = m->series + m->place[window];
@@ -219,8 +219,9 @@ static void look(model_of *m, int window)
             for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
                 mean += all[(size_t)strand_at[k] * (size_t)(m->degree[window] + 2)];
             }
-            if (4 * magnitude(mean) > 5 * m->largest[output]) {
+            if (2 * magnitude(mean) > 3 * m->mean[output] || magnitude(mean) > 4 * m->largest[output]) {
                 const real middle = from[here] + (end - from[here]) / 2;
+                m->mean[output] = larger(m->mean[output], mean);
                 m->largest[output] = larger(m->largest[output], value(m, window, section, output, middle));
             }
         }

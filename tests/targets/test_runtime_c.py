@@ -124,7 +124,7 @@ def test_any_parameters_give_what_their_scene_gives(case, tmp_path):
     [
         (("const real begun = 2 * ratio[1]", "const real begun = 1.9999999 * ratio[1]"), "building"),
         (("2.0 * p->kappa[1]", "1.999999 * p->kappa[1]"), "building"),
-        (("c[1] += 2 * gone * c[2];", ""), "ground"),
+        (("half * (c[1] + 2 * middle * c[2])", "half * (c[1] + middle * c[2])"), "ground"),
         (("total[heard] - low", "total[heard]"), "collision"),
         (("/ p->inertia[2]", "/ p->inertia[1]"), "drive"),
     ],
