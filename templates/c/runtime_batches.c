@@ -254,10 +254,11 @@ int name_build_batch(name_batch *batch, const name_parameters *parameters, size_
             batch->place[window] = place;
             listen_batch(batch, &law, window, degree, batch->series + place);
             look_batch(batch, window, degree);
+            wide weight = none;
             for (const size_t end = place + (size_t)NAME_STRANDS * (size_t)(degree + 2); place < end; ++place) {
-                const wide most = (real)(4 * (degree + 2)) * batch->series[place];
-                add_magnitude_batch(&heard, &most);
+                add_magnitude_batch(&weight, batch->series + place);
             }
+            heard += (real)(4 * (degree + 2)) * weight;
         }
         missed = 6 * missed + rounded_by(degree) * size;
         for (int output = 0; output < NAME_OUTPUTS; ++output) {

@@ -183,7 +183,7 @@ def overheads() -> Iterator[Sequence[str]]:
     yield "the chunks of a batch written and hashed, its mark", f"{1e3 * kept:.1f} ms"
     yield "its values through a scheduler and back, nothing else under way", f"{1e3 * passed:.1f} ms"
     yield "a sample of a record, read exactly from its file", f"{1e6 * reading / samples:.1f} us"
-    yield "sent to a worker", f"{len(sent) / samples:.1f} bytes"
+    yield "sent to a worker", f"{sum(map(len, sent[1])) / samples:.1f} bytes"
     yield "unpacked and rounded there", f"{1e6 * unpacking / samples:.1f} us"
 
 
