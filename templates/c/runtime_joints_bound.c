@@ -102,6 +102,7 @@ static real defect(const model_of *m, const laws *law, wrong *w, int joint, int 
     const real exact = unit * ((real)(n + points + 8) + 2 * roundings);
     const real spare = (real)(16 * (degree + 4)) * least_number;
     real s[NAME_WIDEST][NAME_DEGREE + 2], sum[NAME_DEGREE + 2];
+    const real(*const given)[NAME_DEGREE + 2] = (const real(*)[NAME_DEGREE + 2])s;
     real size[NAME_WIDEST], beside[NAME_WIDEST], sizes[NAME_WIDEST];
     real missed = 0, jumped = 0, forced = 0, sent = 0;
     for (int i = 0; i < NAME_WIDEST; ++i) {
@@ -121,9 +122,8 @@ static real defect(const model_of *m, const laws *law, wrong *w, int joint, int 
         for (int k = 0; k <= degree + 1; ++k) {
             sum[k] = 0;
         }
-        const real moved_by = sum_again(law->rates + at_rates[joint] + i * n, x, sizes, n, degree, sum) +
-                              sum_again(law->pushed + at_pushed[joint] + i * points,
-                                        (const real(*)[NAME_DEGREE + 2])s, size, points, degree, sum);
+        real moved_by = sum_again(law->rates + at_rates[joint] + i * n, x, sizes, n, degree, sum);
+        moved_by += sum_again(law->pushed + at_pushed[joint] + i * points, given, size, points, degree, sum);
         for (int k = 1; k <= degree + 1; ++k) {
             const real before = k == 1 ? 2 * sum[0] : sum[k - 1];
             const real after = k < degree ? sum[k + 1] : (real)0;
@@ -156,9 +156,8 @@ static real defect(const model_of *m, const laws *law, wrong *w, int joint, int 
         for (int k = 0; k <= degree + 1; ++k) {
             sum[k] = 0;
         }
-        const real shown_by = sum_again(law->shown + at_shown[joint] + point * n, x, sizes, n, degree, sum) +
-                              sum_again(law->passed + at_passed[joint] + point * points,
-                                        (const real(*)[NAME_DEGREE + 2])s, size, points, degree, sum);
+        real shown_by = sum_again(law->shown + at_shown[joint] + point * n, x, sizes, n, degree, sum);
+        shown_by += sum_again(law->passed + at_passed[joint] + point * points, given, size, points, degree, sum);
         for (int k = 0; k <= degree; ++k) {
             const real out = m->waves[to][panel][k];
             apart += magnitude((out + m->waves[at][panel][k]) - ratio[port] * sum[k]);

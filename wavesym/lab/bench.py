@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from wavesym.lab import many_sets, panels, parameters, recorded, streamed, swept
-from wavesym.lab.equal_degree import at_degree, fitted, ratios
+from wavesym.lab.equal_degree import Fitted, at_degree, fitted, ratios
 from wavesym.lab.harness import CALLS, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
 from wavesym.lab.timing import least, medians, ran
 from wavesym.numbers.doubles import rational
@@ -83,7 +83,8 @@ def _values(named: dict[str, Scene], chains: dict[str, Scene]) -> Iterator[str]:
     """What values take once a program is there."""
     yield "## Evaluating"
     yield ""
-    yield f"{SAMPLES} uniform samples, proved bound 1e-14. ns a double; *ratio* is that of `sample` to the write floor."
+    yield f"{SAMPLES} uniform samples, proved bound 1e-14. ns a double; *ratio* is that of `sample` to the write floor, *of FMA"
+    yield "peak* what polynomials need, one multiplication with an addition a degree, of what a core can do."
     yield ""
     yield from _table(
         ("scene", "compiler", "flags", "floor", "sample", "ratio", "of FMA peak", "eval, random", "NumPy", "bound"),
@@ -208,7 +209,7 @@ def _evaluating(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
         module = imported(made[f"{each.name}.py"], each.name)
         form = choose(lower(each), "pieces").evaluator
         assert isinstance(form, Pieces)
-        outputs = len(each.outputs)
+        outputs, degree = len(each.outputs), Fitted(each, lower(each), form).degree
         taus = np.linspace(0.0, form.tau_max, SAMPLES)
         for compiler in compilers():
             for flags in (FAST, PLAIN):
@@ -223,7 +224,7 @@ def _evaluating(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
                 low, sample, random, numpy, highest = medians(calls)
                 low, sample = low / CALLS, sample / CALLS
                 values = outputs * SAMPLES
-                share = (form.work - 2) * values / sample / (64 * 10_000 / highest)
+                share = degree * values / sample / (64 * 10_000 / highest)
                 yield (
                     label,
                     compiler.name,
