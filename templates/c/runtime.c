@@ -465,7 +465,7 @@ static void follow_all(name_tangent *tangent, const name_parameters *parameters,
             slopes_of(parameters, lane, &slope);
             lengthen(tangent->waves[lane], degree, now->degree);
             const real missed = follow(tangent, law, &slope, lane, now->window % 2, now->degree);
-            late |= !(missed <= LENIENT * share * tangent->size[lane][1]);
+            late |= !(missed <= (real)LENIENT * share * tangent->size[lane][1]);
         }
         if (!late || now->degree == NAME_DEGREE) {
             break;

@@ -217,7 +217,7 @@ static void follow_all(name_tangent *tangent, const name_parameters *parameters,
         for (int lane = 0; lane < NAME_LANES; ++lane) {
             slopes_of(parameters, lane, &slope);
             const real missed = follow(tangent, law, &slope, lane, now->window, now->degree);
-            late |= !(missed <= LENIENT * share * tangent->size[lane][1]);
+            late |= !(missed <= (real)LENIENT * share * tangent->size[lane][1]);
         }
         if (!late || now->degree == NAME_DEGREE) {
             break;
