@@ -584,20 +584,26 @@ class PiecesScheme:
         centres: NDArray[np.float64],
         powers: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        """Outputs at sorted tau inside the grid: (outputs, tau.size). All samples of a piece are one matrix product."""
+        """Outputs at sorted tau inside the grid: (outputs, tau.size). All samples of a piece are one matrix product.
+
+        Where samples lie unevenly, pieces that have about as many, from half to all of a power of 2, go together.
+        """
         edges = np.searchsorted(tau, starts)
         counts = np.diff(edges)
-        widest = counts.max()
         pieces, _, outputs = powers.shape
-        if pieces * widest > 4 * tau.size + 64:  # samples lie unevenly: pieces that have many go first, by themselves
-            out = np.empty((outputs, tau.size), self._real)
-            for piece in np.flatnonzero(counts):
-                part = slice(edges[piece], edges[piece + 1])
-                out[:, part] = self._product((tau[part] - centres[piece])[None], powers[piece : piece + 1])[0].T
-            return out
-        places = np.minimum(edges[:-1, None] + np.arange(widest), tau.size - 1)
-        values = self._product(tau[places] - centres[:, None], powers)
-        return values[np.arange(widest) < counts[:, None]].T
+        even = pieces * counts.max() <= 2 * tau.size + 64
+        sizes = np.ones(pieces, int) if even else np.frexp(counts)[1]
+        out = np.empty((outputs, tau.size), self._real)
+        for size in sorted({*sizes.tolist()} - {0}):
+            some = np.flatnonzero(sizes == size)
+            along = np.arange(counts[some].max())
+            places = np.minimum(edges[some, None] + along, tau.size - 1)
+            values = self._product(tau[places] - centres[some, None], powers[some])
+            there = along < counts[some, None]
+            if even:
+                return values[there].T
+            out[:, places[there]] = values[there].T
+        return out
 
     def _product(self, w: NDArray[np.float64], powers: NDArray[np.float64]) -> NDArray[np.float64]:
         """The polynomials `powers` (pieces, degree + 1, outputs) at w (pieces, samples): (pieces, samples, outputs)."""
