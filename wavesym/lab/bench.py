@@ -83,8 +83,8 @@ def _values(named: dict[str, Scene], chains: dict[str, Scene]) -> Iterator[str]:
     """What values take once a program is there."""
     yield "## Evaluating"
     yield ""
-    yield f"{SAMPLES} uniform samples, proved bound 1e-14. ns a double; *ratio* is that of `sample` to the write floor, *of FMA"
-    yield "peak* what polynomials need, one multiplication with an addition a degree, of what a core can do."
+    yield f"{SAMPLES} uniform samples, proved bound 1e-14. ns a double; *ratio* is that of `sample` to the write floor,"
+    yield "*of FMA peak* what polynomials need, one multiplication with an addition a degree, of what a core can do."
     yield ""
     yield from _table(
         ("scene", "compiler", "flags", "floor", "sample", "ratio", "of FMA peak", "eval, random", "NumPy", "bound"),
