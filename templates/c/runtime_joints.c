@@ -9,6 +9,9 @@
  * to the state at both ends; START and END belong to x_0. */
 enum { SOLVE = 0, DOWN = 1, FIRST = 2, LAST = 3, START = 0, END = 1 };
 
+/* How many numbers of a wave follow its series: zeros. */
+enum { SPARE = NAME_ROW - NAME_DEGREE };
+
 /* Where a track has what it had so many windows ago, at most as many as it has steps. */
 static int slot(int track, int window, int ago)
 {

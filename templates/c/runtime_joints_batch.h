@@ -8,10 +8,10 @@ typedef struct {
     name_wide estimate;
     name_wide series[NAME_WINDOWS * NAME_STRANDS * (NAME_DEGREE + 2)];
     /* for `build_batch` alone, as in a model */
-    name_wide waves[NAME_SLOTS][NAME_PANELS][NAME_DEGREE + 1];
+    name_wide waves[NAME_SLOTS][NAME_PANELS][NAME_ROW];
     name_wide state[2][NAME_STATES + 1];
-    name_wide acting[NAME_PANELS][NAME_POINTS][NAME_DEGREE + 2];
-    name_wide path[NAME_PANELS][NAME_STATES + 1][NAME_DEGREE + 2];
+    name_wide acting[NAME_PANELS][NAME_POINTS][NAME_ROW];
+    name_wide path[NAME_PANELS][NAME_STATES + 1][NAME_ROW];
     name_wide solver[NAME_PANELS][4][(NAME_DEGREE + 2) * NAME_SQUARES + 1];
     name_wide edge[NAME_PANELS][2][NAME_SQUARES + 1];
     name_wide total[NAME_HEARD + 1];
@@ -21,7 +21,7 @@ typedef struct {
     name_wide largest[NAME_OUTPUTS];
     name_wide mean[NAME_OUTPUTS];
     name_wide work[NAME_DEGREE + 2];
-    name_real inverse[NAME_DEGREE + 2];
+    name_real inverse[NAME_ROW + 1];
     int since[NAME_FORCES + 1][2];
     /* of each set, as `build` returns it; of each window the degree, for all sets, and where its series begin */
     int status[NAME_WIDTH];

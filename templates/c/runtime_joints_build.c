@@ -50,10 +50,10 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
     track_of *const waves = tangent->waves[lane];
     real *const size = &tangent->size[lane][1];
     real missed = 0;
-    real f[NAME_WIDEST][NAME_DEGREE + 2];
-    real q[NAME_WIDEST][NAME_DEGREE + 2];
-    real dx[NAME_WIDEST][NAME_DEGREE + 2];
-    real acting[NAME_POINTS][NAME_DEGREE + 2];
+    real f[NAME_WIDEST][NAME_ROW];
+    real q[NAME_WIDEST][NAME_ROW];
+    real dx[NAME_WIDEST][NAME_ROW];
+    real acting[NAME_POINTS][NAME_ROW];
     *size = tangent->size[lane][0];
     for (int k = 0; k < NAME_STATES; ++k) {
         tangent->state[lane][1][k] = tangent->state[lane][0][k];
@@ -61,9 +61,9 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         for (int joint = 0; joint < NAME_JOINTS; ++joint) {
             const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
-            real(*const x)[NAME_DEGREE + 2] = m->path[panel] + first;
-            real(*const s)[NAME_DEGREE + 2] = m->acting[panel] + first_point[joint];
-            real(*const ds)[NAME_DEGREE + 2] = acting + first_point[joint];
+            real(*const x)[NAME_ROW] = m->path[panel] + first;
+            real(*const s)[NAME_ROW] = m->acting[panel] + first_point[joint];
+            real(*const ds)[NAME_ROW] = acting + first_point[joint];
             gather(waves, tangent->force[lane][panel], law, joint, panel, window, degree, 0, acting);
             gather(m->waves, NULL, slope, joint, panel, window, degree, 1, acting);
             empty(q, points, degree);

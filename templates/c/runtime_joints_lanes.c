@@ -1,7 +1,8 @@
 /* runtime_joints_lanes.c: the march of a chain follows, of many sets of parameters.
  * Plain C that stands below the text of runtime_lanes.c in generated files, which have what stands below the first empty
  * line. */
-#include "runtime_joints_bounds.c"
+#include "runtime_joints_bound.c"
+#include "runtime_bounds.c"
 #include "runtime_lanes.c"
 
 typedef name_batch model_of_batch;

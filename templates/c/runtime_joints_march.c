@@ -5,7 +5,7 @@
 #include "runtime_joints.c"
 #endif
 
-typedef num OF(track_of)[NAME_PANELS][NAME_DEGREE + 1];
+typedef num OF(track_of)[NAME_PANELS][NAME_ROW];
 
 /* c = a b, of n rows and columns */
 static void OF(multiply)(const num *a, const num *b, int n, num *c)
@@ -115,7 +115,7 @@ static void OF(tabulate_joint)(OF(model_of) *m, const OF(laws) *law, int joint, 
 
 static void OF(tabulate)(OF(model_of) *m, const OF(laws) *law, int degree)
 {
-    for (int k = 1; k <= degree + 1; ++k) {
+    for (int k = 1; k <= degree + SPARE; ++k) {
         m->inverse[k] = 1 / (real)(2 * k);
     }
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
@@ -132,7 +132,7 @@ static void OF(start_waves)(OF(track_of) *waves, const OF(laws) *law)
     for (int track = 0; track < NAME_TRACKS; ++track) {
         for (int place = ring[track]; place <= ring[track] + steps[track]; ++place) {
             for (int panel = 0; panel < NAME_PANELS; ++panel) {
-                for (int k = 0; k <= NAME_DEGREE; ++k) {
+                for (int k = 0; k < NAME_ROW; ++k) {
                     waves[place][panel][k] = k == 0 ? law->held[track] : ZERO;
                 }
             }
@@ -142,7 +142,7 @@ static void OF(start_waves)(OF(track_of) *waves, const OF(laws) *law)
 
 /* What acts on the points of a joint on a panel, as series, with nothing at degree + 1. */
 static void OF(gather)(OF(track_of) *waves, num (*force)[3], const OF(laws) *law, int joint, int panel, int window,
-                       int degree, int more, num (*acting)[NAME_DEGREE + 2])
+                       int degree, int more, num (*acting)[NAME_ROW])
 {
     const int first = first_point[joint];
     for (int point = first; point < first_point[joint + 1]; ++point) {
@@ -164,8 +164,8 @@ static void OF(gather)(OF(track_of) *waves, num (*force)[3], const OF(laws) *law
 }
 
 /* f += matrix * series, of `rows` times `columns` numbers */
-static void OF(add_series)(const num *matrix, int rows, int columns, num (*series)[NAME_DEGREE + 2], int degree,
-                           num (*f)[NAME_DEGREE + 2])
+static void OF(add_series)(const num *matrix, int rows, int columns, num (*series)[NAME_ROW], int degree,
+                           num (*f)[NAME_ROW])
 {
     for (int i = 0; i < rows; ++i) {
         for (int j = 0; j < columns; ++j) {
@@ -177,7 +177,7 @@ static void OF(add_series)(const num *matrix, int rows, int columns, num (*serie
     }
 }
 
-static void OF(empty)(num (*series)[NAME_DEGREE + 2], int rows, int degree)
+static void OF(empty)(num (*series)[NAME_ROW], int rows, int degree)
 {
     for (int i = 0; i < rows; ++i) {
         for (int k = 0; k <= degree + 1; ++k) {
@@ -187,8 +187,8 @@ static void OF(empty)(num (*series)[NAME_DEGREE + 2], int rows, int degree)
 }
 
 /* How the states of a joint move on a panel under f: the series x; `state` goes from its start to its end. */
-static void OF(moved)(const OF(model_of) *m, int joint, int panel, int degree, num (*f)[NAME_DEGREE + 2], num *state,
-                      num (*x)[NAME_DEGREE + 2])
+static void OF(moved)(const OF(model_of) *m, int joint, int panel, int degree, num (*f)[NAME_ROW], num *state,
+                      num (*x)[NAME_ROW])
 {
     const int n = states_of(joint);
     const real half = half_length[panel];
@@ -243,7 +243,7 @@ static void OF(moved)(const OF(model_of) *m, int joint, int panel, int degree, n
 }
 
 /* What ends send: their points' velocities, less what arrives. */
-static void OF(send_out)(OF(track_of) *waves, int joint, int panel, int window, int degree, num (*q)[NAME_DEGREE + 2])
+static void OF(send_out)(OF(track_of) *waves, int joint, int panel, int window, int degree, num (*q)[NAME_ROW])
 {
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
         const num *const a = waves[slot(arrive[port], window, steps[arrive[port]])][panel];
@@ -256,8 +256,8 @@ static void OF(send_out)(OF(track_of) *waves, int joint, int panel, int window, 
 
 /* What the polynomials of a joint miss: the one term of x' = rates x + f that does not fit, as velocities. What a spring
  * misses of its length counts by the acceleration that it makes, for half a panel. */
-static void OF(add_missed)(const OF(laws) *law, int joint, int panel, int degree, num (*f)[NAME_DEGREE + 2],
-                           num (*x)[NAME_DEGREE + 2], num *missed)
+static void OF(add_missed)(const OF(laws) *law, int joint, int panel, int degree, num (*f)[NAME_ROW],
+                           num (*x)[NAME_ROW], num *missed)
 {
     const int n = states_of(joint);
     const num *const rates = law->rates + at_rates[joint];
@@ -281,16 +281,16 @@ static void OF(add_missed)(const OF(laws) *law, int joint, int panel, int degree
  * a wave. */
 static void OF(march)(OF(model_of) *m, const OF(laws) *law, int window, int degree, num *size, num *missed)
 {
-    num f[NAME_WIDEST][NAME_DEGREE + 2];
-    num q[NAME_WIDEST][NAME_DEGREE + 2];
+    num f[NAME_WIDEST][NAME_ROW];
+    num q[NAME_WIDEST][NAME_ROW];
     for (int k = 0; k < NAME_STATES; ++k) {
         m->state[1][k] = m->state[0][k];
     }
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         for (int joint = 0; joint < NAME_JOINTS; ++joint) {
             const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
-            num(*const x)[NAME_DEGREE + 2] = m->path[panel] + first;
-            num(*const s)[NAME_DEGREE + 2] = m->acting[panel] + first_point[joint];
+            num(*const x)[NAME_ROW] = m->path[panel] + first;
+            num(*const s)[NAME_ROW] = m->acting[panel] + first_point[joint];
             OF(gather)(m->waves, m->force[panel], law, joint, panel, window, degree, 0, m->acting[panel]);
             OF(empty)(q, points, degree);
             if (n > 0) {

@@ -2,7 +2,7 @@
  * Plain C where there is no GNU C, one set at a time. Stands above the text of a march in lanes in generated files, which
  * have what stands below the first empty line. */
 #ifndef NAME_JOINTED
-#include "runtime_bound.c"
+#include "runtime_bounds.c"
 #endif
 
 /* All sets have one degree, the highest that one of them needs. A set that is refused goes along as another, or runs

@@ -1,8 +1,8 @@
 /* runtime_model.h: what a built model keeps, and what it needs while it is built.
  * Generated files have what stands below the first empty line, with their scene's name. */
 
-/* How many numbers a wave has: a series, and zeros up to a whole vector. */
-enum { NAME_ROW = NAME_DEGREE + 64 / sizeof(name_real) };
+/* How many numbers a wave has: a series, and zeros up to a whole vector and two more. */
+enum { NAME_ROW = NAME_DEGREE + 64 / sizeof(name_real) + 2 };
 
 /* A model of a set of parameters. Plain data, yours: copy it, keep as many as you like; only `build` writes into it. */
 typedef struct {

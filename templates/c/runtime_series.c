@@ -35,9 +35,11 @@ static const slice nothing = {0};
 typedef __typeof__(nothing < nothing) bits;
 #define AT(x, lane) ((x)[lane])
 #define MAGNITUDE(x) ((slice)((bits)(x) & (bits)(-(x))))
+#define LARGER(x, y) ((slice)((((x) > (y)) & (bits)(x)) | (~((x) > (y)) & (bits)(y))))
 #else
 #define AT(x, lane) (x)
 #define MAGNITUDE(x) magnitude(x)
+#define LARGER(x, y) ((x) > (y) ? (x) : (y))
 #endif
 
 static real magnitude(real x)

@@ -79,15 +79,15 @@ def test_what_is_computed_wrong_is_in_the_bound(change, make, tmp_path):
     [
         (
             WRONG[3],
-            ("w->apart[port] = larger(w->apart[port], apart);", ""),
-            ("sent += law->impedance", "sent += 0 * law->impedance"),
+            ("larger(apart[port], here)", "larger(apart[port], 0 * here)"),
+            ("w->energy += w->length[panel] *", "w->energy += 0 * w->length[panel] *"),
         ),
-        (WRONG[4], ("rest += magnitude((k <= degree", "rest += 1e-12 * magnitude((k <= degree")),
-        (WRONG[0], ("w->energy += defect(m", "w->energy += 1e-9 * defect(m")),
+        (WRONG[4], ("rest += MAGNITUDE(missed)", "rest += 1e-12 * MAGNITUDE(missed)")),
+        (WRONG[0], ("w->energy += w->weight[first + i] *", "w->energy += 1e-9 * w->weight[first + i] *")),
         (
             WRONG[2],
-            ("error += magnitude(ratio[port]) * shown_by", "error += 1e-9 * magnitude(ratio[port]) * shown_by"),
-            ("w->apart[port] = larger(w->apart[port], apart);", ""),
+            ("apart[port] + w->moves[port] *", "apart[port] + 1e-9 * w->moves[port] *"),
+            ("larger(apart[port], here)", "larger(apart[port], 0 * here)"),
         ),
     ],
 )

@@ -104,10 +104,14 @@ def test_what_is_computed_wrong_is_in_the_bound(change, case, tmp_path):
 @pytest.mark.parametrize(
     "changes",
     [
-        (ROUGH, ("w->energy += w->moved[panel][node] *", "w->energy += 1e-9 * w->moved[panel][node] *")),
+        (
+            ROUGH,
+            ("*energy += moved_by * (2 *", "*energy += 1e-9 * moved_by * (2 *"),
+            ("w->energy += w->mass[node] * magnitude(", "w->energy += 1e-9 * magnitude("),
+        ),
         (ROUGH, ("const real velocity = w->energy / w->mass[node];", "const real velocity = 0;")),
         (CUT, ("missed += MAGNITUDE(rest) +", "missed += 0 * MAGNITUDE(rest) +")),
-        (CUT, ("= 2 * wrong_law + (jump", "= 1e-9 * wrong_law + (jump")),
+        (CUT, ("moved_by * (2 * missed +", "moved_by * (1e-9 * missed +")),
     ],
 )
 def test_a_mistake_in_the_bound_is_seen(changes, tmp_path):

@@ -104,7 +104,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         march=march,
         build=kernel("runtime_joints_build.c", scene),
         read=kernel("runtime_read.c", scene),
-        bound=kernels(scene, "runtime_joints_wrong.c", "runtime_joints_bound.c", "runtime_joints_bounds.c"),
+        bound=kernels(scene, "runtime_wrong.c", "runtime_joints_bound.c", "runtime_bounds.c"),
         lanes=kernel("runtime_lanes.c", scene),
         march_in_lanes=f"{kernel('runtime_joints_lanes.c', scene)}\n\n{march}",
         batch=kernels(scene, "runtime_joints_batch.c", "runtime_batches.c"),

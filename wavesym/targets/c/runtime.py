@@ -110,7 +110,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         numbers=kernel("real.h", scene),
         kernel=kernel("runtime.c", scene),
         read=kernel("runtime_read.c", scene),
-        bound=kernel("runtime_bound.c", scene),
+        bound=kernels(scene, "runtime_wrong.c", "runtime_bound.c", "runtime_bounds.c"),
         batch=kernels(scene, "runtime_lanes.c", "runtime_batch.c", "runtime_batches.c"),
         misfit=kernel("runtime_misfit.c", scene),
     )
