@@ -86,14 +86,14 @@ static int laws_within_reach(const laws *law)
     return within;
 }
 
-/* And no body has become so heavy that it is none. */
-static int laws_to_march(const laws *law)
+/* 0, or 1 for a bad number, or where a body has become so heavy that it is none. */
+static int refused(const laws *law)
 {
     int within = laws_within_reach(law);
     for (int node = 0; node < NAME_NODES; ++node) {
         within &= !is_body[node] || law->rate[node] > 0;
     }
-    return within;
+    return !within;
 }
 
 /* The tables of bodies for polynomials of a degree: the elimination of q_k + x_k (q_(k-1) - q_(k+1)) = x_k (p_(k-1) -
@@ -350,8 +350,9 @@ static int begun(model_of *m, const name_parameters *parameters, laws *law)
         return 1;
     }
     laws_of(parameters, law);
-    if (!laws_to_march(law)) {
-        return 1;
+    const int status = refused(law);
+    if (status) {
+        return status;
     }
     for (int event = 0; event < NAME_EVENTS; ++event) {
         m->change[event] =

@@ -168,10 +168,10 @@ static int begun_batch(batch_of *b, laws_batch *all, const name_parameters *para
         b->status[set] = 1;
         if ((size_t)set < sets && good(parameters + set)) {
             laws_of(parameters + set, &law);
-            good_one[set] = laws_to_march(&law);
+            b->status[set] = refused(&law);
+            good_one[set] = b->status[set] == 0;
         }
         if (good_one[set]) {
-            b->status[set] = 0;
             given_batch(b, all, set, &law);
             other = law;
             ++good_ones;

@@ -91,9 +91,24 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
     return missed;
 }
 
-static int laws_to_march(const laws *law)
+/* 0, 1 for a bad number, or 2 for bodies so light, or springs so stiff, that a rounding of how they move on a panel is as
+ * much as they move: no degree is enough then, but by chance. */
+static int refused(const laws *law)
 {
-    return laws_within_reach(law);
+    real fastest = 0;
+    if (!laws_within_reach(law)) {
+        return 1;
+    }
+    for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+        const real *const rates = law->rates + at_rates[joint];
+        const int n = states_of(joint);
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j <= i; ++j) {
+                fastest = larger(fastest, (unit * rates[i * n + j]) * (unit * rates[j * n + i]));
+            }
+        }
+    }
+    return window_length * window_length * fastest < 1 ? 0 : 2;
 }
 
 /* What begins a model. 0, or 1 for a bad number. */
@@ -105,8 +120,9 @@ static int begun(model_of *m, const name_parameters *parameters, laws *law)
         return 1;
     }
     laws_of(parameters, law);
-    if (!laws_to_march(law)) {
-        return 1;
+    const int status = refused(law);
+    if (status) {
+        return status;
     }
     for (int event = 0; event < NAME_EVENTS; ++event) {
         m->change[event] = event_weight[event] * law->load[event_load[event]] * law->strength[event_strength[event]];
