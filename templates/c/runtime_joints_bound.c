@@ -2,6 +2,7 @@
  * Plain C that stands below the text of runtime_wrong.c in generated files, which have what stands below the first empty
  * line. */
 #include "runtime_joints_build.c"
+#include "runtime_builds.c"
 #include "runtime_wrong.c"
 
 /* What may be wrong, at most; docs/march.md of wavesym has the proof. In short: let x be how the state of a joint moves.

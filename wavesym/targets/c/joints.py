@@ -102,7 +102,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         series=kernel("runtime_series.c", scene),
         joints=kernel("runtime_joints.c", scene),
         march=march,
-        build=kernel("runtime_joints_build.c", scene),
+        build=kernels(scene, "runtime_joints_build.c", "runtime_builds.c"),
         read=kernel("runtime_read.c", scene),
         bound=kernels(scene, "runtime_wrong.c", "runtime_joints_bound.c", "runtime_bounds.c"),
         lanes=kernel("runtime_lanes.c", scene),

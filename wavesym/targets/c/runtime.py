@@ -108,7 +108,7 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         loads="amplitude" if own else "p->load",
         series=kernel("runtime_series.c", scene),
         numbers=kernel("real.h", scene),
-        kernel=kernel("runtime.c", scene),
+        kernel=kernels(scene, "runtime.c", "runtime_builds.c"),
         read=kernel("runtime_read.c", scene),
         bound=kernels(scene, "runtime_wrong.c", "runtime_bound.c", "runtime_bounds.c"),
         batch=kernels(scene, "runtime_lanes.c", "runtime_batch.c", "runtime_batches.c"),
