@@ -430,62 +430,32 @@ fmi3Status FMI3(fmi3GetIntervalFraction)(fmi3Instance it, const fmi3ValueReferen
     return none(it, "a clock");
 }
 
-fmi3Status FMI3(fmi3GetShiftDecimal)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                                     fmi3Float64 shift[])
-{
-    (void)reference;
-    (void)references;
-    (void)shift;
-    return none(it, "a clock");
-}
+#define NO_DECIMAL(function, type) \
+    fmi3Status FMI3(function)(fmi3Instance it, const fmi3ValueReference reference[], size_t references, type times[]) \
+    { \
+        (void)reference; \
+        (void)references; \
+        (void)times; \
+        return none(it, "a clock"); \
+    }
 
-fmi3Status FMI3(fmi3GetShiftFraction)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                                      fmi3UInt64 counter[], fmi3UInt64 resolution[])
-{
-    (void)reference;
-    (void)references;
-    (void)counter;
-    (void)resolution;
-    return none(it, "a clock");
-}
+#define NO_FRACTION(function, type) \
+    fmi3Status FMI3(function)(fmi3Instance it, const fmi3ValueReference reference[], size_t references, type counter[], \
+                              type resolution[]) \
+    { \
+        (void)reference; \
+        (void)references; \
+        (void)counter; \
+        (void)resolution; \
+        return none(it, "a clock"); \
+    }
 
-fmi3Status FMI3(fmi3SetIntervalDecimal)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                                        const fmi3Float64 interval[])
-{
-    (void)reference;
-    (void)references;
-    (void)interval;
-    return none(it, "a clock");
-}
-
-fmi3Status FMI3(fmi3SetIntervalFraction)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                                         const fmi3UInt64 counter[], const fmi3UInt64 resolution[])
-{
-    (void)reference;
-    (void)references;
-    (void)counter;
-    (void)resolution;
-    return none(it, "a clock");
-}
-
-fmi3Status FMI3(fmi3SetShiftDecimal)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                                     const fmi3Float64 shift[])
-{
-    (void)reference;
-    (void)references;
-    (void)shift;
-    return none(it, "a clock");
-}
-
-fmi3Status FMI3(fmi3SetShiftFraction)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
-                                      const fmi3UInt64 counter[], const fmi3UInt64 resolution[])
-{
-    (void)reference;
-    (void)references;
-    (void)counter;
-    (void)resolution;
-    return none(it, "a clock");
-}
+NO_DECIMAL(fmi3GetShiftDecimal, fmi3Float64)
+NO_DECIMAL(fmi3SetShiftDecimal, const fmi3Float64)
+NO_DECIMAL(fmi3SetIntervalDecimal, const fmi3Float64)
+NO_FRACTION(fmi3GetShiftFraction, fmi3UInt64)
+NO_FRACTION(fmi3SetShiftFraction, const fmi3UInt64)
+NO_FRACTION(fmi3SetIntervalFraction, const fmi3UInt64)
 
 fmi3Status FMI3(fmi3GetOutputDerivatives)(fmi3Instance it, const fmi3ValueReference reference[], size_t references,
                                           const fmi3Int32 order[], fmi3Float64 value[], size_t count)
