@@ -376,7 +376,8 @@ static void settle_lane(name_tangent *tangent, int lane)
     }
 }
 
-static real follow_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now, int before)
+static real follow_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now,
+                        int before)
 {
     lengthen(tangent->waves[lane], before, now->degree);
     return follow(tangent, law, slope, lane, now->window % 2, now->degree);

@@ -268,7 +268,7 @@ int name_build_batch(name_batch *batch, const name_parameters *parameters, size_
                     add_magnitude_batch(&weight, &law.gain[k]);
                 }
             }
-            missed_there[output] = weight * missed;
+            missed_there[output] = weight * missed + read_by(degree) * batch->largest[output];
         }
     }
     for (int set = 0; set < NAME_WIDTH; ++set) {

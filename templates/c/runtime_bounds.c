@@ -119,7 +119,8 @@ int name_error_bound(name_model *model, const name_parameters *parameters, name_
         /* a hundredth for what is of second order in a rounding, and for the roundings of this here */
         const real error = output_wrong(&law, &w, summed, output, now.degree) * (real)1.01;
         const real size = size_seen(model, &w.beside, output);
-        bound[output] = error < size && finite_number(w.energy) ? error / (size - error) * (1 + 4 * unit) : is_silent(&law, output) ? 0 : infinity();
+        const real known = error < size && finite_number(w.energy) ? error / (size - error) * (1 + 4 * unit) : infinity();
+        bound[output] = is_silent(&law, output) ? 0 : known;
     }
     return status;
 }

@@ -145,7 +145,8 @@ static void settle_lane(name_tangent *tangent, int lane)
     }
 }
 
-static real follow_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now, int before)
+static real follow_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now,
+                        int before)
 {
     (void)before; /* what a series had not is 0 */
     return follow(tangent, law, slope, lane, now->window, now->degree);

@@ -55,7 +55,7 @@ int name_tangent_sample(
 
 typedef name_model model_of;
 
-enum { LEAST = 8, LOAD_LANE = -1, SECTIONS = 3, CYCLE = 2 };
+enum { LEAST = 8, LOAD_LANE = -1, SECTIONS = 3, CYCLE = 2, JOINTED = 1 };
 
 /* What parameters make of joints, rods, loads and outputs. */
 typedef struct {

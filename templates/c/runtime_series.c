@@ -274,8 +274,20 @@ static real relative(const laws *law, int output, real error, real largest)
     return error > 0 && (largest > 0 || reached(law, output)) ? infinity() : (real)0;
 }
 
-/* Of the largest value of an output, about what `missed`, as a velocity, makes of it, at worst. */
-static real estimated(const model_of *m, const laws *law, real missed)
+/* How often a velocity of size 1 is rounded, about. The sums of a body, of so many coefficients, lose up to a sixteenth of
+ * the degree squared; of joints only what is read does, and that of its own size. */
+static real rounded_by(int degree)
+{
+    return unit * ((real)(degree + NAME_WINDOWS) + (JOINTED ? (real)0 : (real)(degree * degree) / 16));
+}
+
+static real read_by(int degree)
+{
+    return JOINTED ? unit * (real)(degree * degree) / 16 : (real)0;
+}
+
+/* Of the largest value of an output, about what `missed`, as a velocity, and reading at a degree make of it, at worst. */
+static real estimated(const model_of *m, const laws *law, real missed, int degree)
 {
     real worst = 0;
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
@@ -283,7 +295,7 @@ static real estimated(const model_of *m, const laws *law, real missed)
         for (int k = 0; k < NAME_HEARD; ++k) {
             weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
         }
-        worst = larger(worst, relative(law, output, weight * missed, m->largest[output]));
+        worst = larger(worst, relative(law, output, weight * missed + read_by(degree) * m->largest[output], m->largest[output]));
     }
     return worst;
 }
@@ -305,18 +317,11 @@ static int higher_than(int degree)
     return higher < NAME_DEGREE ? higher : NAME_DEGREE;
 }
 
-/* How often a velocity of size 1 is rounded, about: the sums of a body and of a value that is read, both of so many
- * coefficients, lose up to a sixteenth of the degree squared. */
-static real rounded_by(int degree)
-{
-    return unit * ((real)(degree + NAME_WINDOWS) + (real)(degree * degree) / 16);
-}
-
 /* Errors were up to five times what polynomials miss; docs/march.md of wavesym has what was measured. */
 static int ended(model_of *m, const laws *law, const progress *now)
 {
     const real missed = 6 * now->missed + rounded_by(now->degree) * now->size;
     m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);
-    m->estimate = m->built ? estimated(m, law, missed) : not_a_number();
+    m->estimate = m->built ? estimated(m, law, missed, now->degree) : not_a_number();
     return !m->built;
 }
