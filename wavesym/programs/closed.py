@@ -31,7 +31,8 @@ from wavesym.exact.increments import Increment
 from wavesym.exact.signal import Signal
 from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.program import ProgramOutput
+from wavesym.programs.flat import firsts
+from wavesym.programs.program import Program, ProgramOutput, Provenance
 
 _EXP = 20  # an exponential, in multiplications
 # all that is of second order in u but for additions, as long as no factor of u reaches 1/1000
@@ -118,6 +119,24 @@ class ClosedForm:
             middle = self.real.nearest(rational(start) / 2 + rational(end) / 2)
             points |= {middle, self.real.next_to(end, start)}
         return sorted(points)
+
+    def program(self, provenance: Provenance) -> Program:
+        """Of output o the pulses first_pulse[o] ... in order of their start; of each its families, of these the powers.
+
+        `coefficient` has the powers of a family, lowest first.
+        """
+        pulses = [pulse for output in self.outputs for pulse in output.pulses]
+        families = [family for pulse in pulses for family in pulse.families]
+        tables: dict[str, tuple[float, ...]] = {
+            "first_pulse": firsts(len(output.pulses) for output in self.outputs),
+            "start": tuple(pulse.start for pulse in pulses),
+            "excess": tuple(pulse.excess for pulse in pulses),
+            "first_family": firsts(len(pulse.families) for pulse in pulses),
+            "rate": tuple(family.rate for family in families),
+            "first_power": firsts(len(family.powers) for family in families),
+            "coefficient": tuple(power for family in families for power in family.powers),
+        }
+        return Program("closed", self.real, self.tau_max, self.outputs, tables, {}, self.bytes, provenance)
 
 
 def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) -> ClosedForm:

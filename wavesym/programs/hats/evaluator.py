@@ -20,7 +20,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.hats.split import RecordLoad, split, still
-from wavesym.programs.program import ProgramOutput
+from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.rings.bound import RingVerdict
 from wavesym.programs.rings.evaluator import RingMarch, judged_march
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
@@ -124,6 +124,20 @@ class HatMarch:
     def check_points(self) -> list[float]:
         """For a self-test, of which there is none: there is no program in C."""
         return [0.0]
+
+    def program(self, provenance: Provenance) -> Program:
+        """Its tables, flat, and why it is NumPy alone."""
+        return Program(
+            "hats",
+            self.real,
+            self.tau_max,
+            self.outputs,
+            self.tables,
+            self.constants,
+            self.bytes,
+            provenance,
+            numpy_only=self.refusal,
+        )
 
 
 def hat_march(model: Model, refusal: str = "") -> HatMarch | None:

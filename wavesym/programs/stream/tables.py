@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import Real
+from wavesym.programs.flat import firsts
 from wavesym.programs.rings.plan import MarchedJoint
-from wavesym.programs.rings.tables import RingTables, firsts
+from wavesym.programs.rings.tables import RingTables
 from wavesym.programs.stream.kinks import kinks, points, transform
 from wavesym.programs.stream.plan import StreamPlan
 
