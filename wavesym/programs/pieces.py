@@ -33,7 +33,7 @@ from wavesym.exact.silence import silent
 from wavesym.mechanics.model import Model
 from wavesym.numbers import chebyshev
 from wavesym.numbers.balls import precise
-from wavesym.numbers.doubles import bound, middle, nearest, rational
+from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
 from wavesym.programs.program import Program, ProgramOutput, Provenance
@@ -346,7 +346,7 @@ class _Fits:
             error, kept = _cut_off([c.mid() for c in coefficients], allowed - blurred, self._real)
             local_powers = [c / arb(half) ** k for k, c in enumerate(kept)]
             worst = worst.max((error + blurred + _underflow(local_powers, self._real)).upper())
-            powers.append(tuple(self._real.nearest(middle(c)) for c in local_powers))
+            powers.append(tuple(map(self._real.nearest_middle, local_powers)))
         return (bound(worst / scale), float(scale)), powers
 
     def _allowed(self, scale: arb) -> tuple[arb, arb]:
