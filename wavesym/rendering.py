@@ -26,16 +26,17 @@ class _Noting(CodeGenerator):
     environment: _Templates
 
     def visit_Template(self, node: Template, frame: Frame | None = None) -> None:
-        assert self.name is not None  # templates are files
-        self._taken = self.environment.taken[self.name] = set()
-        self.environment.included[self.name] = [other for other in find_referenced_templates(node) if other is not None]
+        self._taken: set[str] = set()
         super().visit_Template(node, frame)
+        if self.name is not None:  # of a file, that is
+            self.environment.taken[self.name] = self._taken - set(self.environment.globals)
+            others = [other for other in find_referenced_templates(node) if other is not None]
+            self.environment.included[self.name] = others
 
     def enter_frame(self, frame: Frame) -> None:
         super().enter_frame(frame)
         loads = frame.symbols.loads.values()
         self._taken |= {name for action, name in loads if action == "resolve" and name is not None}
-        self._taken -= self.environment.globals.keys()
 
 
 class _Templates(Environment):
