@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from flint import arb, fmpq
@@ -51,6 +51,10 @@ class Real:
     def nearest_middle(self, ball: arb) -> float:
         """The number nearest to the middle of a ball."""
         return midpoint(ball) if self.name == "double" else self.nearest(middle(ball))
+
+    def table(self, values: Iterable[fmpq]) -> tuple[float, ...]:
+        """The numbers nearest to some exact ones."""
+        return tuple(map(self.nearest, values))
 
     def not_below(self, value: fmpq) -> float:
         """The smallest number that is not below an exact one."""
