@@ -95,3 +95,47 @@ def test_a_mistake_in_the_bound_is_seen(changes, tmp_path):
     made = BuiltModel(frame(NUMBERS[frame]), list(NUMBERS[frame]), tmp_path, changes)
     with pytest.raises(AssertionError):
         check(made, frame, {name: [float(value) for value in of] for name, of in NUMBERS[frame].items()})
+
+
+def rods(p):
+    """Two rods of different impedance between masses: at their joint absolute values add up to more than 1."""
+    return wavesym.Scene(
+        name="rods",
+        system={
+            "type": "chain",
+            "parts": [
+                {"mass": p["mass"][0], "name": "a"},
+                {"rod": 1},
+                {"rod": 1, "impedance": 2},
+                {"mass": p["mass"][1], "name": "b"},
+            ],
+        },
+        load=[{"at": "a", "times": [0], "steps": [1]}],
+        output={"until": 100, "tolerance": "1e-12", "velocity": ["a", "b"], "strain": ["1/2"]},
+    )
+
+
+TWO = {"mass": [1.0, 0.5]}
+ROUGH = ("x[i][k] = now[i];\n            before", "x[i][k] = now[i] * (k == 3 ? 1.0000001 : 1);\n            before")
+
+
+def test_errors_do_not_grow_from_joint_to_joint(tmp_path):
+    """As long as all waves at an instant have a norm, which joints do not enlarge; without it they do."""
+    bounds = []
+    for changes in ([], [("error = all < error ? all : error;", "(void)all;")]):
+        folder = tmp_path / str(len(changes))
+        folder.mkdir()
+        bounds.append(check(BuiltModel(rods(TWO), ["mass"], folder, changes), rods, TWO)[0])
+    assert np.all(10 * bounds[0] < bounds[1])
+
+
+@pytest.mark.parametrize("share", ["1", "1e-9"])
+def test_a_mistake_in_that_norm_is_seen(share, tmp_path):
+    made = BuiltModel(
+        rods(TWO), ["mass"], tmp_path, [ROUGH, ("w->steady * w->energy", f"{share} * w->steady * w->energy")]
+    )
+    if share == "1":
+        assert np.max(check(made, rods, TWO)[1]) > 1e-12
+    else:
+        with pytest.raises(AssertionError):
+            check(made, rods, TWO)
