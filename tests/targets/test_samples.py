@@ -108,9 +108,12 @@ def test_long_runs_have_the_bits_of_single_values(made, flags):
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [
-        ("return (step + t->tau0) - middle;", "return step + (t->tau0 - middle);"),
+        ("return instants_of(t, k) - middle;", "return k * t->dtau + (t->tau0 - middle);"),
         ("tau >= edge : tau < edge", "tau >= edge : tau <= edge"),
         ("(16 / exact)", "(0 / exact)"),
+        ("nearest) >= edge)", "nearest) > edge)"),
+        ("(next_one - (real)s->next * not_earlier)", "(1 - not_earlier) * 0"),
+        ("exact * (real)0.75", "exact * 0"),
     ],
 )
 def test_other_roundings_and_later_fronts_are_seen(made, right, wrong):
