@@ -295,12 +295,12 @@ static void look_ahead(const samples *s, const real *edges, int last, run_ends *
     const real whole = exact * (real)0.75; /* so large that a sum with it is a whole number */
     const lanes none = everywhere(0);
     const lanes count = everywhere(number(s->count));
-    const real next_one = s->next < 0 ? 0 : 1;
-    const int width = (int)LANES;
+    const real next = s->next < 0 ? 0 : 1; /* after samples that come before an edge */
+    const int wide = (int)LANES;
     const int many = last - found->first + 1;
     real ends[AHEAD];
-    for (int i = 0; i < many; i += width) {
-        const int from = i + width > many ? many - width : i;
+    for (int i = 0; i < many; i += wide) {
+        const int from = i + wide > many ? many - wide : i;
         const lanes edge = *(const stored *)(edges + found->first + from);
         lanes nearest = (edge - t.tau0) * s->per_tau + whole;
 #ifdef __SSE2__
@@ -310,7 +310,7 @@ static void look_ahead(const samples *s, const real *edges, int last, run_ends *
 #endif
         nearest = nearest - whole;
         const lanes not_earlier = (lanes)((instants_of(&t, nearest) >= edge) & (choice)everywhere(1));
-        lanes end = nearest + (next_one - (real)s->next * not_earlier);
+        lanes end = nearest + (next - (real)s->next * not_earlier);
         end = (lanes)((end > none) & (choice)end);
         const choice inside = end < count;
         end = (lanes)((inside & (choice)end) | (~inside & (choice)count));
@@ -346,8 +346,11 @@ APART size_t run(int grid, int piece, const samples *s, size_t k)
     p.members = first_member[grid + 1] - first_member[grid];
     p.rows = s->rows + first_member[grid];
 #if VECTOR
-    const real piece_long = edges[piece + 1] - edges[piece];
-    const int ahead = s->apart && pieces >= (int)LANES && piece_long >= (t.dtau < 0 ? -t.dtau : t.dtau);
+    /* worth it where a piece has samples, and samples are on some pieces */
+    const real step = t.dtau < 0 ? -t.dtau : t.dtau;
+    const real width = edges[piece + 1] - edges[piece];
+    const int ahead =
+        s->apart && pieces >= (int)LANES && step <= width && number(s->count - k) * step > 4 * width;
     run_ends known;
     known.first = -AHEAD;
 #endif
