@@ -832,8 +832,8 @@ WITHIN size_t end_ahead(const samples *s, const real *edges, int edge, int many,
 }
 #endif
 
-/* The outputs of a grid from sample k on, which is on a piece: piece after piece, until one has no samples and it is not
- * known where the next ones end. Whole vectors are written: what is beyond a piece is written anew by the next one.
+/* The outputs of a grid from sample k on, which is on a piece: piece after piece, until one has no samples and it is
+ * not known where the next ones end. Whole vectors are written: what is beyond a piece is written anew by the next one.
  * Returns the first sample that is left. */
 APART size_t run(int grid, int piece, const samples *s, size_t k)
 {
