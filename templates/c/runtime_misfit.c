@@ -195,6 +195,8 @@ static int blocks(const wide *series, size_t size, int degree, const real *cells
     int row = 0;
     while (row < rows && cells[LOWEST * ROWS] <= (real)degree) {
         const int lowest = (int)cells[LOWEST * ROWS];
+        const real middle = cells[LOWEST * ROWS + ROWS / 2];
+        const int all = middle <= (real)degree ? (int)middle : degree + 1; /* from where on the lower rows count, too */
         wide missed[ROWS];
         UNROLLED
         for (int i = 0; i < ROWS; ++i) {
@@ -203,7 +205,15 @@ static int blocks(const wide *series, size_t size, int degree, const real *cells
         for (int s = 0; s < strands; ++s) {
             const wide *const c = series + (size_t)strand_at[first_strand[group] + s] * size;
             const real *r = cells + (COLUMNS + lowest * strands + s) * ROWS;
-            for (int k = lowest; k <= degree; ++k) {
+            int k = lowest;
+            for (; k < all; ++k) {
+                UNROLLED
+                for (int i = 0; i < ROWS / 2; ++i) {
+                    missed[i] += r[i] * c[k];
+                }
+                r += strands * ROWS;
+            }
+            for (; k <= degree; ++k) {
                 UNROLLED
                 for (int i = 0; i < ROWS; ++i) {
                     missed[i] += r[i] * c[k];
