@@ -260,7 +260,8 @@ static real march(model_of *m, const laws *law, int half, int degree, real *size
     moving bodies;
     real missed = 0;
     bodies.count = 0;
-    bodies.node[0] = bodies.node[1] = 0;
+    bodies.node[0] = 0;
+    bodies.node[1] = 0;
     for (int node = 0; node < NAME_NODES; ++node) {
         m->velocity[1][node] = m->velocity[0][node];
     }
@@ -286,7 +287,8 @@ static real march(model_of *m, const laws *law, int half, int degree, real *size
                 }
             }
             if (law->rate[node] > 0) {
-                bodies.node[bodies.count++] = node;
+                bodies.node[bodies.count] = node;
+                bodies.count += 1;
             } else {
                 send(m->waves, half, panel, node, degree, p, size);
             }
@@ -342,7 +344,8 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
     moving bodies;
     real missed = 0;
     bodies.count = 0;
-    bodies.node[0] = bodies.node[1] = 0;
+    bodies.node[0] = 0;
+    bodies.node[1] = 0;
     *size = tangent->size[lane][0];
     for (int node = 0; node < NAME_NODES; ++node) {
         velocity[node] = tangent->velocity[lane][0][node];
@@ -376,7 +379,8 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
                     const real pushed = law->alpha[node] * a[k] + law->beta[node] * b[k] + load;
                     p[k] += share_of_rate * (pushed - (back[k] + a[k]));
                 }
-                bodies.node[bodies.count++] = node;
+                bodies.node[bodies.count] = node;
+                bodies.count += 1;
             } else {
                 send(waves, half, panel, node, degree, p, size);
             }
