@@ -11,6 +11,7 @@ typedef struct {
     real wave[NAME_SLOTS];              /* the largest error of a wave, on the window when it was sent */
     real size[NAME_SLOTS][NAME_PANELS]; /* of a wave the sum of its coefficients' magnitudes */
     real end[NAME_STATES + 1], end_error[NAME_STATES + 1];
+    real heavy[NAME_STATES + 1], wide[NAME_PORTS]; /* roots of weights and impedances */
     real speed[NAME_JOINTS]; /* the norm of a joint's rates where the energy is |x|^2 / 2 */
     real apart[NAME_PORTS]; /* what is sent beside the law */
     wrong_beside beside;
@@ -32,7 +33,11 @@ static void begun_wrong(wrong *w, const laws *law)
     for (int port = 0; port < NAME_PORTS; ++port) {
         const int track = arrive[port];
         const real length = (real)steps[track] * window_length;
-        w->energy += root(law->impedance[port] * length) * rounded * magnitude(law->held[track]);
+        w->wide[port] = root(law->impedance[port]);
+        w->energy += w->wide[port] * root(length) * rounded * magnitude(law->held[track]);
+    }
+    for (int state = 0; state < NAME_STATES; ++state) {
+        w->heavy[state] = root(law->weight[state]);
     }
     for (int joint = 0; joint < NAME_JOINTS; ++joint) {
         const int n = states_of(joint), first = first_state[joint];
@@ -40,16 +45,16 @@ static void begun_wrong(wrong *w, const laws *law)
         for (int i = 0; i < n; ++i) {
             real row = 0, column = 0;
             for (int j = 0; j < n; ++j) {
-                const real across = law->weight[first + i] / law->weight[first + j];
-                row += magnitude(law->rates[at_rates[joint] + i * n + j]) * root(across);
-                column += magnitude(law->rates[at_rates[joint] + j * n + i]) * root(1 / across);
+                const real one = w->heavy[first + i], other = w->heavy[first + j];
+                row += magnitude(law->rates[at_rates[joint] + i * n + j]) * (one / other);
+                column += magnitude(law->rates[at_rates[joint] + j * n + i]) * (other / one);
             }
-            rows = larger(rows, row);
-            columns = larger(columns, column);
+            rows = larger(rows, known(row));
+            columns = larger(columns, known(column));
             w->end[first + i] = law->begun[first + i];
             w->end_error[first + i] = rounded * magnitude(law->begun[first + i]);
         }
-        w->speed[joint] = root(rows * columns);
+        w->speed[joint] = root(rows) * root(columns);
     }
     begun_beside(&w->beside);
 }
@@ -104,7 +109,7 @@ static real defect(const model_of *m, const laws *law, wrong *w, int joint, int 
     real s[NAME_WIDEST][NAME_DEGREE + 2], sum[NAME_DEGREE + 2];
     const real(*const given)[NAME_DEGREE + 2] = (const real(*)[NAME_DEGREE + 2])s;
     real size[NAME_WIDEST], beside[NAME_WIDEST], sizes[NAME_WIDEST];
-    real missed = 0, jumped = 0, forced = 0, sent = 0;
+    real missed[NAME_WIDEST], jumped[NAME_WIDEST], forced[NAME_WIDEST], sent[NAME_PORTS];
     for (int i = 0; i < NAME_WIDEST; ++i) {
         size[i] = beside[i] = sizes[i] = 0;
     }
@@ -142,12 +147,12 @@ static real defect(const model_of *m, const laws *law, wrong *w, int joint, int 
         }
         w->end[first + i] = end;
         w->end_error[first + i] = summing;
-        const real weight = law->weight[first + i];
+        const real heavy = w->heavy[first + i];
         rest += unit * sizes[i];
         force += exact * moved_by;
-        missed += 4 * weight * rest * rest; /* that at the start counts, too: twice */
-        jumped += weight * jump * jump;
-        forced += weight * force * force;
+        missed[i] = 2 * heavy * rest; /* that at the start counts, too: twice */
+        jumped[i] = heavy * jump;
+        forced[i] = heavy * force;
     }
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
         const int point = point_of[port], to = slot(send[port], window, 0);
@@ -168,11 +173,13 @@ static real defect(const model_of *m, const laws *law, wrong *w, int joint, int 
         }
         w->size[to][panel] = all;
         apart += magnitude(ratio[port]) * (exact * shown_by + beyond) + unit * 4 * (all + w->size[at][panel]);
+        apart = known(apart);
         w->apart[port] = larger(w->apart[port], apart);
-        sent += law->impedance[port] * apart * apart;
+        sent[port - first_port[joint]] = w->wide[port] * apart;
     }
     const real fast = w->speed[joint] * length;
-    return root(missed) * (root(fast) + 1 + fast) + root(jumped) + length * root(forced) + root(length * sent);
+    return norm(missed, n) * (root(fast) + 1 + fast) + norm(jumped, n) + length * norm(forced, n) +
+           root(length) * norm(sent, first_port[joint + 1] - first_port[joint]) + spare;
 }
 
 /* What a window adds to the errors, and how large those of its waves are. */

@@ -41,7 +41,7 @@ static void outputs_wrong(const model_of *m, const laws *law, wrong *w, int wind
             for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
                 sum += strand[strand_at[k]];
             }
-            w->beside.output[output] = larger(w->beside.output[output], sum);
+            w->beside.output[output] = larger(w->beside.output[output], known(sum));
         }
     }
 }

@@ -11,12 +11,18 @@ typedef struct {
     real output[NAME_OUTPUTS];
 } wrong_beside;
 
+/* What is no number is not known: no bound. */
+static real known(real x)
+{
+    return finite_number(x) ? x : infinity();
+}
+
 /* No less than the root. */
 static real root(real x)
 {
     real y = 1;
     if (!(x > 0) || !finite_number(x)) {
-        return x > 0 ? infinity() : 0;
+        return x <= 0 ? 0 : infinity();
     }
     while (y < x / y) {
         y *= 2;
@@ -28,6 +34,23 @@ static real root(real x)
         y = (y + x / y) / 2;
     }
     return y * (1 + 4 * unit);
+}
+
+/* No less than the root of the sum of squares. They are taken relative to the largest, as those of what is far from 1 are
+ * beyond all numbers, or nothing. */
+static real norm(const real *x, int count)
+{
+    real most = 0, sum = 0;
+    for (int k = 0; k < count; ++k) {
+        most = larger(most, known(x[k]));
+    }
+    if (count < 2 || !(most > 0) || !finite_number(most)) {
+        return most;
+    }
+    for (int k = 0; k < count; ++k) {
+        sum += (x[k] / most) * (x[k] / most);
+    }
+    return most * root(sum);
 }
 
 /* Nothing, at first. */

@@ -51,6 +51,17 @@ def test_from_python():
     assert np.isnan(found[1]).all()
 
 
+@pytest.mark.parametrize(("heavier", "faster"), [(0, -700), (0, -600), (0, 600), (0, 900), (-200, -400), (200, 600)])
+def test_bounds_do_not_depend_on_units(heavier, faster):
+    """The equations are linear in what begins and acts, and in all masses and forces; powers of 2 are exact."""
+    model = model_of(tree)
+    powers = {"velocity": faster, "load": heavier + faster}
+    scaled = {name: np.ldexp(of, powers.get(name, heavier)) for name, of in model.parameters.items()}
+    usual, bounds = model.bounds(), model.bounds(**scaled)
+    assert np.all(np.isfinite(usual) & (usual > 0))
+    assert np.all((bounds > 0.999 * usual) & (bounds < 1.001 * usual))
+
+
 # what is computed wrong, so that errors are far above rounding: what is sent is judged, not how it was found
 WRONG = [
     ("now[i] = one - (real)(k == 0 ? 2 : 1) * now[i]", "now[i] = one - (real)(k == 0 ? 2.0000001 : 1) * now[i]"),
@@ -80,7 +91,7 @@ def test_what_is_computed_wrong_is_in_the_bound(change, make, tmp_path):
         (
             WRONG[3],
             ("w->apart[port] = larger(w->apart[port], apart);", ""),
-            ("sent += law->impedance", "sent += 0 * law->impedance"),
+            ("= w->wide[port] * apart", "= 0 * w->wide[port] * apart"),
         ),
         (WRONG[4], ("rest += magnitude((k <= degree", "rest += 1e-12 * magnitude((k <= degree")),
         (WRONG[0], ("w->energy += defect(m", "w->energy += 1e-9 * defect(m")),
