@@ -155,3 +155,5 @@ def test_velocities_of_a_scene_that_does_not_move_may_come_later():
     tau = np.linspace(0, 4, 9)
     true = wavesym.evaluator(scene.with_({"system.velocity": [1, "-1/2"]}))(tau)
     assert np.max(np.abs(still.run(tau, velocity=[1, -0.5])[0] - true)) < 1e-9 * np.max(np.abs(true))
+    slopes = still.gradients(tau, velocity=[1, 1]).by["velocity"][0]
+    assert np.max(np.abs(slopes[0] - slopes[1] / 2 - true)) < 1e-9 * np.max(np.abs(true))
