@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from flint import fmpq
 
+from tests.support.assembly import exact
 from tests.support.builds import LANGUAGES, STRICT
-from tests.support.oscillators import evaluator, exact, oscillators, storeys, uniform
+from tests.support.oscillators import evaluator, oscillators, storeys, uniform
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.assembly import assemble

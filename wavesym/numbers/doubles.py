@@ -73,6 +73,13 @@ def bound(ball: arb) -> float:
     return shown if shown >= double else float(f"{double * 1.1:.1e}")
 
 
+def relative(error: float, size: float) -> float:
+    """A bound of an error in parts of a size, to print; infinite where nothing is known of the size."""
+    if error == 0:
+        return 0.0
+    return bound(arb(error) / arb(size)) if size else math.inf
+
+
 def rounded(ball: arb) -> float | None:
     """The double that everything in the ball rounds to, None where there is not one.
 

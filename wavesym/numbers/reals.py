@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,6 +46,10 @@ class Real:
         guess = float(np.float32(double))  # rounded twice: a neighbour may be nearer
         near = [guess, self.next_to(guess, -math.inf), self.next_to(guess, math.inf)]
         return min(near, key=lambda each: (abs(rational(each) - value), np.float32(each).view(np.uint32) & 1))
+
+    def table(self, values: Iterable[fmpq]) -> tuple[float, ...]:
+        """The numbers nearest to some exact ones."""
+        return tuple(map(self.nearest, values))
 
     def not_below(self, value: fmpq) -> float:
         """The smallest number that is not below an exact one."""
