@@ -21,6 +21,7 @@ typedef struct {
     real passes[NAME_PORTS], thins[NAME_PORTS]; /* root of an impedance, and what is no less than 1 over it */
     real length[NAME_PANELS];          /* roots of lengths */
     real moves[NAME_PORTS];            /* what an energy of 1 sends */
+    real beyond[NAME_PORTS];           /* what underflow in what acts adds to what is sent, for the least number */
     real steady;                       /* and the norm of that */
     real all;                          /* the energy of what underflows */
     int track[NAME_HEARD + 1];         /* which wave is heard */
@@ -79,12 +80,21 @@ static void begun_wrong(model_of *m, const laws *law, wrong *w)
             w->bent[panel][joint] = n > 0 ? root(1 + 2 * fast) + 1 + fast : 0;
             for (int i = first; i < first + n; ++i) {
                 w->all += w->weight[i] * (w->bent[panel][joint] + 1);
+                for (int j = 0; j < points_of(joint); ++j) { /* what acts underflows, too */
+                    w->all += w->weight[i] * (2 * half_length[panel]) *
+                              magnitude(law->pushed[at_pushed[joint] + (i - first) * points_of(joint) + j]);
+                }
             }
         }
         for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
             const real windows = (real)steps[arrive[port]], held = rounded * w->held[arrive[port]];
             w->passes[port] = root(law->impedance[port]);
-            w->all += w->passes[port];
+            w->beyond[port] = 1;
+            for (int j = 0; j < points_of(joint); ++j) {
+                w->beyond[port] += magnitude(ratio[port] *
+                                             law->passed[at_passed[joint] + point_of[port] * points_of(joint) + j]);
+            }
+            w->all += w->passes[port] * w->beyond[port];
             w->thins[port] = law->impedance[port] > 0 ? w->passes[port] / law->impedance[port] : infinity();
             w->moves[port] = 0;
             for (int i = 0; i < n; ++i) {
@@ -234,7 +244,7 @@ static void worsen(const model_of *m, const laws *law, wrong *w, int window, int
     w->energy += total_of(&energy) + spare * w->all;
     w->instant += w->steady * w->energy;
     for (int port = 0; port < NAME_PORTS; ++port) {
-        apart[port] += spare;
+        apart[port] += spare * w->beyond[port];
         w->instant += w->passes[port] * apart[port];
     }
     for (int joint = 0; joint < NAME_JOINTS; ++joint) {

@@ -51,6 +51,40 @@ def test_from_python():
     assert np.isnan(found[1]).all()
 
 
+@pytest.mark.parametrize(("heavier", "faster"), [(0, -700), (0, -600), (0, 600), (0, 900), (-200, -400), (200, 600)])
+def test_bounds_do_not_depend_on_units(heavier, faster):
+    """The equations are linear in what begins and acts, and in all masses and forces; powers of 2 are exact."""
+    model = model_of(tree)
+    powers = {"velocity": faster, "load": heavier + faster}
+    scaled = {name: np.ldexp(of, powers.get(name, heavier)) for name, of in model.parameters.items()}
+    usual, bounds = model.bounds(), model.bounds(**scaled)
+    assert np.all(np.isfinite(usual) & (usual > 0))
+    assert np.all((bounds > 0.999 * usual) & (bounds < 1.001 * usual))
+
+
+def test_what_underflows_is_in_the_bound():
+    """Forces that are hardly numbers: digits are lost against the same in other units, and bounds know it."""
+    linked = [{"mass": 1, "velocity": 1, "dashpot": 1}, {"rod": 1}, {"mass": 2, "spring": 2}, {"rod": 1}]
+    scene = wavesym.Scene(
+        name="faint",
+        system={"type": "chain", "parts": [*linked, {"mass": 1, "velocity": "-1/2"}]},
+        output={"until": 4, "velocity": ["1/3", "4/3"], "strain": ["1/2"]},
+    )
+    names = ["mass", "dashpot", "spring", "impedance", "velocity"]
+    model = wavesym.model(scene, runtime=names)
+    tau = np.linspace(0, 4, 101)
+    usual, bounds = model.run(tau)[0], model.bounds()[0]
+    largest = np.max(np.abs(usual), axis=1)
+    lost = 0.0
+    for power in range(-860, -780, 4):
+        scaled = {name: np.ldexp(model.parameters[name], -220 if name == "velocity" else power) for name in names}
+        wrong = np.max(np.abs(np.ldexp(model.run(tau, **scaled)[0], 220) - usual), axis=1) / largest
+        refused = model.check(**scaled).status[0] != 0
+        assert refused or np.all(wrong <= (model.bounds(**scaled)[0] + bounds) * 1.1)
+        lost = lost if refused else max(lost, np.max(wrong))
+    assert lost > 1e-9
+
+
 # what is computed wrong, so that errors are far above rounding: what is sent is judged, not how it was found
 WRONG = [
     ("now[i] = one - (real)(k == 0 ? 2 : 1) * now[i]", "now[i] = one - (real)(k == 0 ? 2.0000001 : 1) * now[i]"),

@@ -71,6 +71,8 @@ def test_extreme_neighbours_refuse_nobody(model):
 def test_other_data_are_refused(model):
     with pytest.raises(WavesymError, match=r"data: an array of shape \(2,\) given, \(\d, 2\) expected"):
         model.misfit([0, 1], [1, 2])
+    with pytest.raises(WavesymError, match="data: an infinite number given"):
+        model.misfit([1.0], np.full((len(model.outputs), 1), np.inf))
     with pytest.raises(WavesymError, match="tau: 0 to 4 expected"):
         model.misfit([7.0], np.zeros((len(model.outputs), 1)))
 

@@ -1,5 +1,7 @@
 """Many sets of parameters at once, from Python: each is what the exact outputs of its own scene are."""
 
+import copy
+import pickle
 from functools import cache
 
 import numpy as np
@@ -128,6 +130,7 @@ def test_no_set_and_no_instant_are_empty(model):
         ({"kappa": [1, 2]}, r"kappa: an array of shape \(2,\) given, \(sets, 3\) expected"),
         ({"kappa": 1}, r"kappa: an array of shape \(\) given, \(sets, 3\) expected"),
         ({"kappa": ["a", "b", "c"]}, "kappa: an array of numbers expected"),
+        ({"kappa": [1, 1j, 1]}, "kappa: an array of numbers expected"),
         ({"kappa": [[1, 1, 1]] * 2, "load": [[1, 1]] * 3}, "2 and 3 sets given"),
     ],
 )
@@ -135,3 +138,22 @@ def test_other_arrays_are_refused(model, parameters, message):
     with pytest.raises(WavesymError, match=message) as error:
         model.run([0.0], **parameters)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("way", [copy.deepcopy, pickle.dumps])
+def test_a_model_says_that_other_processes_make_their_own(model, way):
+    with pytest.raises(TypeError, match=r"wavesym\.model\(scene, runtime\) makes one"):
+        way(model)
+
+
+def test_velocities_of_a_scene_that_does_not_move_may_come_later():
+    scene = wavesym.Scene.from_toml("collision_m4").with_({"output.until": 4})
+    with without_compiler():
+        still = wavesym.model(scene.with_({"system.velocity": [1, 1]}), runtime=["velocity"])
+    checks = still.check(velocity=[[1, -0.5], [1, 1]])
+    assert checks.status.tolist() == [0, 0]
+    tau = np.linspace(0, 4, 9)
+    true = wavesym.evaluator(scene.with_({"system.velocity": [1, "-1/2"]}))(tau)
+    assert np.max(np.abs(still.run(tau, velocity=[1, -0.5])[0] - true)) < 1e-9 * np.max(np.abs(true))
+    slopes = still.gradients(tau, velocity=[1, 1]).by["velocity"][0]
+    assert np.max(np.abs(slopes[0] - slopes[1] / 2 - true)) < 1e-9 * np.max(np.abs(true))

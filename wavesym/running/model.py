@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -116,6 +117,8 @@ class RuntimeModel:
             raise WavesymError(f"data: an array of shape {values.shape} given, {wanted} expected")
         if not np.all((instants >= 0) & (instants <= self.tau_max)):
             raise WavesymError(f"tau: 0 to {self.tau_max:g} expected where there are data")
+        if np.any(np.isinf(values)):
+            raise WavesymError("data: an infinite number given, finite ones expected, and NaN where there is none")
         misfits = self._engine.misfit(instants.ravel(), values.reshape(len(self.outputs), -1))
 
         def of(**parameters: ArrayLike) -> Array:
@@ -135,6 +138,9 @@ class RuntimeModel:
         """Which sets are refused, and what errors the others have."""
         found = self._engine.values(self._given(parameters), np.empty(0))
         return SetChecks(found.status, found.estimate)
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a model is compiled where it is: in another process, wavesym.model(scene, runtime) makes one")
 
     def _given(self, parameters: Mapping[str, ArrayLike]) -> Array:
         """All fields side by side, a row for each set."""
@@ -158,6 +164,8 @@ class RuntimeModel:
 
 def _numbers(name: str, values: ArrayLike) -> Array:
     try:
+        if np.iscomplexobj(values):  # NumPy would leave out what is imaginary
+            raise TypeError
         return np.asarray(values, np.float64)
     except (TypeError, ValueError):
         raise WavesymError(f"{name}: an array of numbers expected") from None

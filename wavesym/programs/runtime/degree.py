@@ -57,11 +57,16 @@ def degrees(given: RuntimePlan, tolerance: fmpq, real: Real) -> tuple[int, int]:
 
 
 def _numbers(given: RuntimePlan, least: fmpq) -> Plan:
-    """The plan of the scene's own numbers, no kappa below `least`; what loads have no amplitude has 1."""
+    """The plan of the scene's own numbers, no kappa below `least`; what loads have no amplitude has 1, and bodies whose
+    velocities are given at run time do not move together.
+    """
     model = given.model
     chain = model.named
     kappa = {i: max(value, least) for i, value in chain.parameters.kappa.items()}
-    chain = replace(chain, parameters=replace(chain.parameters, kappa=kappa))
+    velocity = chain.parameters.velocity
+    if velocity and len(set(velocity.values())) < len(velocity) and any(of.name == "velocity" for of in given.fields):
+        velocity = {i: fmpq(-i) for i in velocity}
+    chain = replace(chain, parameters=replace(chain.parameters, kappa=kappa, velocity=velocity))
     ordered = tuple(sorted(given.loads, key=lambda load: load.time))
     return plan(replace(model, chain=chain, network=network_of(chain), loads=ordered or model.loads))
 
