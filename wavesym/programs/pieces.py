@@ -26,10 +26,10 @@ from itertools import pairwise
 from flint import arb, arb_poly, fmpq
 
 from wavesym.errors import CostError
-from wavesym.exact.ball import Balls, Segment
-from wavesym.exact.events import what_helps
+from wavesym.exact.contacts.events import what_helps
 from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion, is_zero
 from wavesym.exact.silence import silent
+from wavesym.exact.tables.ball import Balls, Segment
 from wavesym.mechanics.model import Model
 from wavesym.numbers import chebyshev
 from wavesym.numbers.balls import precise

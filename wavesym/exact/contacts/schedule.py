@@ -17,11 +17,11 @@ from typing import NamedTuple
 from flint import arb, ctx, fmpq
 
 from wavesym.errors import CostError, WavesymError
-from wavesym.exact.cluster import Closed
-from wavesym.exact.crossing import first_fall, positive_until, sign_after
-from wavesym.exact.joint import Enclosed
-from wavesym.exact.touching_joint import Moved, SwingError
-from wavesym.exact.touching_waves import Stage, TouchingWaves
+from wavesym.exact.contacts.cluster import Closed
+from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
+from wavesym.exact.contacts.touching_joint import Moved, SwingError
+from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves
+from wavesym.exact.joints.joint import Enclosed
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import middle, nearest

@@ -29,8 +29,8 @@ from math import isqrt
 
 from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
 
-from wavesym.exact.node_rules import joint_rule
-from wavesym.exact.onset import Onset
+from wavesym.exact.joints.node_rules import joint_rule
+from wavesym.exact.joints.onset import Onset
 from wavesym.mechanics.network import Joint, Network
 
 # a series is begun anew where it would have to bear more than exp(this)

@@ -8,8 +8,8 @@ from math import inf
 
 from flint import fmpq
 
-from wavesym.exact.network_response import RuledNetwork, Timed, function_of
-from wavesym.exact.table import Function, Row
+from wavesym.exact.tables.network_response import RuledNetwork, Timed, function_of
+from wavesym.exact.tables.table import Function, Row
 from wavesym.mechanics.network import Network
 
 

@@ -13,13 +13,13 @@ from math import inf
 
 from flint import fmpq
 
-from wavesym.exact.foreseen import Foreseen
-from wavesym.exact.fronts import departures, needed
-from wavesym.exact.increments import Increment, add, combined, integrated, trimmed
-from wavesym.exact.network_joints import START, NetworkJoints, unit_at
-from wavesym.exact.node_rules import joint_rule
-from wavesym.exact.table import Function, Part
-from wavesym.exact.table_size import refuse_size
+from wavesym.exact.joints.node_rules import joint_rule
+from wavesym.exact.tables.foreseen import Foreseen
+from wavesym.exact.tables.fronts import departures, needed
+from wavesym.exact.tables.increments import Increment, add, combined, integrated, trimmed
+from wavesym.exact.tables.network_joints import START, NetworkJoints, unit_at
+from wavesym.exact.tables.table import Function, Part
+from wavesym.exact.tables.table_size import refuse_size
 from wavesym.mechanics.gauge import Gauge, readings
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import End, Network

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.exact.joint import JointLaw
+from wavesym.exact.joints.joint import JointLaw
 
 # powers beyond those of what acts, in which a motion that is a polynomial must have come to its end
 _MORE = 5

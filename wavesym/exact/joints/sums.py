@@ -10,9 +10,9 @@ from math import prod
 
 from flint import arb, arb_poly, fmpq, fmpq_poly
 
-from wavesym.exact.joint import Enclosed
-from wavesym.exact.network_waves import weighted
-from wavesym.exact.onset import Onset, combined
+from wavesym.exact.joints.joint import Enclosed
+from wavesym.exact.joints.network_waves import weighted
+from wavesym.exact.joints.onset import Onset, combined
 
 Terms = list[tuple[fmpq, Enclosed]]
 """A sum with exact factors."""

@@ -9,8 +9,8 @@ from heapq import heapify, heappop, heappush
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
-from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
-from wavesym.exact.node_rules import joint_rule
+from wavesym.exact.joints.joint import STILL, Enclosed, JointLaw, JointMotion
+from wavesym.exact.joints.node_rules import joint_rule
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import End, Joint, Network
 

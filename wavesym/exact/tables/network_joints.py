@@ -7,9 +7,9 @@ from functools import cached_property
 from flint import fmpq
 
 from wavesym.errors import UnservedError
-from wavesym.exact.increments import Increment, add, integrated
-from wavesym.exact.joint import JointLaw
-from wavesym.exact.joint_response import JointResponse, joint_polynomial, joint_response, rates, written
+from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.tables.increments import Increment, add, integrated
+from wavesym.exact.tables.joint_response import JointResponse, joint_polynomial, joint_response, rates, written
 from wavesym.mechanics.network import End, Network, Point
 
 START = "start"

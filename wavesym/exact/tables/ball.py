@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 from flint import arb, arb_poly, ctx, fmpq
 
-from wavesym.exact.increments import Increment
-from wavesym.exact.signal import Signal
+from wavesym.exact.tables.increments import Increment
+from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.balls import FIRST_BITS, precise
 from wavesym.numbers.doubles import midpoint, not_below, rational, rounded
 

@@ -16,12 +16,12 @@ from typing import Protocol
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.exact.increments import Increment, combined, integrated
-from wavesym.exact.increments import start as start_of
-from wavesym.exact.network_joints import unit_at
-from wavesym.exact.network_response import RuledNetwork
-from wavesym.exact.table import Function, Part, Rules, unit_response
-from wavesym.exact.table_size import refuse_large
+from wavesym.exact.tables.increments import Increment, combined, integrated
+from wavesym.exact.tables.increments import start as start_of
+from wavesym.exact.tables.network_joints import unit_at
+from wavesym.exact.tables.network_response import RuledNetwork
+from wavesym.exact.tables.table import Function, Part, Rules, unit_response
+from wavesym.exact.tables.table_size import refuse_large
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.gauge import Gauge, readings
 from wavesym.mechanics.loads import Applied

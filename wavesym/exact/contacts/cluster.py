@@ -9,7 +9,7 @@ from itertools import chain
 from flint import fmpq
 
 from wavesym.errors import WavesymError
-from wavesym.exact.joint import JointLaw
+from wavesym.exact.joints.joint import JointLaw
 
 Closed = frozenset[int]
 """Contacts, by the numbers of their links."""

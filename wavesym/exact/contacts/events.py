@@ -12,7 +12,7 @@ from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 
 if TYPE_CHECKING:
-    from wavesym.exact.schedule import Schedule
+    from wavesym.exact.contacts.schedule import Schedule
 
 _BITS = 320
 
@@ -21,7 +21,7 @@ def scheduled(model: Model, until: fmpq) -> Schedule | None:
     """When what is closed, until then; None for a chain without contacts. CostError, GrazingError as in `schedule`."""
     if not model.network.contacts:
         return None
-    from wavesym.exact.schedule import schedule  # how contacts touch: few scenes have any
+    from wavesym.exact.contacts.schedule import schedule  # how contacts touch: few scenes have any
 
     return schedule(model.network, model.acting(until), tuple(model.reached(until).items()))
 

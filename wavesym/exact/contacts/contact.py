@@ -10,9 +10,9 @@ from flint import arb, arb_poly, fmpq
 
 from wavesym.derivation.exact_rule import DERIVATIVE
 from wavesym.errors import CostError
-from wavesym.exact.ball import Segment, polynomials, segments
-from wavesym.exact.increments import Increment, apply, start, trimmed
-from wavesym.exact.signal import RuledChain, Signal, observed
+from wavesym.exact.tables.ball import Segment, polynomials, segments
+from wavesym.exact.tables.increments import Increment, apply, start, trimmed
+from wavesym.exact.tables.signal import RuledChain, Signal, observed
 from wavesym.mechanics.event import KnownInstant
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe

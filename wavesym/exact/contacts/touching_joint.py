@@ -20,14 +20,14 @@ from math import log2
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
-from wavesym.exact.cluster import Closed, Cluster, Touch, parted
-from wavesym.exact.exact_joint import exact_motion
-from wavesym.exact.joint import STILL, Enclosed, JointLaw, JointMotion
-from wavesym.exact.joint_onset import onsets
-from wavesym.exact.network_waves import Acting
-from wavesym.exact.node_rules import joint_rule
-from wavesym.exact.onset import Onset
-from wavesym.exact.sums import Terms, collected, one_at_each_instant, scaled, together, told
+from wavesym.exact.contacts.cluster import Closed, Cluster, Touch, parted
+from wavesym.exact.joints.exact_joint import exact_motion
+from wavesym.exact.joints.joint import STILL, Enclosed, JointLaw, JointMotion
+from wavesym.exact.joints.joint_onset import onsets
+from wavesym.exact.joints.network_waves import Acting
+from wavesym.exact.joints.node_rules import joint_rule
+from wavesym.exact.joints.onset import Onset
+from wavesym.exact.joints.sums import Terms, collected, one_at_each_instant, scaled, together, told
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 

@@ -18,9 +18,9 @@ from itertools import product
 from flint import arb, ctx, fmpq, fmpq_poly
 
 from wavesym.derivation.exact_rule import Weights
-from wavesym.exact.increments import Increment, add, solve, trimmed
-from wavesym.exact.joint import JointLaw
-from wavesym.exact.node_rules import factor_weights
+from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.node_rules import factor_weights
+from wavesym.exact.tables.increments import Increment, add, solve, trimmed
 
 Matrix = Mapping[tuple[int, int], fmpq]
 """Entries by (moved point, pushed point); those that are 0 are left out."""

@@ -11,9 +11,9 @@ from math import factorial
 
 from flint import arb, fmpq, fmpq_poly
 
-from wavesym.exact.exact_joint import powers
-from wavesym.exact.joint import JointLaw
-from wavesym.exact.onset import ORDER, Onset
+from wavesym.exact.joints.exact_joint import powers
+from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.onset import ORDER, Onset
 
 
 def onsets(

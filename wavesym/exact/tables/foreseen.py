@@ -15,10 +15,10 @@ from math import inf
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.exact.fronts import departures, reachable
-from wavesym.exact.network_joints import START, NetworkJoints, unit_at
-from wavesym.exact.node_rules import joint_rule
-from wavesym.exact.table_size import MOST_WORK, Size, mean_bits, response_size
+from wavesym.exact.joints.node_rules import joint_rule
+from wavesym.exact.tables.fronts import departures, reachable
+from wavesym.exact.tables.network_joints import START, NetworkJoints, unit_at
+from wavesym.exact.tables.table_size import MOST_WORK, Size, mean_bits, response_size
 from wavesym.mechanics.network import End
 
 MOST_FRONTS = 20_000
