@@ -150,7 +150,7 @@ _SPRUNG: tuple[tuple[str, Any], ...] = (
     ("load", [{"at": "disc", "times": [0, "1/2"], "steps": [1, 0], "ramps": [0, -1]}]),
 )
 _BRIEF_JOINTS = PortableProgram(
-    "joints_brief", "stepped_shaft", Request(runtime=("load",)), "runtime", _BLOCKS, _SPRUNG, "equal", highest=10
+    "joints_brief", "stepped_shaft", Request(runtime=("load",)), "runtime", (7, 17), _SPRUNG, "equal", highest=10
 )
 _MADE_OF_MODELS = (("tangent", (7,)), ("bound", ()), ("batch", ()), ("misfit", (2,)))
 
