@@ -27,7 +27,11 @@ BRIEF, CHAIN, CHAIN_TANGENT, CHAIN_BOUND, CHAIN_BATCH, CHAIN_MISFIT = (
     next(subject for subject in PROVED if (subject.name, subject.driver) == key)
     for key in (
         ("runtime_brief_double", "runtime"),
-        *(("joints_brief_double", driver) for driver in ("runtime", "tangent", "bound", "batch", "misfit")),
+        ("joints_brief_double", "runtime"),
+        ("joints_level_double", "tangent"),
+        ("joints_brief_double", "bound"),
+        ("joints_brief_double", "batch"),
+        ("joints_level_double", "misfit"),
     )
 )
 (SINGLE,) = (subject for subject in COMPILED if subject.name == "pieces_single")
@@ -162,10 +166,10 @@ def test_an_answer_is_asked_for_once_unless_the_question_changes(tmp_path):
         (TUNED, "speed > fastest && speed <= most ?", "speed > fastest ?"),
         (JOINTS, "return found < end ? found : end - 1;", "return found;"),
         (CHAIN, "for (int k = 0; k <= degree + 1; ++k) {\n            series", ZEROS_MISSING),
-        (CHAIN_TANGENT, "real acting[JOINTS_BRIEF_DOUBLE_POINTS]", "real acting[JOINTS_BRIEF_DOUBLE_POINTS - 1]"),
+        (CHAIN_TANGENT, "real acting[JOINTS_LEVEL_DOUBLE_POINTS]", "real acting[JOINTS_LEVEL_DOUBLE_POINTS - 1]"),
         (CHAIN_BOUND, "sizes[JOINTS_BRIEF_DOUBLE_WIDEST];", "sizes[JOINTS_BRIEF_DOUBLE_WIDEST - 1];"),
         (CHAIN_BATCH, "k <= higher; ++k", "k <= higher + 1; ++k"),
-        (CHAIN_MISFIT, "k <= higher; ++k", "k <= higher + 1; ++k"),
+        (CHAIN_MISFIT, "while (event < JOINTS_LEVEL_DOUBLE_EVENTS && ", "while ("),
     ],
 )
 def test_the_prover_sees_what_is_wrong(subject, right, wrong, tmp_path):

@@ -150,9 +150,10 @@ _SPRUNG: tuple[tuple[str, Any], ...] = (
     ("load", [{"at": "disc", "times": [0, "1/2"], "steps": [1, 0], "ramps": [0, -1]}]),
 )
 _BRIEF_JOINTS = PortableProgram(
-    "joints_brief", "stepped_shaft", Request(runtime=("load",)), "runtime", (7, 17), _SPRUNG, "equal", highest=10
+    "joints_brief", "stepped_shaft", Request(runtime=("load",)), "runtime", (17,), _SPRUNG, "equal", highest=10
 )
-_MADE_OF_MODELS = (("tangent", (7,)), ("bound", ()), ("batch", ()), ("misfit", (2,)))
+# of one degree alone, where two are too many
+_LEVEL_JOINTS = replace(_BRIEF_JOINTS, template="joints_level", effort="unrolled", highest=8)
 
 PROVED = (
     _CLOSED,
@@ -176,12 +177,16 @@ PROVED = (
     _RUNTIME.single,
     _BRIEF,
     _BRIEF.single,
-    *(replace(_BRIEF, driver=driver, counts=counts) for driver, counts in _MADE_OF_MODELS),
+    *(
+        replace(_BRIEF, driver=driver, counts=counts)
+        for driver, counts in (("tangent", (7,)), ("bound", ()), ("batch", ()), ("misfit", (2,)))
+    ),
     _JOINTS,
     _JOINTS.single,
     _BRIEF_JOINTS,
     _BRIEF_JOINTS.single,
-    *(replace(_BRIEF_JOINTS, driver=driver, counts=counts) for driver, counts in _MADE_OF_MODELS),
+    *(replace(_BRIEF_JOINTS, driver=driver, counts=()) for driver in ("bound", "batch")),
+    *(replace(_LEVEL_JOINTS, driver=driver, counts=counts) for driver, counts in (("tangent", (7,)), ("misfit", (2,)))),
 )
 CHECKED = (_CLOSED, _PIECES, _MARCH, _RINGS, _MODES, _STREAM, _TUNED, _RUNTIME, _JOINTS)
 COMPILED = tuple(
