@@ -338,6 +338,11 @@ def test_the_reference_has_everything_public() -> None:
     assert code >= set(wavesym.__all__) - {"__version__"}
 
 
+def test_the_reference_has_every_target_of_the_makefile() -> None:
+    targets = set(re.findall(r"`make ([a-z-]+)`", document("docs/reference.md")))
+    assert targets == set(re.findall(r"^\.PHONY: (.*)$", document("Makefile"), re.MULTILINE)[0].split())
+
+
 def test_the_guide_has_every_command() -> None:
     code = "".join(block.text for block in blocks(document("docs/guide.md")) if block.language == "sh")
     assert {name for name in COMMANDS if f"wavesym {name}" in code} == set(COMMANDS)

@@ -55,6 +55,17 @@ def test_what_runs_a_record_waits_for_nothing_that_it_does_not_need() -> None:
     assert not {"sympy", "scipy", "matplotlib", "xarray", "pint"} & set(loaded.split())
 
 
+def test_who_writes_c_of_pieces_waits_for_nothing_else(tmp_path: Path) -> None:
+    loaded = run_python(
+        f"from wavesym.cli import main; main(['generate', 'drive_m1', '-o', {str(tmp_path)!r}])\n"
+        "import sys; print('LOADED', *sys.modules)"
+    )
+    seen = set(loaded.rpartition("LOADED")[2].split())
+    others = {f"wavesym.programs.{kind}.evaluator" for kind in ("march", "modes", "rings", "hats")}
+    assert {"sympy", "wavesym.programs.pieces"} <= seen  # it did its work
+    assert not seen & {*others, "numpy", "scipy", "pint", "wavesym.exact.schedule", "wavesym.compiler.values"}
+
+
 @pytest.mark.parametrize(("told", "threads"), [(None, "1"), ("3", "3")])
 def test_commands_keep_numpy_to_one_thread(monkeypatch: pytest.MonkeyPatch, told: str | None, threads: str) -> None:
     monkeypatch.delenv("OMP_NUM_THREADS", raising=False)

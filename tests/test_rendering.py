@@ -1,15 +1,19 @@
 """Templates are given just the keys they use, and numbers read back to the same bits."""
 
 from dataclasses import make_dataclass
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from jinja2 import UndefinedError
+from jinja2 import UndefinedError, meta
 
+import wavesym
 from wavesym.numbers.reals import DOUBLE
-from wavesym.rendering import render
+from wavesym.rendering import _environment, _used, render
 from wavesym.targets.literals import c_literals, lines, literal
+
+TEMPLATES = Path(wavesym.__file__).parents[1] / "templates"
 
 
 def test_a_key_that_is_not_used_is_an_error():
@@ -47,3 +51,12 @@ def test_lines_keep_every_item_and_are_never_empty():
     assert max(map(len, lines(items))) <= 116
     assert lines([]) == ()
     assert c_literals([], DOUBLE) == ("0",)  # C has no empty array
+
+
+@pytest.mark.parametrize("path", sorted(TEMPLATES.rglob("*.j2")), ids=lambda path: path.name)
+def test_what_a_template_takes_is_what_jinja_finds(path):
+    """Noted while it is compiled, for every template that there is: in macros, loops and what is included, too."""
+    name = "/".join(path.parts[-2:])
+    tree = _environment().parse(path.read_text(encoding="utf-8"))
+    included = frozenset().union(*(_used(other) for other in meta.find_referenced_templates(tree)))
+    assert _used(name) == meta.find_undeclared_variables(tree) | included

@@ -518,6 +518,7 @@ static const real exact = 9007199254740992.0;
 #if VECTOR
 typedef real lanes __attribute__((vector_size(VECTOR)));
 typedef real stored __attribute__((vector_size(VECTOR), aligned(sizeof(real)), may_alias)); /* anywhere in an array */
+typedef __typeof__(*(const lanes *)0 < *(const lanes *)0) choice; /* of numbers: all their bits, or none */
 #define LANES ((size_t)(VECTOR / sizeof(real)))
 #define APART static __attribute__((noinline)) /* so that its vectors stay in registers */
 #else
@@ -622,8 +623,8 @@ static lanes everywhere(real x)
     return x - zero;
 }
 
-/* tau_k as `instant` has it, less the centre of a piece. */
-WITHIN lanes place(const instants *t, lanes k, real middle)
+/* tau_k as `instant` has it. */
+WITHIN lanes instants_of(const instants *t, lanes k)
 {
     lanes step = k * t->dtau;
 #if VECTOR && defined(__SSE2__)
@@ -631,7 +632,13 @@ WITHIN lanes place(const instants *t, lanes k, real middle)
 #else
     step = step * t->one;
 #endif
-    return (step + t->tau0) - middle;
+    return step + t->tau0;
+}
+
+/* tau_k less the centre of a piece. */
+WITHIN lanes place(const instants *t, lanes k, real middle)
+{
+    return instants_of(t, k) - middle;
 }
 
 WITHIN block places(int width, const instants *t, lanes k, real middle)
@@ -768,8 +775,66 @@ WITHIN size_t run_end(const samples *s, real edge, size_t k)
     return end;
 }
 
-/* The outputs of a grid from sample k on, which is on a piece: piece after piece, until one has no samples. Whole
- * vectors are written: what is beyond a piece is written anew by the next one. Returns the first sample that is left. */
+#if VECTOR
+enum { AHEAD = 32 };
+
+/* Where runs end at edges of a grid from number `first` on: found together, for less, and long before they are needed,
+ * so that a core seldom guesses wrong how many vectors a piece has. */
+typedef struct {
+    int first;
+    size_t end[AHEAD];
+} run_ends;
+
+/* Of edges up to number `last`, where samples are `apart`: the sample nearest to an edge, or where that comes before
+ * it the next one; as run_end has it. */
+static void look_ahead(const samples *s, const real *edges, int last, run_ends *found)
+{
+    const instants t = s->at;
+    const real whole = exact * (real)0.75; /* so large that a sum with it is a whole number */
+    const lanes none = everywhere(0);
+    const lanes count = everywhere(number(s->count));
+    const real next = s->next < 0 ? 0 : 1; /* after samples that come before an edge */
+    const int wide = (int)LANES;
+    const int many = last - found->first + 1;
+    real ends[AHEAD];
+    for (int i = 0; i < many; i += wide) {
+        const int from = i + wide > many ? many - wide : i;
+        const lanes edge = *(const stored *)(edges + found->first + from);
+        lanes nearest = (edge - t.tau0) * s->per_tau + whole;
+#ifdef __SSE2__
+        __asm__("" : "+v"(nearest)); /* so it is rounded, whatever may be assumed of sums */
+#else
+        nearest = nearest * t.one;
+#endif
+        nearest = nearest - whole;
+        const lanes not_earlier = (lanes)((instants_of(&t, nearest) >= edge) & (choice)everywhere(1));
+        lanes end = nearest + (next - (real)s->next * not_earlier);
+        end = (lanes)((end > none) & (choice)end);
+        const choice inside = end < count;
+        end = (lanes)((inside & (choice)end) | (~inside & (choice)count));
+        *(stored *)(ends + from) = end;
+    }
+    for (int i = 0; i < many; ++i) {
+        found->end[i] = (size_t)(ptrdiff_t)ends[i];
+    }
+}
+
+/* What run_end is at an edge of so many. */
+WITHIN size_t end_ahead(const samples *s, const real *edges, int edge, int many, run_ends *known)
+{
+    if (edge < known->first || edge >= known->first + AHEAD) {
+        const int first = s->next < 0 ? edge - AHEAD + 1 : edge;
+        const int latest = many > AHEAD ? many - AHEAD : 0;
+        known->first = first < 0 ? 0 : first < latest ? first : latest;
+        look_ahead(s, edges, known->first + (many < AHEAD ? many : AHEAD) - 1, known);
+    }
+    return known->end[edge - known->first];
+}
+#endif
+
+/* The outputs of a grid from sample k on, which is on a piece: piece after piece, until one has no samples and it is
+ * not known where the next ones end. Whole vectors are written: what is beyond a piece is written anew by the next one.
+ * Returns the first sample that is left. */
 APART size_t run(int grid, int piece, const samples *s, size_t k)
 {
     const int begin = first_piece[grid];
@@ -779,10 +844,29 @@ APART size_t run(int grid, int piece, const samples *s, size_t k)
     polynomials p;
     p.members = first_member[grid + 1] - first_member[grid];
     p.rows = s->rows + first_member[grid];
+#if VECTOR
+    /* worth it where a piece has samples, and samples are on some pieces */
+    const real step = t.dtau < 0 ? -t.dtau : t.dtau;
+    const real width = edges[piece + 1] - edges[piece];
+    const int ahead =
+        s->apart && pieces >= (int)LANES && step <= width && number(s->count - k) * step > 4 * width;
+    run_ends known;
+    known.first = -AHEAD;
+#endif
     for (; piece >= 0 && piece < pieces; piece += s->next) {
         const real middle = centre[begin + piece];
+#if VECTOR
+        const size_t end = ahead ? end_ahead(s, edges, piece + s->later, pieces + 1, &known)
+                                 : run_end(s, edges[piece + s->later], k);
+#else
         const size_t end = run_end(s, edges[piece + s->later], k);
+#endif
         if (end <= k) {
+#if VECTOR
+            if (ahead) {
+                continue;
+            }
+#endif
             break;
         }
         p.first = coefficient + first_power[begin + piece];

@@ -2,6 +2,7 @@
  * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
  * the first empty line. */
 #include "march_tables.h"
+#include "series.h"
 
 /* False for what is no number. */
 static int within_reach(real x)
@@ -12,36 +13,6 @@ static int within_reach(real x)
 static real magnitude(real x)
 {
     return x < 0 ? -x : x;
-}
-
-/* sum of c_k T_k(u) */
-static real series(const real *c, real u)
-{
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = DEGREE; k > 0; --k) {
-        const real now = (twice * next - after) + c[k];
-        after = next;
-        next = now;
-    }
-    return (u * next - after) + c[0];
-}
-
-/* Its antiderivative, times 1 / half the length of the panel. */
-static real antiderivative(const real *c, real u)
-{
-    const real twice = u + u;
-    real next = 0;
-    real after = 0;
-    for (int k = DEGREE + 1; k > 0; --k) {
-        const real lower = k == 1 ? 2 * c[0] : c[k - 1];
-        const real upper = k < DEGREE ? c[k + 1] : (real)0;
-        const real now = (twice * next - after) + (lower - upper) / (real)(2 * k);
-        after = next;
-        next = now;
-    }
-    return u * next - after;
 }
 
 /* What is heard, where it arrives, t after the start of the window. */
@@ -158,9 +129,7 @@ static void given(march *state, int panel, const real *loads, real force[FORCES 
             }
             state->integral[s] += half * (antiderivative(c, 1) - before);
         } else {
-            for (int k = 0; k <= DEGREE; ++k) {
-                on[k] += source_gain[s] * c[k];
-            }
+            add(on, source_gain[s], c, SIZE);
         }
     }
 }
@@ -298,9 +267,7 @@ static int marched(march *state, const real *loads)
             }
             p[SIZE] = 0;
             if (force_on[node] >= 0) {
-                for (int k = 0; k <= DEGREE; ++k) {
-                    p[k] += force[force_on[node]][k];
-                }
+                add(p, 1, force[force_on[node]], SIZE);
             }
             const int row = body[panel * NODES + node];
             if (row >= 0) {

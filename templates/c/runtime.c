@@ -173,40 +173,95 @@ static void lengthen(wave_of (*waves)[3], int degree, int higher)
     }
 }
 
-/* The velocity q of a body on a panel; `velocity` goes from its start to its end. What the polynomial misses. */
-static real moved(const model_of *m, int row, int degree, const real *p, real *q, real *velocity)
+/* What is sent by a node on a panel; `size` grows to the largest mean of a wave. */
+static void send(wave_of (*waves)[3], int half, int panel, int node, int degree, const real *sent, real *size)
 {
-    const real *const ratio = m->table[row][RATIO];
-    const real *const first = m->table[row][FIRST];
-    const real *const last = m->table[row][LAST];
-    real y = 0;
-    real begun = 0;
-    real ended = 0;
+    const real *const a = waves[!half][RIGHT][panel][node];
+    const real *const b = waves[!half][LEFT][panel][node + 2];
+    real *const left = waves[half][LEFT][panel][node + 1];
+    real *const right = waves[half][RIGHT][panel][node + 1];
+    for (int k = 0; k <= degree; ++k) {
+        left[k] = sent[k] - a[k];
+        right[k] = sent[k] - b[k];
+    }
+    *size = larger(larger(*size, left[0]), right[0]);
+}
+
+/* Bodies are moved in pairs: each step of a recurrence waits for the one before, so that two take as long as one. */
+enum { PAIR = 2 };
+
+/* Up to a pair of bodies on a panel: what arrives at each, and its velocity. */
+typedef struct {
+    int count;
+    int node[PAIR];
+    real p[PAIR][NAME_DEGREE + 2];
+    real q[PAIR][NAME_DEGREE + 1];
+} moving;
+
+/* The velocities of bodies on a panel, and what they send; one alone is moved twice. `velocity` goes from its start to
+ * its end. What the polynomials miss. */
+static real moved(const model_of *m, wave_of (*waves)[3], int half, int panel, int degree, moving *bodies, real *velocity,
+                  real *size)
+{
+    const int second = bodies->count - 1;
+    const int row = m->row[panel * NAME_NODES + bodies->node[0]];
+    const int other = m->row[panel * NAME_NODES + bodies->node[second]];
+    const real *const ratio[PAIR] = {m->table[row][RATIO], m->table[other][RATIO]};
+    const real *const first[PAIR] = {m->table[row][FIRST], m->table[other][FIRST]};
+    const real *const last[PAIR] = {m->table[row][LAST], m->table[other][LAST]};
+    const real *const p[PAIR] = {bodies->p[0], bodies->p[second]};
+    real *const q[PAIR] = {bodies->q[0], bodies->q[second]};
+    real y[PAIR] = {0, 0}, begun[PAIR] = {0, 0}, ended[PAIR] = {0, 0};
+    real missed = 0;
     for (int k = degree; k > 0; --k) {
-        const real change = (k == 1 ? 2 * p[0] : p[k - 1]) - p[k + 1];
-        y = ratio[k] * change + ratio[k] * y;
-        q[k] = y;
-        begun += first[k] * y;
-        ended += last[k] * y;
+        UNROLLED
+        for (int j = 0; j < PAIR; ++j) {
+            const real change = (k == 1 ? 2 * p[j][0] : p[j][k - 1]) - p[j][k + 1];
+            y[j] = ratio[j][k] * change + ratio[j][k] * y[j];
+            q[j][k] = y[j];
+            begun[j] += first[j][k] * y[j];
+            ended[j] += last[j][k] * y[j];
+        }
     }
-    begun = *velocity - begun;
-    q[0] = begun - m->edge[row][SLACK] * begun;
-    *velocity = q[0] + (ended - m->edge[row][LOSS] * q[0]);
-    real before = 2 * q[0];
+    for (int j = 0; j < bodies->count; ++j) {
+        const int node = bodies->node[j];
+        const real *const edge = m->edge[m->row[panel * NAME_NODES + node]];
+        const real rest = velocity[node] - begun[j];
+        q[j][0] = rest - edge[SLACK] * rest;
+        velocity[node] = q[j][0] + (ended[j] - edge[LOSS] * q[j][0]);
+    }
+    for (int j = 0; j < PAIR; ++j) {
+        y[j] = 2 * q[j][0];
+    }
     for (int k = 1; k <= degree; ++k) {
-        before = q[k] - ratio[k] * before;
-        q[k] = before;
+        UNROLLED
+        for (int j = 0; j < PAIR; ++j) {
+            y[j] = q[j][k] - ratio[j][k] * y[j];
+        }
+        UNROLLED
+        for (int j = 0; j < PAIR; ++j) {
+            q[j][k] = y[j];
+        }
     }
-    return m->edge[row][LEAK] * magnitude(q[degree] - p[degree]);
+    for (int j = 0; j < bodies->count; ++j) {
+        const int node = bodies->node[j];
+        missed += m->edge[m->row[panel * NAME_NODES + node]][LEAK] * magnitude(q[j][degree] - p[j][degree]);
+        *size = larger(*size, velocity[node]);
+        send(waves, half, panel, node, degree, q[j], size);
+    }
+    bodies->count = 0;
+    return missed;
 }
 
 /* One window at a degree, from the waves of the window before in the other half. What its polynomials miss; `size`
  * grows to the largest velocity or mean of a wave. */
 static real march(model_of *m, const laws *law, int half, int degree, real *size)
 {
+    moving bodies;
     real missed = 0;
-    real p[NAME_DEGREE + 2];
-    real q[NAME_DEGREE + 1];
+    bodies.count = 0;
+    bodies.node[0] = 0;
+    bodies.node[1] = 0;
     for (int node = 0; node < NAME_NODES; ++node) {
         m->velocity[1][node] = m->velocity[0][node];
     }
@@ -219,8 +274,7 @@ static real march(model_of *m, const laws *law, int half, int degree, real *size
         for (int node = 0; node < NAME_NODES; ++node) {
             const real *const a = m->waves[!half][RIGHT][panel][node];
             const real *const b = m->waves[!half][LEFT][panel][node + 2];
-            real *const left = m->waves[half][LEFT][panel][node + 1];
-            real *const right = m->waves[half][RIGHT][panel][node + 1];
+            real *const p = bodies.p[bodies.count];
             const real alpha = law->alpha[node];
             const real beta = law->beta[node];
             for (int k = 0; k <= degree; ++k) {
@@ -232,17 +286,15 @@ static real march(model_of *m, const laws *law, int half, int degree, real *size
                     p[k] += m->force[panel][force_on[node]][k];
                 }
             }
-            const real *sent = p;
             if (law->rate[node] > 0) {
-                missed += moved(m, m->row[panel * NAME_NODES + node], degree, p, q, &m->velocity[1][node]);
-                *size = larger(*size, m->velocity[1][node]);
-                sent = q;
+                bodies.node[bodies.count] = node;
+                bodies.count += 1;
+            } else {
+                send(m->waves, half, panel, node, degree, p, size);
             }
-            for (int k = 0; k <= degree; ++k) {
-                left[k] = sent[k] - a[k];
-                right[k] = sent[k] - b[k];
+            if (bodies.count == PAIR || (bodies.count > 0 && node == NAME_NODES - 1)) {
+                missed += moved(m, m->waves, half, panel, degree, &bodies, m->velocity[1], size);
             }
-            *size = larger(larger(*size, left[0]), right[0]);
         }
     }
     return missed;
@@ -287,13 +339,16 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
 {
     const model_of *const m = &tangent->value;
     wave_of(*const waves)[3] = tangent->waves[lane];
+    real *const velocity = tangent->velocity[lane][1];
     real *const size = &tangent->size[lane][1];
+    moving bodies;
     real missed = 0;
-    real p[NAME_DEGREE + 2];
-    real q[NAME_DEGREE + 1];
+    bodies.count = 0;
+    bodies.node[0] = 0;
+    bodies.node[1] = 0;
     *size = tangent->size[lane][0];
     for (int node = 0; node < NAME_NODES; ++node) {
-        tangent->velocity[lane][1][node] = tangent->velocity[lane][0][node];
+        velocity[node] = tangent->velocity[lane][0][node];
     }
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         for (int f = 0; f < NAME_FORCES; ++f) {
@@ -306,8 +361,7 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
             const real *const b = m->waves[!half][LEFT][panel][node + 2];
             const real *const da = waves[!half][RIGHT][panel][node];
             const real *const db = waves[!half][LEFT][panel][node + 2];
-            real *const left = waves[half][LEFT][panel][node + 1];
-            real *const right = waves[half][RIGHT][panel][node + 1];
+            real *const p = bodies.p[bodies.count];
             const int f = force_on[node];
             for (int k = 0; k <= degree; ++k) {
                 p[k] = law->alpha[node] * da[k] + law->beta[node] * db[k] + slope->alpha[node] * a[k] +
@@ -317,7 +371,6 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
             for (int k = 0; f >= 0 && k < 3; ++k) {
                 p[k] += tangent->force[lane][panel][f][k];
             }
-            const real *sent = p;
             if (law->rate[node] > 0) {
                 const real share_of_rate = slope->rate[node] / law->rate[node];
                 const real *const back = m->waves[half][LEFT][panel][node + 1];
@@ -326,16 +379,14 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
                     const real pushed = law->alpha[node] * a[k] + law->beta[node] * b[k] + load;
                     p[k] += share_of_rate * (pushed - (back[k] + a[k]));
                 }
-                const int row = m->row[panel * NAME_NODES + node];
-                missed += moved(m, row, degree, p, q, &tangent->velocity[lane][1][node]);
-                *size = larger(*size, tangent->velocity[lane][1][node]);
-                sent = q;
+                bodies.node[bodies.count] = node;
+                bodies.count += 1;
+            } else {
+                send(waves, half, panel, node, degree, p, size);
             }
-            for (int k = 0; k <= degree; ++k) {
-                left[k] = sent[k] - da[k];
-                right[k] = sent[k] - db[k];
+            if (bodies.count == PAIR || (bodies.count > 0 && node == NAME_NODES - 1)) {
+                missed += moved(m, waves, half, panel, degree, &bodies, velocity, size);
             }
-            *size = larger(larger(*size, left[0]), right[0]);
         }
     }
     return missed;

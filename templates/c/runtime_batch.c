@@ -83,8 +83,7 @@ static void moved_batch(batch_of *b, int row, const wide *alpha, const wide *a, 
         left[k] = before - a[k];
         right[k] = before - c[k];
     }
-    const wide excess = b->edge[row][LEAK] * (before - highest);
-    add_magnitude_batch(missed, &excess);
+    *missed += MAGNITUDE(b->edge[row][LEAK] * (before - highest));
 }
 
 /* As march. */

@@ -5,60 +5,64 @@
 #include "runtime_batch.c"
 #endif
 
-/* The wave of a term, or its integral in `work`; up to which degree it goes. */
-static const wide *term_batch(batch_of *b, int t, int window, int degree, wide *mean, int *highest)
+/* Add to a strand a term that is summed up: the integral of its wave. */
+static void listen_on(batch_of *b, int t, int window, int degree, const wide *gain, wide *c)
 {
-    const wide *const w = sent_batch(b, t, window);
-    *highest = degree;
-    *mean = w[0];
-    if (term_summed[t]) {
-        wide *const total = &b->total[term_heard[t]];
-        wide low, high;
-        integrate_batch(b, w, degree, half_length[term_panel[t]], b->work);
-        end_value_batch(b->work, degree + 1, term_low[t], &low);
-        end_value_batch(b->work, degree + 1, term_high[t], &high);
-        *mean = *total - low;
-        *total += high - low;
-        *highest = degree + 1;
-        return b->work;
+    wide *const total = &b->total[term_heard[t]];
+    wide *const sum = b->work;
+    wide low, high;
+    integrate_batch(b, sent_batch(b, t, window), degree, half_length[term_panel[t]], sum);
+    end_value_batch(sum, degree + 1, term_low[t], &low);
+    end_value_batch(sum, degree + 1, term_high[t], &high);
+    c[0] += *gain * (*total - low);
+    *total += high - low;
+    for (int k = 1; k <= degree + 1; ++k) {
+        c[k] += *gain * sum[k];
     }
-    return w;
 }
 
-/* As listen: two waves at once, where they are not summed up. */
-static void listen_batch(batch_of *b, const laws_batch *law, int window, int degree, wide *all)
+/* As listen, and as weigh: two waves at once, where they are not summed up. */
+static void listen_batch(batch_of *b, const laws_batch *law, int window, int degree, wide *all, wide *heard)
 {
     const size_t size = (size_t)(degree + 2);
+    wide weight = none;
     for (int s = 0; s < NAME_STRANDS; ++s) {
         wide *const c = all + (size_t)s * size;
+        const int last = first_term[s + 1];
         int t = first_term[s];
-        if (first_term[s + 1] - t >= 2 && !term_summed[t] && !term_summed[t + 1]) {
-            wide mean, other_mean;
-            int highest;
-            const wide *const w = term_batch(b, t, window, degree, &mean, &highest);
-            const wide *const v = term_batch(b, t + 1, window, degree, &other_mean, &highest);
+        wide here = none;
+        c[degree + 1] = none;
+        if (last - t == 2 && !term_summed[t] && !term_summed[t + 1]) {
+            const wide *const w = sent_batch(b, t, window);
+            const wide *const v = sent_batch(b, t + 1, window);
             const wide gain = law->gain[term_heard[t]], other_gain = law->gain[term_heard[t + 1]];
             for (int k = 0; k <= degree; ++k) {
-                c[k] = gain * w[k] + other_gain * v[k];
+                const wide sum = gain * w[k] + other_gain * v[k];
+                c[k] = sum;
+                here += MAGNITUDE(sum);
             }
-            c[degree + 1] = none;
-            t += 2;
         } else {
-            for (int k = 0; k <= degree + 1; ++k) {
+            for (int k = 0; k <= degree; ++k) {
                 c[k] = none;
             }
-        }
-        for (; t < first_term[s + 1]; ++t) {
-            wide mean;
-            int highest;
-            const wide *const w = term_batch(b, t, window, degree, &mean, &highest);
-            const wide gain = law->gain[term_heard[t]];
-            c[0] += gain * mean;
-            for (int k = 1; k <= highest; ++k) {
-                c[k] += gain * w[k];
+            for (; t < last; ++t) {
+                const wide *const w = sent_batch(b, t, window);
+                const wide gain = law->gain[term_heard[t]];
+                if (term_summed[t]) {
+                    listen_on(b, t, window, degree, &gain, c);
+                    continue;
+                }
+                for (int k = 0; k <= degree; ++k) {
+                    c[k] += gain * w[k];
+                }
+            }
+            for (int k = 0; k <= degree + 1; ++k) {
+                here += MAGNITUDE(c[k]);
             }
         }
+        weight += here;
     }
+    *heard += (real)(4 * (degree + 2)) * weight;
 }
 
 /* As series_at. */
@@ -73,31 +77,15 @@ static void series_at_batch(const wide *c, int degree, real u, wide *value)
     *value = (u * next - after) + c[0];
 }
 
-/* The mean of an output on a section, and `beyond` grows to what makes it worth a look. */
-static void mean_batch(const batch_of *b, const wide *all, size_t size, int at, wide *mean, wide *beyond)
+/* The mean of an output on a section, and in which sets it makes it worth a look. */
+static void mean_batch(const batch_of *b, const wide *all, size_t size, int at, wide *mean, mask *worth)
 {
-    const int output = at % NAME_OUTPUTS;
-    wide sum = none, some = -3 * b->mean[output], much = -4 * b->largest[output];
+    wide sum = none;
     for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
         sum += all[(size_t)strand_at[k] * size];
     }
     *mean = sum;
-    add_magnitude_batch(&much, &sum);
-    sum *= 2;
-    add_magnitude_batch(&some, &sum);
-    const mask larger_one = some > *beyond;
-    *beyond = CHOSEN(larger_one, some, *beyond);
-    const mask much_larger = much > *beyond;
-    *beyond = CHOSEN(much_larger, much, *beyond);
-}
-
-static int positive_in_some(const wide *x)
-{
-    int found = 0;
-    for (int set = 0; set < NAME_WIDTH; ++set) {
-        found |= LANE(*x, set) > 0;
-    }
-    return found;
+    *worth |= MAGNITUDE(sum) > b->worth[at % NAME_OUTPUTS];
 }
 
 /* As look; first whether there is anything to be looked at on a window. */
@@ -105,19 +93,21 @@ static void look_batch(batch_of *b, int window, int degree)
 {
     const wide *const all = b->series + b->place[window];
     const size_t size = (size_t)(degree + 2);
-    wide mean, beyond = none;
+    wide mean;
+    mask some = NOWHERE;
     for (int at = 0; at < SECTIONS * NAME_OUTPUTS; ++at) {
-        mean_batch(b, all, size, at, &mean, &beyond);
+        mean_batch(b, all, size, at, &mean, &some);
     }
-    for (int at = 0; positive_in_some(&beyond) && at < SECTIONS * NAME_OUTPUTS; ++at) {
+    for (int at = 0; in_some(&some) && at < SECTIONS * NAME_OUTPUTS; ++at) {
         const int output = at % NAME_OUTPUTS;
         const int here = in_cycle(window, at / NAME_OUTPUTS);
         const real reach = NAME_TAU_MAX - cycle_begin(window);
         const real end = from[here + 1] < reach ? from[here + 1] : reach;
         const real middle = from[here] + (end - from[here]) / 2;
-        wide worth = none, sum = none;
+        mask worth = NOWHERE;
+        wide sum = none;
         mean_batch(b, all, size, at, &mean, &worth);
-        if (from[here] > end || !positive_in_some(&worth)) {
+        if (from[here] > end || !in_some(&worth)) {
             continue;
         }
         for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
@@ -130,6 +120,9 @@ static void look_batch(batch_of *b, int window, int degree)
         }
         enlarge_batch(&b->mean[output], &mean);
         enlarge_batch(&b->largest[output], &sum);
+        const wide half_more = (real)1.5 * b->mean[output], much_more = 4 * b->largest[output];
+        const mask less = half_more < much_more;
+        b->worth[output] = CHOSEN(less, half_more, much_more);
     }
 }
 
@@ -162,6 +155,7 @@ static int begun_batch(batch_of *b, laws_batch *all, const name_parameters *para
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
         b->largest[output] = none;
         b->mean[output] = none;
+        b->worth[output] = none;
     }
     for (int set = 0; set < NAME_WIDTH; ++set) {
         good_one[set] = 0;
@@ -252,20 +246,16 @@ int name_build_batch(name_batch *batch, const name_parameters *parameters, size_
             settle_batch(batch);
             batch->degree[window] = degree;
             batch->place[window] = place;
-            listen_batch(batch, &law, window, degree, batch->series + place);
+            listen_batch(batch, &law, window, degree, batch->series + place, &heard);
             look_batch(batch, window, degree);
-            wide weight = none;
-            for (const size_t end = place + (size_t)NAME_STRANDS * (size_t)(degree + 2); place < end; ++place) {
-                add_magnitude_batch(&weight, batch->series + place);
-            }
-            heard += (real)(4 * (degree + 2)) * weight;
+            place += (size_t)NAME_STRANDS * (size_t)(degree + 2);
         }
         missed = 6 * missed + rounded_by(degree) * size;
         for (int output = 0; output < NAME_OUTPUTS; ++output) {
             wide weight = none;
             for (int k = 0; k < NAME_HEARD; ++k) {
                 if (heard_output[k] == output) {
-                    add_magnitude_batch(&weight, &law.gain[k]);
+                    weight += MAGNITUDE(law.gain[k]);
                 }
             }
             missed_there[output] = weight * missed;

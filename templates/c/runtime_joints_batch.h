@@ -20,6 +20,7 @@ typedef struct {
     name_wide force[NAME_PANELS][NAME_FORCES + 1][3];
     name_wide largest[NAME_OUTPUTS];
     name_wide mean[NAME_OUTPUTS];
+    name_wide worth[NAME_OUTPUTS];
     name_wide work[NAME_DEGREE + 2];
     name_real inverse[NAME_DEGREE + 2];
     int since[NAME_FORCES + 1][2];

@@ -6,6 +6,11 @@
 
 typedef name_batch model_of_batch;
 
+static void add_magnitude_batch(wide *sum, const wide *x)
+{
+    *sum += MAGNITUDE(*x);
+}
+
 #define num wide
 #define OF(name) name##_batch
 #define PICK CHOSEN

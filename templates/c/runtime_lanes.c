@@ -22,19 +22,25 @@ typedef int mask;
 #define CHOSEN(test, one, other) ((test) ? (one) : (other))
 #endif
 
+#define NOWHERE (none < none)
+
 /* `most` grows to the magnitude of x */
 static void enlarge_batch(wide *most, const wide *x)
 {
-    const mask below = *x < none;
-    const wide size = CHOSEN(below, -*x, *x);
+    const wide size = MAGNITUDE(*x);
     const mask more = size > *most;
     *most = CHOSEN(more, size, *most);
 }
 
-static void add_magnitude_batch(wide *sum, const wide *x)
+/* Whether a test holds in some set. */
+static int in_some(const mask *test)
 {
-    const mask below = *x < none;
-    *sum += CHOSEN(below, -*x, *x);
+    int found = 0;
+    (void)test;
+    for (int set = 0; set < NAME_WIDTH; ++set) {
+        found |= LANE(*test, set) != 0;
+    }
+    return found;
 }
 
 /* As press. */

@@ -176,16 +176,27 @@ int name_data_init(
     return outside;
 }
 
-/* What the blocks of a group up to a degree give; the first row that is left out. */
-static int blocks(const batch_of *b, const real *cells, int rows, int window, int group, wide *sum)
+/* By how much the series of a group may be longer than those of waves: 1 where waves are integrated. */
+static int longer_by(int group)
 {
-    const int degree = b->degree[window];
+    int longer = 0;
+    for (int k = first_strand[group]; k < first_strand[group + 1]; ++k) {
+        for (int t = first_term[strand_at[k]]; t < first_term[strand_at[k] + 1]; ++t) {
+            longer |= term_summed[t];
+        }
+    }
+    return longer;
+}
+
+/* What the blocks of a group give of series to `degree`; the first row that is left out. */
+static int blocks(const wide *series, size_t size, int degree, const real *cells, int rows, int group, wide *sum)
+{
     const int strands = strands_of(group);
-    const size_t size = (size_t)(degree + 2);
-    const wide *const series = b->series + b->place[window];
     int row = 0;
-    while (row < rows && cells[LOWEST * ROWS] <= (real)(degree + 1)) {
+    while (row < rows && cells[LOWEST * ROWS] <= (real)degree) {
         const int lowest = (int)cells[LOWEST * ROWS];
+        const real middle = cells[LOWEST * ROWS + ROWS / 2];
+        const int all = middle <= (real)degree ? (int)middle : degree + 1; /* from where on the lower rows count, too */
         wide missed[ROWS];
         UNROLLED
         for (int i = 0; i < ROWS; ++i) {
@@ -194,7 +205,15 @@ static int blocks(const batch_of *b, const real *cells, int rows, int window, in
         for (int s = 0; s < strands; ++s) {
             const wide *const c = series + (size_t)strand_at[first_strand[group] + s] * size;
             const real *r = cells + (COLUMNS + lowest * strands + s) * ROWS;
-            for (int k = lowest; k <= degree + 1; ++k) {
+            int k = lowest;
+            for (; k < all; ++k) {
+                UNROLLED
+                for (int i = 0; i < ROWS / 2; ++i) {
+                    missed[i] += r[i] * c[k];
+                }
+                r += strands * ROWS;
+            }
+            for (; k <= degree; ++k) {
                 UNROLLED
                 for (int i = 0; i < ROWS; ++i) {
                     missed[i] += r[i] * c[k];
@@ -215,11 +234,17 @@ static int blocks(const batch_of *b, const real *cells, int rows, int window, in
 /* The misfits of all sets of a batch. */
 static void misfit_of(const batch_of *b, const name_data *data, wide *sum)
 {
+    int longer[NAME_GROUPS];
+    for (int group = 0; group < NAME_GROUPS; ++group) {
+        longer[group] = longer_by(group);
+    }
     for (int n = 0; n < NAME_WINDOWS * NAME_GROUPS; ++n) {
-        const int group = n % NAME_GROUPS;
+        const int window = n / NAME_GROUPS, group = n % NAME_GROUPS;
+        const int degree = b->degree[window];
         const real *const cells = data->numbers + data->place[n];
         const size_t kept = ((size_t)data->rows[n] + ROWS - 1) / ROWS * ROWS;
-        const int row = blocks(b, cells, data->rows[n], n / NAME_GROUPS, group, sum);
+        const int row = blocks(b->series + b->place[window], (size_t)(degree + 2), degree + longer[group], cells,
+                               data->rows[n], group, sum);
         *sum += cells[cell(group, kept, 0) + (size_t)row];
     }
 }

@@ -1,4 +1,4 @@
-/* series.h: Chebyshev series of DEGREE, as marches of chains and streams read them.
+/* series.h: Chebyshev series of DEGREE, as marches and streams read them.
  * Plain C of a program of a scene called `name`. Generated files have what stands below the first empty line. */
 
 /* y += factor a */

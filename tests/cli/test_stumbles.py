@@ -58,6 +58,13 @@ def test_a_byte_order_mark_is_no_part_of_a_scene() -> None:
     assert wavesym.Scene.from_toml("marked.toml") == wavesym.Scene.from_toml("mine.toml")
 
 
+def test_a_scene_and_a_sweep_are_told_apart(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("sweep.toml").write_text('scene = "mine.toml"\n[vary]\n"output.until" = [1, 2]\n')
+    assert refused(capsys, "run", "sweep.toml").startswith("sweep.toml: a sweep given, a scene expected")
+    assert refused(capsys, "sweep", "mine.toml", "-o", "made").startswith("mine.toml: a scene given, a sweep expected")
+    assert not Path("made").exists()
+
+
 @pytest.mark.parametrize("command", ["run", "tables", "plot", "chart"])
 def test_a_scene_is_not_replaced_by_what_is_made_of_it(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     line = refused(capsys, command, "mine.toml", "-o", "./mine.toml")
@@ -83,7 +90,7 @@ def test_files_of_others_are_replaced_by_force_only(capsys: pytest.CaptureFixtur
 def test_what_takes_long_first_asks_where_it_may_write(
     command: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for work in ("lab.measure.measure", "lab.stability.atlas", "report.figures.published"):
+    for work in ("lab.chart.measure.measure", "lab.stability.atlas", "report.figures.published"):
         monkeypatch.setattr(f"wavesym.{work}", lambda *_: pytest.fail("worked before it asked"))
     assert refused(capsys, *command, "mine.toml/deeper/out.svg").endswith(": Not a directory")
 

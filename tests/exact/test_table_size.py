@@ -1,5 +1,7 @@
 """What is told of a table before it is made, against the table."""
 
+from itertools import product
+
 import pytest
 from flint import fmpq
 
@@ -92,3 +94,18 @@ def test_detours_counted_at_once_are_those_counted_one_by_one(monkeypatch):
     at_once = table_size(made, 2, wanted, made.sources)
     monkeypatch.setattr(room, "_AT_ONCE", 1)
     assert table_size(made, 2, wanted, made.sources) == pytest.approx(at_once, rel=1e-12)
+
+
+@pytest.mark.parametrize("most", [10, 1e3, 1e5, room.MOST_WORK])
+def test_what_is_small_at_a_glance_is_small(most):
+    """The glance must never let a table pass that counting would refuse; and it must let some pass."""
+    seen = set()
+    for kind, m, kappa in product(("drive", "building", "collision"), (4, 12), (EQUAL, UNEQUAL)):
+        made = system(kind, m, kappa)
+        for interval, intervals in product((1, 2), (1, 3, 10, 30)):
+            wanted = {(function, rod): intervals for function in "fg" for rod in range(1, made.m + 1)}
+            small = room._small(made, interval, wanted, set(made.sources), most)
+            size = table_size(made, interval, wanted, made.sources)
+            assert not small or (size.work <= most and size.bytes <= LARGEST)
+            seen.add(small)
+    assert seen == ({False} if most == 10 else {True, False})

@@ -6,14 +6,14 @@ from flint import fmpq
 
 from wavesym.exact.events import events
 from wavesym.exact.knots import Knots
-from wavesym.lab import bench, equal_degree, recorded
-from wavesym.lab.equal_degree import Fitted, at_degree, fitted, ratios
+from wavesym.lab.bench import equal_degree, recorded, report
+from wavesym.lab.bench.equal_degree import Fitted, at_degree, fitted, ratios
 from wavesym.numbers.doubles import rational
 from wavesym.running.native import FAST
 from wavesym.scene import lower
 
 FOLDER = Path(__file__).parents[2] / "bench"
-CHAINS = bench.scenes(FOLDER, bench.CHAINS)
+CHAINS = report.scenes(FOLDER, report.CHAINS)
 
 
 def test_the_chains_have_what_they_are_for():

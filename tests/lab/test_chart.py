@@ -12,10 +12,10 @@ import pytest
 
 from wavesym.cli import main
 from wavesym.compiler import evaluator
-from wavesym.lab import subjects as listed
-from wavesym.lab.floor import floor
-from wavesym.lab.measure import ChartRow, Measured, _Judge, measure, to_csv
-from wavesym.lab.subjects import Subject, opponent, spacing, subjects, taus
+from wavesym.lab.chart import subjects as listed
+from wavesym.lab.chart.floor import floor
+from wavesym.lab.chart.measure import ChartRow, Measured, _Judge, measure, to_csv
+from wavesym.lab.chart.subjects import Subject, opponent, spacing, subjects, taus
 from wavesym.lab.timing import medians
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.sums import summing
@@ -187,7 +187,7 @@ def test_csv_holds_every_number():
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory):
     pytest.importorskip("matplotlib")
-    from wavesym.lab.chart import draw
+    from wavesym.lab.chart.drawing import draw
     from wavesym.report.saving import save
 
     folder = tmp_path_factory.mktemp("drawn")
@@ -225,7 +225,7 @@ def test_no_label_covers_another_or_leaves_its_panel(drawn):
 
 def test_where_nothing_jumps_there_is_one_panel():
     pytest.importorskip("matplotlib")
-    from wavesym.lab.chart import draw
+    from wavesym.lab.chart.drawing import draw
 
     smooth = [replace(row, error_at_fronts=np.nan) for row in MEASURED.rows]
     figure = draw(SCENE, replace(MEASURED, rows=tuple(smooth), known=3e-9))
@@ -236,7 +236,7 @@ def test_where_nothing_jumps_there_is_one_panel():
 
 def test_a_curve_that_says_nothing_at_fronts_is_left_out_there():
     pytest.importorskip("matplotlib")
-    from wavesym.lab.chart import draw
+    from wavesym.lab.chart.drawing import draw
 
     stream = row("modes", 1, "wavesym", error_at_fronts=np.nan)
     away, fronts, _ = draw(SCENE, replace(MEASURED, rows=(*MEASURED.rows, stream))).axes
@@ -245,7 +245,7 @@ def test_a_curve_that_says_nothing_at_fronts_is_left_out_there():
 
 def test_curves_differ_without_their_colour():
     pytest.importorskip("matplotlib")
-    from wavesym.lab.chart import _curves
+    from wavesym.lab.chart.drawing import _curves
 
     looks = [(style.marker, style.dashes, style.ours) for style, _ in _curves(MEASURED.rows)]
     assert len(set(looks)) == len(looks)
@@ -284,7 +284,7 @@ def test_a_file_that_is_no_picture_is_refused_before_the_work(capsys, tmp_path):
 
 def test_command(monkeypatch, tmp_path):
     pytest.importorskip("matplotlib")
-    monkeypatch.setattr("wavesym.lab.measure.measure", lambda scene, samples, progress: MEASURED)
+    monkeypatch.setattr("wavesym.lab.chart.measure.measure", lambda scene, samples, progress: MEASURED)
     picture, table = tmp_path / "chart.svg", tmp_path / "chart.csv"
     assert main(["chart", "collision_m4", "-o", str(picture), "--csv", str(table)]) == 0
     assert picture.read_text().rstrip().endswith("</svg>")

@@ -7,7 +7,7 @@ import pytest
 
 import wavesym
 from wavesym.errors import UnservedError
-from wavesym.lab import parameters
+from wavesym.lab.bench import parameters
 from wavesym.rivals.line import stated
 from wavesym.rivals.specialised import SampleGrid, in_c, in_numpy
 from wavesym.scene import lower

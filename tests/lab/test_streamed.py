@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from wavesym.lab import panels, streamed
+from wavesym.lab.bench import panels, streamed
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
 from wavesym.running.native import FAST

@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
 
-from wavesym.lab import many_sets, swept
+from wavesym.lab.bench import many_sets, swept
 from wavesym.results.summary import summarised
 from wavesym.rivals.line import stated
 from wavesym.rivals.specialised import SampleGrid, peaks_in_c, peaks_in_numpy

@@ -5,7 +5,7 @@ import os
 import pytest
 
 from tests.mutation.operators import mutants
-from tests.mutation.run import ROOT, Project, Verdict, known, places, related, report, sample
+from tests.mutation.run import ROOMS, ROOT, TESTS, Project, Verdict, known, places, related, report, sample
 
 FRONT = "tests/programs/test_closed.py::test_a_front_between_two_doubles_counts_from_the_upper_one"
 
@@ -103,6 +103,11 @@ def test_a_sample_is_the_same_whatever_changes_elsewhere():
 def test_the_tests_of_a_file_come_first():
     assert related("wavesym/exact/contact.py")[0] == "tests/exact/test_contact.py"
     assert related("templates/c/march.c")[0] == "tests/targets/test_march_c.py"
+
+
+def test_what_is_changed_and_run_exists():
+    assert [room for room in ROOMS if not any(ROOT.glob(room))] == []
+    assert [name for name in TESTS if not (ROOT / "tests" / name).exists()] == []
 
 
 def test_known_mutants_can_still_be_made():

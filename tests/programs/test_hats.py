@@ -17,6 +17,7 @@ from tests.support.drives import EVERY
 from tests.support.generated import numpy_text, program_files
 from tests.support.laplace import Laplace
 from tests.support.oscillators import el_centro
+from tests.support.shaken import SAMPLES, shaken
 from wavesym.errors import CostError, SpacingError, ToleranceError, UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
@@ -36,19 +37,7 @@ from wavesym.verification.graph_characteristics import integrate_graph
 from wavesym.verification.observed import observed
 
 HALF_ULP = 2.0**-53
-SAMPLES = [(37 * k * k) % 101 - 50 for k in range(25)]
 PARTS = [{"mass": 2, "name": "a"}, {"rod": 1}, {"mass": 1, "name": "b"}, {"rod": "3/2", "impedance": 2}, "absorbing"]
-
-
-def record(samples: list[int], spacing: str = "1.37", until: int = 36, **output: object) -> Model:
-    return lower(
-        Scene(
-            name="record",
-            system={"type": "building", "m": 3, "kappa": ["1/4", "3/5", "3/5", "1/5"], "base": "ground"},
-            load=[{"spacing": spacing, "samples": samples}],
-            output={"until": until, "strain": ["1/3", "2+"], "velocity": [3], "displacement": ["1/2"], **output},
-        )
-    )
 
 
 def chain(load: list[dict[str, Any]], until: object = 6, parts: list[Any] = PARTS) -> Model:
@@ -85,7 +74,7 @@ def looked_at(found: HatMarch, most: int = 40) -> np.ndarray:
 
 @pytest.mark.parametrize("first", [0, 7], ids=["from nothing", "a jump first"])
 def test_a_record_that_no_window_takes(first: int) -> None:
-    model = record([first, *SAMPLES])
+    model = shaken([first, *SAMPLES])
     with pytest.raises(CostError, match=r"times at a spacing of 1.37 have 26 different fractional parts, at most 16"):
         march(model)
     found = choose(replace(model, tolerance=fmpq(1, 10**6)), "march").evaluator
@@ -98,7 +87,7 @@ def test_a_record_that_no_window_takes(first: int) -> None:
 
 
 def test_a_hat_of_another_width_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    model = record([0, *SAMPLES], until=12)
+    model = shaken([0, *SAMPLES], until=12)
     taus = looked_at(made(model), 12)
     exact = np.array(Reference(model).values(taus.tolist()))
     still = hats.still

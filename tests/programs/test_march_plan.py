@@ -6,7 +6,8 @@ import pytest
 from flint import fmpq
 
 from wavesym.numbers.reals import DOUBLE, SINGLE
-from wavesym.programs.march.plan import LEFT, RIGHT, Channel, HeardWave, LoadEvent, MarchPanel, Watched, plan
+from wavesym.programs.march.load_events import LoadEvent
+from wavesym.programs.march.plan import LEFT, RIGHT, Channel, HeardWave, MarchPanel, Watched, plan
 from wavesym.programs.march.run import Run, operator_count
 from wavesym.scene import Scene, lower
 

@@ -11,7 +11,8 @@ from flint import fmpq
 
 import wavesym
 from tests.support import oscillators
-from tests.support.oscillators import by_exponentials, exact
+from tests.support.assembly import exact
+from tests.support.oscillators import by_exponentials
 from wavesym.cli import main
 from wavesym.errors import ToleranceError, UnservedError
 from wavesym.mechanics.damping import Damping

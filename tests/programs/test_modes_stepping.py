@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.support import oscillators
-from tests.support.oscillators import by_exponentials, evaluator, exact, storeys, uniform
+from tests.support.assembly import exact
+from tests.support.oscillators import by_exponentials, evaluator, storeys, uniform
 from wavesym.errors import UnservedError
 from wavesym.mechanics.loads import Applied
 from wavesym.numbers.doubles import midpoint, rational

@@ -9,10 +9,10 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from tests.programs.test_modal_systems import PUSH, SYMMETRIC, both, rounding, values
+from tests.support.drives import exact
 from tests.support.modal import chain
 from wavesym.errors import ToleranceError, UnservedError
 from wavesym.exact.modes.dying import DyingSpectrum
-from wavesym.exact.reference import Reference
 from wavesym.programs.making import make
 from wavesym.programs.modes import slowed
 from wavesym.programs.modes.slowed import SlowedChain
@@ -89,10 +89,6 @@ def with_modes(model, count):
     known = built.shares(count)
     errors, rest = built.errors(known, count), np.zeros(count)
     return ModalModes(built.system(known, count), built.sources, built.loads, errors, errors, known.w, rest)
-
-
-def exact(model, taus):
-    return np.array(Reference(model).values(taus.tolist()))
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] if n in LONG else []) for n in LOSING])

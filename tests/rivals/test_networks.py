@@ -10,7 +10,7 @@ import pytest
 from wavesym.compiler import evaluator
 from wavesym.errors import UnservedError
 from wavesym.exact.reference import Reference
-from wavesym.lab.subjects import left_out
+from wavesym.lab.chart.subjects import left_out
 from wavesym.rivals import characteristics, elements, laplace, modal_elements, modes
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.line import stated

@@ -6,13 +6,13 @@ And what they do, by the exponential of a matrix: loads that are linear in time 
 from __future__ import annotations
 
 from dataclasses import replace
-from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 from flint import fmpq
 from scipy.linalg import eigh, expm
 
+from tests.support.assembly import exact
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.modes.loads import LinearLoads
@@ -30,10 +30,6 @@ def el_centro() -> list[fmpq]:
     """The samples of the record, exact, 0.02 s apart."""
     rows = [line.split(",") for line in RECORD.read_text().splitlines() if line[0].isdigit()]
     return [exact(row[1]) for row in rows]
-
-
-def exact(number: object) -> fmpq:
-    return fmpq(*Fraction(str(number)).as_integer_ratio())
 
 
 def storeys(m: int, elements: int, damping: float, mass: float = 30.0) -> ModalSystem:

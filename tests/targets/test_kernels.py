@@ -38,7 +38,7 @@ def test_a_kernel_is_c_as_it_stands(kernel, precision):
         ("closed.c", "+ excess[pulse];", "+ excess[pulse]"),
         ("closed.c", "sum += polynomial", "sum += polynom"),
         ("pieces.c", "(size_t)member[", "member["),
-        ("march.c", "const real twice = u + u;", "const float twice = u + u;"),
+        ("march.c", "const real middle = ", "const float middle = "),
         ("march.c", "int within = 1;", "int within = 1, before = 0;"),
     ],
 )

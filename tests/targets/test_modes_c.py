@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from flint import fmpq
 
+from tests.support.assembly import exact
 from tests.support.builds import LANGUAGES, STRICT
-from tests.support.oscillators import evaluator, exact, oscillators, storeys, uniform
+from tests.support.oscillators import evaluator, oscillators, storeys, uniform
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.reals import DOUBLE, SINGLE
-from wavesym.programs.assembly import assemble
 from wavesym.programs.modes.loads import LinearLoads
 from wavesym.programs.program import Provenance
 from wavesym.running.toolchain import compiler
@@ -33,7 +33,7 @@ NEWTONS = -1.5  # of a load of 1
 def written(made, folder):
     """The files of an evaluator, self-test included."""
     model = MODEL.watching([Probe(output.name, "displacement", 1, fmpq(0)) for output in made.outputs])
-    program = replace(assemble(made, Provenance(model, made.summary)), reference=made.streamed())
+    program = replace(made.program(Provenance(model, made.summary)), reference=made.streamed())
     for file, text in files(program, "all").items():
         (folder / file).write_text(text)
     return program

@@ -122,6 +122,21 @@ def check_neighbours(made, sets, bad):
     return status[0][: 2 * len(bad) : 2].tolist()
 
 
+def check_estimates(made, sets):
+    """Where all sets are the same, a batch looks at outputs where a model does, so that its estimate is the same."""
+    for numbers in sets:
+        _, (estimate, alone), _ = made([numbers] * made.width)
+        assert np.all(np.abs(estimate - alone) <= 1e-6 * alone)
+
+
+def check_limit(made, kappa):
+    """Loads that grow until values can no longer be read: models and batches are refused from the same load on."""
+    status, _, _ = made([[*kappa, load, 0, 0, 0, 0, 0] for load in np.geomspace(1e303, 1e305, 48)])
+    assert np.array_equal(status[0], status[1])
+    assert np.array_equal(np.unique(status), [0, 1])
+    assert np.all(np.diff(status[0]) >= 0)
+
+
 BAD = {
     "building": [[np.nan] * 9, [1, 1e5, 1e5, 1, 1, 1, 1, 1, 1], [1, -1, 1, 1, 1, 1, 1, 1, 1]],
     "ground": [[1, 3e4, 1e5], [0, 1, 1]],
@@ -134,10 +149,17 @@ def own(case):
     return [floats(given) for given in drawn(CASES[case][1])]
 
 
+def check_building(made, sets):
+    """All of these; the statuses of bad neighbours."""
+    check_estimates(made, sets)
+    check_limit(made, [1, 1, 1])
+    return check_neighbours(made, sets, BAD["building"])
+
+
 def test_a_set_is_what_it_is_alone(tmp_path):
     made = Batch(BUILDING, ["kappa", "load"], tmp_path)
     assert made.width > 1
-    assert check_neighbours(made, own("building")[:4], BAD["building"]) == [1, 2, 1]
+    assert check_building(made, own("building")[:4]) == [1, 2, 1]
 
 
 @pytest.mark.slow
@@ -168,13 +190,16 @@ def test_in_single_precision_too(case, tmp_path):
         ("*total += high - low;", "*total += high;"),
         ("b->edge[row][LOSS] * mean", "b->edge[row][SLACK] * mean"),
         ("all->rate[node], set) = law->rate[node]", "all->rate[node], 0) = law->rate[node]"),
+        ("here += MAGNITUDE(sum);", "(void)sum;"),
+        ("much_more = 4 * b->largest[output]", "much_more = 16 * b->largest[output]"),
+        ("= (real)1.5 * b->mean[output]", "= 8 * b->mean[output]"),
     ],
 )
 def test_a_mistake_is_seen(change, tmp_path):
     change = tuple(text.replace("NAME", "TOWER") for text in change)
     made = Batch(BUILDING, ["kappa", "load"], tmp_path, changes=[change])
     with pytest.raises(AssertionError):
-        check_neighbours(made, own("building"), BAD["building"])
+        check_building(made, own("building"))
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -81,10 +81,10 @@ WRONG = [
     ("const real begun = 2 * ratio[1]", "const real begun = 1.9999999 * ratio[1]"),
     ("first[k] = (real)(k % 2 ? -1 : 1)", "first[k] = (real)(k % 2 ? -1.0000001 : 1)"),
     ("last[k] = 1 - ratio", "last[k] = 1.0000001 - ratio"),
-    ("q[k] = before;", "q[k] = before * (k == 3 ? 1.0000001 : 1);"),
+    ("y[j] = q[j][k] - ratio", "y[j] = q[j][k] * (k == 3 ? 1.0000001 : 1) - ratio"),
     ("right[k] = sent[k] - b[k];", "right[k] = sent[k] - (k == 1 ? 1.0000001 : 1) * b[k];"),
     ("p[k] = alpha * a[k] + beta * b[k];", "p[k] = alpha * a[k] + (k == 0 ? 1.0000001 : 1) * beta * b[k];"),
-    ("return m->edge[row][LEAK] * magnitude", "return 0 * m->edge[row][LEAK] * magnitude"),
+    ("[LEAK] * magnitude(q[j]", "[LEAK] * 0 * magnitude(q[j]"),
 ]
 ROUGH, CUT = WRONG[3], WRONG[-1]
 

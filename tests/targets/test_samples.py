@@ -4,6 +4,8 @@ import ctypes
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import wavesym
 from tests.support.generated import files
@@ -105,12 +107,31 @@ def test_long_runs_have_the_bits_of_single_values(made, flags):
         np.testing.assert_array_equal(found, expected, f"{tau0} {dtau}")
 
 
+@given(data=st.data())
+@settings(max_examples=60)
+def test_runs_end_where_single_values_change_pieces(made, data):
+    """Samples at fronts or a few roundings from them, both ways, from before the first to behind the last."""
+    loaded = built(made, *BUILDS[-1])
+    tau0 = data.draw(st.one_of(st.just(0.0), st.just(UNTIL), st.floats(-UNTIL, 2 * UNTIL)))
+    front = data.draw(st.integers(0, 24)) / 4
+    steps = data.draw(st.integers(1, 300))
+    dtau = (front - tau0) / steps
+    for _ in range(data.draw(st.integers(0, 3))):
+        dtau = float(np.nextafter(dtau, data.draw(st.sampled_from([-1.0, 1.0]))))
+    count = data.draw(st.integers(1, 400))
+    expected = evaluated(loaded, instants(tau0, dtau, count).tolist(), 3)
+    _, found = sampled(loaded, tau0, dtau, count, 3)
+    np.testing.assert_array_equal(found, expected)
+
+
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [
-        ("return (step + t->tau0) - middle;", "return step + (t->tau0 - middle);"),
+        ("return instants_of(t, k) - middle;", "return k * t->dtau + (t->tau0 - middle);"),
         ("tau >= edge : tau < edge", "tau >= edge : tau <= edge"),
         ("(16 / exact)", "(0 / exact)"),
+        ("nearest) >= edge)", "nearest) > edge)"),
+        ("exact * (real)0.75;", "exact * 0;"),
     ],
 )
 def test_other_roundings_and_later_fronts_are_seen(made, right, wrong):

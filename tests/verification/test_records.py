@@ -6,31 +6,18 @@ from types import SimpleNamespace
 
 import pytest
 
+from tests.support.shaken import SAMPLES, shaken
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
-from wavesym.scene import Scene, lower
 from wavesym.verification import checks
 from wavesym.verification.checks import records
 from wavesym.verification.reference import Known
-
-SAMPLES = [(37 * k * k) % 101 - 50 for k in range(25)]
-
-
-def record(samples, spacing="1.37", until=36, **output):
-    return lower(
-        Scene(
-            name="record",
-            system={"type": "building", "m": 3, "kappa": ["1/4", "3/5", "3/5", "1/5"], "base": "ground"},
-            load=[{"spacing": spacing, "samples": samples}],
-            output={"until": until, "strain": ["1/3", "2+"], "velocity": [3], "displacement": ["1/2"], **output},
-        )
-    )
 
 
 @cache
 def made():
     """A record that modes take, with their program."""
-    model = record([0, *SAMPLES], until=90, strain=["1/3"], velocity=[3], displacement=[], tolerance="1e-5")
+    model = shaken([0, *SAMPLES], until=90, strain=["1/3"], velocity=[3], displacement=[], tolerance="1e-5")
     return model, make(model, Request(evaluator="modes"))
 
 

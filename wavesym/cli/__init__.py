@@ -43,10 +43,15 @@ COMMANDS = (
 for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
 
+# no other package that is installed has a word in what a scene is, and to look for one takes a while. pydantic reads
+# this when its first model is used
+os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+
 DONE, FAILED, WRONG_REQUEST, INTERRUPTED = 0, 1, 2, 130
 
-# what modules are made of stays: Python's look-out for cycles, so often, takes a tenth of a short command
-_SELDOM = (50_000, 20, 100)
+# what modules are made of stays, and only some hundred objects of a command are in cycles: to look for these while the
+# 175 000 objects of a short command are made takes a tenth of it
+_SELDOM = (250_000, 20, 100)
 # nor for what the end of the process frees: a quarter of one
 atexit.register(gc.freeze)
 

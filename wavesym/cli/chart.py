@@ -44,9 +44,9 @@ def chart(scene: Scene, out: Path, table: Path | None, samples: int) -> None:
         refuse_scene(path)
         refuse_unwritable(path)
     with progress(f"chart {scene.name}") as line:
-        from wavesym.lab.chart import draw
-        from wavesym.lab.measure import measure, to_csv
-        from wavesym.lab.subjects import left_out
+        from wavesym.lab.chart.drawing import draw
+        from wavesym.lab.chart.measure import measure, to_csv
+        from wavesym.lab.chart.subjects import left_out
         from wavesym.report.saving import picture_format, save
         from wavesym.writing import write_whole
 

@@ -11,7 +11,8 @@
 
 A way through is a short function of this room, which calls these in order; tables, programs and reference values ask
 for the laws they need themselves. What people read of it is written by documents/, results/ and report/, what is
-checked by verification/ and papers/, what is measured by lab/. The heavy libraries load when a way needs them.
+checked by verification/ and papers/, what is measured by lab/. A way is loaded when one of its functions is first asked
+for, and the heavy libraries when it needs them.
 
     values.py       a scene to histories, extremes and spectra
     sweeps.py       many scenes to a folder of arrays
@@ -21,12 +22,16 @@ checked by verification/ and papers/, what is measured by lab/. The heavy librar
     verdicts.py     programs, the derivation, the paper and simpler models, judged
 """
 
-from wavesym.compiler.generation import check, fmu_told, generate, stream_program
-from wavesym.compiler.pictures import plot, record, report
-from wavesym.compiler.sweeps import run_sweep, sweep, sweep_report, sweep_status, sweep_table
-from wavesym.compiler.texts import derive, inspect, symbolic_tables_text, table, tables, tables_text, walks
-from wavesym.compiler.values import evaluator, model, no_load, peaks, run, spectrum, summary, summary_text, warnings
-from wavesym.compiler.verdicts import advise, derived, published, verify
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from wavesym.compiler.generation import check, fmu_told, generate, no_load, stream_program
+    from wavesym.compiler.pictures import plot, record, report
+    from wavesym.compiler.sweeps import run_sweep, sweep, sweep_report, sweep_status, sweep_table
+    from wavesym.compiler.texts import derive, inspect, symbolic_tables_text, table, tables, tables_text, walks
+    from wavesym.compiler.values import evaluator, model, peaks, run, spectrum, summary, summary_text, warnings
+    from wavesym.compiler.verdicts import advise, derived, published, verify
 
 __all__ = [
     "advise",
@@ -62,3 +67,19 @@ __all__ = [
     "walks",
     "warnings",
 ]
+
+_WAYS = {
+    "generation": ("check", "fmu_told", "generate", "no_load", "stream_program"),
+    "pictures": ("plot", "record", "report"),
+    "sweeps": ("run_sweep", "sweep", "sweep_report", "sweep_status", "sweep_table"),
+    "texts": ("derive", "inspect", "symbolic_tables_text", "table", "tables", "tables_text", "walks"),
+    "values": ("evaluator", "model", "peaks", "run", "spectrum", "summary", "summary_text", "warnings"),
+    "verdicts": ("advise", "derived", "published", "verify"),
+}
+
+
+def __getattr__(name: str) -> object:
+    for way, functions in _WAYS.items():
+        if name in functions:
+            return getattr(import_module(f"{__name__}.{way}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

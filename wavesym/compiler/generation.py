@@ -13,6 +13,7 @@ from wavesym.errors import UnservedError, WavesymError
 from wavesym.numbers.doubles import rational
 from wavesym.programs.making import make
 from wavesym.programs.request import Request, refuse_unknown
+from wavesym.results.unexpected import without_load
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes, sources
 from wavesym.targets import LANGUAGES, SIMULATORS
@@ -173,6 +174,11 @@ def fmu_told(path: Path) -> list[str]:
     from wavesym.running.fmu import told
 
     return told(path)
+
+
+def no_load(scene: Scene) -> list[str]:
+    """A line for a scene in which nothing happens."""
+    return without_load(lower(scene))
 
 
 def stream_program(scene: Scene, request: Request, *, tested: bool = False) -> Program:

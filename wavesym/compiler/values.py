@@ -19,7 +19,7 @@ from wavesym.results.peaks import table_of_peaks
 from wavesym.results.response import Response
 from wavesym.results.rows import SAMPLES, csv_lines, grid
 from wavesym.results.summary import Summary, summarised
-from wavesym.results.unexpected import event_lines, outside, unexpected, without_load
+from wavesym.results.unexpected import event_lines, outside, unexpected
 from wavesym.running.model import RuntimeModel
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes, drifts
@@ -171,8 +171,3 @@ def spectrum(scene: Scene, damping: float, path: Path | None = None) -> tuple[li
 def warnings(scene: Scene) -> list[str]:
     """What a user might not expect: no load, contacts that open early enough to matter."""
     return unexpected(lower(scene))
-
-
-def no_load(scene: Scene) -> list[str]:
-    """A line for a scene in which nothing happens."""
-    return without_load(lower(scene))

@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 
-from sympy import Expr, Rational, Symbol, expand, solve, symbols
+from sympy import Expr, Rational, Symbol, expand, linsolve, symbols
 
 from wavesym.derivation.delay_terms import Operator, exact
 from wavesym.mechanics.node import Node
@@ -58,8 +58,8 @@ def _balance(strain_left: Expr, strain_right: Expr) -> Expr:
 @cache
 def node_law() -> NodeLaw:
     """The law, in the symbols INERTIA, DAMPING, ALPHA and BETA."""
-    sent = solve([_A + _L - _Q, _B + _R - _Q], [_L, _R])  # (2.3)
-    line = expand(_balance(_L - _A, _B - _R).subs(sent))
+    ((left, right),) = linsolve([_A + _L - _Q, _B + _R - _Q], [_L, _R])  # (2.3)
+    line = expand(_balance(left - _A, _B - right))
 
     def factor(symbol: Symbol) -> Expr:
         return exact(line.coeff(symbol))

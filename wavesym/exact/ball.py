@@ -47,13 +47,14 @@ class Segment:
 
     def shifted(self, by: fmpq) -> dict[fmpq, arb_poly]:
         """The same function in a local variable that starts `by` later."""
-        return shifted(self.families, by)
+        return dict(zip(self.families, shifted(self.families, self.families.values(), by), strict=True))
 
 
-def shifted(families: dict[fmpq, arb_poly], by: fmpq) -> dict[fmpq, arb_poly]:
-    """sum exp(-g (u + by)) P_g(u + by), as families in u. Coefficients that are not negative stay so."""
+def shifted(rates: Iterable[fmpq], polynomials: Iterable[arb_poly], by: fmpq) -> list[arb_poly]:
+    """sum exp(-g (u + by)) P_g(u + by), as polynomials in u. Coefficients that are not negative stay so."""
     later = arb_poly([arb(by), 1])
-    return {rate: (-arb(rate) * arb(by)).exp() * polynomial(later) for rate, polynomial in families.items()}
+    pairs = zip(rates, polynomials, strict=True)
+    return [(-arb(rate) * arb(by)).exp() * polynomial(later) for rate, polynomial in pairs]
 
 
 Source = Callable[[int], Sequence[Segment]]
@@ -67,15 +68,19 @@ def segments(signal: Signal, bits: int) -> list[Segment]:
 
 
 def _segments(signal: Signal) -> Iterator[Segment]:
-    families: dict[fmpq, arb_poly] = {}
+    # dictionaries by rate are looked into as seldom as can be: exact numbers are hashed slowly
+    places: dict[fmpq, int] = {}
+    families: list[arb_poly] = []
     last = None
     for arrival in signal.arrivals:
         if last is not None:
-            families = shifted(families, arrival.time - last)
-        for rate, polynomial in polynomials(arrival.increment).items():
-            families[rate] = families.get(rate, arb_poly()) + polynomial
+            families = shifted(places, families, arrival.time - last)
+        for rate, powers in arrival.increment.items():
+            if (place := places.setdefault(rate, len(places))) == len(families):
+                families.append(arb_poly())
+            families[place] += arb_poly([arb(value) for value in powers])
         last = arrival.time
-        yield Segment(last, dict(families))
+        yield Segment(last, dict(zip(places, families, strict=True)))
 
 
 def polynomials(increment: Increment) -> dict[fmpq, arb_poly]:

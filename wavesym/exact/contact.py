@@ -13,10 +13,11 @@ from wavesym.errors import CostError
 from wavesym.exact.ball import Segment, polynomials, segments
 from wavesym.exact.increments import Increment, apply, start, trimmed
 from wavesym.exact.signal import RuledChain, Signal, observed
+from wavesym.mechanics.event import KnownInstant
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.balls import precise
-from wavesym.numbers.doubles import midpoint, rational
+from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 
 # a zero is known to this width, and a strain that only touches zero counts from there
@@ -32,21 +33,11 @@ _FIRST = fmpq(16)
 
 
 @dataclass(frozen=True)
-class ContactEnd:
+class ContactEnd(KnownInstant):
     """The contact at `x` opens at `tau`, a ball; what is computed at its neighbours later than that is formal."""
 
     x: int
     tau: arb
-
-    @property
-    def double(self) -> float:
-        """tau rounded to double."""
-        return midpoint(self.tau)
-
-    @property
-    def digits(self) -> str:
-        """tau with 20 significant digits."""
-        return str(self.tau.str(20, radius=False))
 
 
 def contact_ends(model: Model, real: Real = DOUBLE) -> tuple[ContactEnd, ...]:

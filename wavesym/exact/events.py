@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from flint import arb, ctx, fmpq
 
-from wavesym.exact.schedule import Schedule, schedule
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
+
+if TYPE_CHECKING:
+    from wavesym.exact.schedule import Schedule
 
 _BITS = 320
 
@@ -17,6 +21,8 @@ def scheduled(model: Model, until: fmpq) -> Schedule | None:
     """When what is closed, until then; None for a chain without contacts. CostError, GrazingError as in `schedule`."""
     if not model.network.contacts:
         return None
+    from wavesym.exact.schedule import schedule  # how contacts touch: few scenes have any
+
     return schedule(model.network, model.acting(until), tuple(model.reached(until).items()))
 
 

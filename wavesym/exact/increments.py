@@ -7,7 +7,6 @@ numbers, the last of each list not 0. Rate 0 is a rate like the others; equal ra
 from __future__ import annotations
 
 from collections.abc import Iterable
-from itertools import zip_longest
 
 from flint import fmpq
 
@@ -20,8 +19,10 @@ _ZERO, _ONE = fmpq(0), fmpq(1)
 def add(total: Increment, part: Increment, factor: fmpq = _ONE) -> None:
     """Add `factor` times `part` to `total`, in place."""
     for rate, powers in part.items():
-        old = total.get(rate, [])
-        total[rate] = [a + factor * b for a, b in zip_longest(old, powers, fillvalue=_ZERO)]
+        out = total.setdefault(rate, [])
+        out += [_ZERO] * (len(powers) - len(out))
+        for k, value in enumerate(powers):
+            out[k] += factor * value
 
 
 def apply(weights: Weights, increment: Increment, total: Increment) -> None:
@@ -74,6 +75,8 @@ def start(increment: Increment) -> fmpq:
 
 def trimmed(increment: Increment) -> Increment:
     """Without vanishing highest powers and empty rates."""
+    if all(powers and powers[-1] != 0 for powers in increment.values()):
+        return increment
     result: Increment = {}
     for rate, powers in increment.items():
         length = len(powers)

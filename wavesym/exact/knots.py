@@ -15,16 +15,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial, reduce
 from heapq import heapify, heappop, heappush
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from flint import fmpq
 
 from wavesym.errors import CostError
 from wavesym.exact.events import scheduled
 from wavesym.exact.joint import SWING, JointLaw
-from wavesym.exact.schedule import Schedule
 from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
+
+if TYPE_CHECKING:
+    from wavesym.exact.schedule import Schedule
 
 MOST_KNOTS = 20_000
 

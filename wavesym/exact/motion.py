@@ -15,7 +15,6 @@ from wavesym.exact.joint import STILL, Enclosed, JointLaw
 from wavesym.exact.knots import Knots
 from wavesym.exact.network_waves import Acting, NetworkWaves, Waves, later
 from wavesym.exact.silence import smooth_starts
-from wavesym.exact.touching_waves import replayed
 from wavesym.mechanics.gauge import Weighted
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
@@ -149,13 +148,16 @@ class Motion:
                     f"most {_LARGEST:.1e} expected (a shorter horizon or fewer load times help)"
                 )
             with ctx.workprec(bits):
-                known = self._knots.schedule
-                self._solved[bits] = (
-                    NetworkWaves(self._network, self._knots.joints, self._acting, terms)
-                    if known is None
-                    else replayed(self._network, known.stages, known.ends, self._acting)
-                )
+                self._solved[bits] = self._waves(terms)
         return self._solved[bits]
+
+    def _waves(self, terms: int) -> Waves:
+        known = self._knots.schedule
+        if known is None:
+            return NetworkWaves(self._network, self._knots.joints, self._acting, terms)
+        from wavesym.exact.touching_waves import replayed  # of contacts, which few scenes have
+
+        return replayed(self._network, known.stages, known.ends, self._acting)
 
 
 def _segments(

@@ -14,7 +14,6 @@ from fractions import Fraction
 from math import inf, log10
 from typing import NamedTuple, TypeVar
 
-import numpy as np
 from flint import fmpq
 
 from wavesym.errors import CostError
@@ -47,6 +46,8 @@ def table_size(chain: Chain, interval: int, wanted: Mapping[K, int], sources: It
 
     What they rest on is included. No coefficients are counted where the increments alone are beyond `LARGEST`.
     """
+    import numpy as np  # of large tables alone: see `_small`
+
     latest = _latest(chain, interval, wanted)
     rods = np.array(sorted(latest))
     starts = np.array([_first(chain, rod) for rod in rods.tolist()])
@@ -83,10 +84,10 @@ def table_size(chain: Chain, interval: int, wanted: Mapping[K, int], sources: It
 
 def response_size(powers: Iterable[int], height: float) -> Size:
     """The size of increments of which each has so many coefficients; `height` are the bits of a rate."""
-    counts = np.fromiter(powers, float)
-    bits = float(np.sum(counts**2)) * height
-    work = float(np.sum(counts * (1 + (counts * height / _DIGITS) ** _LONG)))
-    coefficients = float(np.sum(counts))
+    counts = [float(count) for count in powers]
+    bits = sum(count**2 for count in counts) * height
+    work = sum(count * (1 + (count * height / _DIGITS) ** _LONG) for count in counts)
+    coefficients = sum(counts)
     return Size(coefficients, _ENTRY * len(counts) + _COEFFICIENT * coefficients + bits / 8, work)
 
 
@@ -99,7 +100,20 @@ def refuse_large(
     most: float = inf,
 ) -> None:
     """CostError, for the key or option `asked`, where a table is beyond `LARGEST` bytes, `MOST_WORK` or `most` work."""
-    refuse_size(table_size(chain, interval, wanted, sources), asked, most)
+    sources = set(sources)
+    if not _small(chain, interval, wanted, sources, most):
+        refuse_size(table_size(chain, interval, wanted, sources), asked, most)
+
+
+def _small(chain: Chain, interval: int, wanted: Mapping[K, int], sources: set[str], most: float) -> bool:
+    """Whether a table would not be too large if all its increments had as many powers as any can have."""
+    latest = _latest(chain, interval, wanted)
+    bodies = [node.rate for node in chain.nodes if node.inertia]
+    powers = (max(latest.values(), default=0) // 2 + 1) * len(bodies)
+    instants = sum(last - min(_first(chain, rod), 0) + 1 for rod, last in latest.items())
+    increments = 2 * len(_places(chain, sources)) * instants
+    size = response_size([powers], mean_bits(set(bodies)))
+    return increments * size.bytes <= LARGEST and increments * size.work <= min(most, MOST_WORK)
 
 
 def refuse_size(size: Size, asked: str, most: float = inf, parts: str = "fewer rods") -> None:

@@ -1,1 +1,1 @@
-"""Measured: speed against accuracy, benchmarks, and the atlas of where methods fail."""
+"""Measured: how fast programs are, how exact for their time, where methods fail, and what is proved of generated C."""

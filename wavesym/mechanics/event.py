@@ -1,4 +1,4 @@
-"""What happens at a contact: it opens, or it closes."""
+"""What happens at a contact, and when: it opens, or it closes."""
 
 from __future__ import annotations
 
@@ -10,15 +10,9 @@ from flint import arb
 from wavesym.numbers.doubles import midpoint
 
 
-@dataclass(frozen=True)
-class ContactEvent:
-    """The contact at a place (as the scene calls it) opens or closes at `tau`, a ball.
+class KnownInstant:
+    """An instant as far as it is known."""
 
-    A contact that is closed from the start is no event.
-    """
-
-    x: str
-    kind: Literal["opens", "closes"]
     tau: arb
 
     @property
@@ -30,3 +24,15 @@ class ContactEvent:
     def digits(self) -> str:
         """tau with 20 significant digits."""
         return str(self.tau.str(20, radius=False))
+
+
+@dataclass(frozen=True)
+class ContactEvent(KnownInstant):
+    """The contact at a place (as the scene calls it) opens or closes at `tau`, a ball.
+
+    A contact that is closed from the start is no event.
+    """
+
+    x: str
+    kind: Literal["opens", "closes"]
+    tau: arb

@@ -27,7 +27,7 @@ def fraction(value: fmpq | Fraction) -> Fraction:
 def nearest(value: fmpq) -> float:
     """The double nearest to an exact number, ties to even. RangeError beyond the largest double."""
     try:
-        return int(value.p) / int(value.q)
+        return float(value)
     except OverflowError:
         raise RangeError("output: a number beyond the largest double, about 1.8e308, would be needed") from None
 
@@ -54,13 +54,16 @@ def middle(ball: arb) -> fmpq:
 
 
 def midpoint(ball: arb) -> float:
-    """The double nearest to the middle of a ball."""
-    return nearest(middle(ball))
+    """The double nearest to the middle of a ball, ties to even. RangeError beyond the largest double."""
+    double = float(ball)  # flint rounds as IEEE 754 says
+    return double if math.isfinite(double) else nearest(middle(ball))
 
 
 def above(ball: arb) -> float:
     """A double that is not below anything in a ball."""
-    return not_below(_exact(ball.upper()))
+    upper = ball.upper()
+    double = midpoint(upper)
+    return double if upper <= arb(double) else math.nextafter(double, math.inf)
 
 
 def bound(ball: arb) -> float:
@@ -73,6 +76,13 @@ def bound(ball: arb) -> float:
     return shown if shown >= double else float(f"{double * 1.1:.1e}")
 
 
+def relative(error: float, size: float) -> float:
+    """A bound of an error in parts of a size, to print; infinite where nothing is known of the size."""
+    if error == 0:
+        return 0.0
+    return bound(arb(error) / arb(size)) if size else math.inf
+
+
 def rounded(ball: arb) -> float | None:
     """The double that everything in the ball rounds to, None where there is not one.
 
@@ -81,7 +91,7 @@ def rounded(ball: arb) -> float | None:
     if not ball.is_finite():
         return None
     try:
-        low, high = nearest(_exact(ball.lower())), nearest(_exact(ball.upper()))
+        low, high = midpoint(ball.lower()), midpoint(ball.upper())
     except RangeError:
         if abs(ball).lower() < _OVERFLOW:  # some of it is not
             return None

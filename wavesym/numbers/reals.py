@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-import numpy as np
-from flint import fmpq
+from flint import arb, fmpq
 
-from wavesym.numbers.doubles import nearest, rational
+from wavesym.numbers.doubles import middle, midpoint, nearest, rational
 
 
 @dataclass(frozen=True)
@@ -43,9 +42,19 @@ class Real:
             return double
         if abs(value) > self.largest:
             raise OverflowError(f"{double} in single precision")
+        import numpy as np  # of floats alone
+
         guess = float(np.float32(double))  # rounded twice: a neighbour may be nearer
         near = [guess, self.next_to(guess, -math.inf), self.next_to(guess, math.inf)]
         return min(near, key=lambda each: (abs(rational(each) - value), np.float32(each).view(np.uint32) & 1))
+
+    def nearest_middle(self, ball: arb) -> float:
+        """The number nearest to the middle of a ball."""
+        return midpoint(ball) if self.name == "double" else self.nearest(middle(ball))
+
+    def table(self, values: Iterable[fmpq]) -> tuple[float, ...]:
+        """The numbers nearest to some exact ones."""
+        return tuple(map(self.nearest, values))
 
     def not_below(self, value: fmpq) -> float:
         """The smallest number that is not below an exact one."""
@@ -54,6 +63,8 @@ class Real:
 
 
 def _next_single(value: float, towards: float) -> float:
+    import numpy as np
+
     return float(np.nextafter(np.float32(value), np.float32(towards)))
 
 

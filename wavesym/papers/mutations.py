@@ -25,6 +25,7 @@ from wavesym.papers.tree import (
     Symbol,
     Tree,
     latex,
+    negative,
 )
 
 LONGEST = 60
@@ -130,7 +131,7 @@ def _own(tree: Any, here: str) -> Iterator[tuple[str, Any]]:
             yield f"{digits}1 for {digits} in {here}", Number(f"{digits}1")
         case Addition(terms):
             for place, term in enumerate(terms):
-                turned = _turned(term)
+                turned = negative(term)
                 changed = Addition((*terms[:place], turned, *terms[place + 1 :]))
                 yield f"sign of {_short(latex(term)) or 'a term'} in {_short(latex(tree)) or here}", changed
         case Minus(of):
@@ -170,10 +171,6 @@ def _context(part: Any, here: str) -> str:
 
 def _short(text: str) -> str:
     return text if len(text) <= LONGEST else ""
-
-
-def _turned(term: Tree) -> Tree:
-    return term.of if isinstance(term, Minus) else Minus(term)
 
 
 def _plus(tree: Tree, by: int) -> Tree:

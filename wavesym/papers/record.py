@@ -106,9 +106,6 @@ class Sentence:
         return hash((self.pattern, tuple(self.words.items())))
 
 
-Formula = Tree | Sentence
-
-
 @dataclass(frozen=True)
 class Reading:
     """What a record says: its formula and its ranges (those printed, then those inferred), as read from its strings."""

@@ -248,6 +248,11 @@ def latex(tree: Tree) -> str:
     raise TypeError(tree)
 
 
+def negative(term: Tree) -> Tree:
+    """A term with the other sign."""
+    return term.of if isinstance(term, Minus) else Minus(term)
+
+
 def symbols(tree: Any) -> Iterator[Symbol]:
     """All letters of a tree, those of indices included."""
     if isinstance(tree, Symbol):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf, log10
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 
 from flint import fmpq
 
@@ -15,15 +15,17 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, REALS, Real
 from wavesym.programs.closed import ClosedForm, closed_form
-from wavesym.programs.hats.evaluator import HatMarch, hat_march
-from wavesym.programs.march.evaluator import MarchEvaluator, marched, unmet
-from wavesym.programs.modes.evaluator import ModesEvaluator
-from wavesym.programs.modes.making import modes
 from wavesym.programs.pieces import Pieces, pieces
-from wavesym.programs.program import ProgramOutput
-from wavesym.programs.rings.evaluator import RingMarch, ring_march
+from wavesym.programs.program import Program, ProgramOutput, Provenance
+from wavesym.programs.request import unmet
 
-Made = ClosedForm | Pieces | ModesEvaluator | MarchEvaluator | RingMarch | HatMarch
+if TYPE_CHECKING:
+    from wavesym.programs.hats.evaluator import HatMarch
+    from wavesym.programs.march.evaluator import MarchEvaluator
+    from wavesym.programs.modes.evaluator import ModesEvaluator
+    from wavesym.programs.rings.evaluator import RingMarch
+
+Made: TypeAlias = "ClosedForm | Pieces | ModesEvaluator | MarchEvaluator | RingMarch | HatMarch"
 
 _USUAL_TABLES = {"double": "speed", "single": "size"}
 # Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
@@ -59,6 +61,8 @@ class Evaluator(Protocol):
     def check_points(self) -> list[float]: ...
 
     def shortfall(self, tolerance: fmpq) -> str: ...
+
+    def program(self, provenance: Provenance) -> Program: ...
 
 
 @dataclass(frozen=True)
@@ -180,11 +184,18 @@ def _pieces(model: Model, real: Real, asked: bool, windows: int | None, optimize
     return pieces(model, real, model.tolerance, optimize)
 
 
+# modes and marches are loaded where they are tried: most scenes have pieces
 def _modes(model: Model, real: Real, *_: object) -> ModesEvaluator:
+    from wavesym.programs.modes.making import modes
+
     return modes(model, real)
 
 
 def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator | RingMarch | HatMarch:
+    from wavesym.programs.hats.evaluator import hat_march
+    from wavesym.programs.march.evaluator import marched
+    from wavesym.programs.rings.evaluator import ring_march
+
     if not asked and model.tolerance < real.roundoff:
         digits, most = (-log10(nearest(each)) for each in (model.tolerance, real.roundoff))
         raise CostError(
@@ -204,5 +215,5 @@ def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -
         return hats
 
 
-Maker = Callable[[Model, Real, bool, int | None, str], Made]
+Maker: TypeAlias = "Callable[[Model, Real, bool, int | None, str], Made]"
 MAKERS: dict[str, Maker] = {"closed": _closed, "pieces": _pieces, "modes": _modes, "march": _march}

@@ -26,12 +26,13 @@ from itertools import pairwise
 
 from flint import arb, arb_poly, fmpq
 
-from wavesym.exact.ball import largest, polynomials, segments, shifted
+from wavesym.exact.ball import largest, segments, shifted
 from wavesym.exact.increments import Increment
 from wavesym.exact.signal import Signal
 from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.program import ProgramOutput
+from wavesym.programs.flat import firsts
+from wavesym.programs.program import Program, ProgramOutput, Provenance
 
 _EXP = 20  # an exponential, in multiplications
 # all that is of second order in u but for additions, as long as no factor of u reaches 1/1000
@@ -119,6 +120,24 @@ class ClosedForm:
             points |= {middle, self.real.next_to(end, start)}
         return sorted(points)
 
+    def program(self, provenance: Provenance) -> Program:
+        """Of output o the pulses first_pulse[o] ... in order of their start; of each its families, of these the powers.
+
+        `coefficient` has the powers of a family, lowest first.
+        """
+        pulses = [pulse for output in self.outputs for pulse in output.pulses]
+        families = [family for pulse in pulses for family in pulse.families]
+        tables: dict[str, tuple[float, ...]] = {
+            "first_pulse": firsts(len(output.pulses) for output in self.outputs),
+            "start": tuple(pulse.start for pulse in pulses),
+            "excess": tuple(pulse.excess for pulse in pulses),
+            "first_family": firsts(len(pulse.families) for pulse in pulses),
+            "rate": tuple(family.rate for family in families),
+            "first_power": firsts(len(family.powers) for family in families),
+            "coefficient": tuple(power for family in families for power in family.powers),
+        }
+        return Program("closed", self.real, self.tau_max, self.outputs, tables, {}, self.bytes, provenance)
+
 
 def closed_form(signals: Sequence[Signal], tau_max: float, real: Real = DOUBLE) -> ClosedForm:
     """The closed form of signals, with its bounds, whatever they are."""
@@ -150,32 +169,34 @@ def _segment_errors(signal: Signal, until: fmpq, real: Real) -> list[arb | None]
     # Horner's rule must stay within the exponents of the format
     largest_power = arb(real.largest) ** fmpq(7, 8)
     underflow = arb(0)  # the errors of all numbers so far that may be below the normal ones
-    sizes: dict[fmpq, arb_poly] = {}  # the absolute values of all terms so far
-    weights: dict[fmpq, arb_poly] = {}  # the same, each times its factor of u
+    places: dict[fmpq, int] = {}  # of rates, in the two lists
+    sizes: list[arb_poly] = []  # the absolute values of all terms so far
+    weights: list[arb_poly] = []  # the same, each times its factor of u
     ends = [arrival.time for arrival in signal.arrivals[1:]] + [until]
     last = signal.arrivals[0].time
     representable = True
     additions = 0
     errors: list[arb | None] = []
     for arrival, end in zip(signal.arrivals, ends, strict=True):
-        sizes = shifted(sizes, arrival.time - last)
-        weights = shifted(weights, arrival.time - last)
+        sizes, weights = (shifted(places, each, arrival.time - last) for each in (sizes, weights))
         last = arrival.time
-        # in the order in which programs add them
-        families = sorted(polynomials(arrival.increment).items())
-        new = {rate: arb_poly([abs(c) for c in p.coeffs()]) for rate, p in families}
-        for rate, polynomial in new.items():
-            sizes[rate] = sizes.get(rate, arb_poly()) + polynomial
-            weights[rate] = weights.get(rate, arb_poly()) + _weighted(rate, polynomial)
+        for rate, powers in sorted(arrival.increment.items()):  # in the order in which programs add them
+            polynomial = arb_poly([abs(arb(c)) for c in powers])
+            if (place := places.setdefault(rate, len(places))) == len(sizes):
+                sizes.append(arb_poly())
+                weights.append(arb_poly())
+            sizes[place] += polynomial
+            weights[place] += _weighted(rate, polynomial)
             farthest = arb(until - last).max(arb(1))
             representable &= bool(polynomial(farthest) < largest_power)
             underflow += arb(real.smallest) * _underflows(polynomial, farthest)
             # every family is one more addition for all that came before it
             additions += 1
-            for older, size in sizes.items():
-                weights[older] = weights[older] + size
+            weights = [weight + size for weight, size in zip(weights, sizes, strict=True)]
         length = arb(end - arrival.time)
-        error = sum((_largest(rate, polynomial, length) for rate, polynomial in weights.items()), arb(0))
+        error = sum(
+            (_largest(rate, polynomial, length) for rate, polynomial in zip(places, weights, strict=True)), arb(0)
+        )
         # (1 + u)**n - 1 <= n u / (1 - n u)
         representable &= bool(additions * u < _MOST_ADDED)
         errors.append((error * u * _SECOND_ORDER / (1 - additions * u) + underflow) if representable else None)

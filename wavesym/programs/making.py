@@ -7,7 +7,6 @@ from dataclasses import replace
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.events import events
 from wavesym.mechanics.model import Model
-from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import Made, choose
 from wavesym.programs.program import Program, Provenance
 from wavesym.programs.reference_values import reference_values
@@ -34,5 +33,5 @@ def program(model: Model, form: Made, *, tested: bool = False) -> Program:
 
 
 def _made(model: Model, form: Made, provenance: Provenance, tested: bool) -> Program:
-    made = assemble(form, provenance)
+    made = form.program(provenance)
     return replace(made, reference=reference_values(model, form)) if tested else made

@@ -33,9 +33,10 @@ from wavesym.exact.silence import silent
 from wavesym.mechanics.model import Model
 from wavesym.numbers import chebyshev
 from wavesym.numbers.balls import precise
-from wavesym.numbers.doubles import bound, middle, nearest, rational
+from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import Real
-from wavesym.programs.program import ProgramOutput
+from wavesym.programs.flat import firsts
+from wavesym.programs.program import Program, ProgramOutput, Provenance
 
 # A table larger than this is for the march.
 MOST_BYTES = 4 << 20
@@ -143,6 +144,32 @@ class Pieces:
             for start, end, centre in zip(grid.starts, grid.starts[1:], grid.centres, strict=False):
                 points |= {start, centre, self.real.next_to(end, 0.0)}
         return sorted(points)
+
+    def program(self, provenance: Provenance) -> Program:
+        """Of grid g its outputs first_member[g] ..., and pieces; at first_piece[g] + g their starts and the last end.
+
+        The polynomials of piece p of all grids start at first_power[p] in `coefficient`: highest power first, of each
+        power those of all members. To find tau's piece: from part[first_part[g] + int(tau * scale[g])] at most `steps`
+        on.
+        """
+        grids = self.grids
+        pieces = [piece for grid in grids for piece in grid.powers]
+        tables: dict[str, tuple[float, ...]] = {
+            "first_member": firsts(len(grid.outputs) for grid in grids),
+            "member": tuple(k for grid in grids for k in grid.outputs),
+            "first_piece": firsts(len(grid.centres) for grid in grids),
+            "start": tuple(start for grid in grids for start in grid.starts),
+            "centre": tuple(centre for grid in grids for centre in grid.centres),
+            "first_part": firsts(len(grid.first) for grid in grids),
+            "scale": tuple(grid.scale for grid in grids),
+            "part": tuple(piece for grid in grids for piece in grid.first),
+            "first_power": firsts(sum(map(len, piece)) for piece in pieces),
+            "coefficient": tuple(
+                c for piece in pieces for power in reversed([*zip(*piece, strict=True)]) for c in power
+            ),
+        }
+        constants: dict[str, float] = {"steps": max(grid.steps for grid in grids)}
+        return Program("pieces", self.real, self.tau_max, self.outputs, tables, constants, self.bytes, provenance)
 
 
 def pieces(model: Model, real: Real, tolerance: fmpq, optimize: str = "speed") -> Pieces:
@@ -319,7 +346,7 @@ class _Fits:
             error, kept = _cut_off([c.mid() for c in coefficients], allowed - blurred, self._real)
             local_powers = [c / arb(half) ** k for k, c in enumerate(kept)]
             worst = worst.max((error + blurred + _underflow(local_powers, self._real)).upper())
-            powers.append(tuple(self._real.nearest(middle(c)) for c in local_powers))
+            powers.append(tuple(map(self._real.nearest_middle, local_powers)))
         return (bound(worst / scale), float(scale)), powers
 
     def _allowed(self, scale: arb) -> tuple[arb, arb]:

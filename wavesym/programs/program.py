@@ -5,17 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from typing import TYPE_CHECKING
 
 from wavesym.exact.contact import ContactEnd
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real
-from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.schemes import SCHEMES, Scheme
-from wavesym.programs.schemes.hats import HatScheme
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from wavesym.programs.runtime.laws import RuntimeLaws
+    from wavesym.programs.schemes import Scheme
 
 
 @dataclass(frozen=True)
@@ -94,9 +96,9 @@ class Program:
     `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "hats",
     that of one hat of each record, in NumPy alone, "modes", "runtime": a march whose parameters come at run time, by
     its `laws`, "joints": that of a chain, or "stream": one whose loads do. The last three are C alone.
-    `tables` are flat, by name, each number as it is written: indices are ints, all else floats of the format; which
-    there are, assembly.py says, of rings rings/tables.py, of hats hats/evaluator.py, of modes modes/tables.py, of
-    streams stream/tables.py.
+    `tables` are flat (flat.py), by name, each number as it is written; which there are, the `program` of each
+    evaluator says, of marches march/tables.py and rings/tables.py, of modes modes/tables.py, of streams
+    stream/tables.py.
     `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march,
     modes and a stream, `sources` are the names of loads that it can be given; a march is `whole` where no node was left
     out. Its error is `proved`, or an estimate. Of a stream `direct` has for each output the sources that act on it at
@@ -139,6 +141,10 @@ class Program:
 
     def each(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
         """Each output at instants of its own: tau and values are (outputs, n)."""
+        import numpy as np
+
+        from wavesym.programs.schemes.hats import HatScheme
+
         if isinstance(self._scheme, HatScheme):
             return self._scheme.each(tau)
         flat, back = np.unique(tau, return_inverse=True)
@@ -146,11 +152,20 @@ class Program:
 
     def instants(self, step: float) -> NDArray[np.float64]:
         """Instants of the horizon no more than `step` apart, both its ends included, where values are had soonest."""
+        import numpy as np
+
+        from wavesym.programs.schemes.hats import HatScheme
+
         if isinstance(self._scheme, HatScheme):
             return self._scheme.evenly(step)
         return np.linspace(0.0, self.tau_max, ceil(self.tau_max / step) + 1)
 
     @cached_property
     def _scheme(self) -> Scheme:
+        """Its values in NumPy, which is loaded for these alone: whoever writes C waits for none of it."""
+        import numpy as np
+
+        from wavesym.programs.schemes import SCHEMES
+
         real = np.dtype(f"f{self.real.bytes}").type
         return SCHEMES[self.kind](self.tables, self.constants, self.tau_max, real)

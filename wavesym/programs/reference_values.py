@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from wavesym.exact.reference import Reference, beginning
 from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real
-from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.program import ProgramOutput, ReferenceValues, StreamedValues
 
 _MOST_POINTS = 2000
@@ -28,9 +27,16 @@ class Checked(Protocol):
     def check_points(self) -> list[float]: ...
 
 
+@runtime_checkable
+class Streamed(Protocol):
+    """What is checked as a stream, from its own exact steps."""
+
+    def streamed(self) -> StreamedValues: ...
+
+
 def reference_values(model: Model, evaluator: Checked) -> ReferenceValues | StreamedValues:
     """At the points that an evaluator wants checked. On very long horizons they cover only the beginning."""
-    if isinstance(evaluator, ModesEvaluator):
+    if isinstance(evaluator, Streamed):
         return evaluator.streamed()
     reference = Reference(beginning(model), evaluator.real)
     most = max(10, min(_MOST_POINTS, _MOST_VALUES // len(evaluator.outputs)))

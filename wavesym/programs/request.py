@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
-from wavesym.errors import WavesymError
+from wavesym.errors import ToleranceError, WavesymError
+from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import REALS
 
 KINDS = ("closed", "pieces", "march", "modes")
@@ -59,3 +60,8 @@ def refuse_unknown(option: str, word: str, known: Iterable[str]) -> None:
     if word not in (names := tuple(known)):
         *others, last = names
         raise WavesymError(f"{option}: {word} given, {', '.join(others)} or {last} expected")
+
+
+def unmet(tolerance: fmpq, why: str) -> ToleranceError:
+    """The error that says that a tolerance cannot be met."""
+    return ToleranceError(f"output.tolerance: {nearest(tolerance):g} cannot be met: {why}")

@@ -15,7 +15,6 @@ from wavesym.exact.reference import Reference
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import attempts, best
 from wavesym.programs.program import Program, Provenance
 
@@ -104,4 +103,4 @@ def _program(model: Model, error: CostError) -> Program:
     if not served and not model.spacing and not model.damping:
         raise error
     choice = best(model, tried)
-    return assemble(choice.evaluator, Provenance(model, choice.reason))
+    return choice.evaluator.program(Provenance(model, choice.reason))

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from wavesym.exact.contact import contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
-from wavesym.results.response import Response
-from wavesym.results.rows import instants
+
+if TYPE_CHECKING:
+    from wavesym.results.response import Response
 
 
 def unexpected(model: Model) -> list[str]:
@@ -25,6 +27,8 @@ def without_load(model: Model) -> list[str]:
 
 def outside(model: Model, at: Sequence[float]) -> list[str]:
     """A line where some of the instants that are asked for are not on the horizon."""
+    from wavesym.results.rows import instants
+
     last, clock = model.horizon(), model.clock
     count = sum(not 0 <= tau <= last for _, tau in instants(model, 0, at))
     what, end = ("times", clock.told(model.until)) if clock else ("tau", str(model.until))

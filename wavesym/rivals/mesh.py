@@ -38,12 +38,6 @@ class Mesh:
         """The chain's nodes among the points."""
         return slice(0, None, self.cells)
 
-    def at_points(self, rods: float, nodes: Array) -> Array:
-        """A field that is `rods` inside the rods and `nodes` (m + 1,) at the nodes."""
-        field = np.full(self.size, rods)
-        field[self.nodes] = nodes
-        return field
-
     @cached_property
     def velocity(self) -> Array:
         """The velocity of the points at tau = 0."""

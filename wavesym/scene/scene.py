@@ -83,6 +83,8 @@ class Scene(SceneTable):
         'drive_m1'
         """
         file, text, fields = read_toml(source)
+        if "scene" in fields and "system" not in fields:
+            raise SceneError("a sweep given, a scene expected (`wavesym sweep` takes sweeps)", file=file)
         try:
             scene = cls(**fields)
         except SceneError as error:

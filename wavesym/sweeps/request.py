@@ -152,6 +152,8 @@ class SweepRequest(SceneTable):
         else:
             file, text = read_text(source, _EXPECTED)
             folder, fields = os.path.dirname(os.fspath(source)), parsed(file, text)
+        if "system" in fields and "scene" not in fields:
+            raise SceneError('a scene given, a sweep expected (`scene = "PATH"`, and what to `[vary]`)', file=file)
         try:
             request = cls.model_validate(fields)
         except ValidationError as error:

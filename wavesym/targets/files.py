@@ -12,7 +12,6 @@ from wavesym.programs.program import Program
 from wavesym.targets import TARGETS
 from wavesym.targets.description import describe
 from wavesym.targets.manifest import manifest
-from wavesym.targets.package import package
 from wavesym.targets.target import Target
 
 MARKS = (b": made by wavesym", b'"generator": "wavesym"')
@@ -35,6 +34,8 @@ def files(program: Program, language: str = "c", *, packaged: bool = False) -> d
     for name in TARGETS if language == "all" else (language,):
         made |= _target(name).files(description, program)
     if packaged:
+        from wavesym.targets.package import package
+
         made |= package(description, program)
     return dict(sorted(made.items()))
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
+from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE, SINGLE, Real
 
 
@@ -26,11 +25,19 @@ class NumberFormat:
     shortest: Callable[[float], str]
 
 
+def _largest(real: Real) -> float:
+    return nearest(real.largest * (2 - 2 * real.roundoff))
+
+
+def _shortest_single(value: float) -> str:
+    import numpy as np
+
+    return str(np.float32(value))
+
+
 _FORMATS = {
-    DOUBLE.name: NumberFormat("double", "", "exp", "float64", float(np.finfo(np.float64).max), repr),
-    SINGLE.name: NumberFormat(
-        "float", "f", "expf", "float32", float(np.finfo(np.float32).max), lambda value: str(np.float32(value))
-    ),
+    DOUBLE.name: NumberFormat("double", "", "exp", "float64", _largest(DOUBLE), repr),
+    SINGLE.name: NumberFormat("float", "f", "expf", "float32", _largest(SINGLE), _shortest_single),
 }
 
 

@@ -12,7 +12,6 @@ from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.contact import contact_ends
 from wavesym.exact.events import events
 from wavesym.mechanics.model import Model
-from wavesym.programs.assembly import assemble
 from wavesym.programs.choice import Tried, attempts, best
 from wavesym.programs.program import Program, Provenance
 
@@ -23,7 +22,7 @@ def programmed(model: Model, sources: Sequence[str]) -> Iterator[Section]:
     yield chosen(model, tried)
     with suppress(ToleranceError):  # which is told already
         choice = best(model, tried)
-        yield from _numbers(assemble(choice.evaluator, Provenance(model, choice.reason)))
+        yield from _numbers(choice.evaluator.program(Provenance(model, choice.reason)))
     yield contacts(model)
     yield streamed(model, sources)
     yield variants(model, tried)

@@ -15,7 +15,7 @@ from wavesym.papers.pielorz1979.lines import STEPS, Coefficients, Key, gives, tr
 from wavesym.papers.pielorz1979.transcript import entry as transcribed
 from wavesym.papers.pielorz1979.transcript import ids, settled
 from wavesym.papers.record import Case, Reading, Test, by_size, case, reading
-from wavesym.papers.tree import Addition, Group, Minus, Product, Tree, latex, symbols
+from wavesym.papers.tree import Addition, Group, Minus, Product, Tree, latex, negative, symbols
 
 SIZES = tuple(by_size((m, n) for m in range(3, 7) for n in range(11 - m)))
 SMALL = 9
@@ -109,7 +109,7 @@ def _difference(id: str, read: Reading) -> str:
     if len(items(read.formula)) != 1:
         return "no line of the list"
     mine, theirs = (list(_terms(sides(line.formula)[1])) for line in (read, settled(id)))
-    left = [term for term in mine if term not in theirs] + [_negative(term) for term in theirs if term not in mine]
+    left = [term for term in mine if term not in theirs] + [negative(term) for term in theirs if term not in mine]
     return latex(Addition(tuple(left))) if left else "0"
 
 
@@ -120,7 +120,7 @@ def _terms(tree: Tree) -> Iterator[Tree]:
             for term in terms:
                 yield from _terms(term)
         case Minus(of):
-            yield from map(_negative, _terms(of))
+            yield from map(negative, _terms(of))
         case Product(factors):
             for chosen in product(*([*_terms(f.inner)] if _brackets(f) else [f] for f in factors)):  # type: ignore[union-attr]
                 plain = [factor.of if isinstance(factor, Minus) else factor for factor in chosen]
@@ -128,17 +128,13 @@ def _terms(tree: Tree) -> Iterator[Tree]:
                     part for factor in plain for part in (factor.factors if isinstance(factor, Product) else [factor])
                 ]
                 turned = sum(isinstance(factor, Minus) for factor in chosen) % 2
-                yield _negative(Product(tuple(flat))) if turned else Product(tuple(flat))
+                yield negative(Product(tuple(flat))) if turned else Product(tuple(flat))
         case _:
             yield tree
 
 
 def _brackets(factor: Tree) -> bool:
     return isinstance(factor, Group) and any(symbol.above for symbol in symbols(factor))
-
-
-def _negative(term: Tree) -> Tree:
-    return term.of if isinstance(term, Minus) else Minus(term)
 
 
 # the list run by itself, from nothing but the parameters

@@ -7,20 +7,19 @@ the proof of the bound: that of a hat's march times the sum of the absolute samp
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from flint import arb, fmpq
+from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import SpacingError
 from wavesym.mechanics.model import Model
-from wavesym.numbers.doubles import bound, nearest, rational
+from wavesym.numbers.doubles import nearest, rational, relative
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.hats.split import RecordLoad, split, still
-from wavesym.programs.program import ProgramOutput
+from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.rings.bound import RingVerdict
 from wavesym.programs.rings.evaluator import RingMarch, judged_march
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
@@ -125,6 +124,20 @@ class HatMarch:
         """For a self-test, of which there is none: there is no program in C."""
         return [0.0]
 
+    def program(self, provenance: Provenance) -> Program:
+        """Its tables, flat, and why it is NumPy alone."""
+        return Program(
+            "hats",
+            self.real,
+            self.tau_max,
+            self.outputs,
+            self.tables,
+            self.constants,
+            self.bytes,
+            provenance,
+            numpy_only=self.refusal,
+        )
+
 
 def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     """The march of one hat of each record; None where no load is a record, or the rest fits into no window either.
@@ -151,7 +164,7 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     return replace(
         made,
         outputs=tuple(
-            ProgramOutput(probe.name, _relative(error, size), size)
+            ProgramOutput(probe.name, relative(error, size), size)
             for probe, error, size in zip(model.probes, errors.tolist(), largest.tolist(), strict=True)
         ),
     )
@@ -173,12 +186,6 @@ def _added(record: RecordLoad, march: RingMarch, hat: RingVerdict) -> Numbers:
     silent = errors == 0
     lost = 64 * count * np.where(silent, 0.0, 5e-324)
     return np.array([total * ((1 + bent) * errors + late * slopes) + added + lost, total * heights])
-
-
-def _relative(error: float, size: float) -> float:
-    if error == 0:
-        return 0.0
-    return bound(arb(error) / arb(size)) if size else math.inf
 
 
 def _parts(value: fmpq) -> tuple[float, float]:

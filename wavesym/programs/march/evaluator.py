@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from flint import arb, fmpq
 
-from wavesym.errors import CostError, ToleranceError, WavesymError
+from wavesym.errors import CostError, WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
@@ -24,7 +24,9 @@ from wavesym.programs.march.given import Given, batch_size, given
 from wavesym.programs.march.operator import PanelOperator
 from wavesym.programs.march.plan import Plan, plan
 from wavesym.programs.march.run import operator_count, operators, steps
-from wavesym.programs.program import ProgramOutput
+from wavesym.programs.march.tables import march_constants, march_tables
+from wavesym.programs.program import Driven, Program, ProgramOutput, Provenance
+from wavesym.programs.request import unmet
 
 _HIGHEST_DEGREE = 2000
 _MOST_WORK = 1e9  # nodes * coefficients * windows, half a minute or so
@@ -102,6 +104,22 @@ class MarchEvaluator:
         late = [self.real.nearest(rational(self.tau_max) * k / 32) for k in range(33)]
         return sorted(set(early + late))
 
+    def program(self, provenance: Provenance) -> Program:
+        """A march remembers waves; what it is made of are tables of a window, and constants."""
+        return Program(
+            "march",
+            self.real,
+            self.tau_max,
+            self.outputs,
+            march_tables(self),
+            march_constants(self),
+            self.bytes,
+            provenance,
+            sources=tuple(channel.name for channel in self.plan.channels),
+            whole=math.isinf(self.plan.valid),
+            driven=Driven(self.given.windows, self.given.errors) if self.given else None,
+        )
+
 
 def march(model: Model, real: Real = DOUBLE) -> MarchEvaluator:
     """The march of a model in `real` numbers, of the least sufficient degree.
@@ -113,11 +131,6 @@ def march(model: Model, real: Real = DOUBLE) -> MarchEvaluator:
     if not (math.isfinite(made.error_bound) and rational(made.error_bound) <= tolerance):
         raise unmet(tolerance, made.shortfall(tolerance))
     return made
-
-
-def unmet(tolerance: fmpq, why: str) -> ToleranceError:
-    """The error that says that a tolerance cannot be met."""
-    return ToleranceError(f"output.tolerance: {nearest(tolerance):g} cannot be met: {why}")
 
 
 def marched(model: Model, real: Real = DOUBLE, degree: int | None = None, windows: int | None = None) -> MarchEvaluator:

@@ -29,6 +29,7 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.node import RAMPS, Node
 from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
+from wavesym.programs.march.load_events import LoadEvent, load_changes, load_events
 
 LEFT, RIGHT, LOAD = 0, 1, 2
 """What is heard: waves that nodes send, or loads."""
@@ -38,7 +39,7 @@ MOST_PANELS = 16
 _ESTIMATED = 100
 _LONG = 30  # characters of a number that nobody reads
 _HELPS = "fewer samples, modes, or for what does not jump NumPy or run"
-_NONE, _ONE = fmpq(0), fmpq(1)
+_ZERO, _ONE = fmpq(0), fmpq(1)
 
 
 @dataclass(frozen=True)
@@ -64,16 +65,6 @@ class Junction:
     right: fmpq
     mass: fmpq
     motion: fmpq
-
-
-@dataclass(frozen=True)
-class LoadEvent:
-    """From panel `panel` of window `window` on, load `force` is a polynomial in the time since then (divided by g)."""
-
-    window: int
-    panel: int
-    force: int
-    powers: tuple[fmpq, fmpq, fmpq]
 
 
 @dataclass(frozen=True)
@@ -135,7 +126,7 @@ class Plan:
     junctions: tuple[Junction, ...]
     rods: tuple[fmpq, ...]  # half the initial velocity of the rods left of each column, and of that right of the last
     loaded: tuple[int, ...]  # the column of each force
-    events: tuple[LoadEvent, ...]
+    events: tuple[LoadEvent, ...]  # of loads divided by g
     channels: tuple[Channel, ...]
     outputs: tuple[Watched, ...]
     tau_max: float
@@ -165,21 +156,15 @@ class Plan:
             self,
             junctions=tuple(replace(node, motion=factor * node.motion) for node in self.junctions),
             rods=tuple(factor * velocity for velocity in self.rods),
-            events=tuple(
-                replace(event, powers=_three(factor * fmpq_poly(list(event.powers)))) for event in self.events
-            ),
+            events=tuple(event.times(factor) for event in self.events),
             channels=tuple(replace(channel, gain=factor * channel.gain) for channel in self.channels),
         )
 
     def changes(self, panel: int) -> Iterator[tuple[int, int, tuple[fmpq, fmpq, fmpq]]]:
         """Window, force and powers of what is new with each event on a panel."""
-        now: dict[int, tuple[fmpq, fmpq_poly]] = {}
-        for event in self.events:
-            time, load = event.window + self.panels[event.panel].start, fmpq_poly(list(event.powers))
-            since, before = now.get(event.force, (time, fmpq_poly()))
-            now[event.force] = time, load
+        for event, powers in load_changes(self.events, [each.start for each in self.panels], _ONE):
             if event.panel == panel:
-                yield event.window, event.force, _three(load - before(fmpq_poly([time - since, 1])))
+                yield event.window, event.force, powers
 
     def stretches(self, delay: fmpq) -> tuple[Stretch, ...]:
         """Those of a wave that arrives `delay` after it was sent, 0 <= delay <= 1, in order; they cover the window."""
@@ -241,7 +226,7 @@ def panels(times: Sequence[fmpq], helps: str = _HELPS) -> tuple[MarchPanel, ...]
 
 def common(times: Iterable[fmpq]) -> fmpq:
     """What all times are multiples of."""
-    return reduce(fmpq.gcd, times, _NONE)
+    return reduce(fmpq.gcd, times, _ZERO)
 
 
 def suiting(times: Iterable[fmpq], step: fmpq = _ONE) -> str:
@@ -275,26 +260,15 @@ def _junctions(nodes: Sequence[Node]) -> Iterator[Junction]:
 
 def _events(
     nodes: Sequence[Node], loaded: Sequence[int], loads: Sequence[Applied], panels: Sequence[MarchPanel]
-) -> list[LoadEvent]:
-    gains: dict[fmpq, dict[int, fmpq_poly]] = defaultdict(dict)
+) -> Iterator[LoadEvent]:
+    gains: dict[tuple[fmpq, int], fmpq_poly] = defaultdict(fmpq_poly)
     for load in loads:
         for force, column in enumerate(loaded):
             for unit in nodes[column].loads:
                 if unit.source == load.source:
                     new = load.weight * _share(nodes[column]) * fmpq_poly(list(unit.coefficients))
-                    at = gains[load.time]
-                    at[force] = at.get(force, fmpq_poly()) + new
-    places = {panel.start: number for number, panel in enumerate(panels)}
-    now: dict[int, tuple[fmpq, fmpq_poly]] = {}
-    events = []
-    for time, changes in sorted(gains.items()):
-        for force, change in sorted(changes.items()):
-            since, before = now.get(force, (time, fmpq_poly()))
-            total = before(fmpq_poly([time - since, 1])) + change
-            now[force] = time, total
-            window = int(time.floor())
-            events.append(LoadEvent(window, places[time - window], force, _three(total)))
-    return events
+                    gains[load.time, force] += new
+    return load_events(gains, (panel.start for panel in panels), _ONE)
 
 
 def _share(node: Node) -> fmpq:
@@ -307,10 +281,6 @@ def power_of_two(numbers: Iterable[fmpq]) -> fmpq:
     """About the largest absolute value of some numbers; 1 where all are 0."""
     size = max(map(abs, numbers), default=fmpq(0))
     return fmpq(2) ** (int(size.p).bit_length() - int(size.q).bit_length()) if size else fmpq(1)
-
-
-def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:
-    return load[0], load[1], load[2]
 
 
 def _channels(nodes: Sequence[Node], loaded: Sequence[int]) -> Iterator[Channel]:

@@ -15,7 +15,7 @@ from wavesym.programs.modes.modal import ModalSystem
 from wavesym.programs.modes.rounding import Rounded, rounded
 from wavesym.programs.modes.step import Stepper
 from wavesym.programs.modes.tables import padded, scheme_tables, stream_tables
-from wavesym.programs.program import ProgramOutput, StreamedValues
+from wavesym.programs.program import Program, ProgramOutput, Provenance, StreamedValues
 from wavesym.programs.schemes.modes import ModesScheme
 
 _CHECKED = 40  # samples of a self-test
@@ -116,6 +116,21 @@ class ModesEvaluator:
     def check_points(self) -> list[float]:
         """A stream is not asked at any tau: what its self-test compares is `streamed`."""
         return []
+
+    def program(self, provenance: Provenance) -> Program:
+        """Its tables, flat, in NumPy and as a stream."""
+        return Program(
+            "modes",
+            self.real,
+            self.tau_max,
+            self.outputs,
+            self.tables,
+            self.constants,
+            self.bytes,
+            provenance,
+            sources=self.told_sources,
+            proved=self.proved,
+        )
 
     def streamed(self) -> StreamedValues:
         """For the self-test: loads up to the largest of the scene's that leap, and what comes of them."""

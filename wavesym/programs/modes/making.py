@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
-from flint import arb, fmpq
+from flint import fmpq
 
 from wavesym.mechanics.model import Model
-from wavesym.numbers.doubles import bound
+from wavesym.numbers.doubles import relative
 from wavesym.numbers.reals import Real
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.modes.system import modal_system
@@ -38,13 +37,7 @@ def modes(model: Model, real: Real) -> ModesEvaluator:
     )
     totals = made.errors + evaluator.rounding.errors
     outputs = tuple(
-        ProgramOutput(probe.name, _relative(error, size), size)
+        ProgramOutput(probe.name, relative(error, size), size)
         for probe, error, size in zip(model.probes, totals.tolist(), made.largest.tolist(), strict=True)
     )
     return replace(evaluator, outputs=outputs)
-
-
-def _relative(error: float, size: float) -> float:
-    if error == 0:
-        return 0.0
-    return bound(arb(error) / arb(size)) if size else math.inf

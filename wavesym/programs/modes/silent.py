@@ -16,11 +16,12 @@ from flint import fmpq, fmpq_mat, fmpz_mod, fmpz_mod_ctx
 
 from wavesym.exact.modes.cuts import cut
 from wavesym.exact.modes.stiffness import Stiffness
+from wavesym.mechanics.gauge import ground
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
 from wavesym.mechanics.probe import Probe
 from wavesym.programs.modes.loads import LinearLoads
-from wavesym.programs.modes.watched import Driver, Seen, ground, places, seen
+from wavesym.programs.modes.watched import Driver, Seen, places, seen
 
 _FIELD = fmpz_mod_ctx(2**127 - 39)
 _W, _E = _FIELD(0x5EED_C0FFEE_1234_5678_9ABC_DEF0_1357), _FIELD(0x0DD_BA11_2468_ACE0_FACE_0FF5_1DE5)

@@ -27,11 +27,11 @@ def scheme_tables(system: ModalSystem, loads: LinearLoads, real: Real) -> Tables
         "moved": _as(real, system.moved),
         "moving": _as(real, system.moving),
         "direct": _as(real, system.direct),
-        "time": tuple(map(real.nearest, loads.times)),
-        "length": tuple(map(real.nearest, lengths)),
+        "time": real.table(loads.times),
+        "length": real.table(lengths),
         "kind": kind,
         "sample": tuple(real.nearest(value) for row in loads.samples for value in row),
-        "slope": tuple(map(real.nearest, loads.slopes)),
+        "slope": real.table(loads.slopes),
     }
 
 

@@ -12,6 +12,7 @@ from wavesym.exact.modes.cuts import Cut
 from wavesym.exact.modes.shape import Mode
 from wavesym.exact.modes.statics import Shape, Statics
 from wavesym.exact.modes.stiffness import Quantity
+from wavesym.mechanics.gauge import ground
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Network, Point
 from wavesym.mechanics.probe import Probe
@@ -132,9 +133,3 @@ def _sum(*parts: Mapping[int, fmpq]) -> dict[int, fmpq]:
         for point, weight in part.items():
             total[point] = total.get(point, fmpq(0)) + weight
     return {point: weight for point, weight in total.items() if weight != 0}
-
-
-def ground(network: Network) -> int:
-    """The point that relative displacements count from: the only one that moves as it is told, or the first one."""
-    told = [number for number, point in enumerate(network.points) if point.motion in ("velocity", "acceleration")]
-    return told[0] if len(told) == 1 else 0

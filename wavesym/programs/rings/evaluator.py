@@ -16,7 +16,7 @@ from wavesym.errors import CostError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.program import ProgramOutput
+from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.rings.bound import RingVerdict, judge
 from wavesym.programs.rings.plan import RingPlan, least_numbers, ring_plan
 from wavesym.programs.rings.tables import RingTables, state_bytes, table_bytes
@@ -98,6 +98,12 @@ class RingMarch:
         early = [self.real.nearest(step * k / 8) for k in range(161) if step * k / 8 <= last]
         late = [self.real.nearest(last * k / 32) for k in range(33)]
         return sorted({min(tau, self.tau_max) for tau in early + late})
+
+    def program(self, provenance: Provenance) -> Program:
+        """Its tables, flat."""
+        return Program(
+            "rings", self.real, self.tau_max, self.outputs, self.tables, self.constants, self.bytes, provenance
+        )
 
 
 def ring_march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> RingMarch:

@@ -7,6 +7,7 @@ cut into the same panels everywhere, at what load times leave over of h, so that
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -24,7 +25,8 @@ from wavesym.mechanics.network import End, Joint, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.plan import MOST_PANELS, LoadEvent, MarchPanel, Stretch, common, suiting, told
+from wavesym.programs.march.load_events import LoadEvent, load_changes, load_events
+from wavesym.programs.march.plan import MOST_PANELS, MarchPanel, Stretch, common, suiting, told
 from wavesym.programs.rings.space import SHOWN, JointSpace, Port, joint_space
 
 FINEST = 64
@@ -125,19 +127,13 @@ class RingPlan:
             self,
             tracks=tuple(replace(track, held=factor * track.held) for track in self.tracks),
             joints=tuple(map(louder, self.joints)),
-            events=tuple(
-                replace(event, powers=_three(factor * fmpq_poly(list(event.powers)))) for event in self.events
-            ),
+            events=tuple(event.times(factor) for event in self.events),
         )
 
     def changes(self) -> Iterator[tuple[int, tuple[fmpq, fmpq, fmpq]]]:
         """Force and powers of what is new with each event."""
-        now: dict[int, tuple[fmpq, fmpq_poly]] = {}
-        for event in self.events:
-            time, load = event.window * self.step + self.panels[event.panel].start, fmpq_poly(list(event.powers))
-            since, before = now.get(event.force, (time, fmpq_poly()))
-            now[event.force] = time, load
-            yield event.force, _three(load - before(fmpq_poly([time - since, 1])))
+        for event, powers in load_changes(self.events, [panel.start for panel in self.panels], self.step):
+            yield event.force, powers
 
     def stretches(self, delay: fmpq) -> tuple[Stretch, ...]:
         """Those of a wave that arrives `delay` after it was sent, in order; `start` counts from that of a window."""
@@ -251,18 +247,10 @@ class _Loads:
 
     def events(self, panels: tuple[MarchPanel, ...], step: fmpq) -> Iterator[LoadEvent]:
         """From each change on, the whole polynomial, in order."""
-        places = {panel.start: number for number, panel in enumerate(panels)}
-        now: dict[int, tuple[fmpq, fmpq_poly]] = {}
-        gains: dict[tuple[fmpq, int], fmpq_poly] = {}
+        gains: dict[tuple[fmpq, int], fmpq_poly] = defaultdict(fmpq_poly)
         for time, point, polynomial in self.changes:
-            at = time, self.numbers[point]
-            gains[at] = gains.get(at, fmpq_poly()) + polynomial
-        for (time, force), change in sorted(gains.items(), key=lambda item: item[0]):
-            since, before = now.get(force, (time, fmpq_poly()))
-            total = before(fmpq_poly([time - since, 1])) + change
-            now[force] = time, total
-            window = int((time / step).floor())
-            yield LoadEvent(window, places[time - window * step], force, _three(total))
+            gains[time, self.numbers[point]] += polynomial
+        return load_events(gains, (panel.start for panel in panels), step)
 
 
 def moved_by(point: Point, unit: UnitLoad) -> tuple[Any, ...]:
@@ -270,10 +258,6 @@ def moved_by(point: Point, unit: UnitLoad) -> tuple[Any, ...]:
     if point.motion == "acceleration":
         return (_ZERO, *(coefficient / (power + 1) for power, coefficient in enumerate(unit.coefficients)))
     return unit.coefficients if point.motion else tuple(joint_rule().load * each for each in unit.coefficients)
-
-
-def _three(load: fmpq_poly) -> tuple[fmpq, fmpq, fmpq]:
-    return load[0], load[1], load[2]
 
 
 def _heard(

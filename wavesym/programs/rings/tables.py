@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import cached_property
-from itertools import accumulate
 
 import numpy as np
 from flint import fmpq
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import Real
+from wavesym.programs.flat import firsts
 from wavesym.programs.rings.answer import Answer, answer
 from wavesym.programs.rings.plan import MarchedJoint, RingPlan
 
@@ -167,7 +167,3 @@ def state_bytes(plan: RingPlan, degree: int, real: Real) -> int:
     """The size of what a march remembers: the rings of waves."""
     slots = sum(track.steps + 1 for track in plan.tracks)
     return real.bytes * slots * len(plan.panels) * (degree + 1)
-
-
-def firsts(counts: Iterable[int]) -> tuple[int, ...]:
-    return tuple(accumulate(counts, initial=0))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from itertools import accumulate
 
 from flint import fmpq
 
@@ -13,6 +12,7 @@ from wavesym.mechanics.loads import Applied, AppliedRecord
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
+from wavesym.programs.flat import firsts
 from wavesym.programs.march.plan import LOAD, Plan
 from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
 from wavesym.programs.reference_values import reference_values
@@ -140,8 +140,7 @@ def _tables(made: RuntimePlan, real: Real) -> dict[str, tuple[float, ...]]:
     forces = {column: force for force, column in enumerate(plan.loaded)}
     places = {strength: place for place, strength in enumerate(strengths)}
 
-    def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
-        return tuple(map(real.nearest, values))
+    reals = real.table
 
     return {
         "half_length": reals(panel.length / 2 for panel in plan.panels),
@@ -158,12 +157,12 @@ def _tables(made: RuntimePlan, real: Real) -> dict[str, tuple[float, ...]]:
         "event_strength": tuple(places[push.strength] for push in pushes),
         "event_load": tuple(push.load for push in pushes),
         "from": tuple(real.not_below(begin) for begin in made.sections),
-        "first_strand": _firsts(map(len, listening)),
+        "first_strand": firsts(map(len, listening)),
         "strand_at": tuple(strand for group in listening for strand in group),
         "strand_start": reals(strand.start for strand in made.strands),
         "strand_excess": reals(rational(real.nearest(strand.start)) - strand.start for strand in made.strands),
         "strand_scale": reals(1 / strand.half for strand in made.strands),
-        "first_term": _firsts(len(strand.terms) for strand in made.strands),
+        "first_term": firsts(len(strand.terms) for strand in made.strands),
         "term_heard": tuple(term.heard for term in terms),
         "term_way": tuple(term.wave.way for term in terms),
         "term_sender": tuple(term.wave.column + (term.wave.way != LOAD) for term in terms),
@@ -180,10 +179,6 @@ def _alike(plan: Plan) -> tuple[int, ...]:
     """For each node on each panel the first with the same rate, on a panel of the same length."""
     bodies = [(node.rate, panel.length) for panel in plan.panels for node in plan.junctions]
     return tuple(map(bodies.index, bodies))
-
-
-def _firsts(counts: Iterable[int]) -> tuple[int, ...]:
-    return tuple(accumulate(counts, initial=0))
 
 
 @dataclass(frozen=True)

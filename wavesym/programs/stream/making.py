@@ -184,7 +184,7 @@ def _reference(model: Model, plan: StreamPlan, program: Program) -> SteppedValue
 
 
 def _row(real: Real, dtau: fmpq, loads: Sequence[fmpq]) -> SteppedRow:
-    return SteppedRow(real.nearest(dtau), tuple(map(real.nearest, loads)))
+    return SteppedRow(real.nearest(dtau), real.table(loads))
 
 
 def _leap(k: int, j: int) -> fmpq:

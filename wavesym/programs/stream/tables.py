@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import Real
+from wavesym.programs.flat import firsts
 from wavesym.programs.rings.plan import MarchedJoint
-from wavesym.programs.rings.tables import RingTables, firsts
+from wavesym.programs.rings.tables import RingTables
 from wavesym.programs.stream.kinks import kinks, points, transform
 from wavesym.programs.stream.plan import StreamPlan
 
@@ -49,7 +50,7 @@ class StreamTables:
         return {
             "slots": self._slots,
             "first_slot": firsts(self._slots),
-            "held": self._reals(track.held for track in rings.tracks),
+            "held": self._real.table(track.held for track in rings.tracks),
             **joints,
             "answer": joints["answer"][: len(self._joints)],
             "first_slip": firsts(map(len, slips)),
@@ -57,23 +58,23 @@ class StreamTables:
             "loaded": plan.loaded,
             "first_own": firsts(space.points for space in spaces),
             "first_law": firsts(map(len, laws)),
-            "law": self._reals(value for law in laws for value in law),
-            "base": self._reals(force.base for force in plan.acting),
-            "strength": self._reals(gain for force in plan.acting for gain in force.gains),
+            "law": self._real.table(value for law in laws for value in law),
+            "base": self._real.table(force.base for force in plan.acting),
+            "strength": self._real.table(gain for force in plan.acting for gain in force.gains),
             "integrated": tuple(int(force.summed) for force in plan.acting),
-            "instant": self._reals(instants),
+            "instant": self._real.table(instants),
             "transform": self._rounded(value for row in transform(self._degree) for value in row),
             "kink": self._rounded(
                 value * nearest(half) ** order for order, row in enumerate(kinks(self._degree)) for value in row
             ),
             "first_heard": firsts(len(output.heard) for output in rings.outputs),
             "track": tuple(one.track for one in heard),
-            "gain": self._reals(one.gain for one in heard),
+            "gain": self._real.table(one.gain for one in heard),
             "summed": tuple(int(one.summed) for one in heard),
             "late": tuple(whole for whole, _ in late),
-            "rest": self._reals(rest for _, rest in late),
+            "rest": self._real.table(rest for _, rest in late),
             "own_point": tuple(own[one.track][0] if one.track in own and one.delay == 0 else -1 for one in heard),
-            "own_ratio": self._reals(own[one.track][1] if one.track in own else fmpq(0) for one in heard),
+            "own_ratio": self._real.table(own[one.track][1] if one.track in own else fmpq(0) for one in heard),
         }
 
     def constants(self, tolerance: float) -> dict[str, float]:
@@ -185,9 +186,6 @@ class StreamTables:
         shown = np.array([[nearest(v) for v in row] for row in joint.space.shown.tolist()])
         rows = CAUTION * shown @ (missed / weights)
         return [float(f"{value:.3g}") for value in rows.ravel().tolist()]
-
-    def _reals(self, values: Iterable[fmpq]) -> tuple[float, ...]:
-        return tuple(map(self._real.nearest, values))
 
     def _rounded(self, values: Iterable[float]) -> tuple[float, ...]:
         return tuple(self._real.nearest(rational(value)) for value in values)

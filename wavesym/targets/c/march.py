@@ -22,6 +22,7 @@ class CMarch:
     constants: dict[str, str]
     last_window: str
     numbers: str
+    series: str
     kernel: str
 
 
@@ -49,6 +50,7 @@ def source(scene: Description, program: Program) -> str:
         constants=c_constants(program.constants, program.real),
         last_window=_last_window(program),
         numbers=kernel("real.h", scene),
+        series=kernel("series.h", scene),
         kernel=kernel("march.c", scene),
     )
     return render("c/march.c.j2", context)

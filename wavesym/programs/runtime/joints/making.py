@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import accumulate
+from collections.abc import Iterator, Sequence
 from math import ceil, sqrt
 from typing import Any
 
@@ -14,6 +13,7 @@ from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import Real
+from wavesym.programs.flat import firsts
 from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.request import Request
 from wavesym.programs.rings.plan import RingPlan
@@ -177,15 +177,14 @@ def _tables(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[
     windows = [plan.step * phase for phase in range(plan.cycle[0])]
     starts = [begin + strand.start for begin in windows for strand in made.strands]
 
-    def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
-        return tuple(map(real.nearest, values))
+    reals = real.table
 
     return {
-        "first_point": _firsts(len(joint.forces) for joint in plan.joints),
-        "first_state": _firsts(len(space.weights) for space in spaces),
-        "first_port": _firsts(len(space.ports) for space in spaces),
+        "first_point": firsts(len(joint.forces) for joint in plan.joints),
+        "first_state": firsts(len(space.weights) for space in spaces),
+        "first_port": firsts(len(space.ports) for space in spaces),
         **{
-            f"at_{name}": _firsts(len(_flat(getattr(space, name))) for space in spaces)
+            f"at_{name}": firsts(len(_flat(getattr(space, name))) for space in spaces)
             for name in ("rates", "pushed", "shown", "passed")
         },
         "point_of": tuple(port.point for space in spaces for port in space.ports),
@@ -193,7 +192,7 @@ def _tables(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[
         "arrive": tuple(track for joint in plan.joints for track in joint.arrive),
         "send": tuple(track for joint in plan.joints for track in joint.sends),
         "steps": tuple(track.steps for track in plan.tracks),
-        "ring": _firsts(track.steps + 1 for track in plan.tracks),
+        "ring": firsts(track.steps + 1 for track in plan.tracks),
         "is_mass": (*_masses(made), 0),
         "half_length": reals(panel.length / 2 for panel in plan.panels),
         "since_panel": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
@@ -209,12 +208,12 @@ def _tables(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[
             *(real.not_below(begin + at) for begin in windows for at in made.sections[:-1]),
             real.nearest(fmpq(plan.cycle[1])),
         ),
-        "first_strand": _firsts(map(len, listening)),
+        "first_strand": firsts(map(len, listening)),
         "strand_at": tuple(strand for group in listening for strand in group),
         "strand_start": reals(starts),
         "strand_excess": reals(rational(real.nearest(start)) - start for start in starts),
         "strand_scale": reals(1 / strand.half for strand in made.strands),
-        "first_term": _firsts(len(strand.terms) for strand in made.strands),
+        "first_term": firsts(len(strand.terms) for strand in made.strands),
         "term_heard": tuple(term.heard for term in terms),
         "term_track": tuple(term.wave.track for term in terms),
         "term_back": tuple(term.stretch.back for term in terms),
@@ -231,7 +230,3 @@ def _masses(made: JointsPlan) -> Iterator[int]:
     for joint in made.plan.joints:
         if isinstance(rows := joint.space, JointRows):  # others have no state
             yield from (int(n < rows.masses) for n in range(len(rows.weights)))
-
-
-def _firsts(counts: Iterable[int]) -> tuple[int, ...]:
-    return tuple(accumulate(counts, initial=0))

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wavesym.lab.many_sets import FIRST, LAST, MANY, SETS
+from wavesym.lab.bench.many_sets import FIRST, LAST, MANY, SETS
 from wavesym.lab.timing import medians, ran
 from wavesym.scene import Scene
 from wavesym.sweeps import recorded

@@ -10,7 +10,7 @@ from time import perf_counter
 
 import numpy as np
 
-from wavesym.lab.harness import PLAIN, chosen_compiler, compilers
+from wavesym.lab.bench.harness import PLAIN, chosen_compiler, compilers
 from wavesym.lab.stream import stream
 from wavesym.lab.timing import medians, ran
 from wavesym.numbers.doubles import nearest

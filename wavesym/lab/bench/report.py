@@ -1,4 +1,4 @@
-"""How fast: `make bench` writes bench/README.md, measured in one run, single thread, as ratios to the write floor."""
+"""The page that `make bench` writes: measured in one run, single thread, as ratios to the write floor."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from wavesym.lab import many_sets, panels, parameters, recorded, streamed, swept
-from wavesym.lab.equal_degree import Fitted, at_degree, fitted, ratios
-from wavesym.lab.harness import CALLS, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
+from wavesym.lab.bench import many_sets, panels, parameters, recorded, streamed, swept
+from wavesym.lab.bench.equal_degree import Fitted, at_degree, fitted, ratios
+from wavesym.lab.bench.harness import CALLS, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
 from wavesym.lab.timing import least, medians, ran
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import choose
@@ -360,12 +360,3 @@ def _growth() -> Iterator[Sequence[str]]:
             times.append(perf_counter() - start)
         exponents = (np.polyfit(np.log(values), np.log(costs), 1)[0] for costs in (times, sizes))
         yield name, f"{values[0]} to {values[-1]}", *(f"{exponent:.2f}" for exponent in exponents)
-
-
-if __name__ == "__main__":
-    folder = Path(sys.argv[1])
-    lines = []
-    for line in report(folder):  # each as soon as it is measured: what takes minutes is seen to go on
-        print(line, flush=True)
-        lines.append(f"{line}\n")
-    Path(folder, "README.md").write_text("".join(lines), encoding="utf-8")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from wavesym.lab.harness import PLAIN, chosen_compiler, compilers
+from wavesym.lab.bench.harness import PLAIN, chosen_compiler, compilers
 from wavesym.lab.stream import stream
 from wavesym.lab.timing import least
 from wavesym.programs.request import Request

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import WavesymError
-from wavesym.lab.floor import floor
-from wavesym.lab.standard import standard
-from wavesym.lab.subjects import Subject, opponents, reference, subjects, taus
+from wavesym.lab.chart.floor import floor
+from wavesym.lab.chart.standard import standard
+from wavesym.lab.chart.subjects import Subject, opponents, reference, subjects, taus
 from wavesym.lab.timing import medians
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.making import runtime_program

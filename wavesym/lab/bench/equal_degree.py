@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from flint import fmpq
 
-from wavesym.lab.harness import SAMPLES, many
+from wavesym.lab.bench.harness import SAMPLES, many
 from wavesym.lab.timing import medians
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import choose

@@ -1,132 +1,24 @@
-"""Evaluator -> Program: its numbers as flat tables by name, each as it will be written.
-
-Indices are ints, all else floats of the program's format. `first_...[g]` is where group g starts in a table, and
-`first_...[g + 1]` where it ends.
-"""
+"""A march as flat tables and single numbers: what schemes/march.py and templates/c/march.c are run from."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from itertools import accumulate
+from typing import TYPE_CHECKING
 
 from flint import arb, ctx, fmpq
 
 from wavesym.numbers.doubles import middle, rational
 from wavesym.numbers.reals import Real
-from wavesym.programs.closed import ClosedForm
-from wavesym.programs.hats.evaluator import HatMarch
-from wavesym.programs.march.evaluator import MarchEvaluator
+from wavesym.programs.flat import firsts
 from wavesym.programs.march.given import SMOOTH
 from wavesym.programs.march.plan import Plan, Stretch
-from wavesym.programs.modes.evaluator import ModesEvaluator
-from wavesym.programs.pieces import Pieces
-from wavesym.programs.program import Driven, Program, Provenance
-from wavesym.programs.rings.evaluator import RingMarch
+
+if TYPE_CHECKING:
+    from wavesym.programs.march.evaluator import MarchEvaluator
 
 
-def assemble(
-    evaluator: ClosedForm | Pieces | MarchEvaluator | RingMarch | HatMarch | ModesEvaluator, provenance: Provenance
-) -> Program:
-    """The program of an evaluator, whatever its bound."""
-    match evaluator:
-        case ClosedForm():
-            return _closed(evaluator, provenance)
-        case Pieces():
-            return _pieces(evaluator, provenance)
-        case MarchEvaluator():
-            return _march(evaluator, provenance)
-        case RingMarch(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
-            return Program("rings", evaluator.real, tau_max, outputs, tables, constants, evaluator.bytes, provenance)
-        case HatMarch(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
-            return Program(
-                "hats",
-                evaluator.real,
-                tau_max,
-                outputs,
-                tables,
-                constants,
-                evaluator.bytes,
-                provenance,
-                numpy_only=evaluator.refusal,
-            )
-        case ModesEvaluator(tau_max=tau_max, outputs=outputs, tables=tables, constants=constants):
-            return Program(
-                "modes",
-                evaluator.real,
-                tau_max,
-                outputs,
-                tables,
-                constants,
-                evaluator.bytes,
-                provenance,
-                sources=evaluator.told_sources,
-                proved=evaluator.proved,
-            )
-
-
-def _closed(form: ClosedForm, provenance: Provenance) -> Program:
-    """Of output o the pulses first_pulse[o] ... in order of their start; of a pulse its families, of these the powers.
-
-    `coefficient` has the powers of a family, lowest first.
-    """
-    pulses = [pulse for output in form.outputs for pulse in output.pulses]
-    families = [family for pulse in pulses for family in pulse.families]
-    tables: dict[str, tuple[float, ...]] = {
-        "first_pulse": _firsts(len(output.pulses) for output in form.outputs),
-        "start": tuple(pulse.start for pulse in pulses),
-        "excess": tuple(pulse.excess for pulse in pulses),
-        "first_family": _firsts(len(pulse.families) for pulse in pulses),
-        "rate": tuple(family.rate for family in families),
-        "first_power": _firsts(len(family.powers) for family in families),
-        "coefficient": tuple(power for family in families for power in family.powers),
-    }
-    return Program("closed", form.real, form.tau_max, form.outputs, tables, {}, form.bytes, provenance)
-
-
-def _pieces(form: Pieces, provenance: Provenance) -> Program:
-    """Of grid g its outputs first_member[g] ..., its pieces, and at first_piece[g] + g their starts and the last end.
-
-    The polynomials of piece p of all grids start at first_power[p] in `coefficient`: highest power first, of each power
-    those of all members. To find tau's piece: from part[first_part[g] + int(tau * scale[g])] at most `steps` on.
-    """
-    grids = form.grids
-    pieces = [piece for grid in grids for piece in grid.powers]
-    tables: dict[str, tuple[float, ...]] = {
-        "first_member": _firsts(len(grid.outputs) for grid in grids),
-        "member": tuple(k for grid in grids for k in grid.outputs),
-        "first_piece": _firsts(len(grid.centres) for grid in grids),
-        "start": tuple(start for grid in grids for start in grid.starts),
-        "centre": tuple(centre for grid in grids for centre in grid.centres),
-        "first_part": _firsts(len(grid.first) for grid in grids),
-        "scale": tuple(grid.scale for grid in grids),
-        "part": tuple(piece for grid in grids for piece in grid.first),
-        "first_power": _firsts(sum(map(len, piece)) for piece in pieces),
-        "coefficient": tuple(c for piece in pieces for power in reversed([*zip(*piece, strict=True)]) for c in power),
-    }
-    constants: dict[str, float] = {"steps": max(grid.steps for grid in grids)}
-    return Program("pieces", form.real, form.tau_max, form.outputs, tables, constants, form.bytes, provenance)
-
-
-def _march(evaluator: MarchEvaluator, provenance: Provenance) -> Program:
-    """A march remembers waves; what it is made of are tables of a window, and constants."""
-    plan, given = evaluator.plan, evaluator.given
-    return Program(
-        "march",
-        evaluator.real,
-        plan.tau_max,
-        evaluator.outputs,
-        _march_tables(evaluator),
-        _march_constants(evaluator),
-        evaluator.bytes,
-        provenance,
-        sources=tuple(channel.name for channel in plan.channels),
-        whole=math.isinf(plan.valid),
-        driven=Driven(given.windows, given.errors) if given else None,
-    )
-
-
-def _march_tables(evaluator: MarchEvaluator) -> dict[str, tuple[float, ...]]:
+def march_tables(evaluator: MarchEvaluator) -> dict[str, tuple[float, ...]]:
     """Panels, nodes, the operators of bodies, changes of loads, loads to be given, outputs, and where waves arrive."""
     plan, real, degree = evaluator.plan, evaluator.real, evaluator.degree
     nodes, panels = plan.junctions, plan.panels
@@ -172,13 +64,13 @@ def _march_tables(evaluator: MarchEvaluator) -> dict[str, tuple[float, ...]]:
         "source_force": tuple(channel.force for channel in plan.channels),
         "source_gain": reals(channel.gain for channel in plan.channels),
         "source_integral": tuple(channel.order for channel in plan.channels),
-        "first_heard": _firsts(map(len, heard)),
+        "first_heard": firsts(map(len, heard)),
         "way": tuple(each.way for of in heard for each in of),
         "sender": tuple(each.column for of in heard for each in of),
         "gain": reals(each.gain for of in heard for each in of),
         "summed": tuple(int(each.summed) for of in heard for each in of),
         "delay": tuple(delays.index(each.delay) for of in heard for each in of),
-        "first_stretch": _firsts(map(len, stretches)),
+        "first_stretch": firsts(map(len, stretches)),
         "from": tuple(_counts_from(stretch, real) for stretch in flat),
         "start": reals(stretch.start for stretch in flat),
         "excess": reals(rational(real.nearest(stretch.start)) - stretch.start for stretch in flat),
@@ -187,7 +79,7 @@ def _march_tables(evaluator: MarchEvaluator) -> dict[str, tuple[float, ...]]:
     }
 
 
-def _march_constants(evaluator: MarchEvaluator) -> dict[str, float]:
+def march_constants(evaluator: MarchEvaluator) -> dict[str, float]:
     """Sizes, and what the program holds the loads and its own polynomials against."""
     plan, real, degree = evaluator.plan, evaluator.real, evaluator.degree
     constants: dict[str, float] = {
@@ -215,11 +107,6 @@ def _march_constants(evaluator: MarchEvaluator) -> dict[str, float]:
             "given_error": real.not_below(rational(max(evaluator.given.errors))),
         }
     return constants
-
-
-def _firsts(counts: Iterable[int]) -> tuple[int, ...]:
-    """Where each group starts in a flat table, and where the last one ends."""
-    return tuple(accumulate(counts, initial=0))
 
 
 def _last_window(plan: Plan, real: Real) -> int:

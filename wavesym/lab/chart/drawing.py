@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from wavesym.lab.measure import NEAR, ChartRow, Measured
+from wavesym.lab.chart.measure import NEAR, ChartRow, Measured
 from wavesym.report.labels import Curve, label
 from wavesym.scene import Scene
 from wavesym.systems import Preset, SystemTable
