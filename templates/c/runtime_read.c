@@ -31,7 +31,9 @@ static int section_at(real tau)
     while (at < last && t >= from[at + 1]) {
         ++at;
     }
-    return cycle * CYCLE * SECTIONS + at;
+    /* the last cycle need not be whole */
+    const int found = cycle * CYCLE * SECTIONS + at, end = NAME_WINDOWS * SECTIONS;
+    return found < end ? found : end - 1;
 }
 
 int name_model_eval(const name_model *model, name_real tau, name_real *out)

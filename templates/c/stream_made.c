@@ -270,8 +270,10 @@ static int made_of(stream *state, const name_parameters *parameters)
     }
     for (int n = 0; n < LOADED; ++n) {
         const real speed = speed_of(state, loaded[n], 0);
-        fine &= speed * panel <= (real)MOST_PARTS;
-        fastest = speed <= fastest ? fastest : speed;
+        const real most = (real)MOST_PARTS / panel;
+        fine &= speed <= most;
+        /* of what is refused, too: it counts parts */
+        fastest = speed == speed && speed > fastest && speed <= most ? speed : fastest;
     }
     return fine ? 0 : 2;
 }
