@@ -251,7 +251,7 @@ def test_a_rod_end_of_another_law_is_seen(place: str, monkeypatch: pytest.Monkey
 
     true = joint_rule()
     wrong = true._replace(**{place: (getattr(true, place)[0], 3 * getattr(true, place)[1])})
-    for module in ("network_response", "foreseen", "joint"):
+    for module in ("tables.network_response", "tables.foreseen", "joints.joint"):
         monkeypatch.setattr(f"wavesym.exact.{module}.joint_rule", lambda: wrong)
     assert faulty(STEPPED, {})
 
