@@ -29,7 +29,7 @@ from typing import NamedTuple
 from tests.mutation.operators import Mutant, Names, mutants
 
 ROOT = Path(__file__).resolve().parents[2]
-ROOMS = ("wavesym/programs/**/*.py", "templates/c/*.c", "templates/c/series.h")
+ROOMS = ("wavesym/programs/**/*.py", "templates/c/**/*.c", "templates/c/series.h")
 ROOMS += tuple(
     f"wavesym/exact/{name}.py" for name in ("tables/ball", "contacts/contact", "motion", "reference", "tables/signal")
 )

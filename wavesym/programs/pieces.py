@@ -40,7 +40,7 @@ from wavesym.programs.program import Program, ProgramOutput, Provenance
 
 # A table larger than this is for the march.
 MOST_BYTES = 4 << 20
-# The numbers from 0 on that C has for the widest vectors (templates/c/pieces.c).
+# The numbers from 0 on that C has for the widest vectors (templates/c/pieces/pieces.c).
 _OFFSETS = 16
 # Pieces in a unit of tau: shorter ones have lower degrees and round less, in larger tables, and fewer samples are on
 # each.
