@@ -25,6 +25,9 @@ def lines(language: str) -> list[list[str]]:
 
 
 ORDER = {room: number for number, rooms in enumerate(lines("order")) for room in rooms}
+BESIDE = ""
+"""Stands for the files of `exact` that are in none of its rooms."""
+EXACT = {room: number for number, rooms in enumerate([*lines("exact"), [BESIDE]]) for room in rooms}
 EXCEPTIONS = {(room, other) for room, other, *_ in lines("exceptions")}
 WALLS = {library: set(rooms) for library, *rooms in lines("walls")}
 
@@ -35,8 +38,8 @@ def imported(source: str) -> Iterator[str]:
         match node:
             case ast.Import(names):
                 yield from (name.name for name in names)
-            case ast.ImportFrom("wavesym", names):
-                yield from (f"wavesym.{name.name}" for name in names)
+            case ast.ImportFrom("wavesym" | "wavesym.exact" as package, names):
+                yield from (f"{package}.{name.name}" for name in names)
             case ast.ImportFrom(str(module)):
                 yield module
 
@@ -55,8 +58,16 @@ def against(order: Mapping[str, int], found: Iterator[tuple[str, str, str]]) -> 
     return {
         (room, other)
         for room, other in arrows
-        if room in ROOMS and other in ROOMS and room != other and order[other] >= order[room]
+        if room in order and other in order and room != other and order[other] >= order[room]
     }
+
+
+def within_exact(found: Iterator[tuple[str, str, str]]) -> Iterator[tuple[str, str, str]]:
+    """The imports inside of `exact`, told as if its rooms were those of the house."""
+    for file, _, module in found:
+        if file.startswith("exact/") and module.startswith("wavesym.exact."):
+            room, other = (name if name in EXACT else BESIDE for name in (file.split("/")[1], module.split(".")[2]))
+            yield file, room, f"wavesym.{other}"
 
 
 def beyond(walls: Mapping[str, set[str]], found: Iterator[tuple[str, str, str]]) -> set[tuple[str, str]]:
@@ -85,6 +96,11 @@ def test_imports_keep_to_the_order() -> None:
     assert against(ORDER, uses()) == EXCEPTIONS
 
 
+def test_the_rooms_of_exact_are_named_and_keep_to_their_order() -> None:
+    assert {path.parent.name for path in (PACKAGE / "exact").glob("*/__init__.py")} == EXACT.keys() - {BESIDE}
+    assert against(EXACT, within_exact(uses())) == set()
+
+
 def test_libraries_stay_behind_their_walls() -> None:
     assert beyond(WALLS, uses()) == set()
     assert set(WALLS) <= {module.split(".")[0] for _, _, module in uses()}
@@ -96,6 +112,17 @@ def test_libraries_stay_behind_their_walls() -> None:
 def test_an_arrow_that_runs_up_is_seen(room: str, source: str) -> None:
     (module,) = imported(source)
     assert against(ORDER, iter([("file.py", room, module)])) == {(room, module.split(".")[1])}
+
+
+@pytest.mark.parametrize(
+    ("room", "module"), [("joints", "tables.ball"), ("contacts", "motion"), ("modes", "joints.joint")]
+)
+def test_an_arrow_that_runs_up_in_exact_is_seen(room: str, module: str) -> None:
+    found = [
+        (f"exact/{room}/file.py", "exact", f"wavesym.exact.{module}"),
+        ("exact/field.py", "exact", "wavesym.exact.joints.joint"),
+    ]
+    assert {name for name, _ in against(EXACT, within_exact(iter(found)))} == {room}
 
 
 def test_a_library_beyond_its_wall_is_seen() -> None:

@@ -18,9 +18,9 @@ import pytest
 from flint import arb, ctx, fmpq
 
 from tests.support.generated import files
-from wavesym.exact.ball import Balls, segments, values
 from wavesym.exact.motion import Motion
-from wavesym.exact.signal import signals
+from wavesym.exact.tables.ball import Balls, segments, values
+from wavesym.exact.tables.signal import signals
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.scene import Scene, lower
 

@@ -63,7 +63,7 @@ def test_who_writes_c_of_pieces_waits_for_nothing_else(tmp_path: Path) -> None:
     seen = set(loaded.rpartition("LOADED")[2].split())
     others = {f"wavesym.programs.{kind}.evaluator" for kind in ("march", "modes", "rings", "hats")}
     assert {"sympy", "wavesym.programs.pieces"} <= seen  # it did its work
-    assert not seen & {*others, "numpy", "scipy", "pint", "wavesym.exact.schedule", "wavesym.compiler.values"}
+    assert not seen & {*others, "numpy", "scipy", "pint", "wavesym.exact.contacts.schedule", "wavesym.compiler.values"}
 
 
 @pytest.mark.parametrize(("told", "threads"), [(None, "1"), ("3", "3")])
@@ -76,7 +76,7 @@ def test_commands_keep_numpy_to_one_thread(monkeypatch: pytest.MonkeyPatch, told
 
 
 @pytest.mark.parametrize(
-    "first", first_always(["__import__('wavesym.exact.table')", "wavesym.evaluator", "wavesym.tables"])
+    "first", first_always(["__import__('wavesym.exact.tables.table')", "wavesym.evaluator", "wavesym.tables"])
 )
 def test_tables_is_the_function_whatever_was_imported_before(first: str) -> None:
     assert run_python(f"import wavesym\n{first}\nprint(callable(wavesym.tables))") == "True\n"

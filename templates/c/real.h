@@ -4,7 +4,7 @@
 
 #if (defined(__FAST_MATH__) || defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)) && \
     !defined(NAME_ALLOW_FAST_MATH)
-#error "-ffast-math: bounds of errors no longer hold, nor NaN out of range (-DNAME_ALLOW_FAST_MATH takes it all the same)"
+#error "-ffast-math: bounds of errors no longer hold, nor NaN out of range (-D NAME_ALLOW_FAST_MATH takes it all the same)"
 #endif
 
 typedef name_real real;

@@ -13,7 +13,7 @@ from wavesym.derivation.delay import _at_node, delay_equations
 from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, node_law
 from wavesym.derivation.recurrence import joint_rule, recurrence, stretch_law
 from wavesym.derivation.recurrence import node_rule as numbers_of
-from wavesym.exact import node_rules
+from wavesym.exact.joints import node_rules
 from wavesym.mechanics.node import Node, Rod
 from wavesym.scene import Scene, lower
 

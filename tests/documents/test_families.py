@@ -14,8 +14,8 @@ from wavesym.documents.derivation.chain_laws import meanings, own_laws
 from wavesym.documents.derivation.document import derivation
 from wavesym.documents.derivation.families import integral, own_rate, solved
 from wavesym.documents.derivation.patterns import GENERIC, pattern_laws, patterns, rates
-from wavesym.exact.increments import integrated
-from wavesym.exact.table import full_table
+from wavesym.exact.tables.increments import integrated
+from wavesym.exact.tables.table import full_table
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
 from wavesym.mechanics.symbolic import symbolic

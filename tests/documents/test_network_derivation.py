@@ -19,8 +19,8 @@ from wavesym.derivation.numbers import symbol
 from wavesym.documents.derivation.joint_kinds import alone, kinds, values
 from wavesym.documents.derivation.network_statement import MOST_SYMBOLIC, network_statement, symbolic_polynomial
 from wavesym.documents.derivation.notation import Text
-from wavesym.exact.joint import JointLaw
-from wavesym.exact.joint_response import joint_polynomial
+from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.tables.joint_response import joint_polynomial
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.numbers.ratio import Ring
 from wavesym.scene import Scene, lower

@@ -9,8 +9,8 @@ import pytest
 
 from wavesym.documents.walks import walk_polynomials
 from wavesym.errors import CostError
-from wavesym.exact.table import Function
-from wavesym.exact.walks import departures, function_walks, letters, units, walks_until
+from wavesym.exact.tables.table import Function
+from wavesym.exact.tables.walks import departures, function_walks, letters, units, walks_until
 from wavesym.mechanics.symbolic import generic
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND
 from wavesym.systems.drive import DRIVE

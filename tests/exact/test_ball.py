@@ -10,11 +10,11 @@ from flint import arb, arb_poly, ctx, fmpq
 import wavesym
 from tests.support.truth import Truth
 from wavesym.errors import RangeError
-from wavesym.exact import ball as room
 from wavesym.exact import reference
-from wavesym.exact.ball import Balls, Segment, largest, segments, values
 from wavesym.exact.reference import Reference
-from wavesym.exact.signal import Arrival, Signal
+from wavesym.exact.tables import ball as room
+from wavesym.exact.tables.ball import Balls, Segment, largest, segments, values
+from wavesym.exact.tables.signal import Arrival, Signal
 from wavesym.numbers.balls import precise
 from wavesym.scene import lower
 

@@ -14,8 +14,8 @@ import wavesym
 from tests.support.drawn import systems
 from tests.support.truth import Truth
 from wavesym.errors import CostError
-from wavesym.exact import contact
-from wavesym.exact.contact import contact_ends
+from wavesym.exact.contacts import contact
+from wavesym.exact.contacts.contact import contact_ends
 from wavesym.numbers.doubles import fraction, middle, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.scene import lower

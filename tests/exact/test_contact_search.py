@@ -7,9 +7,9 @@ from math import factorial
 import pytest
 from flint import arb, arb_poly, ctx, fmpq
 
-from wavesym.exact.ball import Segment
-from wavesym.exact.contact import _compressed_at_first, _first_return, _not_compressed, _Series, _zero
-from wavesym.exact.signal import Arrival, Signal
+from wavesym.exact.contacts.contact import _compressed_at_first, _first_return, _not_compressed, _Series, _zero
+from wavesym.exact.tables.ball import Segment
+from wavesym.exact.tables.signal import Arrival, Signal
 from wavesym.numbers.balls import precise
 
 # a zero that a polynomial crosses at a slope of about 1 is known to some widths of the search

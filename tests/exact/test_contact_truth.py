@@ -13,7 +13,7 @@ from hypothesis import given, reject, settings
 from tests.support.striking import seeded, striking
 from tests.support.unilateral import Unclear, Unilateral
 from wavesym.errors import WavesymError
-from wavesym.exact.events import events
+from wavesym.exact.contacts.events import events
 from wavesym.exact.reference import Reference
 from wavesym.scene import Scene, lower
 

@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from tests.support.parting import Rod, Struck
 from tests.support.touching import FIXED, at, body, contact, line, q, rod, seen, told, values
 from wavesym.errors import CostError, WavesymError
-from wavesym.exact import schedule as room
-from wavesym.exact.cluster import Cluster
-from wavesym.exact.events import events
+from wavesym.exact.contacts import schedule as room
+from wavesym.exact.contacts.cluster import Cluster
+from wavesym.exact.contacts.events import events
+from wavesym.exact.contacts.schedule import GrazingError
 from wavesym.exact.field import Field
 from wavesym.exact.knots import Knots
 from wavesym.exact.reference import Reference
-from wavesym.exact.schedule import GrazingError
 from wavesym.exact.silence import silent
 
 DELAYS = [1, 1, "1/2", "3/2", "1.000000001"]
@@ -135,7 +135,7 @@ def test_a_force_of_the_wrong_sign_is_seen(monkeypatch):
 
 
 def test_a_gap_of_the_wrong_sign_is_seen(monkeypatch):
-    from wavesym.exact import touching_joint
+    from wavesym.exact.contacts import touching_joint
 
     rate = touching_joint._rate
     monkeypatch.setattr(
@@ -236,7 +236,7 @@ def test_a_contact_that_no_bits_decide_is_refused_with_the_instant(monkeypatch):
         known = inexact(exact)
         return room.Enclosed(known.polynomial, arb(2) ** -300) if exact.length() > 1 else known
 
-    monkeypatch.setattr("wavesym.exact.touching_joint.Enclosed.of", blurred)
+    monkeypatch.setattr("wavesym.exact.contacts.touching_joint.Enclosed.of", blurred)
     with pytest.raises(
         GrazingError, match=r"^contact at 0: its gap is 0 at tau = (1|0\.9+\d*) and \d+ bits do not show"
     ):

@@ -12,10 +12,10 @@ from tests.support.drawn import scenes
 from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import motion as room
-from wavesym.exact.ball import Balls
-from wavesym.exact.joint import Enclosed
+from wavesym.exact.joints.joint import Enclosed
+from wavesym.exact.joints.network_waves import SentWave
 from wavesym.exact.motion import Motion, is_zero
-from wavesym.exact.network_waves import SentWave
+from wavesym.exact.tables.ball import Balls
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import End
 from wavesym.numbers.doubles import rational

@@ -19,14 +19,14 @@ from tests.support.chains import chains
 from tests.support.drawn import scenes
 from tests.support.laplace import Laplace, Ratio
 from wavesym.errors import CostError, UnservedError
-from wavesym.exact.ball import Balls, segments
-from wavesym.exact.increments import Increment, combined
-from wavesym.exact.joint import JointLaw
-from wavesym.exact.network_joints import NetworkJoints
-from wavesym.exact.network_response import RuledNetwork
-from wavesym.exact.network_table import NetworkTable, network_table
-from wavesym.exact.signal import Signal, observed, signals
-from wavesym.exact.table import Function, full_table
+from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.tables.ball import Balls, segments
+from wavesym.exact.tables.increments import Increment, combined
+from wavesym.exact.tables.network_joints import NetworkJoints
+from wavesym.exact.tables.network_response import RuledNetwork
+from wavesym.exact.tables.network_table import NetworkTable, network_table
+from wavesym.exact.tables.signal import Signal, observed, signals
+from wavesym.exact.tables.table import Function, full_table
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.scene import Scene, lower
@@ -251,7 +251,7 @@ def test_a_rod_end_of_another_law_is_seen(place: str, monkeypatch: pytest.Monkey
 
     true = joint_rule()
     wrong = true._replace(**{place: (getattr(true, place)[0], 3 * getattr(true, place)[1])})
-    for module in ("network_response", "foreseen", "joint"):
+    for module in ("tables.network_response", "tables.foreseen", "joints.joint"):
         monkeypatch.setattr(f"wavesym.exact.{module}.joint_rule", lambda: wrong)
     assert faulty(STEPPED, {})
 
@@ -342,7 +342,7 @@ def test_what_would_be_large_is_counted_first(monkeypatch: pytest.MonkeyPatch) -
         raise AssertionError("solved")
 
     monkeypatch.setattr(RuledNetwork, "_velocities", solved)
-    monkeypatch.setattr("wavesym.exact.foreseen.MOST_FRONTS", 2000)
+    monkeypatch.setattr("wavesym.exact.tables.foreseen.MOST_FRONTS", 2000)
     parts = [{"mass": 1, "name": "a"}]
     for k in range(12):
         parts += [{"rod": f"{100 + k}/100"}, {"mass": f"{k + 2}/{k + 1}"}]

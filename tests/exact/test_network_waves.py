@@ -12,9 +12,9 @@ import wavesym
 from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import knots as room
-from wavesym.exact.joint import Enclosed
+from wavesym.exact.joints.joint import Enclosed
+from wavesym.exact.joints.network_waves import NetworkWaves, SentWave
 from wavesym.exact.knots import Knots
-from wavesym.exact.network_waves import NetworkWaves, SentWave
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.network import Bar, End, Link, Network, Point
 from wavesym.numbers.doubles import rational

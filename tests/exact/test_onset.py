@@ -7,11 +7,11 @@ from flint import arb, ctx, fmpq, fmpq_poly
 
 from tests.support.touching import FIXED, body, contact, line, q, rod, seen, told
 from wavesym.errors import CostError
-from wavesym.exact import schedule as room
-from wavesym.exact.events import events
-from wavesym.exact.joint import JointLaw
-from wavesym.exact.joint_onset import onsets
-from wavesym.exact.onset import ORDER, Onset, combined
+from wavesym.exact.contacts import schedule as room
+from wavesym.exact.contacts.events import events
+from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.joint_onset import onsets
+from wavesym.exact.joints.onset import ORDER, Onset, combined
 from wavesym.exact.reference import Reference
 from wavesym.programs.pieces import pieces
 

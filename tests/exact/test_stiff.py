@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 import wavesym
 from tests.exact.test_chain_truth import missed, wrong_values
 from wavesym.errors import CostError
-from wavesym.exact.events import events
-from wavesym.exact.joint import SWING, JointLaw
+from wavesym.exact.contacts.events import events
+from wavesym.exact.joints.joint import SWING, JointLaw
 from wavesym.exact.knots import MOST_KNOTS, Knots
 from wavesym.exact.motion import Motion
 from wavesym.exact.reference import Reference

@@ -15,11 +15,11 @@ import wavesym
 from tests.support.chains import chains
 from tests.support.drawn import loads, systems
 from wavesym.errors import CostError
-from wavesym.exact.ball import Balls
-from wavesym.exact.increments import Increment, add, start, trimmed
 from wavesym.exact.motion import Motion
-from wavesym.exact.signal import Signal, signals
 from wavesym.exact.silence import silent
+from wavesym.exact.tables.ball import Balls
+from wavesym.exact.tables.increments import Increment, add, start, trimmed
+from wavesym.exact.tables.signal import Signal, signals
 from wavesym.mechanics import gauge
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe

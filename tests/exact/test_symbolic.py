@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wavesym.errors import SceneError
-from wavesym.exact.rate_letters import in_rates
-from wavesym.exact.table import full_table
+from wavesym.exact.tables.rate_letters import in_rates
+from wavesym.exact.tables.table import full_table
 from wavesym.mechanics import symbolic as symbolic_module
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters

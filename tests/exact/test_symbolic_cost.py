@@ -4,9 +4,9 @@ import pytest
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.exact.rate_letters import in_rates
-from wavesym.exact.symbolic_cost import LARGEST_SYMBOLIC, refuse_costly, symbolic_terms
-from wavesym.exact.table import full_table
+from wavesym.exact.tables.rate_letters import in_rates
+from wavesym.exact.tables.symbolic_cost import LARGEST_SYMBOLIC, refuse_costly, symbolic_terms
+from wavesym.exact.tables.table import full_table
 from wavesym.mechanics.symbolic import generic
 from wavesym.numbers.ratio import Ratio
 from wavesym.systems.building import BUILDING_FORCE, BUILDING_GROUND

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from flint import fmpq
 
-from wavesym.exact.events import events
+from wavesym.exact.contacts.events import events
 from wavesym.exact.knots import Knots
 from wavesym.lab.bench import equal_degree, recorded, report
 from wavesym.lab.bench.equal_degree import Fitted, at_degree, fitted, ratios

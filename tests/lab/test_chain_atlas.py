@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from wavesym.exact.events import events
+from wavesym.exact.contacts.events import events
 from wavesym.lab.atlas import contacts, dashpots, lengths, refusals, stiffness
 from wavesym.lab.atlas.attempts import ROUNDED
 from wavesym.lab.atlas.scenes import TOLERANCE

@@ -20,8 +20,22 @@ from wavesym.running.toolchain import CompilerError, compiler
 
 PAGE = "docs/portability.md"
 (PIECES,) = (subject for subject in PROVED if subject.name == "pieces_double")
-(BRIEF,) = (subject for subject in PROVED if (subject.name, subject.driver) == ("runtime_brief_double", "runtime"))
+(TUNED,) = (subject for subject in PROVED if subject.name == "tuned_double")
+(JOINTS,) = (subject for subject in PROVED if subject.name == "joints_double")
+(KAPPA,) = (subject for subject in PROVED if subject.name == "runtime_single")
+BRIEF, CHAIN, CHAIN_TANGENT, CHAIN_BOUND, CHAIN_BATCH, CHAIN_MISFIT = (
+    next(subject for subject in PROVED if (subject.name, subject.driver) == key)
+    for key in (
+        ("runtime_brief_double", "runtime"),
+        ("joints_brief_double", "runtime"),
+        ("joints_level_double", "tangent"),
+        ("joints_brief_double", "bound"),
+        ("joints_brief_double", "batch"),
+        ("joints_level_double", "misfit"),
+    )
+)
 (SINGLE,) = (subject for subject in COMPILED if subject.name == "pieces_single")
+ZEROS_MISSING = "for (int k = 0; k <= degree; ++k) {\n            series"
 INCLUDED = '#include "pieces_double.h"'
 NATIVE = targets.TARGETS[0]
 
@@ -148,6 +162,14 @@ def test_an_answer_is_asked_for_once_unless_the_question_changes(tmp_path):
         (BRIEF, "p[degree + 1] = 0;", ""),  # read, and never set
         (BRIEF, "now->place += (size_t)", "now->place += 2 * (size_t)"),
         (BRIEF, "while (event < RUNTIME_BRIEF_DOUBLE_EVENTS && ", "while ("),
+        (KAPPA, "while (event < RUNTIME_SINGLE_EVENTS && ", "while ("),
+        (TUNED, "speed > fastest && speed <= most ?", "speed > fastest ?"),
+        (JOINTS, "return found < end ? found : end - 1;", "return found;"),
+        (CHAIN, "for (int k = 0; k <= degree + 1; ++k) {\n            series", ZEROS_MISSING),
+        (CHAIN_TANGENT, "real acting[JOINTS_LEVEL_DOUBLE_POINTS]", "real acting[JOINTS_LEVEL_DOUBLE_POINTS - 1]"),
+        (CHAIN_BOUND, "sizes[JOINTS_BRIEF_DOUBLE_WIDEST];", "sizes[JOINTS_BRIEF_DOUBLE_WIDEST - 1];"),
+        (CHAIN_BATCH, "k <= higher; ++k", "k <= higher + 1; ++k"),
+        (CHAIN_MISFIT, "while (event < JOINTS_LEVEL_DOUBLE_EVENTS && ", "while ("),
     ],
 )
 def test_the_prover_sees_what_is_wrong(subject, right, wrong, tmp_path):

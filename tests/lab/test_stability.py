@@ -12,10 +12,10 @@ from flint import arb, ctx, fmpq
 
 from wavesym.cli import main
 from wavesym.errors import CostError, ToleranceError
-from wavesym.exact.ball import Balls, segments
 from wavesym.exact.motion import MOST_STRETCHES, Motion
 from wavesym.exact.reference import Reference
-from wavesym.exact.signal import signals
+from wavesym.exact.tables.ball import Balls, segments
+from wavesym.exact.tables.signal import signals
 from wavesym.lab import stability
 from wavesym.lab.atlas import endurance, extremes, fronts, gaps, limits, reflections
 from wavesym.lab.atlas import twisted_shaft as twist

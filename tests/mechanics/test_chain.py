@@ -9,7 +9,7 @@ from flint import fmpq
 
 from wavesym.derivation.delay import delay_equations
 from wavesym.errors import WavesymError
-from wavesym.exact.table import full_table
+from wavesym.exact.tables.table import full_table
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Family, Node, Parameters, Rod, System, UnitLoad, single
 from wavesym.verification.node_law import differences

@@ -29,8 +29,10 @@ from typing import NamedTuple
 from tests.mutation.operators import Mutant, Names, mutants
 
 ROOT = Path(__file__).resolve().parents[2]
-ROOMS = ("wavesym/programs/**/*.py", "templates/c/*.c", "templates/c/series.h")
-ROOMS += tuple(f"wavesym/exact/{name}.py" for name in ("ball", "contact", "motion", "reference", "signal"))
+ROOMS = ("wavesym/programs/**/*.py", "templates/c/**/*.c", "templates/c/series.h")
+ROOMS += tuple(
+    f"wavesym/exact/{name}.py" for name in ("tables/ball", "contacts/contact", "motion", "reference", "tables/signal")
+)
 ROOMS += tuple(f"wavesym/numbers/{name}.py" for name in ("balls", "chebyshev", "doubles", "reals"))
 # All of it is run for a mutant that survives: it may take a minute and a half where a tenth of 300 do.
 TESTS = ("programs", "numbers", "verification/test_properties.py")

@@ -17,7 +17,7 @@ from tests.support.chains import chains
 from tests.support.generated import files, program_files
 from tests.support.laplace import Laplace
 from wavesym.errors import UnservedError
-from wavesym.exact.signal import Arrival, Signal, signals
+from wavesym.exact.tables.signal import Arrival, Signal, signals
 from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.choice import attempt, choose

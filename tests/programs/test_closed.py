@@ -12,8 +12,8 @@ import wavesym
 from tests.support.drawn import scenes
 from tests.support.generated import assemble, files
 from wavesym.errors import ToleranceError
-from wavesym.exact.ball import segments, values
-from wavesym.exact.signal import signals
+from wavesym.exact.tables.ball import segments, values
+from wavesym.exact.tables.signal import signals
 from wavesym.programs.closed import closed_form
 from wavesym.running.compiled import imported
 from wavesym.scene import lower

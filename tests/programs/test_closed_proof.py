@@ -10,7 +10,7 @@ import pytest
 from flint import arb, arb_poly, fmpq
 
 from tests.support.counted import Counted
-from wavesym.exact.signal import Arrival, Signal
+from wavesym.exact.tables.signal import Arrival, Signal
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE, Real
 from wavesym.programs.closed import _largest, _segment_errors, _underflows, closed_form

@@ -53,7 +53,7 @@ def long_numbers(count):
 def idle(monkeypatch):
     """Nothing that takes long may begin."""
     monkeypatch.setattr(motion, "NetworkWaves", begun)
-    monkeypatch.setattr("wavesym.exact.signal.unit_response", begun)
+    monkeypatch.setattr("wavesym.exact.tables.signal.unit_response", begun)
 
 
 def test_numbers_of_99_characters_cost_tables_and_not_windows(idle):
@@ -107,7 +107,7 @@ def test_a_building_watched_for_20_is_refused_nothing(idle):
 def test_values_far_out_are_refused_or_known_soon(until, idle, monkeypatch):
     """Three unequal shafts lose bits in proportion to the time: their waves would fill the memory."""
     monkeypatch.setattr(motion, "NetworkWaves", real_waves)
-    monkeypatch.setattr("wavesym.exact.joint.JointMotion.moved", begun)
+    monkeypatch.setattr("wavesym.exact.joints.joint.JointMotion.moved", begun)
     with pytest.raises(CostError, match=r"^output"):
         Reference(lower(drive([1, "1/2", "1/3"], [1, 2, 3, 4], until))).values([1.0 * k for k in range(1001)])
 

@@ -16,7 +16,7 @@ from flint import arb
 import wavesym
 from tests.support.generated import assemble, files
 from tests.support.truth import Truth
-from wavesym.exact.signal import signals
+from wavesym.exact.tables.signal import signals
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs import choice, pieces

@@ -13,10 +13,10 @@ import wavesym
 from tests.support.drawn import scenes
 from tests.support.generated import files
 from wavesym.errors import CostError, ToleranceError
-from wavesym.exact.ball import Balls, segments
 from wavesym.exact.motion import Motion
 from wavesym.exact.reference import Reference
-from wavesym.exact.signal import signals
+from wavesym.exact.tables.ball import Balls, segments
+from wavesym.exact.tables.signal import signals
 from wavesym.numbers.doubles import rational
 from wavesym.programs import pieces
 from wavesym.programs.choice import choose

@@ -11,7 +11,7 @@ from flint import arb, arb_poly, ctx, fmpq
 
 import wavesym
 from tests.support.counted import Counted
-from wavesym.exact.ball import Segment
+from wavesym.exact.tables.ball import Segment
 from wavesym.numbers import chebyshev
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.programs.pieces import Pieces, _cut_off, _Cuts, _Fits, _shortened, _underflow

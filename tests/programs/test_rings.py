@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from fractions import Fraction
 
@@ -221,6 +222,7 @@ def test_springs_too_stiff_are_refused_with_the_figure() -> None:
     line = refused(chain(2, spring=10**6), CostError)
     assert "joints as fast as 1e+03 on a step of 2 need polynomials of degree" in line
     assert "e+06 bytes of tables, at most 4.2e+06 expected in a march" in line
+    assert re.search(r"polynomials of degree \d\.\d+e\+\d\d to", refused(chain(2, spring=10**160), CostError))
 
 
 def test_rings_too_long_are_refused_whatever_the_joints() -> None:

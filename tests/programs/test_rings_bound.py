@@ -13,7 +13,7 @@ from hypothesis import given, settings
 
 from tests.support.drives import drive, every, exact, instants, small
 from wavesym.errors import WavesymError
-from wavesym.exact.joint import JointLaw
+from wavesym.exact.joints.joint import JointLaw
 from wavesym.exact.motion import Motion
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point

@@ -14,9 +14,9 @@ from flint import fmpq
 
 from tests.report.clear import texts_keep_clear
 from wavesym.compiler import evaluator
-from wavesym.exact.contact import contact_ends
-from wavesym.exact.increments import start
+from wavesym.exact.contacts.contact import contact_ends
 from wavesym.exact.reference import Reference
+from wavesym.exact.tables.increments import start
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe

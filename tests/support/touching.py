@@ -8,9 +8,9 @@ from typing import Any
 
 from flint import ctx, fmpq
 
-from wavesym.exact.ball import Balls
-from wavesym.exact.events import events
+from wavesym.exact.contacts.events import events
 from wavesym.exact.motion import Motion
+from wavesym.exact.tables.ball import Balls
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Labels, Model

@@ -13,7 +13,7 @@ from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.scene import lower
 
 C = Path(__file__).parents[2] / "templates" / "c"
-KERNELS = sorted(path.name for path in C.glob("*.c"))
+KERNELS = sorted(path.relative_to(C).as_posix() for path in C.rglob("*.c"))
 FORMATS = {"double": (), "single": ("-DSINGLE",)}
 
 
@@ -35,11 +35,11 @@ def test_a_kernel_is_c_as_it_stands(kernel, precision):
 @pytest.mark.parametrize(
     ("kernel", "right", "wrong"),
     [
-        ("closed.c", "+ excess[pulse];", "+ excess[pulse]"),
-        ("closed.c", "sum += polynomial", "sum += polynom"),
-        ("pieces.c", "(size_t)member[", "member["),
-        ("march.c", "const real middle = ", "const float middle = "),
-        ("march.c", "int within = 1;", "int within = 1, before = 0;"),
+        ("closed/closed.c", "+ excess[pulse];", "+ excess[pulse]"),
+        ("closed/closed.c", "sum += polynomial", "sum += polynom"),
+        ("pieces/pieces.c", "(size_t)member[", "member["),
+        ("march/march.c", "const real middle = ", "const float middle = "),
+        ("march/march.c", "int within = 1;", "int within = 1, before = 0;"),
     ],
 )
 def test_a_broken_kernel_is_seen(kernel, right, wrong, tmp_path):
@@ -56,7 +56,7 @@ def test_tables_are_declared_as_they_are_written(of):
     made = source(*of)
     text = made.made[f"{made.name}.c"]
     written = set(re.findall(r"^static const (int|real) (\w+)\[\]", text, re.MULTILINE))
-    declared = re.findall(r"^extern const (int|real) (\w+)\[\];", (C / f"{of[0]}_tables.h").read_text(), re.MULTILINE)
+    declared = re.findall(r"^extern const (int|real) (\w+)\[\];", (C / of[0] / "tables.h").read_text(), re.MULTILINE)
     assert written == set(declared)
     of_program = assemble(choose(lower(scene(made.name, "1e-2")), *of).evaluator).tables
     assert {name for _, name in written} == of_program.keys() - {"point"}  # which the header declares
@@ -67,7 +67,7 @@ def test_a_program_is_its_kernel_under_its_own_name(of):
     made = source(*of)
     text = made.made[f"{made.name}.c"]
     assert not re.search(r"\b(name|NAME)_|_tables\.h", text)
-    kernel = (C / f"{of[0]}.c").read_text().partition("\n\n")[2]
+    kernel = (C / of[0] / f"{of[0]}.c").read_text().partition("\n\n")[2]
     assert text.endswith(re.sub(r"\bname_", f"{made.name}_", re.sub(r"\bNAME_", f"{made.name.upper()}_", kernel)))
 
 

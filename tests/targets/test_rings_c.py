@@ -134,7 +134,7 @@ def test_numpy_computes_what_the_program_does() -> None:
 def test_tables_are_declared_as_they_are_written() -> None:
     made = chain("double").made["every.c"]
     written = set(re.findall(r"^static const (int|real) (\w+)\[\]", made, re.MULTILINE))
-    declared = re.findall(r"^extern const (int|real) (\w+)\[\];", (C / "rings_tables.h").read_text(), re.MULTILINE)
+    declared = re.findall(r"^extern const (int|real) (\w+)\[\];", (C / "rings/tables.h").read_text(), re.MULTILINE)
     assert written == set(declared)
     assert not re.search(r"\b(name|NAME)_|_tables\.h", made)
 

@@ -476,7 +476,7 @@ def test_tables_are_declared_as_they_are_written(runtime, tmp_path):
     wavesym.generate(STEPPED, tmp_path, stream=True, runtime=runtime)
     text = (tmp_path / "drive_m1.c").read_text()
     written = set(re.findall(r"^static const (int|real) (\w+)\[\]", text, re.MULTILINE))
-    tables = Path(__file__).parents[2] / "templates" / "c" / "stream_tables.h"
+    tables = Path(__file__).parents[2] / "templates" / "c" / "stream/tables.h"
     compiler().run(["-E", *(["-DNAME_RUNTIME"] if runtime else []), str(tables), "-o", "read.h"], tmp_path)
     declared = re.findall(r"^extern const (int|real) (\w+)\[\];", (tmp_path / "read.h").read_text(), re.MULTILINE)
     assert written == set(declared)

@@ -258,7 +258,7 @@ def test_a_fault_in_the_tables_is_seen(fault, monkeypatch):
 
     def spoiled(file, of, kernel=stream.kernel):
         text = kernel(file, of)
-        if file == "stream_made.c":
+        if file == "stream/made.c":
             assert text.count(right) == 1
         return text.replace(right, wrong)
 

@@ -11,8 +11,8 @@ from flint import fmpq
 
 from wavesym.errors import ToleranceError
 from wavesym.exact import reference
-from wavesym.exact import table as tables
-from wavesym.exact.table import Function, full_table
+from wavesym.exact.tables import table as tables
+from wavesym.exact.tables.table import Function, full_table
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
 from wavesym.programs.schemes import SCHEMES

@@ -6,7 +6,7 @@ import pytest
 
 from wavesym.cli import main
 from wavesym.derivation.delay import delay_equations
-from wavesym.exact import table as tables
+from wavesym.exact.tables import table as tables
 from wavesym.systems.drive import DRIVE
 from wavesym.verification import derived as module
 from wavesym.verification.derived import derived

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from flint import fmpq
 
-from wavesym.exact.events import events
+from wavesym.exact.contacts.events import events
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link, Network

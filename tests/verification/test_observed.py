@@ -80,6 +80,6 @@ def test_a_term_that_is_a_little_wrong_is_seen(
         *terms, (weight, gauge) = readings(network, probe)
         return (*terms, Weighted(weight * fmpq(1001, 1000), gauge))
 
-    for module in ("mechanics.model", "exact.signal"):
+    for module in ("mechanics.model", "exact.tables.signal"):
         monkeypatch.setattr(f"wavesym.{module}.readings", wrong)
     assert not any(outcome.passed for outcome in judge(known(model(scene))))

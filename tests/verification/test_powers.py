@@ -20,8 +20,8 @@ from wavesym.documents.derivation.highest_powers import (
     PowerFamily,
     PowerRow,
 )
-from wavesym.exact.table import Function, Rules
-from wavesym.exact.walks import Unit, departures, function_walks, letters, units, walks_until
+from wavesym.exact.tables.table import Function, Rules
+from wavesym.exact.tables.walks import Unit, departures, function_walks, letters, units, walks_until
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters
 from wavesym.mechanics.symbolic import generic

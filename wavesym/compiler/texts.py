@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from wavesym.documents.tables import symbolic_lines, table_lines
 from wavesym.errors import UnservedError
-from wavesym.exact.network_table import NetworkTable, network_table
-from wavesym.exact.rate_letters import in_rates
-from wavesym.exact.symbolic_cost import refuse_costly
-from wavesym.exact.table import Row, Table, full_table
+from wavesym.exact.tables.network_table import NetworkTable, network_table
+from wavesym.exact.tables.rate_letters import in_rates
+from wavesym.exact.tables.symbolic_cost import refuse_costly
+from wavesym.exact.tables.table import Row, Table, full_table
 from wavesym.mechanics.symbolic import generic, symbolic
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.scene import Scene, lower

@@ -15,9 +15,9 @@ from dataclasses import replace
 
 from flint import fmpq
 
-from wavesym.exact.ball import Segment
 from wavesym.exact.motion import Motion
 from wavesym.exact.silence import arrivals
+from wavesym.exact.tables.ball import Segment
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 

@@ -24,9 +24,9 @@ from flint import arb, arb_poly, ctx, fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import CostError, UnservedError
-from wavesym.exact.ball import Segment
 from wavesym.exact.motion import Motion, is_zero
 from wavesym.exact.silence import silent
+from wavesym.exact.tables.ball import Segment
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.balls import precise

@@ -6,9 +6,9 @@ import numpy as np
 from flint import arb, fmpq
 from numpy.typing import NDArray
 
-from wavesym.exact.events import events
+from wavesym.exact.contacts.events import events
+from wavesym.exact.joints.network_waves import SentWave, Waves
 from wavesym.exact.motion import Motion
-from wavesym.exact.network_waves import SentWave, Waves
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
 from wavesym.mechanics.probe import Probe

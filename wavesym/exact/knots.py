@@ -20,14 +20,14 @@ from typing import TYPE_CHECKING
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.exact.events import scheduled
-from wavesym.exact.joint import SWING, JointLaw
+from wavesym.exact.contacts.events import scheduled
+from wavesym.exact.joints.joint import SWING, JointLaw
 from wavesym.mechanics.gauge import Gauge, Sum
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 
 if TYPE_CHECKING:
-    from wavesym.exact.schedule import Schedule
+    from wavesym.exact.contacts.schedule import Schedule
 
 MOST_KNOTS = 20_000
 

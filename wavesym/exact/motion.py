@@ -10,11 +10,11 @@ from math import inf
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
 from wavesym.errors import CostError
-from wavesym.exact.ball import Segment
-from wavesym.exact.joint import STILL, Enclosed, JointLaw
+from wavesym.exact.joints.joint import STILL, Enclosed, JointLaw
+from wavesym.exact.joints.network_waves import Acting, NetworkWaves, Waves, later
 from wavesym.exact.knots import Knots
-from wavesym.exact.network_waves import Acting, NetworkWaves, Waves, later
 from wavesym.exact.silence import smooth_starts
+from wavesym.exact.tables.ball import Segment
 from wavesym.mechanics.gauge import Weighted
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
@@ -155,7 +155,7 @@ class Motion:
         known = self._knots.schedule
         if known is None:
             return NetworkWaves(self._network, self._knots.joints, self._acting, terms)
-        from wavesym.exact.touching_waves import replayed  # of contacts, which few scenes have
+        from wavesym.exact.contacts.touching_waves import replayed  # of contacts, which few scenes have
 
         return replayed(self._network, known.stages, known.ends, self._acting)
 

@@ -12,10 +12,10 @@ from functools import cached_property, partial
 from flint import arb, fmpq
 
 from wavesym.errors import CostError, RangeError
-from wavesym.exact.ball import Balls, Source, largest, segments, values
-from wavesym.exact.events import what_helps
+from wavesym.exact.contacts.events import what_helps
 from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion, waves_size
-from wavesym.exact.signal import Signal, refuse_many, signals
+from wavesym.exact.tables.ball import Balls, Source, largest, segments, values
+from wavesym.exact.tables.signal import Signal, refuse_many, signals
 from wavesym.mechanics.model import Model
 from wavesym.numbers.balls import FIRST_BITS
 from wavesym.numbers.doubles import not_below, rational

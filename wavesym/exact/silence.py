@@ -21,8 +21,8 @@ from math import factorial
 
 from flint import fmpq, fmpz_mod_ctx, fmpz_mod_mat
 
-from wavesym.exact.joint import JointLaw
-from wavesym.exact.node_rules import joint_rule
+from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.node_rules import joint_rule
 from wavesym.mechanics.gauge import Gauge
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 from flint import fmpq
 
 from wavesym.errors import CostError, RangeError, SpacingError, ToleranceError, UnservedError, WavesymError
-from wavesym.exact.signal import refuse_many, signals
+from wavesym.exact.tables.signal import refuse_many, signals
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, REALS, Real

@@ -26,9 +26,9 @@ from itertools import pairwise
 
 from flint import arb, arb_poly, fmpq
 
-from wavesym.exact.ball import largest, segments, shifted
-from wavesym.exact.increments import Increment
-from wavesym.exact.signal import Signal
+from wavesym.exact.tables.ball import largest, segments, shifted
+from wavesym.exact.tables.increments import Increment
+from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.doubles import bound, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.flat import firsts

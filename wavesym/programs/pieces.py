@@ -26,10 +26,10 @@ from itertools import pairwise
 from flint import arb, arb_poly, fmpq
 
 from wavesym.errors import CostError
-from wavesym.exact.ball import Balls, Segment
-from wavesym.exact.events import what_helps
+from wavesym.exact.contacts.events import what_helps
 from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion, is_zero
 from wavesym.exact.silence import silent
+from wavesym.exact.tables.ball import Balls, Segment
 from wavesym.mechanics.model import Model
 from wavesym.numbers import chebyshev
 from wavesym.numbers.balls import precise
@@ -40,7 +40,7 @@ from wavesym.programs.program import Program, ProgramOutput, Provenance
 
 # A table larger than this is for the march.
 MOST_BYTES = 4 << 20
-# The numbers from 0 on that C has for the widest vectors (templates/c/pieces.c).
+# The numbers from 0 on that C has for the widest vectors (templates/c/pieces/pieces.c).
 _OFFSETS = 16
 # Pieces in a unit of tau: shorter ones have lower degrees and round less, in larger tables, and fewer samples are on
 # each.
@@ -54,8 +54,8 @@ _MOST_WORK = 15_000_000
 _FAST_BYTES = 128 << 10
 # Fast is what takes little time for three calls of `sample`, of so many samples each.
 _CALLS = (300, 1000, 10_000)
-# In multiplications of vectors, measured: what begins on a piece, and what a vector and a value of it take besides.
-_PIECE, _VECTOR, _VALUE, _LANES = 20, 3, 2, 8
+# In multiplications of vectors, measured: what begins on a piece, and what a vector takes besides.
+_PIECE, _VECTOR, _LANES = 22, 2, 8
 _SECOND_ORDER = arb(fmpq(1001, 1000))
 # of the largest value; far below what any tolerance asks for
 _NEGLIGIBLE = arb(2) ** -200
@@ -121,7 +121,7 @@ class Pieces:
         for grid in self.grids:
             for (start, end), polynomials in zip(pairwise(grid.starts), grid.powers, strict=True):
                 on_it = samples * (end - start) / self.tau_max
-                values = len(polynomials) * (len(polynomials[0]) - 1 + _VALUE)
+                values = len(polynomials) * (len(polynomials[0]) - 1)
                 total += min(1.0, on_it) * (_PIECE + math.ceil(on_it / _LANES) * (_VECTOR + values))
         return total
 
@@ -219,7 +219,8 @@ def _fastest(fits: _Fits, tolerance: fmpq) -> Pieces:
 
 
 def _better(longer: Pieces, pieces: Pieces, tolerance: fmpq) -> bool:
-    return rational(longer.error_bound) <= tolerance and longer.cost < pieces.cost
+    # the cost is not known to a twentieth, and shorter ones are faster where samples are many
+    return rational(longer.error_bound) <= tolerance and longer.cost < 0.95 * pieces.cost
 
 
 def _smallest(fits: _Fits, tolerance: fmpq) -> Pieces:

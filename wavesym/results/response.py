@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wavesym.errors import CostError, ToleranceError
-from wavesym.exact.events import events
+from wavesym.exact.contacts.events import events
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from wavesym.exact.events import events
+from wavesym.exact.contacts.events import events
 from wavesym.mechanics.event import ContactEvent
 from wavesym.verification.graph import Struck, alike, graph
 from wavesym.verification.graph_fronts import SAME, Fronts, Undecided, integrate_fronts

@@ -13,9 +13,9 @@ from wavesym.derivation.recurrence import recurrence
 from wavesym.documents.derivation.families import solved
 from wavesym.documents.derivation.highest_powers import POWERS as FAMILIES
 from wavesym.documents.derivation.patterns import patterns, rates
-from wavesym.exact.increments import Increment, add, trimmed
-from wavesym.exact.table import Function, Table, full_table
-from wavesym.exact.walks import Letters, departures, function_walks, letters, units, walks_until
+from wavesym.exact.tables.increments import Increment, add, trimmed
+from wavesym.exact.tables.table import Function, Table, full_table
+from wavesym.exact.tables.walks import Letters, departures, function_walks, letters, units, walks_until
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.node import Parameters, System
 from wavesym.systems import presets

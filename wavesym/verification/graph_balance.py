@@ -28,7 +28,7 @@ from math import ceil
 import numpy as np
 from flint import fmpq
 
-from wavesym.exact.events import events
+from wavesym.exact.contacts.events import events
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, rational

@@ -16,7 +16,7 @@ from sympy import Expr
 from wavesym.derivation.delay import COUNT, INDEX, DelayEquation, delay_equations
 from wavesym.derivation.delay_terms import Operator
 from wavesym.derivation.numbers import number
-from wavesym.exact.table import Function, Table
+from wavesym.exact.tables.table import Function, Table
 from wavesym.mechanics.chain import Chain
 
 Change = dict[fmpq, fmpq_poly]

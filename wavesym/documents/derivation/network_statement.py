@@ -15,8 +15,8 @@ from wavesym.derivation.numbers import expression
 from wavesym.derivation.recurrence import POWER, RATE, joint_rule, weights
 from wavesym.documents.derivation.joint_kinds import Kind, LoneJoint, alone, kinds, told, values
 from wavesym.documents.derivation.notation import Text
-from wavesym.exact.joint_response import JointResponse, joint_polynomial, joint_response, rates
-from wavesym.exact.network_joints import MOST_POINTS
+from wavesym.exact.tables.joint_response import JointResponse, joint_polynomial, joint_response, rates
+from wavesym.exact.tables.network_joints import MOST_POINTS
 from wavesym.mechanics.network import Network
 from wavesym.numbers.ratio import Ratio
 

@@ -8,8 +8,8 @@ from wavesym.derivation.exact_rule import Linear, LoadTerm, NodeRule, Rule, Term
 from wavesym.documents.inspection.modelled import cone, kind
 from wavesym.documents.inspection.networked import joint_laws, not_served
 from wavesym.documents.inspection.section import Listing, Plain, Section, Told
-from wavesym.exact.node_rules import node_rule
-from wavesym.exact.table import Function, Rules
+from wavesym.exact.joints.node_rules import node_rule
+from wavesym.exact.tables.table import Function, Rules
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 

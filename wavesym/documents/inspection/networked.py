@@ -8,10 +8,10 @@ from flint import fmpq
 
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
 from wavesym.errors import CostError
-from wavesym.exact.joint import JointLaw
-from wavesym.exact.joint_response import joint_polynomial, rates, written
+from wavesym.exact.joints.joint import JointLaw
 from wavesym.exact.knots import Knots
-from wavesym.exact.network_joints import MOST_POINTS
+from wavesym.exact.tables.joint_response import joint_polynomial, rates, written
+from wavesym.exact.tables.network_joints import MOST_POINTS
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Joint
 from wavesym.numbers.doubles import rational

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
 from wavesym.errors import CostError
 from wavesym.exact.motion import Motion
-from wavesym.exact.network_table import NetworkTable, network_table
-from wavesym.exact.table import Table, full_table
+from wavesym.exact.tables.network_table import NetworkTable, network_table
+from wavesym.exact.tables.table import Table, full_table
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 

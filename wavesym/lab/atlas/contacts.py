@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx, fmpq
 
-from wavesym.exact.events import events
+from wavesym.exact.contacts.events import events
 from wavesym.exact.motion import Motion
 from wavesym.lab.atlas.attempts import Truth, attempt, truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress

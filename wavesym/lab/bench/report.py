@@ -17,7 +17,7 @@ import numpy as np
 
 from wavesym.lab.bench import many_sets, panels, parameters, recorded, streamed, swept
 from wavesym.lab.bench.equal_degree import Fitted, at_degree, fitted, ratios
-from wavesym.lab.bench.harness import CALLS, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
+from wavesym.lab.bench.harness import CALLS, EVERY, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
 from wavesym.lab.timing import least, medians, ran
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import choose
@@ -212,7 +212,7 @@ def _evaluating(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
         outputs, degree = len(each.outputs), Fitted(each, lower(each), form).degree
         taus = np.linspace(0.0, form.tau_max, SAMPLES)
         for compiler in compilers():
-            for flags in (FAST, PLAIN):
+            for flags in EVERY:
                 with chosen_compiler(compiler.name):
                     calls: list[Callable[[], object]] = [
                         many("lines", each, made, flags),
@@ -241,7 +241,7 @@ def _sampling(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
     for label, each in given.items():
         made = files(make(lower(each), Request(evaluator="pieces")), "c")
         for compiler in compilers():
-            for flags in (FAST, PLAIN):
+            for flags in EVERY:
                 times, ratios = [], []
                 for count in COUNTS:
                     calls = CALLS * SAMPLES // count  # so many that what calls C takes no time beside them

@@ -34,16 +34,25 @@ _TO_THE_END = (
     *("-eva-precision", "0", "-eva-slevel", "20000", "-eva-ilevel", "64"),
     *("-eva-split-return", "auto"),
 )
+# a batch of none has no laws
+_NONE_IS_NONE = ("-eva-split-return-function", "begun_batch:0")
+_WITH_ITS_DEGREE = "integrate,empty,empty_batch,add_series,add_series_batch,sum_again,acting_again,gather"
 _AT_ONCE = ("-eva-precision", "0", "-eva-split-return", "auto", "-eva-initialized-locals")
 _ONE_BY_ONE = "main:100,name_build:100,sampled:100,run:100,output_block:100"
 _EFFORTS = {
     "usual": ("-eva-precision", "2", *_FOR_EVER),
     "more": ("-eva-precision", "3", *_FOR_EVER),
     "followed": _TO_THE_END,
-    # of models: a batch of none has no laws
-    "unrolled": (*_TO_THE_END, "-inline-calls", "integrate", "-eva-split-return-function", "begun_batch:0"),
+    # of models
+    "unrolled": (*_TO_THE_END, "-inline-calls", "integrate", *_NONE_IS_NONE),
+    # of chains: what is asked of a copy of the degree is known of the degree
+    "equal": (*_TO_THE_END, "-inline-calls", _WITH_ITS_DEGREE, *_NONE_IS_NONE, "-eva-domains", "equality"),
     # windows and samples one by one, all else at once: which locals were set is not followed then
     "bounds": (*_AT_ONCE, "-eva-slevel-function", _ONE_BY_ONE),
+    # and joints of a chain one by one
+    "joints": (*_AT_ONCE, "-eva-slevel-function", f"{_ONE_BY_ONE},march:100"),
+    # tables that are made at run time: short loops by themselves, up to the terms of a power series
+    "made": ("-eva-precision", "0", "-eva-auto-loop-unroll", "20", *_FOR_EVER),
 }
 
 

@@ -31,7 +31,7 @@ class PortableProgram:
     """What is asked for of a built-in scene; `driver`, a file of templates/proof/, calls all that it exports.
 
     `effort` is the prover's, as in prove.py. Where the driver asks for samples, `counts` are the numbers of them, each
-    in a run of its own.
+    in a run of its own. `highest` takes the place of the highest degree that the program would have.
     """
 
     template: str
@@ -41,6 +41,7 @@ class PortableProgram:
     counts: tuple[int, ...] = ()
     changes: tuple[tuple[str, Any], ...] = ()
     effort: str = "usual"
+    highest: int | None = None
 
     @property
     def name(self) -> str:
@@ -92,7 +93,8 @@ class PortableProgram:
             endless = replace(model, endless=True)
             return stream_program(endless, request, inputs_of(endless, sources(scene)), tested=True)
         if request.runtime:
-            return runtime_program(model, request, amplitudes(scene), tested=True)
+            program = runtime_program(model, request, amplitudes(scene), tested=True)
+            return replace(program, constants=program.constants | {"degree": self.highest}) if self.highest else program
         return make(model, request, tested=True)
 
 
@@ -108,9 +110,13 @@ _MODES_SINGLE = replace(
     _MODES.single, changes=tuple({**_SHAKEN, "output": {**_SHAKEN["output"], "tolerance": "1/50"}}.items())
 )
 _STREAM = PortableProgram("stream", _BUILDING, Request(stream=True), "stream")
-_TUNED = PortableProgram("tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "stream")
+_TUNED = PortableProgram(
+    "tuned", "drive_equal", Request(stream=True, runtime=("kappa", "inertia")), "tuned", effort="made"
+)
 _RUNTIME = PortableProgram("runtime", _BUILDING, Request(runtime=("kappa", "load")), "runtime", (7,), effort="bounds")
-_JOINTS = PortableProgram("joints", "stepped_shaft", Request(runtime=("mass", "impedance", "load")), "runtime")
+_JOINTS = PortableProgram(
+    "joints", "stepped_shaft", Request(runtime=("mass", "impedance", "load")), "runtime", (7,), effort="joints"
+)
 
 # short, of low degree: each way through the same C can be followed to its end
 _SHORT: tuple[tuple[str, Any], ...] = (
@@ -128,6 +134,26 @@ _BRIEF = PortableProgram(
     (*_SHORT, ("system.kappa", [3, 2, 3])),
     "unrolled",
 )
+# two masses on a spring at the end of a rod; degrees of chains go to 24 and more, which is too many to follow
+_SPRUNG: tuple[tuple[str, Any], ...] = (
+    (
+        "system.parts",
+        [
+            {"mass": 1, "name": "disc"},
+            {"spring": "1/2", "dashpot": "1/8"},
+            {"mass": 1, "name": "hub"},
+            {"rod": 1},
+            {"joint": True, "dashpot": "1/8", "name": "brake"},
+        ],
+    ),
+    ("output", {"until": "3/2", "velocity": ["disc"], "displacement": ["hub"]}),
+    ("load", [{"at": "disc", "times": [0, "1/2"], "steps": [1, 0], "ramps": [0, -1]}]),
+)
+_BRIEF_JOINTS = PortableProgram(
+    "joints_brief", "stepped_shaft", Request(runtime=("load",)), "runtime", (17,), _SPRUNG, "equal", highest=10
+)
+# of one degree alone, where two are too many
+_LEVEL_JOINTS = replace(_BRIEF_JOINTS, template="joints_level", effort="unrolled", highest=8)
 
 PROVED = (
     _CLOSED,
@@ -145,13 +171,22 @@ PROVED = (
     _MODES_SINGLE,
     _STREAM,
     _STREAM.single,
+    _TUNED,
+    _TUNED.single,
     _RUNTIME,
+    _RUNTIME.single,
     _BRIEF,
     _BRIEF.single,
     *(
         replace(_BRIEF, driver=driver, counts=counts)
         for driver, counts in (("tangent", (7,)), ("bound", ()), ("batch", ()), ("misfit", (2,)))
     ),
+    _JOINTS,
+    _JOINTS.single,
+    _BRIEF_JOINTS,
+    _BRIEF_JOINTS.single,
+    *(replace(_BRIEF_JOINTS, driver=driver, counts=()) for driver in ("bound", "batch")),
+    *(replace(_LEVEL_JOINTS, driver=driver, counts=counts) for driver, counts in (("tangent", (7,)), ("misfit", (2,)))),
 )
 CHECKED = (_CLOSED, _PIECES, _MARCH, _RINGS, _MODES, _STREAM, _TUNED, _RUNTIME, _JOINTS)
 COMPILED = tuple(

@@ -21,7 +21,7 @@ from math import inf
 from flint import fmpq, fmpq_poly
 
 from wavesym.errors import SpacingError
-from wavesym.exact.node_rules import node_rule
+from wavesym.exact.joints.node_rules import node_rule
 from wavesym.fields.numbers import decimal_text
 from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.loads import Applied

@@ -1,4 +1,4 @@
-"""A march as flat tables and single numbers: what schemes/march.py and templates/c/march.c are run from."""
+"""A march as flat tables and single numbers: what schemes/march.py and templates/c/march/march.c are run from."""
 
 from __future__ import annotations
 

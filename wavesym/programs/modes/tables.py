@@ -36,7 +36,7 @@ def scheme_tables(system: ModalSystem, loads: LinearLoads, real: Real) -> Tables
 
 
 def stream_tables(stepper: Stepper, real: Real) -> Tables:
-    """What templates/c/modes.c reads.
+    """What templates/c/modes/modes.c reads.
 
     Of each mode the matrix of a step; of each load for each mode what it does where the step begins and ends. The
     outputs that displacements count in are moved_row[0 ...], with `moved_weight`: LANES of them, mode by mode, then the

@@ -25,7 +25,7 @@ import numpy as np
 from flint import fmpq, fmpq_mat
 from numpy.typing import NDArray
 
-from wavesym.exact.joint import JointLaw
+from wavesym.exact.joints.joint import JointLaw
 from wavesym.exact.silence import silent
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real

@@ -187,7 +187,7 @@ def refuse_long(plan: RingPlan, degree: int, spent: float, real: Real) -> float:
     if (size := table_bytes(plan, degree, real)) > _MOST_BYTES:
         raise CostError(
             f"system.parts: joints as fast as {_fastest(plan):.3g} on a step of {plan.step} need polynomials of degree "
-            f"{degree} to tau = {plan.tau_max:g}, and so {size:.1e} bytes of tables, at most {_MOST_BYTES:.1e} "
+            f"{degree:g} to tau = {plan.tau_max:g}, and so {size:.1e} bytes of tables, at most {_MOST_BYTES:.1e} "
             "expected in a march (softer springs, heavier bodies, or lengths with a smaller common measure, help)"
         )
     _refuse_rings(plan, degree, real)

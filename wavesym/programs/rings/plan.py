@@ -18,7 +18,7 @@ from typing import Any
 from flint import fmpq, fmpq_poly
 
 from wavesym.errors import CostError, SpacingError
-from wavesym.exact.node_rules import joint_rule
+from wavesym.exact.joints.node_rules import joint_rule
 from wavesym.mechanics.gauge import Sum
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End, Joint, Network, Point

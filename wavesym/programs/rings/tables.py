@@ -1,4 +1,4 @@
-"""A ring plan and a degree as flat tables: what schemes/rings.py and templates/c/rings.c are run from."""
+"""A ring plan and a degree as flat tables: what schemes/rings.py and templates/c/rings/rings.c are run from."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from typing import Any
 from flint import fmpq, fmpq_poly
 
 from wavesym.errors import UnservedError
-from wavesym.exact.node_rules import node_rule
+from wavesym.exact.joints.node_rules import node_rule
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model

@@ -22,7 +22,7 @@ MADE = ("held", "matrix", "begun", "push", "slip", "law", "base", "strength", "g
 
 
 def laws_of(free: FreeStream) -> RuntimeLaws:
-    """The functions of the parameters from which all of `MADE` follow, as templates/c/stream_made.c takes them."""
+    """The functions of the parameters from which all of `MADE` follow, as templates/c/stream/made.c takes them."""
     rings = free.rings
     spaces = [joint.space for joint in rings.joints]
     functions: dict[str, Iterable[Function]] = {

@@ -1,4 +1,4 @@
-"""A stream's plan and a degree as flat tables: what templates/c/stream.c is run from."""
+"""A stream's plan and a degree as flat tables: what templates/c/stream/stream.c is run from."""
 
 from __future__ import annotations
 

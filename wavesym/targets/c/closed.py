@@ -14,7 +14,7 @@ from wavesym.targets.number_format import number_format
 
 @dataclass(frozen=True)
 class CClosed:
-    """templates/c/closed.c.j2; every table as the lines between its braces."""
+    """templates/c/closed/closed.c.j2; every table as the lines between its braces."""
 
     scene: Description
     tables: dict[str, Lines]
@@ -30,6 +30,6 @@ def source(scene: Description, program: Program) -> str:
         tables=c_tables(program.tables, program.real),
         exponential=number_format(program.real).c_exponential,
         numbers=kernel("real.h", scene),
-        kernel=kernel("closed.c", scene),
+        kernel=kernel("closed/closed.c", scene),
     )
-    return render("c/closed.c.j2", context)
+    return render("c/closed/closed.c.j2", context)

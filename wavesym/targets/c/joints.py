@@ -43,7 +43,7 @@ _SIZES = (
 
 @dataclass(frozen=True)
 class CRuntimeJoints:
-    """templates/c/runtime_joints.c.j2; as `CRuntime`, and `arrays` are the laws with how many numbers each has."""
+    """templates/c/joints/joints.c.j2; as `CRuntime`, and `arrays` are the laws with how many numbers each has."""
 
     scene: Description
     fields: tuple[CRuntimeField, ...]
@@ -77,13 +77,13 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     fields = tuple(parameter_fields(laws, real))
     constants = c_constants(program.constants, real)
     own = not any(field.name == "load" for field in fields)
-    march = kernel("runtime_joints_march.c", scene)
+    march = kernel("joints/march.c", scene)
     header = CRuntimeHeader(
         scene=scene,
         fields=fields,
         sizes=tuple((name.upper(), constants[name]) for name in _SIZES),
-        model=kernel("runtime_joints_model.h", scene),
-        batch=kernels(scene, "runtime_wide.h", "runtime_joints_batch.h", "runtime_data.h"),
+        model=kernel("joints/model.h", scene),
+        batch=kernels(scene, "runtime/wide.h", "joints/batch.h", "runtime/data.h"),
     )
     context = CRuntimeJoints(
         scene=scene,
@@ -99,20 +99,20 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         least=f"{LIMITS[real.name]}_MIN",
         loads="amplitude" if own else "p->load",
         numbers=kernel("real.h", scene),
-        series=kernel("runtime_series.c", scene),
-        joints=kernel("runtime_joints.c", scene),
+        series=kernel("runtime/series.c", scene),
+        joints=kernel("joints/joints.c", scene),
         march=march,
-        build=kernels(scene, "runtime_joints_build.c", "runtime_builds.c"),
-        read=kernel("runtime_read.c", scene),
-        bound=kernels(scene, "runtime_wrong.c", "runtime_joints_bound.c", "runtime_bounds.c"),
-        lanes=kernel("runtime_lanes.c", scene),
-        march_in_lanes=f"{kernel('runtime_joints_lanes.c', scene)}\n\n{march}",
-        batch=kernels(scene, "runtime_joints_batch.c", "runtime_batches.c"),
-        misfit=kernel("runtime_misfit.c", scene),
+        build=kernels(scene, "joints/build.c", "runtime/builds.c"),
+        read=kernel("runtime/read.c", scene),
+        bound=kernels(scene, "runtime/wrong.c", "joints/bound.c", "runtime/bounds.c"),
+        lanes=kernel("runtime/lanes.c", scene),
+        march_in_lanes=f"{kernel('joints/lanes.c', scene)}\n\n{march}",
+        batch=kernels(scene, "joints/batch.c", "runtime/batches.c"),
+        misfit=kernel("runtime/misfit.c", scene),
     )
     made = {
-        f"{scene.name}.h": render("c/runtime.h.j2", header),
-        f"{scene.name}.c": render("c/runtime_joints.c.j2", context),
+        f"{scene.name}.h": render("c/runtime/runtime.h.j2", header),
+        f"{scene.name}.c": render("c/joints/joints.c.j2", context),
     }
     if isinstance(program.reference, ReferenceValues):
         made[f"{scene.name}_selftest.c"] = runtime_selftest(scene, program, program.reference)
@@ -123,5 +123,5 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what runs many sets of parameters in NAME.c."""
     made = files(scene, program)
     name = f"{scene.name}.c"
-    more = kernels(scene, "runtime_peaks.c", "runtime_sets.c", "runtime_sets_batch.c", "runtime_sets_bounds.c")
+    more = kernels(scene, "runtime/peaks.c", "runtime/sets.c", "runtime/sets_batch.c", "runtime/sets_bounds.c")
     return made | {name: f"{made[name]}\n{more}\n"}

@@ -15,7 +15,7 @@ _MOST_WINDOWS = 2**31 - 2  # that a common int can count; C names its own larges
 
 @dataclass(frozen=True)
 class CMarch:
-    """templates/c/march.c.j2; every table as the lines between its braces."""
+    """templates/c/march/march.c.j2; every table as the lines between its braces."""
 
     scene: Description
     tables: dict[str, Lines]
@@ -28,7 +28,7 @@ class CMarch:
 
 @dataclass(frozen=True)
 class CStreaming:
-    """templates/c/march.h.j2.
+    """templates/c/march/march.h.j2.
 
     `whole` says that all nodes are modelled, `driven` that something is proved for given loads.
     """
@@ -51,9 +51,9 @@ def source(scene: Description, program: Program) -> str:
         last_window=_last_window(program),
         numbers=kernel("real.h", scene),
         series=kernel("series.h", scene),
-        kernel=kernel("march.c", scene),
+        kernel=kernel("march/march.c", scene),
     )
-    return render("c/march.c.j2", context)
+    return render("c/march/march.c.j2", context)
 
 
 def streaming(scene: Description, program: Program) -> str:
@@ -65,9 +65,9 @@ def streaming(scene: Description, program: Program) -> str:
         last_window=_last_window(program),
         whole=program.whole,
         driven="windows" in program.constants,
-        state=kernel("march_state.h", scene),
+        state=kernel("march/state.h", scene),
     )
-    return render("c/march.h.j2", context)
+    return render("c/march/march.h.j2", context)
 
 
 def _last_window(program: Program) -> str:

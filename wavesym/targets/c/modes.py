@@ -23,7 +23,7 @@ _OWN = (
 
 @dataclass(frozen=True)
 class CModes:
-    """templates/c/modes.c.j2; every table as the lines between its braces."""
+    """templates/c/modes/modes.c.j2; every table as the lines between its braces."""
 
     scene: Description
     tables: dict[str, Lines]
@@ -37,7 +37,7 @@ class CModes:
 
 @dataclass(frozen=True)
 class CModesStream:
-    """templates/c/modes.h.j2: the loads and their units as text, and as constants."""
+    """templates/c/modes/modes.h.j2: the loads and their units as text, and as constants."""
 
     scene: Description
     constants: dict[str, str]
@@ -47,7 +47,7 @@ class CModesStream:
 
 @dataclass(frozen=True)
 class CModesSelfTest:
-    """templates/c/modes_selftest.c.j2: `expected` by output, then by sample; doubles whatever the program's type is."""
+    """templates/c/modes/selftest.c.j2: `expected` by output, then by sample; doubles whatever the program's type is."""
 
     scene: Description
     count: str
@@ -64,9 +64,9 @@ def source(scene: Description, program: Program) -> str:
         moving=str(len(program.tables["moving_row"])),
         lanes=str(LANES),
         numbers=kernel("real.h", scene),
-        kernel=kernel("modes.c", scene),
+        kernel=kernel("modes/modes.c", scene),
     )
-    return render("c/modes.c.j2", context)
+    return render("c/modes/modes.c.j2", context)
 
 
 def streaming(scene: Description, program: Program) -> str:
@@ -76,9 +76,9 @@ def streaming(scene: Description, program: Program) -> str:
         scene=scene,
         constants=c_constants(program.constants, program.real),
         sources=tuple(zip(program.sources, constants(names), strict=True)),
-        state=kernel("modes_state.h", scene),
+        state=kernel("modes/state.h", scene),
     )
-    return render("c/modes.h.j2", context)
+    return render("c/modes/modes.h.j2", context)
 
 
 def selftest(scene: Description, program: Program, reference: StreamedValues) -> str:
@@ -95,4 +95,4 @@ def selftest(scene: Description, program: Program, reference: StreamedValues) ->
             "allowed": c_literals(allowed, DOUBLE),
         },
     )
-    return render("c/modes_selftest.c.j2", context)
+    return render("c/modes/selftest.c.j2", context)

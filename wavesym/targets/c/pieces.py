@@ -13,7 +13,7 @@ from wavesym.targets.literals import Lines, c_literal, c_tables
 
 @dataclass(frozen=True)
 class CPieces:
-    """templates/c/pieces.c.j2; every table as the lines between its braces."""
+    """templates/c/pieces/pieces.c.j2; every table as the lines between its braces."""
 
     scene: Description
     tables: dict[str, Lines]
@@ -33,6 +33,6 @@ def source(scene: Description, program: Program) -> str:
         steps=str(program.constants["steps"]),
         exact=c_literal(program.real.nearest(1 / program.real.roundoff), program.real),
         numbers=kernel("real.h", scene),
-        kernel=kernel("pieces.c", scene),
+        kernel=kernel("pieces/pieces.c", scene),
     )
-    return render("c/pieces.c.j2", context)
+    return render("c/pieces/pieces.c.j2", context)

@@ -13,7 +13,7 @@ from wavesym.targets.literals import Lines, c_constants, c_tables
 
 @dataclass(frozen=True)
 class CRings:
-    """templates/c/rings.c.j2; every table as the lines between its braces."""
+    """templates/c/rings/rings.c.j2; every table as the lines between its braces."""
 
     scene: Description
     tables: dict[str, Lines]
@@ -31,6 +31,6 @@ def source(scene: Description, program: Program) -> str:
         constants=c_constants(program.constants, program.real),
         numbers=kernel("real.h", scene),
         series=kernel("series.h", scene),
-        kernel=kernel("rings.c", scene),
+        kernel=kernel("rings/rings.c", scene),
     )
-    return render("c/rings.c.j2", context)
+    return render("c/rings/rings.c.j2", context)

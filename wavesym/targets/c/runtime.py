@@ -35,7 +35,7 @@ class CRuntimeField:
 
 @dataclass(frozen=True)
 class CRuntimeHeader:
-    """templates/c/runtime.h.j2."""
+    """templates/c/runtime/runtime.h.j2."""
 
     scene: Description
     fields: tuple[CRuntimeField, ...]
@@ -46,7 +46,7 @@ class CRuntimeHeader:
 
 @dataclass(frozen=True)
 class CRuntime:
-    """templates/c/runtime.c.j2; `laws` are what is assigned, with the expression; every table as its lines.
+    """templates/c/runtime/runtime.c.j2; `laws` are what is assigned, with the expression; every table as its lines.
 
     `slopes` are their derivatives, by the number of a parameter; `load_lane` is that of the first load, -1 for none.
     """
@@ -73,7 +73,7 @@ class CRuntime:
 
 @dataclass(frozen=True)
 class CRuntimeSelfTest:
-    """templates/c/runtime_selftest.c.j2: `expected` by output, then by tau."""
+    """templates/c/runtime/selftest.c.j2: `expected` by output, then by tau."""
 
     scene: Description
     count: str
@@ -91,8 +91,8 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         scene=scene,
         fields=fields,
         sizes=tuple((name.upper(), constants[name]) for name in _SIZES),
-        model=kernel("runtime_model.h", scene),
-        batch=kernels(scene, "runtime_wide.h", "runtime_batch.h", "runtime_data.h"),
+        model=kernel("runtime/model.h", scene),
+        batch=kernels(scene, "runtime/wide.h", "runtime/batch.h", "runtime/data.h"),
     )
     context = CRuntime(
         scene=scene,
@@ -106,17 +106,17 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         constants=constants,
         amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
         loads="amplitude" if own else "p->load",
-        series=kernel("runtime_series.c", scene),
+        series=kernel("runtime/series.c", scene),
         numbers=kernel("real.h", scene),
-        kernel=kernels(scene, "runtime.c", "runtime_builds.c"),
-        read=kernel("runtime_read.c", scene),
-        bound=kernels(scene, "runtime_wrong.c", "runtime_bound.c", "runtime_bounds.c"),
-        batch=kernels(scene, "runtime_lanes.c", "runtime_batch.c", "runtime_batches.c"),
-        misfit=kernel("runtime_misfit.c", scene),
+        kernel=kernels(scene, "runtime/runtime.c", "runtime/builds.c"),
+        read=kernel("runtime/read.c", scene),
+        bound=kernels(scene, "runtime/wrong.c", "runtime/bound.c", "runtime/bounds.c"),
+        batch=kernels(scene, "runtime/lanes.c", "runtime/batch.c", "runtime/batches.c"),
+        misfit=kernel("runtime/misfit.c", scene),
     )
     made = {
-        f"{scene.name}.h": render("c/runtime.h.j2", header),
-        f"{scene.name}.c": render("c/runtime.c.j2", context),
+        f"{scene.name}.h": render("c/runtime/runtime.h.j2", header),
+        f"{scene.name}.c": render("c/runtime/runtime.c.j2", context),
     }
     if isinstance(program.reference, ReferenceValues):
         made[f"{scene.name}_selftest.c"] = runtime_selftest(scene, program, program.reference)
@@ -127,7 +127,7 @@ def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what runs many sets of parameters in NAME.c."""
     made = files(scene, program)
     name = f"{scene.name}.c"
-    more = kernels(scene, "runtime_peaks.c", "runtime_sets.c", "runtime_sets_batch.c", "runtime_sets_bounds.c")
+    more = kernels(scene, "runtime/peaks.c", "runtime/sets.c", "runtime/sets_batch.c", "runtime/sets_bounds.c")
     return made | {name: f"{made[name]}\n{more}\n"}
 
 
@@ -144,7 +144,7 @@ def runtime_selftest(scene: Description, program: Program, reference: ReferenceV
             "allowed": c_literals(allowed, DOUBLE),
         },
     )
-    return render("c/runtime_selftest.c.j2", context)
+    return render("c/runtime/selftest.c.j2", context)
 
 
 def parameter_fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:

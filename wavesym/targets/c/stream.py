@@ -18,7 +18,7 @@ _ALLOWED = 10  # times the error bound
 
 @dataclass(frozen=True)
 class CStream:
-    """templates/c/stream.c.j2; every table as the lines between its braces.
+    """templates/c/stream/stream.c.j2; every table as the lines between its braces.
 
     Of parameters that come at run time `fields` are told, `laws` are what is assigned, with the expression, to `arrays`
     of so many numbers each; else these are empty.
@@ -40,8 +40,8 @@ class CStream:
 
 @dataclass(frozen=True)
 class CStreamHeader:
-    """templates/c/stream.h.j2: the loads and their units as text, and as constants; outputs with those that act on them
-    at once; parameters as `CStream` has them.
+    """templates/c/stream/stream.h.j2: the loads and their units as text, and as constants; outputs with those that act
+    on them at once; parameters as `CStream` has them.
     """
 
     scene: Description
@@ -55,7 +55,7 @@ class CStreamHeader:
 
 @dataclass(frozen=True)
 class CStreamSelfTest:
-    """templates/c/stream_selftest.c.j2: `expected` by step, then by output; doubles whatever the program's type is;
+    """templates/c/stream/selftest.c.j2: `expected` by step, then by output; doubles whatever the program's type is;
     what takes parameters is `built` with the scene's own."""
 
     scene: Description
@@ -73,15 +73,15 @@ def source(scene: Description, program: Program) -> str:
         constants=c_constants(program.constants, program.real),
         numbers=kernel("real.h", scene),
         series=kernel("series.h", scene),
-        kernel=kernel("stream.c", scene),
+        kernel=kernel("stream/stream.c", scene),
         fields=_fields(program),
         arrays=_arrays(program),
         laws=tuple(assigned(laws, laws.functions, program.real)) if laws else (),
         heard=str(len(laws.functions["gain"])) if laws else "",
         largest=f"{LIMITS[program.real.name]}_MAX",
-        made=kernel("stream_made.c", scene) if laws else "",
+        made=kernel("stream/made.c", scene) if laws else "",
     )
-    return render("c/stream.c.j2", context)
+    return render("c/stream/stream.c.j2", context)
 
 
 def streaming(scene: Description, program: Program) -> str:
@@ -98,9 +98,9 @@ def streaming(scene: Description, program: Program) -> str:
         ),
         fields=_fields(program),
         arrays=_arrays(program),
-        state=kernel("stream_state.h", scene),
+        state=kernel("stream/state.h", scene),
     )
-    return render("c/stream.h.j2", context)
+    return render("c/stream/stream.h.j2", context)
 
 
 def _fields(program: Program) -> tuple[CRuntimeField, ...]:
@@ -141,4 +141,4 @@ def selftest(scene: Description, program: Program, reference: SteppedValues) -> 
             "allowed": c_literals(allowed, DOUBLE),
         },
     )
-    return render("c/stream_selftest.c.j2", context)
+    return render("c/stream/selftest.c.j2", context)

@@ -1,4 +1,4 @@
-"""The joints of a chain on a window, and their derivatives: what templates/c/runtime_joints_march.c does.
+"""The joints of a chain on a window, and their derivatives: what templates/c/joints/march.c does.
 
 With s what acts on the points of a joint, x' = rates x + pushed s and q = shown x + passed s; an end sends ratio q - a.
 """

@@ -1,4 +1,4 @@
-"""The least and the greatest value of each output, between samples, too: what templates/c/runtime_peaks.c does."""
+"""The least and the greatest value of each output, between samples, too: what templates/c/runtime/peaks.c does."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.exact.node_rules import joint_rule
+from wavesym.exact.joints.node_rules import joint_rule
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational

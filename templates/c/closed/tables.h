@@ -1,0 +1,16 @@
+/* tables.h: stands for what closed.c.j2 writes above the text of closed.c, where that is read by itself. */
+#include "../name.h"
+
+#include <math.h>
+
+#include "../real.h"
+
+real exponential(real x);
+
+extern const int first_pulse[];
+extern const real start[];
+extern const real excess[];
+extern const int first_family[];
+extern const real rate[];
+extern const int first_power[];
+extern const real coefficient[];

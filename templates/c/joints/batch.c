@@ -1,0 +1,47 @@
+/* batch.c: the march of a chain in lanes.
+ * Plain C that stands below the text of march.c in generated files, which have what stands below the first
+ * empty line. */
+#include "lanes.c"
+#include "march.c"
+
+#undef num
+#undef OF
+#undef PICK
+#undef SIZE
+#undef ZERO
+
+/* At rest, or as rods and masses move at first. */
+static void started_batch(batch_of *b, const laws_batch *law)
+{
+    start_waves_batch(b->waves, law);
+    for (int k = 0; k < NAME_STATES; ++k) {
+        b->state[0][k] = law->begun[k];
+    }
+    tabulate_batch(b, law, LEAST);
+}
+
+/* Series of another degree: what they had not is 0. */
+static void raise_batch(batch_of *b, const laws_batch *law, int degree, int higher)
+{
+    for (int place = 0; place < NAME_SLOTS; ++place) {
+        for (int panel = 0; panel < NAME_PANELS; ++panel) {
+            for (int k = degree + 1; k <= higher; ++k) {
+                b->waves[place][panel][k] = none;
+            }
+        }
+    }
+    tabulate_batch(b, law, higher);
+}
+
+/* The next window begins as this one ends. */
+static void settle_batch(batch_of *b)
+{
+    for (int k = 0; k < NAME_STATES; ++k) {
+        b->state[0][k] = b->state[1][k];
+    }
+}
+
+static const wide *sent_batch(batch_of *b, int t, int window)
+{
+    return b->waves[slot(term_track[t], window, term_back[t])][term_panel[t]];
+}

@@ -1,0 +1,169 @@
+/* build.c: models of a chain, and their derivatives.
+ * Plain C that stands below the text of march.c in generated files, which have what stands below the first
+ * empty line. */
+#include "march.c"
+
+#undef num
+#undef OF
+#undef PICK
+#undef SIZE
+#undef ZERO
+
+/* Add to all strands of a window what is heard of waves: each times its gain, or their integrals from tau = 0 on, of
+ * which `total` is what windows before have brought. */
+static void listen(const model_of *m, track_of *waves, const real *gains, real *total, int window, int degree, real *all)
+{
+    real sum[NAME_DEGREE + 2];
+    for (int s = 0; s < NAME_STRANDS; ++s) {
+        real *const c = all + (size_t)s * (size_t)(degree + 2);
+        for (int t = first_term[s]; t < first_term[s + 1]; ++t) {
+            const real *const w = waves[slot(term_track[t], window, term_back[t])][term_panel[t]];
+            const int heard = term_heard[t];
+            const real gain = gains[heard];
+            if (term_summed[t]) {
+                const real length = half_length[term_panel[t]];
+                integrate(m, w, degree, sum);
+                const real low = length * end_value(sum, degree + 1, term_low[t]);
+                c[0] += gain * (total[heard] - low);
+                for (int k = 1; k <= degree + 1; ++k) {
+                    c[k] += gain * length * sum[k];
+                }
+                total[heard] += length * end_value(sum, degree + 1, term_high[t]) - low;
+            } else {
+                for (int k = 0; k <= degree; ++k) {
+                    c[k] += gain * w[k];
+                }
+            }
+        }
+    }
+}
+
+/* One window of the derivatives by a parameter, of which `slope` is what the laws change by: with x' = A x + B s and
+ * q = S x + P s,
+ *
+ *     dx' = A dx + B ds + dA x + dB s,    dq = S dx + P ds + dS x + dP s.
+ *
+ * What its polynomials miss. */
+static real follow(name_tangent *tangent, const laws *law, const laws *slope, int lane, int window, int degree)
+{
+    model_of *const m = &tangent->value;
+    track_of *const waves = tangent->waves[lane];
+    real *const size = &tangent->size[lane][1];
+    real missed = 0;
+    real f[NAME_WIDEST][NAME_ROW];
+    real q[NAME_WIDEST][NAME_ROW];
+    real dx[NAME_WIDEST][NAME_ROW];
+    real acting[NAME_POINTS][NAME_ROW];
+    *size = tangent->size[lane][0];
+    for (int k = 0; k < NAME_STATES; ++k) {
+        tangent->state[lane][1][k] = tangent->state[lane][0][k];
+    }
+    for (int panel = 0; panel < NAME_PANELS; ++panel) {
+        for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+            const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
+            real(*const x)[NAME_ROW] = m->path[panel] + first;
+            real(*const s)[NAME_ROW] = m->acting[panel] + first_point[joint];
+            real(*const ds)[NAME_ROW] = acting + first_point[joint];
+            gather(waves, tangent->force[lane][panel], law, joint, panel, window, degree, 0, acting);
+            gather(m->waves, NULL, slope, joint, panel, window, degree, 1, acting);
+            empty(q, points, degree);
+            if (n > 0) {
+                empty(f, n, degree);
+                add_series(law->pushed + at_pushed[joint], n, points, ds, degree, f);
+                add_series(slope->pushed + at_pushed[joint], n, points, s, degree, f);
+                add_series(slope->rates + at_rates[joint], n, n, x, degree, f);
+                moved(m, joint, panel, degree, f, tangent->state[lane][1] + first, dx);
+                add_missed(law, joint, panel, degree, f, dx, &missed);
+                add_series(law->shown + at_shown[joint], points, n, dx, degree, q);
+                add_series(slope->shown + at_shown[joint], points, n, x, degree, q);
+            }
+            add_series(law->passed + at_passed[joint], points, points, ds, degree, q);
+            add_series(slope->passed + at_passed[joint], points, points, s, degree, q);
+            send_out(waves, joint, panel, window, degree, q);
+            for (int i = 0; i < n; ++i) {
+                *size = is_mass[first + i] ? larger(*size, tangent->state[lane][1][first + i]) : *size;
+            }
+            for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+                *size = larger(*size, waves[slot(send[port], window, 0)][panel][0]);
+            }
+        }
+    }
+    return missed;
+}
+
+/* 0, 1 for a bad number, or 2 for bodies so light, or springs so stiff, that a rounding of how they move on a panel is as
+ * much as they move: no degree is enough then, but by chance. */
+static int refused(const laws *law)
+{
+    real fastest = 0;
+    if (!laws_within_reach(law)) {
+        return 1;
+    }
+    for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+        const real *const rates = law->rates + at_rates[joint];
+        const int n = states_of(joint);
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j <= i; ++j) {
+                fastest = larger(fastest, (unit * rates[i * n + j]) * (unit * rates[j * n + i]));
+            }
+        }
+    }
+    return window_length * window_length * fastest < 1 ? 0 : 2;
+}
+
+/* What begins a march. */
+static void started(model_of *m, const laws *law)
+{
+    start_waves(m->waves, law);
+    for (int k = 0; k < NAME_STATES; ++k) {
+        m->state[0][k] = law->begun[k];
+    }
+    tabulate(m, law, LEAST);
+}
+
+/* The next window begins as this one ends. */
+static void settle(model_of *m)
+{
+    for (int k = 0; k < NAME_STATES; ++k) {
+        m->state[0][k] = m->state[1][k];
+    }
+}
+
+/* The same of derivatives by a parameter; and these on the window of now. */
+static void started_lane(name_tangent *tangent, const laws *slope, int lane)
+{
+    start_waves(tangent->waves[lane], slope);
+    for (int k = 0; k < NAME_STATES; ++k) {
+        tangent->state[lane][0][k] = slope->begun[k];
+    }
+}
+
+static void settle_lane(name_tangent *tangent, int lane)
+{
+    for (int k = 0; k < NAME_STATES; ++k) {
+        tangent->state[lane][0][k] = tangent->state[lane][1][k];
+    }
+}
+
+static real follow_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now,
+                        int before)
+{
+    (void)before; /* what a series had not is 0 */
+    return follow(tangent, law, slope, lane, now->window, now->degree);
+}
+
+/* The window of now at the degree of now. */
+static void march_window(model_of *m, const laws *law, progress *now)
+{
+    now->seen = now->size;
+    now->leak = 0;
+    march(m, law, now->window, now->degree, &now->seen, &now->leak);
+}
+
+/* The same at a higher degree. */
+static void heighten(model_of *m, const laws *law, progress *now)
+{
+    now->degree = higher_than(now->degree);
+    tabulate(m, law, now->degree);
+    march_window(m, law, now);
+}

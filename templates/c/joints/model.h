@@ -1,0 +1,45 @@
+/* model.h: what a built model of a chain keeps, and what it needs while it is built.
+ * Generated files have what stands below the first empty line, with their scene's name. */
+
+/* How many numbers a series of a wave has: zeros up to a whole vector follow. */
+enum { NAME_ROW = NAME_DEGREE + 64 / sizeof(name_real) };
+
+/* A model of a set of parameters. Plain data, yours: copy it, keep as many as you like; only `build` writes into it. */
+typedef struct {
+    int built;                  /* 1, or 0 where `build` refused */
+    int degree[NAME_WINDOWS];   /* of the polynomials of each window */
+    size_t place[NAME_WINDOWS]; /* where in `series` those of a window begin */
+    name_real estimate;
+    name_real series[NAME_WINDOWS * NAME_STRANDS * (NAME_DEGREE + 2)];
+    /* for `build` alone: waves in rings, states of joints at the start and the end of a window, what acts on points and how
+     * states move on it, matrices of joints, integrals, loads */
+    name_real waves[NAME_SLOTS][NAME_PANELS][NAME_ROW];
+    name_real state[2][NAME_STATES + 1];
+    name_real acting[NAME_PANELS][NAME_POINTS][NAME_ROW];
+    name_real path[NAME_PANELS][NAME_STATES + 1][NAME_ROW];
+    name_real solver[NAME_PANELS][4][(NAME_DEGREE + 2) * NAME_SQUARES + 1];
+    name_real edge[NAME_PANELS][2][NAME_SQUARES + 1];
+    name_real inverse[NAME_ROW + 1];
+    name_real total[NAME_HEARD + 1];
+    name_real change[NAME_EVENTS + 1];
+    name_real load[NAME_FORCES + 1][3];
+    int since[NAME_FORCES + 1][2];
+    name_real force[NAME_PANELS][NAME_FORCES + 1][3];
+    name_real largest[NAME_OUTPUTS];
+    name_real mean[NAME_OUTPUTS];
+} name_model;
+
+/* A model with its derivatives by every parameter, in the order of the parameters: their series lie as the model's. */
+typedef struct {
+    name_model value;
+    name_real series[NAME_LANES][NAME_WINDOWS * NAME_STRANDS * (NAME_DEGREE + 2)];
+    /* for `build_tangent` alone */
+    name_real waves[NAME_LANES][NAME_SLOTS][NAME_PANELS][NAME_ROW];
+    name_real state[NAME_LANES][2][NAME_STATES + 1];
+    name_real size[NAME_LANES][2];
+    name_real total[NAME_LANES][NAME_HEARD + 1];
+    name_real change[NAME_LANES][NAME_EVENTS + 1];
+    name_real load[NAME_LANES][NAME_FORCES + 1][3];
+    int since[NAME_LANES][NAME_FORCES + 1][2];
+    name_real force[NAME_LANES][NAME_PANELS][NAME_FORCES + 1][3];
+} name_tangent;

@@ -1,0 +1,30 @@
+/* tables.h: stands for what modes.c.j2 writes above the text of modes.c, where that is read by itself. */
+#include "../name.h"
+
+enum { NAME_MODES = 24, NAME_LOADS = 2 };
+
+#include "state.h"
+
+#include "../real.h"
+typedef name_state stream;
+
+enum { OUTPUTS = NAME_OUTPUTS, MODES = NAME_MODES, LOADS = NAME_LOADS, LANES = 8, MOVED = 2, MOVING = 1 };
+
+void name_init(stream *state);
+int name_step(stream *state, real dtau, const real *load, real *out);
+
+extern const real spacing, shortest, longest;
+
+extern const real p11[];
+extern const real p12[];
+extern const real p21[];
+extern const real p22[];
+extern const real one0[];
+extern const real one1[];
+extern const real speed0[];
+extern const real speed1[];
+extern const int moved_row[];
+extern const real moved_weight[];
+extern const int moving_row[];
+extern const real moving_weight[];
+extern const real load_weight[];

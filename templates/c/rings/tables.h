@@ -1,0 +1,57 @@
+/* tables.h: stands for what rings.c.j2 writes above the text of rings.c, where that is read by itself. */
+#include "../name.h"
+
+#include "../real.h"
+
+enum {
+    OUTPUTS = NAME_OUTPUTS,
+    DEGREE = 20,
+    SIZE = DEGREE + 1,
+    PANELS = 2,
+    JOINTS = 3,
+    STATES = 2,
+    FORCES = 1,
+    EVENTS = 3,
+    TRACKS = 5,
+    SLOTS = 13,
+    CYCLE = 2,
+    WIDEST = 2 * SIZE + 1
+};
+
+extern const real step, span;
+
+extern const int steps[];
+extern const int ring[];
+extern const real held[];
+extern const int first_point[];
+extern const int first_state[];
+extern const int first_port[];
+extern const int answer[];
+extern const real matrix[];
+extern const real begun[];
+extern const int force_on[];
+extern const int point_of[];
+extern const real push[];
+extern const real ratio[];
+extern const int arrive[];
+extern const int send[];
+extern const real half_length[];
+extern const real since[];
+extern const int event_window[];
+extern const int event_panel[];
+extern const int event_force[];
+extern const real event_power[];
+extern const int first_heard[];
+extern const int track[];
+extern const real gain[];
+extern const int summed[];
+extern const int delay[];
+extern const real begin[];
+extern const int first_stretch[];
+extern const real from[];
+extern const real start[];
+extern const real excess[];
+extern const real low[];
+extern const real high[];
+extern const int back[];
+extern const int panel_of[];

@@ -1,0 +1,327 @@
+/* series.c: what marches under parameters that come at run time share: series, loads, the size of outputs.
+ * Plain C of a program of a scene called `name`; it stands below the first empty line in NAME.c, above the march. */
+#ifndef NAME_JOINTED
+#include "tables.h"
+#endif
+/* Each march says this of itself; read by itself, this text has a stand-in. */
+#ifndef NAME_MARCHED
+static int reached(const laws *law, int output)
+{
+    return law->gain[0] > 0 || output > 0;
+}
+#endif
+
+/* Loops over a block of samples are unrolled, so that its values stay in registers. */
+#if defined(__OPTIMIZE_SIZE__)
+#define UNROLLED
+#elif defined(__clang__)
+#define UNROLLED _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define UNROLLED _Pragma("GCC unroll 16")
+#else
+#define UNROLLED
+#endif
+
+/* A block is a few slices, vectors where there is GNU C and NAME_PLAIN does not ask for plain C. */
+#if defined(__GNUC__) && !defined(__FRAMAC__) && !defined(NAME_PLAIN)
+typedef real full_slice __attribute__((vector_size(64)));
+typedef full_slice slice __attribute__((aligned(sizeof(real)), may_alias));
+#else
+typedef real slice;
+#endif
+enum { BLOCK = 16, SLICES = BLOCK * sizeof(real) / sizeof(slice), LANES = sizeof(slice) / sizeof(real) };
+static const slice nothing = {0};
+#if defined(__GNUC__) && !defined(__FRAMAC__) && !defined(NAME_PLAIN)
+typedef __typeof__(nothing < nothing) bits;
+#define AT(x, lane) ((x)[lane])
+#define MAGNITUDE(x) ((slice)((bits)(x) & (bits)(-(x))))
+#define LARGER(x, y) ((slice)((((x) > (y)) & (bits)(x)) | (~((x) > (y)) & (bits)(y))))
+#else
+#define AT(x, lane) (x)
+#define MAGNITUDE(x) magnitude(x)
+#define LARGER(x, y) ((x) > (y) ? (x) : (y))
+#endif
+
+static real magnitude(real x)
+{
+    return x < 0 ? -x : x;
+}
+
+static const slice *slice_at(const real *x, size_t k)
+{
+    return (const slice *)(x + k);
+}
+
+static real total_of(const slice *x)
+{
+    slice sum = *x;
+    for (int half = LANES / 2; half > 0; half /= 2) {
+        for (int lane = 0; lane < half; ++lane) {
+            AT(sum, lane) += AT(sum, lane + half);
+        }
+    }
+    return AT(sum, 0);
+}
+
+/* False for what is no number. */
+static int finite_number(real x)
+{
+    return x >= -largest_number && x <= largest_number;
+}
+
+/* sum of c_k T_k(u) */
+static real series_at(const real *c, int degree, real u)
+{
+    const real twice = u + u;
+    real next = 0;
+    real after = 0;
+    for (int k = degree; k > 0; --k) {
+        const real now = (twice * next - after) + c[k];
+        after = next;
+        next = now;
+    }
+    return (u * next - after) + c[0];
+}
+
+/* The antiderivative of a series, times 1 / half the length of the panel: all c_k but the first, which is 0. */
+static void integrate(const model_of *m, const real *w, int degree, real *c)
+{
+    c[0] = 0;
+    c[1] = w[0] - (degree > 1 ? w[2] / 2 : (real)0);
+    for (int k = 2; k < degree; ++k) {
+        c[k] = (w[k - 1] - w[k + 1]) * m->inverse[k];
+    }
+    c[degree] = w[degree - 1] * m->inverse[degree];
+    c[degree + 1] = w[degree] * m->inverse[degree + 1];
+}
+
+/* The same as series_at, sooner at both ends of a panel and in its middle. */
+static real end_value(const real *c, int degree, real u)
+{
+    real some = 0;
+    real others = 0;
+    if (u >= 0 && u <= 0) {
+        for (int k = 0; k <= degree; k += 4) {
+            some += c[k];
+            others += k + 2 <= degree ? c[k + 2] : (real)0;
+        }
+        return some - others;
+    }
+    if (u > -1 && u < 1) {
+        return series_at(c, degree, u);
+    }
+    for (int k = 0; k <= degree; k += 2) {
+        some += c[k];
+        others += k + 1 <= degree ? c[k + 1] : (real)0;
+    }
+    return u < 0 ? some - others : some + others;
+}
+
+static real larger(real one, real other)
+{
+    return magnitude(other) > one ? magnitude(other) : one;
+}
+
+/* No load, and nothing gathered yet. */
+static void start_sums(real *total, real (*load)[3], int (*since)[2])
+{
+    for (int k = 0; k < NAME_HEARD; ++k) {
+        total[k] = 0;
+    }
+    for (int f = 0; f <= NAME_FORCES; ++f) {
+        for (int power = 0; power < 3; ++power) {
+            load[f][power] = 0;
+        }
+        since[f][0] = 0;
+        since[f][1] = 0;
+    }
+}
+
+/* The loads on the panels of a window, as series, after their changes there, the first of which is `event`. The first
+ * one of the next window. */
+static int press(const real *change, real (*load)[3], int (*since)[2], real (*force)[NAME_FORCES + 1][3], int window,
+                 int event)
+{
+    for (int panel = 0; panel < NAME_PANELS; ++panel) {
+        while (event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel) {
+            const int f = event_force[event];
+            real *const c = load[f];
+            const real gone =
+                (real)(window - since[f][0]) * window_length + since_panel[panel * NAME_PANELS + since[f][1]];
+            c[0] += gone * (c[1] + gone * c[2]);
+            c[1] += 2 * gone * c[2];
+            for (int k = 0; k < 3 && event_power[event] >= 3; ++k) {
+                c[k] = 0; /* what acts is told anew */
+            }
+            c[event_power[event] % 3] += change[event];
+            since[f][0] = window;
+            since[f][1] = panel;
+            ++event;
+        }
+        const real half = half_length[panel];
+        for (int f = 0; f < NAME_FORCES; ++f) {
+            const real *const c = load[f];
+            const real gone =
+                (real)(window - since[f][0]) * window_length + since_panel[panel * NAME_PANELS + since[f][1]];
+            const real middle = gone + half;
+            force[panel][f][0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2];
+            force[panel][f][1] = half * (c[1] + 2 * middle * c[2]);
+            force[panel][f][2] = half * half / 2 * c[2];
+        }
+    }
+    return event;
+}
+
+static void clear(real *all, int degree)
+{
+    for (size_t k = 0; k < (size_t)NAME_STRANDS * (size_t)(degree + 2); ++k) {
+        all[k] = 0;
+    }
+}
+
+/* When the cycle of a window begins: after CYCLE windows, which are `span` long, tau is a whole number again. */
+static real cycle_begin(int window)
+{
+    return (real)(window / CYCLE) * span;
+}
+
+/* Where a section of a window is among those of its cycle. */
+static int in_cycle(int window, int section)
+{
+    return window % CYCLE * SECTIONS + section;
+}
+
+/* An output on a section of a window, t after the start of its cycle. */
+static real value(const model_of *m, int window, int section, int output, real t)
+{
+    const int at = section * NAME_OUTPUTS + output;
+    const int degree = m->degree[window];
+    real sum = 0;
+    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+        const int s = strand_at[k];
+        const int now = window % CYCLE * NAME_STRANDS + s;
+        const real u = ((t - strand_start[now]) + strand_excess[now]) * strand_scale[s] - 1;
+        sum += series_at(m->series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u);
+    }
+    return sum;
+}
+
+/* Look for the largest value of each output, or nearly: in the middle of sections whose mean is half as much again as
+ * that of those looked at, or much more than what was found. What lies beyond TAU_MAX does not count. */
+static void look(model_of *m, int window)
+{
+    const real *const all = m->series + m->place[window];
+    for (int section = 0; section < SECTIONS; ++section) {
+        const int here = in_cycle(window, section);
+        const real reach = NAME_TAU_MAX - cycle_begin(window);
+        const real end = from[here + 1] < reach ? from[here + 1] : reach;
+        for (int output = 0; output < NAME_OUTPUTS && from[here] <= end; ++output) {
+            const int at = section * NAME_OUTPUTS + output;
+            real mean = 0;
+            for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+                mean += all[(size_t)strand_at[k] * (size_t)(m->degree[window] + 2)];
+            }
+            if (2 * magnitude(mean) > 3 * m->mean[output] || magnitude(mean) > 4 * m->largest[output]) {
+                const real middle = from[here] + (end - from[here]) / 2;
+                m->mean[output] = larger(m->mean[output], mean);
+                m->largest[output] = larger(m->largest[output], value(m, window, section, output, middle));
+            }
+        }
+    }
+}
+
+static real infinity(void)
+{
+    const volatile real zero = 0;
+    return 1 / zero;
+}
+
+/* Add what the values of a window's series stay below while they are read; what is no finite number stays in the sum. */
+static void weigh(real *sum, const real *all, int degree)
+{
+    const size_t count = (size_t)NAME_STRANDS * (size_t)(degree + 2);
+    slice some = nothing;
+    real others = 0;
+    size_t k = 0;
+    for (; k + LANES <= count; k += LANES) {
+        some += MAGNITUDE(*slice_at(all, k));
+    }
+    for (; k < count; ++k) {
+        others += magnitude(all[k]);
+    }
+    *sum += (real)(4 * (degree + 2)) * (total_of(&some) + others);
+}
+
+/* Whether anything can be felt in an output up to TAU_MAX. */
+static int reached(const laws *law, int output);
+
+/* Whether an output is 0 whatever the parameters are: no wave counts in it. */
+static int is_silent(const laws *law, int output)
+{
+    real weight = 0;
+    for (int k = 0; k < NAME_HEARD; ++k) {
+        weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
+    }
+    return !(weight > 0);
+}
+
+/* An error relative to what is surely there of an output; of one that waves have reached that may be nothing. */
+static real relative(const laws *law, int output, real error, real largest)
+{
+    if (error < largest) {
+        return error / (largest - error);
+    }
+    return error > 0 && (largest > 0 || reached(law, output)) ? infinity() : (real)0;
+}
+
+/* How often a velocity of size 1 is rounded, about. The sums of a body, of so many coefficients, lose up to a sixteenth of
+ * the degree squared; of joints only what is read does, and that of its own size. */
+static real rounded_by(int degree)
+{
+    return unit * ((real)(degree + NAME_WINDOWS) + (JOINTED ? (real)0 : (real)(degree * degree) / 16));
+}
+
+static real read_by(int degree)
+{
+    return JOINTED ? unit * (real)(degree * degree) / 16 : (real)0;
+}
+
+/* Of the largest value of an output, about what `missed`, as a velocity, and reading at a degree make of it, at worst. */
+static real estimated(const model_of *m, const laws *law, real missed, int degree)
+{
+    real worst = 0;
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        real weight = 0;
+        for (int k = 0; k < NAME_HEARD; ++k) {
+            weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
+        }
+        worst = larger(worst, relative(law, output, weight * missed + read_by(degree) * m->largest[output], m->largest[output]));
+    }
+    return worst;
+}
+
+/* How far a build has come. */
+typedef struct {
+    int window, degree, event;
+    size_t place;
+    real missed, size, heard;
+    real leak, seen; /* what the window of now misses, and `size` with it */
+} progress;
+
+/* A derivative may miss so much more of itself than a value. */
+enum { LENIENT = 64 };
+
+static int higher_than(int degree)
+{
+    const int higher = degree + degree / 4;
+    return higher < NAME_DEGREE ? higher : NAME_DEGREE;
+}
+
+/* Errors were up to five times what polynomials miss; docs/march.md of wavesym has what was measured. */
+static int ended(model_of *m, const laws *law, const progress *now)
+{
+    const real missed = 6 * now->missed + rounded_by(now->degree) * now->size;
+    m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);
+    m->estimate = m->built ? estimated(m, law, missed, now->degree) : not_a_number();
+    return !m->built;
+}

@@ -1,0 +1,92 @@
+/* sets.c: many sets of parameters in one call, for callers to whom a call costs more than a model.
+ * Plain C that is put below NAME.c and peaks.c; what stands below the first empty line. */
+#ifndef NAME_JOINTED
+#include "peaks.c"
+#endif
+
+size_t name_model_size(void);
+size_t name_tangent_size(void);
+void name_sets(const name_parameters *parameters, size_t sets, name_batch *batch, name_model *model,
+               const name_real *tau, int even, size_t count, int *status, name_real *estimate, name_real *out);
+void name_sets_peaks(const name_parameters *parameters, size_t sets, name_batch *batch, name_model *model,
+                     int *status, name_real *estimate, name_real *out);
+void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tangent *tangent, const name_real *tau,
+                        int even, size_t count, int *status, name_real *estimate, name_real *out);
+
+size_t name_model_size(void)
+{
+    return sizeof(name_model);
+}
+
+size_t name_tangent_size(void)
+{
+    return sizeof(name_tangent);
+}
+
+/* The model of a set: side by side with its neighbours where there are some, alone where it is refused beside them. */
+static int one_of(const name_parameters *parameters, size_t sets, size_t set, name_batch *batch, name_model *model)
+{
+    const size_t place = set % NAME_WIDTH;
+    if (!batch || NAME_WIDTH == 1 || sets - (set - place) < NAME_WIDTH / 2) {
+        return name_build(model, parameters + set);
+    }
+    if (place == 0) {
+        (void)name_build_batch(batch, parameters + set, sets - set);
+    }
+    return name_batch_model(batch, (int)place, model) ? name_build(model, parameters + set) : 0;
+}
+
+/* Of each set the status, the estimate, and all outputs at `count` instants: out[(set*OUTPUTS + output)*count + k]. Where
+ * they are `even` these are tau[0] + k*tau[1]. */
+void name_sets(const name_parameters *parameters, size_t sets, name_batch *batch, name_model *model,
+               const name_real *tau, int even, size_t count, int *status, name_real *estimate, name_real *out)
+{
+    for (size_t set = 0; set < sets; ++set) {
+        name_real *const all = out + set * NAME_OUTPUTS * count;
+        status[set] = one_of(parameters, sets, set, batch, model);
+        estimate[set] = name_error_estimate(model);
+        if (even) {
+            (void)name_model_sample(model, tau[0], tau[1], count, all);
+        }
+        for (size_t k = 0; !even && k < count; ++k) {
+            name_real now[NAME_OUTPUTS];
+            (void)name_model_eval(model, tau[k], now);
+            for (size_t output = 0; output < NAME_OUTPUTS; ++output) {
+                all[output * count + k] = now[output];
+            }
+        }
+    }
+}
+
+/* Of each set the status, the estimate, and the peaks: out[set*OUTPUTS*4 ...]. */
+void name_sets_peaks(const name_parameters *parameters, size_t sets, name_batch *batch, name_model *model,
+                     int *status, name_real *estimate, name_real *out)
+{
+    for (size_t set = 0; set < sets; ++set) {
+        status[set] = one_of(parameters, sets, set, batch, model);
+        estimate[set] = name_error_estimate(model);
+        (void)name_model_peaks(model, out + set * NAME_OUTPUTS * 4);
+    }
+}
+
+/* As name_sets, with derivatives: out[((set*(LANES + 1) + lane)*OUTPUTS + output)*count + k]. */
+void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tangent *tangent, const name_real *tau,
+                        int even, size_t count, int *status, name_real *estimate, name_real *out)
+{
+    const size_t rows = (NAME_LANES + 1) * (size_t)NAME_OUTPUTS;
+    for (size_t set = 0; set < sets; ++set) {
+        name_real *const all = out + set * rows * count;
+        status[set] = name_build_tangent(tangent, parameters + set);
+        estimate[set] = name_error_estimate(&tangent->value);
+        if (even) {
+            (void)name_tangent_sample(tangent, tau[0], tau[1], count, all);
+        }
+        for (size_t k = 0; !even && k < count; ++k) {
+            name_real now[(NAME_LANES + 1) * NAME_OUTPUTS];
+            (void)name_tangent_sample(tangent, tau[k], 0, 1, now);
+            for (size_t row = 0; row < rows; ++row) {
+                all[row * count + k] = now[row];
+            }
+        }
+    }
+}

@@ -1,0 +1,1 @@
+"""Contacts that open and close: when, and how joints and waves move with them."""

@@ -1,0 +1,108 @@
+"""Points of a joint that move on their own while some contacts are closed and the others open."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+from flint import fmpq
+
+from wavesym.errors import WavesymError
+from wavesym.exact.joints.joint import JointLaw
+
+Closed = frozenset[int]
+"""Contacts, by the numbers of their links."""
+
+
+@dataclass(frozen=True)
+class Touch:
+    """A contact between two points of a joint, told by their places in it: closed, right moves `ratio` times left."""
+
+    left: int
+    right: int
+    ratio: fmpq
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """The points, their law with closed contacts, and for each of these the points and factors that make its force.
+
+    A contact pushes with N = sum over these of factor (C q + K u - s): what is on one side of it, without mass.
+    """
+
+    points: tuple[int, ...]
+    law: JointLaw
+    pushes: Mapping[int, Sequence[tuple[int, fmpq]]]
+
+    @classmethod
+    def of(cls, law: JointLaw, points: Sequence[int], touches: Mapping[int, Touch], closed: Closed) -> Cluster:
+        """From the law of the joint with all contacts open. WavesymError where two rigid bodies would touch."""
+        rigid = [k for k in points if law.mass[k] != 0 or law.given[k] is not None]
+        ways: dict[int, list[tuple[int, fmpq]]] = {k: [] for k in points}
+        inside = [n for n in closed if touches[n].left in ways]
+        for n in inside:
+            ways[touches[n].left].append((touches[n].right, touches[n].ratio))
+            ways[touches[n].right].append((touches[n].left, 1 / touches[n].ratio))
+        members: dict[int, tuple[int, fmpq]] = {}
+        leaders: list[int] = []
+        for leader in chain(rigid, points):
+            if leader not in members:
+                members |= {k: (len(leaders), ratio) for k, ratio in _moving(leader, ways)}
+                leaders.append(leader)
+            elif leader in rigid and leader not in leaders:
+                raise WavesymError("contacts: two rigid bodies would touch each other, a rod between them expected")
+        pushes = {}
+        for n in inside:
+            touch = touches[n]
+            cut = {k: [(j, r) for j, r in way if {k, j} != {touch.left, touch.right}] for k, way in ways.items()}
+            side, sign = [k for k, _ in _moving(touch.right, cut)], fmpq(1)
+            if leaders[members[touch.right][0]] in side:
+                side, sign = [k for k, _ in _moving(touch.left, cut)], fmpq(-1)
+            pushes[n] = [(k, sign * members[k][1] / members[touch.right][1]) for k in side]
+        local = {k: n for n, k in enumerate(points)}
+        grouped = law.among(points).grouped([members[k] for k in points], [local[k] for k in leaders])
+        return cls(tuple(points), grouped, pushes)
+
+    @property
+    def stateless(self) -> bool:
+        """Whether what it does depends on nothing but what acts now."""
+        return not (self.law.heavy or any(value != 0 for row in self.law.elastic for value in row))
+
+    def leader(self, group: int) -> int:
+        """The point that a group moves like."""
+        return self.points[self.law.leaders[group]]
+
+
+def _moving(start: int, ways: Mapping[int, Sequence[tuple[int, fmpq]]]) -> Iterator[tuple[int, fmpq]]:
+    """The points that move with one, and how fast."""
+    known = {start}
+    coming = [(start, fmpq(1))]
+    while coming:
+        here, ratio = coming.pop()
+        yield here, ratio
+        for other, factor in ways[here]:
+            if other not in known:
+                known.add(other)
+                coming.append((other, ratio * factor))
+
+
+def parted(law: JointLaw, touches: Mapping[int, Touch], linked: Closed) -> list[list[int]]:
+    """The points of a joint in sets that nothing connects: no spring, no dashpot, none of these contacts."""
+    size = len(law.mass)
+    near: list[set[int]] = [
+        {j for j in range(size) if law.damping[k][j] != 0 or law.stiffness[k][j] != 0} | {k} for k in range(size)
+    ]
+    for n in linked:
+        near[touches[n].left].add(touches[n].right)
+        near[touches[n].right].add(touches[n].left)
+    sets: list[list[int]] = []
+    left = set(range(size))
+    while left:
+        found, coming = set(), {min(left)}
+        while coming:
+            found |= coming
+            coming = {j for k in coming for j in near[k]} - found
+        sets.append(sorted(found))
+        left -= found
+    return sets

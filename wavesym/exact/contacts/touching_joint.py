@@ -1,0 +1,494 @@
+"""A joint with contacts: closed ones make one of their points, open ones leave them apart.
+
+A closed contact pushes with a force N >= 0, the right point forwards and the left one backwards; an open one has a gap
+>= 0, which grows at a `rate`. With the balance of a point k, M q' + C q + K u = s + what contacts push, N is the sum
+of C q + K u - s over the points on one side of the contact, which have no mass.
+
+On a stretch so short that it does not matter which contacts are closed when, these are `vague`. Whatever they do, the
+velocities of points without mass are those under one choice of closed contacts, of which there are few, and the force
+of a contact is 0 or what it is under one of them. What has mass, and springs, feel a force between 0 and the largest
+of these. The bound is taken for granted, and then shown to be larger than what follows from it: as velocities of masses
+and displacements are continuous, no force can have been the first to pass it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import chain, combinations
+from math import log2
+
+from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
+
+from wavesym.exact.contacts.cluster import Closed, Cluster, Touch, parted
+from wavesym.exact.joints.exact_joint import exact_motion
+from wavesym.exact.joints.joint import STILL, Enclosed, JointLaw, JointMotion
+from wavesym.exact.joints.joint_onset import onsets
+from wavesym.exact.joints.network_waves import Acting
+from wavesym.exact.joints.node_rules import joint_rule
+from wavesym.exact.joints.onset import Onset
+from wavesym.exact.joints.sums import Terms, collected, one_at_each_instant, scaled, together, told
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import Network
+
+_NOTHING, _ONE = fmpq(0), fmpq(1)
+_SLACK = fmpq(1, 2**20)
+_ROUNDS = 8  # in which a bound of the forces must hold
+
+
+@dataclass(frozen=True)
+class PointState:
+    """How fast a point is, and where: exact where that is known, and the energy of what is not known of its set."""
+
+    velocity: arb
+    displacement: arb
+    exact: tuple[fmpq, fmpq] | None
+    unknown: arb
+
+    @property
+    def place(self) -> fmpq:
+        """The displacement, where it is known exactly."""
+        assert self.exact is not None
+        return self.exact[1]
+
+    @classmethod
+    def of(cls, velocity: fmpq, displacement: fmpq) -> PointState:
+        """Known exactly."""
+        return cls(arb(velocity), arb(displacement), (velocity, displacement), arb(0))
+
+
+@dataclass
+class Moved:
+    """A joint on a stretch: the velocities of its points, what it sends, and its state at the end.
+
+    `rates` and `pushes` are those of open and of closed contacts; while contacts are `vague`, their ranges under every
+    choice of closed contacts. `bare` are the ends beside contacts on which nothing acts.
+    """
+
+    length: fmpq
+    closed: Closed
+    vague: Closed
+    velocities: dict[int, Terms]
+    sends: dict[int, Enclosed] = field(default_factory=dict)
+    state: dict[int, PointState] = field(default_factory=dict)
+    rates: dict[int, Enclosed] = field(default_factory=dict)
+    pushes: dict[int, Enclosed] = field(default_factory=dict)
+    bare: set[int] = field(default_factory=set)
+    swing: fmpq = _NOTHING
+
+
+class SwingError(Exception):
+    """A stretch that is too long for a series."""
+
+    def __init__(self, longest: fmpq) -> None:
+        super().__init__()
+        self.longest = longest
+
+
+class TouchingJoint:
+    """A joint as time goes on, at the working precision."""
+
+    def __init__(self, network: Network, number: int, loads: Sequence[Applied]) -> None:
+        joint = network.joints[number]
+        place = {point: k for k, point in enumerate(joint.points)}
+        self.law = JointLaw.of(network, joint)
+        self.touches = {
+            n: Touch(place[link.left], place[link.right], link.ratio)
+            for n, link in enumerate(network.links)
+            if link.contact and link.left in place
+        }
+        self._clusters: dict[tuple[Closed, Closed], list[Cluster]] = {}
+        self._loads = [Acting(network, point, loads) for point in joint.points]
+        rule = joint_rule()
+        bars = [network.bars[end.bar] for end, _ in joint.ends]
+        self._ends = [
+            (place[point], bar.ratios[end.side], rule.arrives[1 - end.side] * bar.ratios[end.side] * bar.impedance)
+            for bar, (end, point) in zip(bars, joint.ends, strict=True)
+        ]
+        touched = {k for touch in self.touches.values() for k in (touch.left, touch.right)}
+        self._bare = {n for n, (k, _, _) in enumerate(self._ends) if k in touched and self.law.mass[k] == 0}
+        self._state = {k: PointState.of(network.points[p].velocity, fmpq(0)) for k, p in enumerate(joint.points)}
+        # sets of points that have energy: mass or springs
+        self._sets = [
+            points
+            for points in parted(self.law, self.touches, frozenset())
+            if any(self.law.mass[k] != 0 or self._elastic(k) for k in points)
+        ]
+
+    def take(self, moved: Moved) -> None:
+        """Go on to the end of a stretch."""
+        self._state |= moved.state
+
+    def moved(
+        self,
+        arriving: Sequence[Enclosed],
+        start: fmpq,
+        length: fmpq,
+        closed: Closed,
+        vague: Closed = frozenset(),
+        bear: fmpq | None = None,
+    ) -> Moved:
+        """Its motion on a stretch on which just these contacts are closed, and the `vague` ones now and then.
+
+        SwingError where a series would have to bear more than exp(`bear`).
+        """
+        acting = [load.on(start) for load in self._loads]
+        forces = self._forces(arriving, acting)
+        result = Moved(length, closed, vague, {})
+        for cluster in self._parted(closed, vague):
+            if any(self.touches[n].left in cluster.points for n in vague):
+                self._drift(cluster, result, arriving, forces, acting)
+            else:
+                self._move(cluster, result, forces, acting, bear)
+        for n, touch in self.touches.items():
+            if n not in closed and n not in vague:
+                result.rates[n] = together(_rate(touch, result.velocities))
+        for number, wave in enumerate(arriving):
+            if number not in result.sends:
+                result.sends[number] = self._sent(number, result.velocities, wave)
+                if number in self._bare and not collected(self._strained(number, result.velocities, wave)):
+                    result.bare.add(number)
+        return result
+
+    def _sent(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Enclosed:
+        k, ratio, _ = self._ends[number]
+        return together([*scaled(velocities[k], ratio), (fmpq(-1), wave)])
+
+    def _strained(self, number: int, velocities: Mapping[int, Terms], wave: Enclosed) -> Terms:
+        """What is sent less what arrives: up to a factor, what acts on the end."""
+        k, ratio, _ = self._ends[number]
+        return [*scaled(velocities[k], ratio), (fmpq(-2), wave)]
+
+    def _parted(self, closed: Closed, vague: Closed) -> list[Cluster]:
+        if (closed, vague) not in self._clusters:
+            self._clusters[closed, vague] = [
+                Cluster.of(self.law, points, self.touches, closed)
+                for points in parted(self.law, self.touches, closed | vague)
+            ]
+        return self._clusters[closed, vague]
+
+    # with contacts closed and open
+
+    def _move(
+        self,
+        cluster: Cluster,
+        result: Moved,
+        forces: Sequence[Terms],
+        acting: Sequence[fmpq_poly],
+        bear: fmpq | None,
+    ) -> None:
+        law, points = cluster.law, cluster.points
+        pushed = grouped(cluster, forces)
+        prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
+        motion, places = None, None
+        if cluster.stateless:
+            q = scattered(law, pushed, _given(law, prescribed))
+        elif (exact := self._exactly(cluster, pushed, prescribed)) is not None:
+            q = [[(_ONE, Enclosed.of(p))] for p in exact]
+            places = {
+                k: ratio * exact[group].integral() + self._state[k].place
+                for k, (group, ratio) in zip(points, law.moves, strict=True)
+            }
+            for k, (group, ratio) in zip(points, law.moves, strict=True):
+                place = places[k](result.length) if self._elastic(k) else fmpq(0)
+                result.state[k] = PointState.of(ratio * exact[group](result.length), place)
+        else:
+            if bear is not None and law.fastest * result.length > bear:
+                raise SwingError(bear / law.fastest)
+            motion = self._balls(cluster)
+            waves = [together(force) for force in pushed]
+            terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in waves))
+            moving = motion.moved(waves, prescribed, result.length, terms)
+            q = [[(_ONE, each)] for each in self._begun(cluster, pushed, prescribed, moving, result.length)]
+            result.state |= self._after(cluster, motion)
+            result.swing = max(result.swing, law.fastest)
+        for k, (group, ratio) in zip(points, law.moves, strict=True):
+            result.velocities[k] = scaled(q[group], ratio)
+        for n, push in cluster.pushes.items():
+            pull = self._pull(cluster, push, result.velocities, forces)
+            if places is not None:
+                pull += [
+                    (factor * self.law.stiffness[k][j], Enclosed.of(places[j])) for k, factor in push for j in points
+                ]
+            result.pushes[n] = together(pull)
+            if motion is not None:
+                result.pushes[n] = self._sprung(cluster, push, motion, result.pushes[n])
+
+    def _elastic(self, k: int) -> bool:
+        return any(c != 0 for c in self.law.stiffness[k])
+
+    def _known(self, cluster: Cluster) -> list[tuple[fmpq, fmpq]] | None:
+        """The state of a cluster, where it is known exactly."""
+        known = [exact for k in cluster.points if (exact := self._state[k].exact) is not None]
+        return known if len(known) == len(cluster.points) else None
+
+    def _exactly(
+        self, cluster: Cluster, pushed: Sequence[Terms], prescribed: Sequence[fmpq_poly]
+    ) -> list[fmpq_poly] | None:
+        """The velocities of groups, where all is known exactly and they are polynomials."""
+        if (known := self._known(cluster)) is None:
+            return None
+        forces = [force for terms in pushed if (force := together(terms).exact) is not None]
+        if len(forces) < len(pushed):
+            return None
+        velocity = [known[leader][0] for leader in cluster.law.leaders]
+        return exact_motion(cluster.law, velocity, [u for _, u in known], forces, prescribed)
+
+    def _begun(
+        self,
+        cluster: Cluster,
+        pushed: Sequence[Terms],
+        prescribed: Sequence[fmpq_poly],
+        velocities: Sequence[Enclosed],
+        length: fmpq,
+    ) -> Sequence[Enclosed]:
+        """The velocities of groups, with how they begin, where that is known."""
+        if (known := self._known(cluster)) is None:
+            return velocities
+        forces = [begins for terms in pushed if (begins := together(terms).begins) is not None]
+        given = [begins for p in prescribed if (begins := Onset.of(p)) is not None]
+        if len(forces) < len(pushed) or len(given) < len(prescribed):
+            return velocities
+        span = arb(0).union(arb(length))
+        begin = onsets(
+            cluster.law,
+            ([known[leader][0] for leader in cluster.law.leaders], [u for _, u in known]),
+            forces,
+            given,
+            [abs(each.over(span)).upper() for each in velocities],
+            length,
+        )
+        return [replace(each, onset=onset) for each, onset in zip(velocities, begin, strict=True)]
+
+    def _pull(
+        self,
+        cluster: Cluster,
+        push: Sequence[tuple[int, fmpq]],
+        velocities: Mapping[int, Terms],
+        forces: Sequence[Terms],
+    ) -> Terms:
+        """The force of a closed contact, but for what springs do."""
+        terms: Terms = []
+        for k, factor in push:
+            terms += scaled(forces[k], -factor)
+            for j in cluster.points:
+                terms += scaled(velocities[j], factor * self.law.damping[k][j])
+        return terms
+
+    def _sprung(
+        self, cluster: Cluster, push: Sequence[tuple[int, fmpq]], motion: JointMotion, force: Enclosed
+    ) -> Enclosed:
+        """With what springs do."""
+        springs = [(factor, self._spring(cluster, motion, k)) for k, factor in push if self._elastic(k)]
+        return together([(_ONE, force), *springs])
+
+    def _spring(self, cluster: Cluster, motion: JointMotion, k: int) -> Enclosed:
+        """What springs pull at a point on a stretch."""
+        if not self._elastic(k):
+            return STILL
+        polynomial = arb_poly()
+        for j, series in zip(cluster.points, motion.places, strict=True):
+            polynomial += arb(self.law.stiffness[k][j]) * arb_poly(series)
+        return Enclosed(polynomial, (arb(self.law.stiffness[k][k]).sqrt() * motion.strained).upper())
+
+    # in balls
+
+    def _balls(self, cluster: Cluster) -> JointMotion:
+        """The state of a cluster; what rounding loses of one that was exact is energy not known."""
+        points = cluster.points
+        state = [self._state[k] for k in points]
+        lost = sum((arb(self.law.mass[k]) * self._state[k].velocity.rad() ** 2 for k in points), arb(0))
+        for k in points:
+            for j in points:
+                spread = self._state[k].displacement.rad() * self._state[j].displacement.rad()
+                lost += abs(arb(self.law.stiffness[k][j])) * spread
+        unknown = sum((self._state[each[0]].unknown for each in self._sets if each[0] in points), arb(0))
+        root = unknown.sqrt() + (lost / 2).sqrt()
+        return JointMotion(
+            cluster.law,
+            [state[leader].velocity.mid() for leader in cluster.law.leaders],
+            [each.displacement.mid() for each in state],
+            (root * root).upper(),
+            decays=True,
+        )
+
+    def _after(self, cluster: Cluster, motion: JointMotion) -> dict[int, PointState]:
+        leaders = dict(zip(cluster.law.leaders, motion.velocity, strict=True))
+        return {
+            k: PointState(leaders.get(n, arb(0)), motion.displacement[n], None, motion.unknown)
+            for n, k in enumerate(cluster.points)
+        }
+
+    # with vague contacts
+
+    def _drift(
+        self,
+        cluster: Cluster,
+        result: Moved,
+        arriving: Sequence[Enclosed],
+        forces: Sequence[Terms],
+        acting: Sequence[fmpq_poly],
+    ) -> None:
+        law, points = cluster.law, cluster.points
+        vague = frozenset(n for n in result.vague if self.touches[n].left in points)
+        closed = frozenset(n for n in result.closed if self.touches[n].left in points)
+        span = arb(0).union(arb(result.length))
+        prescribed = [acting[cluster.leader(a)] for a in range(len(law.mass))]
+        bounds = dict.fromkeys(vague, arb(0))
+        for _ in range(_ROUNDS):
+            motion = self._balls(cluster)
+            pushed = [together(each) for each in grouped(cluster, self._with(forces, bounds))]
+            terms = _terms(law.fastest * result.length, max(wave.polynomial.length() for wave in pushed))
+            q = motion.moved(pushed, prescribed, result.length, terms)
+            known = {cluster.leader(a): [(_ONE, q[a])] for a in law.heavy}
+            known |= {cluster.leader(a): each for a, each in _given(law, prescribed).items()}
+            pulls = list(forces)
+            for k in points:
+                pulls[k] = [*forces[k], (fmpq(-1), self._spring(cluster, motion, k))]
+            found = self._under_every_choice(points, closed, vague, known, arriving, pulls, span)
+            largest = {n: found.pushes[n].over(span).upper().max(arb(0)) for n in vague}
+            if all(largest[n] < bounds[n] or largest[n] == 0 for n in vague):
+                break
+            bounds = {n: (largest[n] * arb(1 + _SLACK)).upper() for n in vague}
+        else:
+            raise ArithmeticError("the force of a contact has no bound")
+        result.velocities |= found.velocities
+        result.sends |= found.sends
+        self._bounded(cluster, result, closed, vague, arriving, forces)
+        result.rates |= found.rates
+        result.pushes |= found.pushes
+        if not cluster.stateless:
+            result.state |= self._after(cluster, motion)
+
+    def _bounded(
+        self,
+        cluster: Cluster,
+        result: Moved,
+        closed: Closed,
+        vague: Closed,
+        arriving: Sequence[Enclosed],
+        forces: Sequence[Terms],
+    ) -> None:
+        """What is sent is on one side of what would be, were all vague contacts open: they push, and never pull."""
+        for alone in self._parted(closed, frozenset()):
+            law, points = alone.law, alone.points
+            pushed = [together(each) for each in grouped(alone, forces)] if set(points) <= set(cluster.points) else []
+            if not pushed or len(law.light) < len(pushed) or law.springs or any(each.exact is None for each in pushed):
+                continue
+            free = scattered(law, [[(_ONE, each)] for each in pushed], {})
+            moves = dict(zip(points, law.moves, strict=True))
+            gained = [self._gained(n, moves, law) for n in vague]
+            for n, (k, factor, _) in enumerate(self._ends):
+                if k in moves and result.sends[n].exact is None:
+                    group, ratio = moves[k]
+                    exact = self._sent(n, {k: scaled(free[group], ratio)}, arriving[n]).exact
+                    signs = [factor * ratio * gains[group] for gains in gained]
+                    least = exact if all(sign >= 0 for sign in signs) else None
+                    most = exact if all(sign <= 0 for sign in signs) else None
+                    result.sends[n] = told(result.sends[n], None, least, most)
+
+    def _gained(self, n: int, moves: Mapping[int, tuple[int, fmpq]], law: JointLaw) -> list[fmpq]:
+        """The velocities that groups without mass gain where a contact pushes with 1."""
+        touch, push = self.touches[n], [fmpq(0)] * len(law.mass)
+        for place, factor in ((touch.right, _ONE), (touch.left, -touch.ratio)):
+            if place in moves:
+                group, ratio = moves[place]
+                push[group] += factor * ratio
+        return [sum((law.inverse[a, b] * x for b, x in enumerate(push)), fmpq(0)) for a in range(len(push))]
+
+    def _under_every_choice(
+        self,
+        points: Sequence[int],
+        closed: Closed,
+        vague: Closed,
+        known: Mapping[int, Terms],
+        arriving: Sequence[Enclosed],
+        pulls: Sequence[Terms],
+        span: arb,
+    ) -> Moved:
+        """Velocities, rates and forces, over all choices of closed contacts; `known` are those of rigid points."""
+        velocities: dict[int, list[Enclosed]] = {k: [] for k in points}
+        sends: dict[int, list[Enclosed]] = {n: [] for n, (k, _, _) in enumerate(self._ends) if k in points}
+        rates: dict[int, list[Enclosed]] = {}
+        pushes: dict[int, list[Enclosed]] = {}
+        for chosen in _subsets(vague):
+            cluster = Cluster.of(self.law, points, self.touches, closed | chosen)
+            rigid = {a: known[k] for a in range(len(cluster.law.mass)) if (k := cluster.leader(a)) in known}
+            q = scattered(cluster.law, grouped(cluster, pulls), rigid)
+            moving = {k: scaled(q[a], ratio) for k, (a, ratio) in zip(points, cluster.law.moves, strict=True)}
+            for k in points:
+                velocities[k].append(together(moving[k]))
+            for n, each in sends.items():
+                each.append(self._sent(n, moving, arriving[n]))
+            for n, touch in self.touches.items():
+                if n in cluster.pushes:
+                    force = together(self._pull(cluster, cluster.pushes[n], moving, pulls))
+                    pushes.setdefault(n, []).append(force)
+                elif touch.left in moving and touch.right in moving:
+                    rates.setdefault(n, []).append(together(_rate(touch, moving)))
+        result = Moved(
+            fmpq(0), closed, vague, {k: [(_ONE, one_at_each_instant(each, span))] for k, each in velocities.items()}
+        )
+        result.sends = {n: one_at_each_instant(each, span) for n, each in sends.items()}
+        result.rates = {n: one_at_each_instant(each, span) for n, each in rates.items()}
+        result.pushes = {n: one_at_each_instant(each, span) for n, each in pushes.items()}
+        return result
+
+    def _with(self, forces: Sequence[Terms], bounds: Mapping[int, arb]) -> list[Terms]:
+        """With contacts that push with anything between 0 and their bounds."""
+        result = list(forces)
+        for n, bound in bounds.items():
+            half = (bound / 2).upper()
+            between = Enclosed(arb_poly([half]), half)
+            result[self.touches[n].right] = [*result[self.touches[n].right], (_ONE, between)]
+            result[self.touches[n].left] = [*result[self.touches[n].left], (-self.touches[n].ratio, between)]
+        return result
+
+    def _forces(self, arriving: Sequence[Enclosed], acting: Sequence[fmpq_poly]) -> list[Terms]:
+        """What acts on each point: loads, and waves that arrive."""
+        terms: list[Terms] = [[(joint_rule().load, Enclosed.of(p))] for p in acting]
+        for (k, _, factor), wave in zip(self._ends, arriving, strict=True):
+            terms[k].append((factor, wave))
+        return terms
+
+
+def grouped(cluster: Cluster, forces: Sequence[Terms]) -> list[Terms]:
+    """What acts on the groups of a cluster."""
+    terms: list[Terms] = [[] for _ in cluster.law.mass]
+    for k, (group, ratio) in zip(cluster.points, cluster.law.moves, strict=True):
+        terms[group] += scaled(forces[k], ratio)
+    return terms
+
+
+def scattered(law: JointLaw, forces: Sequence[Terms], known: Mapping[int, Terms]) -> list[Terms]:
+    """The velocities of groups: of those without mass they follow from what acts and from the others, `known`."""
+    q = [known.get(a, []) for a in range(len(law.mass))]
+    for row, a in enumerate(law.light):
+        for column, b in enumerate(law.light):
+            share = law.inverse[row, column]
+            q[a] = [*q[a], *scaled(forces[b], share)]
+            for c, velocity in known.items():
+                q[a] += scaled(velocity, -share * law.damping[b][c])
+    return q
+
+
+def _given(law: JointLaw, prescribed: Sequence[fmpq_poly]) -> dict[int, Terms]:
+    return {a: [(_ONE, Enclosed.of(p))] for a, p in enumerate(prescribed) if law.given[a] is not None}
+
+
+def _rate(touch: Touch, velocities: Mapping[int, Terms]) -> Terms:
+    return [*velocities[touch.right], *scaled(velocities[touch.left], -touch.ratio)]
+
+
+def _subsets(numbers: Iterable[int]) -> Iterator[Closed]:
+    every = sorted(numbers)
+    return map(frozenset, chain.from_iterable(combinations(every, k) for k in range(len(every) + 1)))
+
+
+def _terms(swing: fmpq, least: int) -> int:
+    """As many terms as a series needs that goes like exp(swing)."""
+    x, size, n = float(swing), 0.0, 0
+    while x > 0 and size > -ctx.prec - 8:
+        n += 1
+        size += log2(x / n)
+    return max(n, least) + 2

@@ -1,0 +1,98 @@
+"""The waves of a network with contacts: as `network_waves`, with what is closed on each stretch."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
+from operator import itemgetter
+
+from flint import fmpq, fmpq_poly
+
+from wavesym.exact.contacts.cluster import Closed
+from wavesym.exact.contacts.touching_joint import Moved, TouchingJoint
+from wavesym.exact.joints.joint import Enclosed
+from wavesym.exact.joints.network_waves import SentWave, Waves
+from wavesym.exact.joints.sums import together
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import End, Network
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stretch of a joint: which of its contacts are closed, and of which it is not known."""
+
+    start: fmpq
+    closed: Closed = frozenset()
+    vague: Closed = frozenset()
+
+
+class TouchingWaves(Waves):
+    """The waves of some joints, moved stretch by stretch from outside."""
+
+    def __init__(self, network: Network, joints: Iterable[int], loads: Sequence[Applied]) -> None:
+        super().__init__(network)
+        self.joints = {number: TouchingJoint(network, number, loads) for number in joints}
+        self._bare: dict[End, list[tuple[fmpq, bool]]] = {
+            end: [] for number in self.joints for end, _ in network.joints[number].ends
+        }
+
+    def is_bare(self, end: End, tau: fmpq) -> bool:
+        """Free, or beside a contact that is open from then on."""
+        known = self._bare.get(end)
+        return known[bisect_right(known, tau, key=itemgetter(0)) - 1][1] if known else super().is_bare(end, tau)
+
+    def record(self, number: int, start: fmpq, moved: Moved) -> list[bool]:
+        """Keep what a joint sends from an instant on; for each end, whether another function begins there.
+
+        Where one goes on that is known exactly, nothing is kept.
+        """
+        joint = self.network.joints[number]
+        for n, (end, _) in enumerate(joint.ends):
+            self._bare[end].append((start, n in moved.bare))
+        begun = [self._kept(self.sent[end], start, moved.sends[n]) for n, (end, _) in enumerate(joint.ends)]
+        for k, point in enumerate(joint.points):
+            if point in self.velocities:
+                self._kept(self.velocities[point], start, together(moved.velocities[k]))
+        return begun
+
+    @staticmethod
+    def _kept(wave: SentWave, start: fmpq, new: Enclosed) -> bool:
+        if wave.starts and wave.starts[-1] == start:
+            wave.stretches[-1] = new
+            return False
+        if wave.starts:
+            old = wave.stretches[-1].exact
+            if old is not None and new.exact is not None and _goes_on(old, start - wave.starts[-1], new.exact):
+                return False
+        wave.starts.append(start)
+        wave.stretches.append(new)
+        return True
+
+
+def _goes_on(old: fmpq_poly, by: fmpq, new: fmpq_poly) -> bool:
+    if old.length() != new.length():
+        return False
+    return bool((old(fmpq_poly([by, 1])) if old.length() > 1 else old) == new)
+
+
+def replayed(
+    network: Network, stages: Mapping[int, Sequence[Stage]], ends: Mapping[int, fmpq], loads: Sequence[Applied]
+) -> TouchingWaves:
+    """The waves at the working precision, where the stages of all joints are known."""
+    waves = TouchingWaves(network, stages, loads)
+    coming = [(stage[0].start, number, 0) for number, stage in stages.items() if stage]
+    heapify(coming)
+    while coming:
+        start, number, place = heappop(coming)
+        stage = stages[number][place]
+        last = place + 1 == len(stages[number])
+        length = (ends[number] if last else stages[number][place + 1].start) - start
+        joint, arriving = waves.joints[number], waves.arriving(number, start, length)
+        moved = joint.moved(arriving, start, length, stage.closed, stage.vague)
+        waves.record(number, start, moved)
+        joint.take(moved)
+        if not last:
+            heappush(coming, (start + length, number, place + 1))
+    return waves

@@ -1,0 +1,384 @@
+"""A joint in motion: its points' velocities on a stretch without fronts, as polynomials with a proved error.
+
+Seen from a joint every rod end is a dashpot and a force, so that with arriving waves a, loads F and displacements u
+
+    M q' + C q + K u = s,    u' = q,    s = sum over ends of 2 n Z a + F,    sent back into an end: n q - a.
+
+Coefficients of powers of w (the time since the start of the stretch) come one after another; points without mass follow
+from the others at each power. What is kept are the middles: any error of theirs is in the defect
+d = s - (M q' + C q + K u), and with E = (e M e + v K v)/2 for the errors e of q and v of u
+
+    dE/dt = e d - e C e <= sqrt(2 E) delta + rho,
+
+where delta is the size of d on points with mass, rho what points without mass can add. So
+sqrt(E(t)) <= sqrt(E(0)) + delta t / sqrt(2) + sqrt(rho t): stiffness does not make errors grow. On a short stretch with
+large defects another bound is better: with x = C^-1 d on the points without mass, what they add to dE/dt is at most
+v K x <= sqrt(2 E) kappa, kappa = sqrt(x K x), and kappa t / sqrt(2) takes the place of sqrt(rho t).
+
+Contacts that are closed make one `group` of their points, which move with fixed ratios. The defect of a group is the
+sum over its points, each times its ratio, and the energy is the same sum over all points: the proof stays as it is,
+and what is not known goes on unchanged where a contact opens or closes, as no mass changes its velocity then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import isqrt
+
+from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly
+
+from wavesym.exact.joints.node_rules import joint_rule
+from wavesym.exact.joints.onset import Onset
+from wavesym.mechanics.network import Joint, Network
+
+# a series is begun anew where it would have to bear more than exp(this)
+SWING = 24
+
+
+@dataclass(frozen=True)
+class JointLaw:
+    """M, C and K of a joint's points, in their order; `given` are those whose motion is prescribed.
+
+    Where contacts are closed rows are those of groups of points, and so are the columns of C; those of K are points.
+    `members` has the group of each point and how fast the point moves in it, `leaders` the point that a group moves
+    like, and `elastic` the K of all points. They are empty where each point is on its own.
+    """
+
+    mass: tuple[fmpq, ...]
+    damping: tuple[tuple[fmpq, ...], ...]
+    stiffness: tuple[tuple[fmpq, ...], ...]
+    given: tuple[str | None, ...]
+    members: tuple[tuple[int, fmpq], ...] = ()
+    leaders: tuple[int, ...] = ()
+    elastic: tuple[tuple[fmpq, ...], ...] = ()
+
+    @classmethod
+    def of(cls, network: Network, joint: Joint) -> JointLaw:
+        """Assembled from points, links and rod ends, each as it is derived."""
+        size = len(joint.points)
+        place = {point: k for k, point in enumerate(joint.points)}
+        points = [network.points[point] for point in joint.points]
+        rule = joint_rule()
+        damping = [[fmpq(0)] * size for _ in range(size)]
+        stiffness = [[fmpq(0)] * size for _ in range(size)]
+        for k, point in enumerate(points):
+            damping[k][k] += rule.damping * point.damping
+            stiffness[k][k] += point.stiffness
+        for end, number in joint.ends:
+            bar = network.bars[end.bar]
+            radiated = rule.radiates[1 - end.side] * bar.ratios[end.side] ** 2 * bar.impedance
+            damping[place[number]][place[number]] += radiated
+        for link in network.links:
+            if link.left in place:
+                a, b = place[link.left], place[link.right]
+                for matrix, value in ((damping, rule.damping * link.damping), (stiffness, link.stiffness)):
+                    matrix[a][a] += link.ratio**2 * value
+                    matrix[b][b] += value
+                    matrix[a][b] -= link.ratio * value
+                    matrix[b][a] -= link.ratio * value
+        return cls(
+            tuple(rule.inertia * point.mass for point in points),
+            tuple(map(tuple, damping)),
+            tuple(map(tuple, stiffness)),
+            tuple(point.motion for point in points),
+        )
+
+    def among(self, points: Sequence[int]) -> JointLaw:
+        """The law of some points that nothing connects with the others."""
+        return JointLaw(
+            tuple(self.mass[k] for k in points),
+            tuple(tuple(self.damping[k][j] for j in points) for k in points),
+            tuple(tuple(self.stiffness[k][j] for j in points) for k in points),
+            tuple(self.given[k] for k in points),
+        )
+
+    def grouped(self, members: Sequence[tuple[int, fmpq]], leaders: Sequence[int]) -> JointLaw:
+        """The same with points that move as one: the group of each, its ratio, and the point that each moves like."""
+        of = [[(k, ratio) for k, (group, ratio) in enumerate(members) if group == a] for a in range(len(leaders))]
+        return JointLaw(
+            tuple(self.mass[k] for k in leaders),
+            tuple(
+                tuple(sum((x * y * self.damping[k][j] for k, x in row for j, y in column), fmpq(0)) for column in of)
+                for row in of
+            ),
+            tuple(
+                tuple(sum((x * self.stiffness[k][j] for k, x in row), fmpq(0)) for j in range(len(members)))
+                for row in of
+            ),
+            tuple(self.given[k] for k in leaders),
+            tuple(members),
+            tuple(leaders),
+            self.stiffness,
+        )
+
+    @cached_property
+    def moves(self) -> tuple[tuple[int, fmpq], ...]:
+        """The group of each point, and how fast the point moves in it."""
+        return self.members or tuple((k, fmpq(1)) for k in range(len(self.mass)))
+
+    @cached_property
+    def squared(self) -> tuple[tuple[fmpq, ...], ...]:
+        """K with groups as columns too."""
+        if not self.members:
+            return self.stiffness
+        groups = range(len(self.mass))
+        return tuple(
+            tuple(
+                sum((ratio * c for c, (group, ratio) in zip(row, self.members, strict=True) if group == b), fmpq(0))
+                for b in groups
+            )
+            for row in self.stiffness
+        )
+
+    @cached_property
+    def heavy(self) -> tuple[int, ...]:
+        """Points with mass that are free to move."""
+        return tuple(k for k, mass in enumerate(self.mass) if mass != 0 and self.given[k] is None)
+
+    @cached_property
+    def light(self) -> tuple[int, ...]:
+        """Points without mass that are free to move."""
+        return tuple(k for k, mass in enumerate(self.mass) if mass == 0 and self.given[k] is None)
+
+    @cached_property
+    def springs(self) -> bool:
+        """Whether displacements matter."""
+        return any(value != 0 for row in self.stiffness for value in row)
+
+    @cached_property
+    def fastest(self) -> fmpq:
+        """A rate that no motion of the joint exceeds by much: what its series must bear."""
+        rates = [fmpq(0)]
+        for k, mass in enumerate(self.mass):
+            if self.given[k] is None:
+                stiff = sum(map(abs, self.stiffness[k]), fmpq(0))
+                rates.append(
+                    sum(map(abs, self.damping[k]), fmpq(0)) / mass + isqrt(int((stiff / mass).ceil()))
+                    if mass != 0
+                    else stiff / self.damping[k][k]
+                )
+        return max(rates)
+
+    @cached_property
+    def longest(self) -> fmpq | None:
+        """How long a stretch may be for the sake of springs; None where there are none."""
+        return SWING / self.fastest if self.springs and self.fastest != 0 else None
+
+    @cached_property
+    def inverse(self) -> fmpq_mat:
+        """The inverse of C on the points without mass. ZeroDivisionError where one has neither rod nor dashpot."""
+        size = len(self.light)
+        return fmpq_mat(size, size, [self.damping[a][b] for a in self.light for b in self.light]).inv()
+
+
+@dataclass(frozen=True)
+class Enclosed:
+    """A function on a stretch: |function - polynomial| <= error.
+
+    `exact` is the function, where it is known to be a polynomial. Where `choices` are given it is, at each instant, one
+    of these. `onset` tells how it begins, where that is known. `least` and `most` are exact polynomials that it is
+    never below, or above, where such are known.
+    """
+
+    polynomial: arb_poly
+    error: arb
+    exact: fmpq_poly | None = None
+    choices: tuple[Enclosed, ...] = ()
+    onset: Onset | None = None
+    least: fmpq_poly | None = None
+    most: fmpq_poly | None = None
+
+    @property
+    def bounded(self) -> bool:
+        """Whether such bounds are known."""
+        return self.least is not None or self.most is not None
+
+    @property
+    def bounds(self) -> tuple[fmpq_poly | None, fmpq_poly | None]:
+        """Exact bounds, of a polynomial too."""
+        return (self.least, self.most) if self.exact is None else (self.exact, self.exact)
+
+    @property
+    def begins(self) -> Onset | None:
+        """How it begins, of a polynomial too."""
+        return self.onset if self.exact is None else Onset.of(self.exact)
+
+    @classmethod
+    def of(cls, exact: fmpq_poly) -> Enclosed:
+        """A polynomial that is known."""
+        return cls(arb_poly([arb(c) for c in exact.coeffs()]), arb(0), exact)
+
+    def at(self, w: fmpq) -> arb:
+        """An enclosure of its value."""
+        value = self.polynomial(arb(w))
+        return value + arb(0, self.error) if self.error != 0 else value
+
+    def over(self, span: arb) -> arb:
+        """An enclosure of all values on a part of the stretch."""
+        return self.polynomial(span) + arb(0, self.error)
+
+
+STILL = Enclosed(arb_poly(), arb(0), fmpq_poly())
+
+
+@dataclass
+class JointMotion:
+    """A joint as time goes on: where its points are and how fast, and the energy of what is not known of that.
+
+    Velocities are those of groups. `places` are the coefficients of the points' displacements on the last stretch;
+    what springs make of these is off by at most sqrt(K_kk) `strained` at point k. Where it `decays`, the error of a
+    body alone is taken to decay as the body does, which matters only where signs of what is left are asked for.
+    """
+
+    law: JointLaw
+    velocity: list[arb]
+    displacement: list[arb]
+    unknown: arb = field(default_factory=lambda: arb(0))
+    places: list[list[arb]] = field(default_factory=list)
+    strained: arb = field(default_factory=lambda: arb(0))
+    decays: bool = False
+
+    def moved(
+        self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], length: fmpq, terms: int
+    ) -> list[Enclosed]:
+        """The velocities of the points on a stretch, in so many terms; afterwards the joint is at its end.
+
+        `prescribed` are the velocities of the points whose motion is given, exact.
+        """
+        q, u = self._series(forces, prescribed, terms)
+        errors = self._errors(forces, q, u, length)
+        result = [Enclosed(arb_poly(c), e) for c, e in zip(q, errors, strict=True)]
+        self.places = u
+        self._move_on(q, u, arb(length))
+        return result
+
+    def _move_on(self, q: list[list[arb]], u: list[list[arb]], h: arb) -> None:
+        """To the end of the stretch; what rounding loses there is energy not known."""
+        law = self.law
+        ends = [arb_poly(c)(h) for c in q]
+        lost = sum((arb(law.mass[k]) * ends[k].rad() ** 2 for k in law.heavy), arb(0))
+        self.velocity = [end.mid() for end in ends]
+        if law.springs:
+            places = [arb_poly(c)(h) for c in u]
+            for a, row in enumerate(law.elastic or law.stiffness):
+                lost += sum((abs(arb(k)) * places[a].rad() * places[b].rad() for b, k in enumerate(row)), arb(0))
+            self.displacement = [place.mid() for place in places]
+        root = self.unknown.sqrt() + (lost / 2).sqrt()
+        self.unknown = (root * root).upper()
+
+    def _series(
+        self, forces: Sequence[Enclosed], prescribed: Sequence[fmpq_poly], terms: int
+    ) -> tuple[list[list[arb]], list[list[arb]]]:
+        """The coefficients of q and u: middles, whatever rounding made of them."""
+        law = self.law
+        size = range(len(law.mass))
+        s = [_padded(force.polynomial, terms) for force in forces]
+        q: list[list[arb]] = [[] for _ in size]
+        u = [[value] for value in self.displacement]
+        given = {
+            k: [arb(c) for c in prescribed[k].coeffs()] + [arb(0)] * terms for k in size if law.given[k] is not None
+        }
+        damping = [[(b, arb(c)) for b, c in enumerate(row) if c != 0] for row in law.damping]
+        stiffness = [[(b, arb(c)) for b, c in enumerate(row) if c != 0] for row in law.stiffness]
+        inverse = [[arb(law.inverse[a, b]) for b in range(len(law.light))] for a in range(len(law.light))]
+        mass = {k: arb(law.mass[k]) for k in law.heavy}
+        last = {k: self.velocity[k] for k in law.heavy}
+        for n in range(terms):
+            for k, series in given.items():
+                q[k].append(series[n])
+            for k in law.heavy:
+                q[k].append(last[k])
+            right = []
+            for k in law.light:
+                value = s[k][n]
+                for b, c in damping[k]:
+                    if b not in law.light:
+                        value -= c * q[b][n]
+                for b, c in stiffness[k]:
+                    value -= c * u[b][n]
+                right.append(value)
+            for row, k in enumerate(law.light):
+                q[k].append(_dot(inverse[row], right).mid())
+            for k in law.heavy:
+                value = s[k][n]
+                for b, c in damping[k]:
+                    value -= c * q[b][n]
+                for b, c in stiffness[k]:
+                    value -= c * u[b][n]
+                last[k] = (value / (mass[k] * (n + 1))).mid()
+            if law.springs:
+                for k, (group, ratio) in enumerate(law.moves):
+                    gained = q[group][n] if ratio == 1 else arb(ratio) * q[group][n]
+                    u[k].append((gained / (n + 1)).mid())
+        return q, u
+
+    def _errors(self, forces: Sequence[Enclosed], q: list[list[arb]], u: list[list[arb]], length: fmpq) -> list[arb]:
+        """What the velocities may be off by, at most, on the stretch; and the energy of it at the end."""
+        law = self.law
+        h = arb(length)
+        defect = {}
+        for k in (*law.heavy, *law.light):
+            left = sum((arb(c) * arb_poly(q[b]) for b, c in enumerate(law.damping[k]) if c != 0), arb_poly())
+            left += sum((arb(c) * arb_poly(u[b]) for b, c in enumerate(law.stiffness[k]) if c != 0), arb_poly())
+            if law.mass[k] != 0:
+                left += arb(law.mass[k]) * arb_poly(q[k]).derivative()
+            defect[k] = (_size(forces[k].polynomial - left, h) + forces[k].error).upper()
+        inverse = [[abs(arb(law.inverse[a, b])) for b in range(len(law.light))] for a in range(len(law.light))]
+        light = [defect[k] for k in law.light]
+        through = [_dot(row, light) for row in inverse]
+        delta = arb(0)
+        for k in law.heavy:
+            more = sum((abs(arb(law.damping[k][b])) * t for b, t in zip(law.light, through, strict=True)), arb(0))
+            delta += (defect[k] + more) ** 2 / arb(law.mass[k])
+        rho = _dot(light, through) / 4
+        before = (2 * self.unknown / arb(law.mass[law.heavy[0]])).sqrt() if law.heavy else arb(0)
+        kappa = sum(
+            (
+                abs(arb(law.squared[a][b])) * one * other
+                for a, one in zip(law.light, through, strict=True)
+                for b, other in zip(law.light, through, strict=True)
+                if law.squared[a][b] != 0
+            ),
+            arb(0),
+        ).sqrt()
+        added = (rho * h).sqrt().min(kappa * h / arb(2).sqrt())
+        root = (self.unknown.sqrt() + delta.sqrt() * h / arb(2).sqrt() + added).upper()
+        self.unknown = (root * root).upper()
+        self.strained = speed = (root * arb(2).sqrt()).upper()
+        errors = {k: (speed / arb(law.mass[k]).sqrt()).upper() for k in law.heavy}
+        if len(law.mass) == 1 and law.heavy and not law.springs and law.damping[0][0] != 0:
+            (k,) = law.heavy  # a body alone comes to rest
+            held = defect[k] / arb(law.damping[k][k])
+            errors[k] = errors[k].min((before + held).upper())
+            after = errors[k]
+            if self.decays:
+                after = after.min((before * (-arb(law.damping[k][k]) * h / arb(law.mass[k])).exp() + held).upper())
+            self.unknown = (arb(law.mass[k]) * after**2 / 2).upper()
+        right = []
+        for k in law.light:
+            value = defect[k] + speed * arb(law.squared[k][k]).sqrt()
+            value += sum((abs(arb(law.damping[k][b])) * e for b, e in errors.items()), arb(0))
+            right.append(value)
+        for row, k in enumerate(law.light):
+            errors[k] = _dot(inverse[row], right).upper()
+        return [errors.get(k, arb(0)) for k in range(len(law.mass))]
+
+
+def _padded(polynomial: arb_poly, terms: int) -> list[arb]:
+    coefficients = [c.mid() for c in polynomial.coeffs()[:terms]]
+    return coefficients + [arb(0)] * (terms - len(coefficients))
+
+
+def _size(polynomial: arb_poly, h: arb) -> arb:
+    """The largest value on [0, h], at most."""
+    total, power = arb(0), arb(1)
+    for c in polynomial.coeffs():
+        total += abs(c) * power
+        power *= h
+    return total.upper()
+
+
+def _dot(one: Sequence[arb], other: Sequence[arb]) -> arb:
+    return sum((a * b for a, b in zip(one, other, strict=True)), arb(0))

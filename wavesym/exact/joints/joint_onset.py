@@ -1,0 +1,76 @@
+"""How the motion of a joint begins whose state is known exactly: its first powers, and bounds of what follows.
+
+Derivatives of the velocities come one after another from M q' + C q + K u = s, and so do their bounds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import islice
+from math import factorial
+
+from flint import arb, fmpq, fmpq_poly
+
+from wavesym.exact.joints.exact_joint import powers
+from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.joints.onset import ORDER, Onset
+
+
+def onsets(
+    law: JointLaw,
+    state: tuple[Sequence[fmpq], Sequence[fmpq]],
+    forces: Sequence[Onset],
+    prescribed: Sequence[Onset],
+    sizes: Sequence[arb],
+    length: fmpq,
+) -> list[Onset]:
+    """Those of the velocities of a law's groups, from the state (velocities of groups, displacements of points).
+
+    `sizes` are bounds of the velocities on the stretch.
+    """
+    velocity, displacement = state
+    acting, given = [each.powers for each in forces], [each.powers for each in prescribed]
+    *_, (q, _) = islice(powers(law, velocity, displacement, acting, given), ORDER + 1)
+    beyond = _derivatives(
+        law,
+        [each.derivatives(length) for each in forces],
+        {k: each.derivatives(length) for k, each in enumerate(prescribed) if law.given[k] is not None},
+        sizes,
+        [
+            abs(arb(u)) + abs(arb(ratio)) * arb(length) * sizes[a]
+            for u, (a, ratio) in zip(displacement, law.moves, strict=True)
+        ],
+    )
+    return [Onset(fmpq_poly(c[:ORDER]), (last / factorial(ORDER)).upper()) for c, last in zip(q, beyond, strict=True)]
+
+
+def _derivatives(
+    law: JointLaw,
+    forces: Sequence[Sequence[arb]],
+    given: Mapping[int, Sequence[arb]],
+    sizes: Sequence[arb],
+    places: Sequence[arb],
+) -> list[arb]:
+    """Bounds of the velocities' derivatives of ORDER, from those of all lower ones."""
+    size = range(len(law.mass))
+    now, springs = list(sizes), list(places)
+    heavy = {k: sizes[k] for k in law.heavy}
+    for j in range(ORDER + 1):
+        for k in size:
+            if k in given:
+                now[k] = given[k][j]
+            elif k in heavy:
+                now[k] = heavy[k]
+        pull = [
+            forces[k][j] + sum((abs(arb(c)) * u for c, u in zip(law.stiffness[k], springs, strict=True)), arb(0))
+            for k in size
+        ]
+        known = [k for k in size if k not in law.light]
+        right = [pull[k] + sum((abs(arb(law.damping[k][b])) * now[b] for b in known), arb(0)) for k in law.light]
+        for row, k in enumerate(law.light):
+            now[k] = sum((abs(arb(law.inverse[row, n])) * value for n, value in enumerate(right)), arb(0)).upper()
+        for k in law.heavy:
+            force = pull[k] + sum((abs(arb(law.damping[k][b])) * now[b] for b in size), arb(0))
+            heavy[k] = (force / arb(law.mass[k])).upper()
+        springs = [abs(arb(ratio)) * now[a] for a, ratio in law.moves]
+    return now

@@ -1,0 +1,1 @@
+"""What waves gain, as exponentials times powers with exact coefficients: tables, their cost, what arrives of them."""

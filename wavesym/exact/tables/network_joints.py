@@ -1,0 +1,87 @@
+"""The joints of a network and what each answers, as far as that is exact; where sources act on them."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from flint import fmpq
+
+from wavesym.errors import UnservedError
+from wavesym.exact.joints.joint import JointLaw
+from wavesym.exact.tables.increments import Increment, add, integrated
+from wavesym.exact.tables.joint_response import JointResponse, joint_polynomial, joint_response, rates, written
+from wavesym.mechanics.network import End, Network, Point
+
+START = "start"
+"""The source of what moves at tau = 0."""
+MOST_POINTS = 20  # of a joint whose determinant is made
+MOST_NAMES = 3  # of one, in a message
+
+
+def unit_at(point: Point, source: str) -> Increment:
+    """What a unit of a source does at a point: a force, or its velocity where that is prescribed."""
+    total: Increment = {}
+    for load in point.loads:
+        if load.source == source:
+            unit = {fmpq(0): list(load.coefficients)}
+            add(total, integrated(unit) if point.motion == "acceleration" else unit)
+    return total
+
+
+class NetworkJoints:
+    """What the joints of a network answer, made when they are first asked for. UnservedError where it has contacts."""
+
+    def __init__(self, network: Network) -> None:
+        network.refuse_contacts()
+        self.network = network
+        self._responses: dict[int, JointResponse] = {}
+
+    def law(self, number: int) -> JointLaw:
+        """M, C and K."""
+        return JointLaw.of(self.network, self.network.joints[number])
+
+    def response(self, number: int) -> JointResponse:
+        """What a joint answers. UnservedError, with its polynomial, where that does not split over the rationals."""
+        if number not in self._responses:
+            self._responses[number] = self._made(number)
+        return self._responses[number]
+
+    def _made(self, number: int) -> JointResponse:
+        law = self.law(number)
+        if (count := len(law.mass)) > MOST_POINTS:
+            raise UnservedError(
+                f"system: springs and dashpots hold {count} nodes together ({self.told(number)}), "
+                f"at most {MOST_POINTS} expected for exact tables"
+            )
+        if rates(law) is None:
+            raise UnservedError(
+                f"system: the joint at {self.told(number)} has the polynomial {written(joint_polynomial(law))}, "
+                "one with factors s + g, g rational, expected for exact tables"
+            )
+        return joint_response(law)
+
+    def told(self, number: int) -> str:
+        """What a scene calls the points of a joint that are free to move: their names or places, a few of them."""
+        law, joint = self.law(number), self.network.joints[number]
+        points = [self.network.points[joint.points[k]] for k in sorted((*law.heavy, *law.light))]
+        names = [point.name or f"x = {point.place}" for point in points]
+        return ", ".join(names[:MOST_NAMES]) + (f" and {left} more" if (left := len(names) - MOST_NAMES) > 0 else "")
+
+    def ends(self, number: int) -> list[tuple[End, int]]:
+        """The ends of bars at a joint, each with the place of its point in the joint."""
+        joint = self.network.joints[number]
+        return [(end, joint.points.index(point)) for end, point in joint.ends]
+
+    @cached_property
+    def sources(self) -> tuple[str, ...]:
+        """The start, where not all stays as it is, and the unit loads."""
+        units = (load.source for point in self.network.points for load in point.loads)
+        return (*([START] if self.begun(START) else []), *units)
+
+    def begun(self, source: str) -> tuple[int, ...]:
+        """The joints at which a source acts."""
+        network = self.network
+        if source == START:
+            return tuple(number for number, joint in enumerate(network.joints) if not network.at_rest(joint))
+        points = (number for number, point in enumerate(network.points) if unit_at(point, source))
+        return tuple(sorted({network.joint_of[number] for number in points}))

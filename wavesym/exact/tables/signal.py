@@ -1,0 +1,204 @@
+"""An output as one function of tau: the sum of the increments that arrive at its place.
+
+The two wave functions of its rod, all pieces of the loads and the quantity's own factors are merged exactly. What is
+left is a list of arrivals: from `time` on, the output contains sum_g exp(-g w) sum_k F[g,k] w**k with w = tau - time.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+from typing import Protocol
+
+from flint import fmpq
+
+from wavesym.errors import CostError
+from wavesym.exact.tables.increments import Increment, combined, integrated
+from wavesym.exact.tables.increments import start as start_of
+from wavesym.exact.tables.network_joints import unit_at
+from wavesym.exact.tables.network_response import RuledNetwork
+from wavesym.exact.tables.table import Function, Part, Rules, unit_response
+from wavesym.exact.tables.table_size import refuse_large
+from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.gauge import Gauge, readings
+from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.model import Model
+from wavesym.mechanics.network import Network, network_of
+from wavesym.mechanics.probe import Probe
+from wavesym.numbers.doubles import nearest, rational
+from wavesym.numbers.reals import DOUBLE, Real
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """What an output gains at tau = `time`."""
+
+    time: fmpq
+    increment: Increment
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One output: its arrivals in order of time. An output that is 0 throughout has none."""
+
+    name: str
+    arrivals: tuple[Arrival, ...]
+
+
+class Ruled(Protocol):
+    """A chain with laws that run."""
+
+    @property
+    def network(self) -> Network:
+        """The chain as a network."""
+
+    def parts(self, reading: Gauge) -> Sequence[Part]:
+        """The wave functions that are read."""
+
+    def motion(self, reading: Gauge) -> Increment:
+        """The part of what is read that is not wave."""
+
+    def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
+        """All that makes waves."""
+
+    def responses(
+        self, source: str, reach: Mapping[Function, fmpq], most: float = inf
+    ) -> Mapping[Function, Iterable[tuple[fmpq, Increment]]]:
+        """What a unit of `source` gives each function on its clock, in order, until the time that is wanted of it."""
+
+
+def signals(model: Model, most: float = inf, real: Real = DOUBLE) -> tuple[Signal, ...]:
+    """The outputs of a model on its horizon in `real` numbers, exact.
+
+    CostError where the tables would have more than `most` numbers.
+    """
+    model.refuse_damping()
+    return observed(_ruled(model), model.probes, model.loads, rational(model.horizon(real)), most)
+
+
+def _ruled(model: Model) -> RuledChain | RuledNetwork:
+    return RuledNetwork(model.network) if model.chain is None else RuledChain(model.chain)
+
+
+def refuse_many(model: Model, most: float) -> None:
+    """CostError where loads would bring increments to the outputs more than about `most` times.
+
+    The first load of each source is not counted: what that costs is known from its table.
+    """
+    if (arrivals := _ruled(model).arrivals(model.probes, model.loads, model.until)) > most:
+        raise CostError(
+            f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected (fewer load "
+            "times or outputs, or a shorter horizon, help)"
+        )
+
+
+class RuledChain:
+    """A named chain and its rules, derived as they are needed; functions are on the clocks of Table 1."""
+
+    def __init__(self, chain: Chain) -> None:
+        self.chain = chain
+        self.network = network_of(chain)
+
+    @cached_property
+    def rules(self) -> Rules:
+        """Those of its nodes; to derive them takes SymPy."""
+        return Rules(self.chain)
+
+    def parts(self, reading: Gauge) -> tuple[Part, Part]:
+        """dU/dx = g' - f', dU/dtau = f' + g' + v, U = f + g + v tau, each on the clocks of (4.2)."""
+        rod = self.chain.rod(reading.rod)
+        offset = reading.x - rod.x0
+        right, left = reading.weights
+        return (
+            Part(right, Function("f", reading.rod), rod.tau0 + offset),
+            Part(left, Function("g", reading.rod), rod.tau0 - offset),
+        )
+
+    def motion(self, reading: Gauge) -> Increment:
+        """The part of what is read that is not wave: v, or v tau."""
+        v = self.chain.rod(reading.rod).velocity * fmpq(sum(reading.weights), 2)
+        if v == 0:
+            return {}
+        return {fmpq(0): [v] if reading.order == 0 else [fmpq(0), v]}
+
+    def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
+        """The loads; an impact is one of them."""
+        return loads
+
+    def arrivals(self, probes: Sequence[Probe], loads: Sequence[Applied], until: fmpq) -> float:
+        """How many increments all loads but the first of each source bring to outputs, at most."""
+        first = {load.source: load.time for load in reversed(loads)}
+        later = [load.time for load in loads if first[load.source] < load.time <= until]
+        count = sum(len(readings(self.network, probe)) for probe in probes)
+        return 2 * count * sum(nearest(until - time) + 1 for time in later)
+
+    def responses(
+        self, source: str, reach: Mapping[Function, fmpq], most: float = inf
+    ) -> dict[Function, Sequence[tuple[fmpq, Increment]]]:
+        """The increments of functions until the time that is wanted of each, with the starts of their intervals."""
+        interval = self.rules.interval
+        wanted = {function: int((until / interval).floor()) + 1 for function, until in reach.items()}
+        refuse_large(self.chain, interval, wanted, [source], "output.until", most)
+        response = unit_response(self.rules, source, wanted)
+        starts = {function: enumerate(response.get(function, ())) for function in wanted}
+        return {function: [(fmpq(interval * n), each) for n, each in found] for function, found in starts.items()}
+
+
+def observed(
+    ruled: Ruled,
+    probes: Sequence[Probe],
+    loads: Sequence[Applied],
+    until: fmpq,
+    most: float = inf,
+) -> tuple[Signal, ...]:
+    """The signals at `probes` until tau = `until` under `loads`."""
+    read = [readings(ruled.network, probe) for probe in probes]
+    loads = ruled.acting(loads)
+    parts = {
+        reading: () if reading.quantity == "load" else tuple(ruled.parts(reading))
+        for terms in read
+        for _, reading in terms
+    }
+    responses = {}
+    for source in dict.fromkeys(load.source for load in loads):
+        start = min(load.time for load in loads if load.source == source)
+        reach: dict[Function, fmpq] = {}
+        for part in (part for group in parts.values() for part in group):
+            reach[part.function] = max(until - start - part.delay, reach.get(part.function, fmpq(-1)))
+        responses[source] = ruled.responses(source, reach, most)
+    signals = []
+    for probe, terms in zip(probes, read, strict=True):
+        gains: dict[int, _Gains] = {0: defaultdict(list), -1: defaultdict(list)}
+        for weight, reading in terms:
+            here = gains[reading.order]
+            for load in loads:
+                for part in parts[reading]:
+                    start = load.time + part.delay
+                    for time, increment in responses[load.source].get(part.function, ()):
+                        if increment and start + time <= until:
+                            here[start + time].append((weight * part.factor * load.weight, increment))
+                if reading.point is not None and reading.quantity == "load" and load.time <= until:
+                    acts = unit_at(ruled.network.points[reading.point], load.source)
+                    here[load.time].append((weight * load.weight, acts))
+        moving = combined((weight, ruled.motion(reading)) for weight, reading in terms if parts[reading])
+        signals.append(_signal(probe, gains[0], gains[-1], moving, until))
+    return tuple(signals)
+
+
+_Gains = dict[fmpq, list[tuple[fmpq, Increment]]]
+"""What is gained at each instant, with factors."""
+
+
+def _signal(probe: Probe, gains: _Gains, sums: _Gains, moving: Increment, until: fmpq) -> Signal:
+    """From what an output gains, and what that gains of which it is the integral."""
+    for time, group in sums.items():
+        gains[time].append((fmpq(1), integrated(combined(group))))
+    merged = {time: combined(group) for time, group in sorted(gains.items())}
+    if moving:
+        merged[fmpq(0)] = combined([(fmpq(1), merged.get(fmpq(0), {})), (fmpq(1), moving)])
+    if until in merged and start_of(merged[until]) == 0:
+        del merged[until]  # of what begins at the end of the horizon only the first value is seen
+    return Signal(probe.name, tuple(Arrival(time, merged[time]) for time in sorted(merged) if merged[time]))
