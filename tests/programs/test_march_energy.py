@@ -63,16 +63,16 @@ def test_truncation_is_no_less_than_what_a_step_loses(step, degree):
     step = fmpq(*Fraction(step).as_integer_ratio())
     assert node.rate == step
     block = blank(prepared, degree)
-    p = np.zeros((len(prepared.junctions), degree + 1))
-    p[0, degree] = 1
-    q, end = run.steps[0].moved(p, np.zeros(len(p)))
-    block.excess[0, 0] = q[:, -1] - p[:, -1]
+    p = np.zeros((1, len(prepared.junctions), degree + 1))
+    p[0, 0, degree] = 1
+    q, _, end = run.moved(p, np.zeros(len(prepared.junctions)))
+    block.excess[0] = q[..., -1] - p[..., -1]
     lost, _ = Roundings(prepared, run, DOUBLE).of(block)
     points, gauss = np.polynomial.legendre.leggauss(200)
     truth = exact(step, chebyshev(degree), [*points, 1.0])
-    error = np.polynomial.chebyshev.chebval(points, q[0]) - truth[:-1]
+    error = np.polynomial.chebyshev.chebval(points, q[0, 0]) - truth[:-1]
     energy = float(node.left + node.right) / 2 * (gauss @ error**2)
-    energy += float(node.mass) / 2 * (end[0] - truth[-1]) ** 2
+    energy += float(node.mass) / 2 * (end[0, 0] - truth[-1]) ** 2
     assert lost[0] >= sqrt(energy)
     if step < 1 and degree % 2 == 0:  # at the end the whole of 2 eps
         assert lost[0] <= 1.01 * sqrt(energy)

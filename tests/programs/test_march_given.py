@@ -60,22 +60,20 @@ def alone(prepared, run, channel, where, order, windows):
     q = np.zeros(len(prepared.junctions))
     for n in range(windows):
         before, waves = waves, np.zeros_like(waves)
-        starts, ends, excess, forces = (np.zeros((len(prepared.panels), len(q))) for _ in range(4))
+        forces = np.zeros((len(prepared.panels), len(q)))
+        a, b = before[RIGHT, :, :-2], before[LEFT, :, 2:]
+        balance = run.alpha * a + run.beta * b
         for p in range(len(prepared.panels)):
-            a, b = before[RIGHT, p, :-2], before[LEFT, p, 2:]
-            balance = run.alpha * a + run.beta * b
             if (n, p) == where:
-                balance[column, : len(shape.coef)] += shape.coef
+                balance[p, column, : len(shape.coef)] += shape.coef
                 forces[p, column] = np.sum(np.abs(shape.coef)) * (size + 7) * sqrt(size + 1)
             elif channel.order and (n, p) > where:
-                balance[column, 0] += shape(1.0)
+                balance[p, column, 0] += shape(1.0)
                 added = (n - window + 1) * (len(prepared.panels) + 1) if n > window else (size + 7) * sqrt(size + 1)
                 forces[p, column] = abs(shape(1.0)) * added
-            starts[p] = q
-            moved = balance.copy()
-            moved[run.massive], q[run.massive] = run.steps[p].moved(balance[run.massive], q[run.massive])
-            ends[p], excess[p] = q, moved[:, -1] - balance[:, -1]
-            waves[LEFT, p, 1:-1], waves[RIGHT, p, 1:-1] = moved - a, moved - b
+        moved, starts, ends = run.moved(balance, q)
+        q, excess = ends[-1], moved[..., -1] - balance[..., -1]
+        waves[LEFT, :, 1:-1], waves[RIGHT, :, 1:-1] = moved - a, moved - b
         yield Block(*(part[np.newaxis] for part in (before, waves, starts, ends, excess, forces)))
 
 

@@ -101,31 +101,26 @@ def _windows(plan: Plan, run: Run, windows: int) -> Iterator[Block]:
     before = np.zeros((count, plan.ways, len(plan.panels), columns + 2, size))
     forces_on = list(plan.loaded)
     q = np.zeros((count, columns))
-    shape = count, len(plan.panels), columns
     for n in range(windows):
         after = np.zeros_like(before)
-        starts, ends, excess, forces = (np.zeros(shape) for _ in range(4))
-        for p in range(len(plan.panels)):
-            a, b = before[:, RIGHT, p, :-2], before[:, LEFT, p, 2:]
-            balance = run.alpha * a + run.beta * b
-            if n == 0:
-                balance += series[:, p]
-                sums = np.sum(np.abs(series[:, p]), axis=-1)
-                # made from values at the points, with a sum of as many terms
-                forces[:, p] = sums * (run.degree + 8) * sqrt(run.degree + 2)
-                after[:, LOAD:, p, 1 : len(forces_on) + 1] = series[:, None, p, forces_on]
-            else:
-                balance[..., 0] += rest
-                after[:, LOAD:, p, 1 : len(forces_on) + 1, 0] = rest[:, None, forces_on]
-                # an integral is added to on every panel
-                forces[:, p] = np.abs(rest) * (n + 1) * (len(plan.panels) + 1)
-            starts[:, p] = q
-            moved = balance.copy()
-            moved[:, run.massive], q[:, run.massive] = run.steps[p].moved(balance[:, run.massive], q[:, run.massive])
-            ends[:, p] = q
-            excess[:, p] = moved[..., -1] - balance[..., -1]
-            after[:, LEFT, p, 1:-1] = moved - a
-            after[:, RIGHT, p, 1:-1] = moved - b
+        a, b = before[:, RIGHT, :, :-2], before[:, LEFT, :, 2:]
+        balance = run.alpha * a + run.beta * b
+        if n == 0:
+            balance += series
+            # made from values at the points, with a sum of as many terms
+            forces = np.sum(np.abs(series), axis=-1) * (run.degree + 8) * sqrt(run.degree + 2)
+            after[:, LOAD:, :, 1 : len(forces_on) + 1] = series[:, np.newaxis, :, forces_on]
+        else:
+            acting = np.repeat(rest[:, np.newaxis], len(plan.panels), axis=1)
+            balance[..., 0] += acting
+            # an integral is added to on every panel
+            forces = np.abs(acting) * (n + 1) * (len(plan.panels) + 1)
+            after[:, LOAD:, :, 1 : len(forces_on) + 1, 0] = acting[:, np.newaxis, :, forces_on]
+        moved, starts, ends = run.moved(balance, q)
+        q = ends[:, -1]
+        excess = moved[..., -1] - balance[..., -1]
+        after[:, LEFT, :, 1:-1] = moved - a
+        after[:, RIGHT, :, 1:-1] = moved - b
         yield Block(before, after, starts, ends, excess, forces)
         before = after
 

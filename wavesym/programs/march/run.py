@@ -14,6 +14,7 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.numbers.doubles import nearest
+from wavesym.programs.march.load_events import LoadEvent
 from wavesym.programs.march.operator import Array, PanelOperator, Sweeps, operator
 from wavesym.programs.march.plan import LEFT, LOAD, RIGHT, Plan
 
@@ -36,6 +37,17 @@ class Block:
     forces: Array
 
 
+@dataclass(frozen=True)
+class Since:
+    """Where a march goes on: at the start of `window`, from the waves sent on the window before, of any lower degree,
+    and the `velocities` of the nodes.
+    """
+
+    window: int
+    waves: Array
+    velocities: Array
+
+
 class Run:
     """A march at some degree; dimensionless."""
 
@@ -43,43 +55,61 @@ class Run:
         self.plan = plan
         self.degree = degree
         nodes = plan.junctions
-        self.massive = [c for c, node in enumerate(nodes) if node.rate is not None]
+        self._massive = np.array([c for c, node in enumerate(nodes) if node.rate is not None], dtype=np.intp)
         self.operators = operators(plan, degree)
         self.alpha = np.array([[nearest(node.alpha)] for node in nodes])
         self.beta = np.array([[nearest(node.beta)] for node in nodes])
         rates = [node.rate for node in nodes if node.rate is not None]
-        self.steps = [_Step([self.operators[rate * panel.length] for rate in rates], degree) for panel in plan.panels]
-        self._loads = _Loads(plan)
+        self._step = _Step([[self.operators[rate * panel.length] for rate in rates] for panel in plan.panels], degree)
 
-    def blocks(self) -> Iterator[Block]:
-        """The whole horizon, in order; a run can be taken once."""
-        plan, size = self.plan, self.degree + 1
-        last = np.zeros((plan.ways, len(plan.panels), len(plan.junctions) + 2, size))
-        rods = np.array([nearest(v) for v in plan.rods])
-        # a node sends what its rod holds: its left rod to the left; what comes in at the ends is sent by no node
-        last[LEFT, :, 1:, 0] = rods
-        last[RIGHT, :, :-1, 0] = rods
-        q = np.array([nearest(node.motion) for node in plan.junctions])
-        for first in range(0, plan.windows, _BLOCK):
-            count = min(_BLOCK, plan.windows - first)
+    def blocks(self, since: Since | None = None, length: int | None = None) -> Iterator[Block]:
+        """The horizon from its start or `since` on, in order, at most `length` windows at once."""
+        plan, length = self.plan, length or _BLOCK
+        since = since or _rest(plan)
+        last = np.zeros((*since.waves.shape[:-1], self.degree + 1))
+        last[..., : since.waves.shape[-1]] = since.waves
+        q, loads = since.velocities, _Loads(plan, since.window)
+        for first in range(since.window, plan.windows, length):
+            count = min(length, plan.windows - first)
             waves = np.empty((count + 1, *last.shape))
             waves[:] = last
             shape = count, len(plan.panels), len(plan.junctions)
             starts, ends, excess, forces = (np.zeros(shape) for _ in range(4))
             for n in range(count):
+                a, b = waves[n, RIGHT, :, :-2], waves[n, LEFT, :, 2:]
+                balance = self.alpha * a + self.beta * b
                 for p in range(len(plan.panels)):
-                    a, b = waves[n, RIGHT, p, :-2], waves[n, LEFT, p, 2:]
-                    balance = self.alpha * a + self.beta * b
-                    forces[n, p] = self._loads.add(balance, waves[n + 1, LOAD:, p], first + n, p)
-                    starts[n, p] = q
-                    moved = balance.copy()
-                    moved[self.massive], q[self.massive] = self.steps[p].moved(balance[self.massive], q[self.massive])
-                    ends[n, p] = q
-                    excess[n, p] = moved[:, -1] - balance[:, -1]
-                    waves[n + 1, LEFT, p, 1:-1] = moved - a
-                    waves[n + 1, RIGHT, p, 1:-1] = moved - b
+                    forces[n, p] = loads.add(balance[p], waves[n + 1, LOAD:, p], first + n, p)
+                moved, starts[n], ends[n] = self.moved(balance, q)
+                q = ends[n, -1]
+                excess[n] = moved[..., -1] - balance[..., -1]
+                waves[n + 1, LEFT, :, 1:-1] = moved - a
+                waves[n + 1, RIGHT, :, 1:-1] = moved - b
             last = waves[-1]
             yield Block(waves[:-1], waves[1:], starts, ends, excess, forces)
+
+    def moved(self, balance: Array, start: Array) -> tuple[Array, Array, Array]:
+        """q on all panels of a window (..., panels, columns, coefficient) and its values at their starts and ends
+        (..., panels, columns), from p and the value at the start of the window (..., columns).
+        """
+        q = balance.copy()
+        starts = np.empty(balance.shape[:-1])
+        starts[:] = start[..., np.newaxis, :]
+        ends = starts.copy()
+        massive = self._massive
+        held = np.take(balance, massive, axis=-2), np.take(start, massive, axis=-1)
+        q[..., massive, :], starts[..., massive], ends[..., massive] = self._step.moved(*held)
+        return q, starts, ends
+
+
+def _rest(plan: Plan) -> Since:
+    """The start of the horizon."""
+    waves = np.zeros((plan.ways, len(plan.panels), len(plan.junctions) + 2, 1))
+    rods = np.array([nearest(v) for v in plan.rods])
+    # a node sends what its rod holds: its left rod to the left; what comes in at the ends is sent by no node
+    waves[LEFT, :, 1:, 0] = rods
+    waves[RIGHT, :, :-1, 0] = rods
+    return Since(0, waves, np.array([nearest(node.motion) for node in plan.junctions]))
 
 
 def operators(plan: Plan, degree: int) -> dict[fmpq, PanelOperator]:
@@ -98,50 +128,58 @@ def steps(plan: Plan) -> dict[fmpq, None]:
 
 
 class _Step:
-    """All bodies on one panel."""
+    """All bodies on all panels of a window. What arrives is known, so that only their velocities go from panel to
+    panel.
+    """
 
-    def __init__(self, of: list[PanelOperator], degree: int) -> None:
-        def table(rows: list[tuple[float, ...]]) -> Array:
-            return np.array(rows).reshape(len(of), degree + 1)
-
-        self.ratio = table([o.ratio for o in of])
-        self.first, self.last = table([o.first for o in of]), table([o.last for o in of])
-        self.slack = np.array([o.slack for o in of])
-        self.loss = np.array([o.loss for o in of])
+    def __init__(self, of: list[list[PanelOperator]], degree: int) -> None:
+        shape = len(of), len(of[0])
+        self.ratio = np.array([[o.ratio for o in row] for row in of]).reshape(*shape, degree + 1)
+        self.sides = np.array([[(o.first, o.last) for o in row] for row in of]).reshape(*shape, 2, degree + 1)
+        self.slack = np.array([[o.slack for o in row] for row in of])
+        self.loss = np.array([[o.loss for o in row] for row in of])
         self.sweeps = Sweeps(self.ratio)
 
-    def moved(self, balance: Array, start: Array) -> tuple[Array, Array]:
-        """q (..., bodies, coefficient) and its value at the end (..., bodies), from p and the value at the start."""
+    def moved(self, balance: Array, start: Array) -> tuple[Array, Array, Array]:
+        """q (..., panels, bodies, coefficient) and its values at the starts and ends of panels (..., panels, bodies),
+        from p and the value at the start of the window (..., bodies).
+        """
         difference = np.zeros_like(balance)
         difference[..., 1:] = balance[..., :-1]
         difference[..., 1] *= 2
         difference[..., 1:-1] -= balance[..., 2:]
         difference *= self.ratio
         y = self.sweeps.down(difference)
-        first = start - _total(self.first * y)
-        mean = first - self.slack * first
-        end = mean + (_total(self.last * y) - self.loss * mean)
-        y[..., 0] = 2 * mean
+        sums = _total(self.sides * y[..., np.newaxis, :])
+        early, late = sums[..., 0], sums[..., 1]
+        starts, means, ends = np.empty((3, *early.shape))
+        for p in range(len(self.slack)):
+            starts[..., p, :] = start
+            first = start - early[..., p, :]
+            means[..., p, :] = mean = first - self.slack[p] * first
+            ends[..., p, :] = start = mean + (late[..., p, :] - self.loss[p] * mean)
+        y[..., 0] = 2 * means
         y = self.sweeps.up(y)
-        y[..., 0] = mean
-        return y, end
+        y[..., 0] = means
+        return y, starts, ends
 
 
 class _Loads:
-    """The forces, polynomials in the time since their last event."""
+    """The forces from window `first` on, polynomials in the time since their last event."""
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: Plan, first: int) -> None:
         self._plan = plan
-        self._coming = list(reversed(plan.events))
+        self._coming = [event for event in reversed(plan.events) if event.window >= first]
         self._now: dict[int, tuple[int, int, list[float]]] = {}
+        for event in {event.force: event for event in plan.events if event.window < first}.values():
+            self._act(event)
         self._start = [[nearest(p.start - q.start) for q in plan.panels] for p in plan.panels]
         self._half = [nearest(panel.length / 2) for panel in plan.panels]
 
     def add(self, balance: Array, heard: Array, window: int, panel: int) -> Array:
         """Add the loads of a panel to p, and set what is `heard` of them; how large they are, by column."""
         while self._coming and (self._coming[-1].window, self._coming[-1].panel) == (window, panel):
-            event = self._coming.pop()
-            self._now[event.force] = window, panel, [nearest(c) for c in event.powers]
+            self._act(self._coming.pop())
         sizes = np.zeros(len(balance))
         half = self._half[panel]
         for force, (since, place, (c0, c1, c2)) in self._now.items():
@@ -154,6 +192,9 @@ class _Loads:
             reach = middle + half
             sizes[column] = 2 * (abs(c0) + reach * abs(c1) + 2 * reach * reach * abs(c2))
         return sizes
+
+    def _act(self, event: LoadEvent) -> None:
+        self._now[event.force] = event.window, event.panel, [nearest(c) for c in event.powers]
 
 
 def _total(values: Array) -> Array:

@@ -16,13 +16,14 @@ from wavesym.mechanics.network import network_of
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import LOAD, Plan, plan
-from wavesym.programs.march.run import Run
+from wavesym.programs.march.run import Run, Since
 from wavesym.programs.runtime.plan import RuntimePlan
 
 STIFF = fmpq(100)
 LEAST = 8
 MARGIN = 24  # outputs are often smaller than waves, and errors a few times what is missed
 _HIGHEST = 1000
+_BLOCK = 8  # windows; what is marched behind the first that is missed is lost
 _MOST_WORK = 3e8  # nodes * coefficients * windows, for each degree
 LARGEST_MODEL = 1 << 28  # bytes
 
@@ -72,34 +73,52 @@ def _numbers(given: RuntimePlan, least: fmpq) -> Plan:
 
 
 def _enough(prepared: Plan, degree: int, allowed: float) -> int:
-    """The first of the degrees from one on that misses nothing."""
-    while not _misses_nothing(prepared, degree, allowed):
-        degree = raised(degree)
-        work = prepared.windows * len(prepared.panels) * len(prepared.junctions) * degree
-        if degree > _HIGHEST or work > _MOST_WORK:
-            raise CostError(
-                f"output.until: rates to {nearest(prepared.rate):g} need polynomials of degree {degree} to tau = "
-                f"{prepared.tau_max:g}, at most {_HIGHEST} and {_MOST_WORK:.1e} operations expected "
-                "(a shorter horizon helps)"
-            )
-    return degree
+    """The first of the degrees from one on whose march misses nothing.
+
+    About which one that is is seen in one march, where each degree goes on from the window that is too much for the one
+    before. What that one left out is not missed again, though, so the degree is then tried from the start.
+    """
+    since, size = None, 0.0
+    while True:
+        missed = _first_missed(Run(prepared, degree), allowed, since, size)
+        if missed:
+            since, size = missed
+            degree = raised(degree)
+            _refuse_high(prepared, degree)
+        elif since and since.window:
+            since, size = None, 0.0
+        else:
+            return degree
 
 
-def _misses_nothing(prepared: Plan, degree: int, allowed: float) -> bool:
-    run = Run(prepared, degree)
+def _refuse_high(prepared: Plan, degree: int) -> None:
+    work = prepared.windows * len(prepared.panels) * len(prepared.junctions) * degree
+    if degree > _HIGHEST or work > _MOST_WORK:
+        raise CostError(
+            f"output.until: rates to {nearest(prepared.rate):g} need polynomials of degree {degree} to tau = "
+            f"{prepared.tau_max:g}, at most {_HIGHEST} and {_MOST_WORK:.1e} operations expected "
+            "(a shorter horizon helps)"
+        )
+
+
+def _first_missed(run: Run, allowed: float, since: Since | None, size: float) -> tuple[Since, float] | None:
+    """The first window that misses more than it may, and the largest wave before it; None if there is none."""
+    plan = run.plan
     leak = np.array(
         [
-            [0.0 if node.rate is None else run.operators[node.rate * panel.length].leak for node in prepared.junctions]
-            for panel in prepared.panels
+            [0.0 if node.rate is None else run.operators[node.rate * panel.length].leak for node in plan.junctions]
+            for panel in plan.panels
         ]
     )
-    size = 0.0
-    for block in run.blocks():
+    window = since.window if since else 0
+    for block in run.blocks(since, _BLOCK):
         missed = np.sum(np.abs(block.excess) * leak, axis=(1, 2))
         means = np.max(np.abs(block.after[:, :LOAD, :, 1:-1, 0]), axis=(1, 2, 3))
         sizes = np.maximum.accumulate(np.maximum(means, np.max(np.abs(block.ends), axis=(1, 2))))
         sizes = np.maximum(sizes, size)
-        size = float(sizes[-1])
-        if not bool(np.all(missed <= allowed * sizes)):
-            return False
-    return True
+        late = ~(missed <= allowed * sizes)
+        if late.any():
+            n = int(np.argmax(late))
+            return Since(window + n, block.before[n], block.starts[n, 0]), float(sizes[n - 1]) if n else size
+        window, size = window + len(late), float(sizes[-1])
+    return None
