@@ -53,10 +53,10 @@ def test_lines_keep_every_item_and_are_never_empty():
     assert c_literals([], DOUBLE) == ("0",)  # C has no empty array
 
 
-@pytest.mark.parametrize("path", sorted(TEMPLATES.rglob("*.j2")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", sorted(TEMPLATES.rglob("*.j2")), ids=lambda path: path.relative_to(TEMPLATES).as_posix())
 def test_what_a_template_takes_is_what_jinja_finds(path):
     """Noted while it is compiled, for every template that there is: in macros, loops and what is included, too."""
-    name = "/".join(path.parts[-2:])
+    name = path.relative_to(TEMPLATES).as_posix()
     tree = _environment().parse(path.read_text(encoding="utf-8"))
     included = frozenset().union(*(_used(other) for other in meta.find_referenced_templates(tree)))
     assert _used(name) == meta.find_undeclared_variables(tree) | included

@@ -94,7 +94,7 @@ def test_a_sign_in_the_arithmetic_is_seen(file, right, wrong, monkeypatch, tmp_p
     made_with(monkeypatch, evaluator)
     assert all(verdicts(checks.generated, truth) + verdicts(checks.invariants, truth))
     if language == "c":
-        assert right in text_of(f"c/{file}")
+        assert right in text_of(f"c/{evaluator}/{file}")
         monkeypatch.setattr(kernel, "text_of", lambda other: text_of(other).replace(right, wrong))
     else:
         monkeypatch.setitem(SCHEMES, evaluator, changed(SCHEMES[evaluator], right, wrong, monkeypatch, tmp_path))
