@@ -111,6 +111,51 @@ static int refused(const laws *law)
     return window_length * window_length * fastest < 1 ? 0 : 2;
 }
 
+/* How much of what values are wrong by acts on their derivatives on a window, at most: in velocities, where a spring is
+ * longer by a velocity times a window, and a mass in a dashpot or between bars forgets what acted on it before long. */
+static real felt(const laws *law, const laws *slope)
+{
+    real most = 0;
+    for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+        const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
+        real acts[NAME_WIDEST], more[NAME_WIDEST], moved_by[NAME_WIDEST];
+        for (int j = 0; j < points; ++j) {
+            acts[j] = more[j] = 0;
+        }
+        for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+            acts[point_of[port]] += magnitude(law->push[port]);
+            more[point_of[port]] += magnitude(slope->push[port]);
+        }
+        for (int i = 0; i < n; ++i) {
+            const real own = magnitude(law->rates[at_rates[joint] + i * n + i]);
+            real pull = 0;
+            for (int j = 0; j < n; ++j) {
+                const real length = is_mass[first + j] ? (real)1 : window_length;
+                pull += length * magnitude(slope->rates[at_rates[joint] + i * n + j]);
+            }
+            for (int j = 0; j < points; ++j) {
+                const int at = at_pushed[joint] + i * points + j;
+                pull += magnitude(slope->pushed[at]) * acts[j] + magnitude(law->pushed[at]) * more[j];
+            }
+            moved_by[i] = own * window_length > 1 ? pull / own : pull * window_length;
+        }
+        for (int i = 0; i < points; ++i) {
+            real sum = 0;
+            for (int j = 0; j < n; ++j) {
+                const int at = at_shown[joint] + i * n + j;
+                const real length = is_mass[first + j] ? (real)1 : window_length;
+                sum += magnitude(law->shown[at]) * moved_by[j] + length * magnitude(slope->shown[at]);
+            }
+            for (int j = 0; j < points; ++j) {
+                const int at = at_passed[joint] + i * points + j;
+                sum += magnitude(slope->passed[at]) * acts[j] + magnitude(law->passed[at]) * more[j];
+            }
+            most = larger(most, sum);
+        }
+    }
+    return most;
+}
+
 /* What begins a march. */
 static void started(model_of *m, const laws *law)
 {

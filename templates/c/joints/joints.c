@@ -21,9 +21,11 @@ static int slot(int track, int window, int ago)
 
 /* Ends that stay where they are cancel exactly what reaches them: of a chain an output that is 0 is taken for one that
  * nothing has reached. */
-static int reached(const laws *law, int output)
+static int reached(const laws *law, const laws *slope, int lane, int output)
 {
     (void)law;
+    (void)slope;
+    (void)lane;
     (void)output;
     return 0;
 }

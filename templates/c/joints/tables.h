@@ -46,6 +46,7 @@ int name_error_bound(name_model *model, const name_parameters *parameters, name_
 int name_model_eval(const name_model *model, name_real tau, name_real *out);
 int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out);
 int name_build_tangent(name_tangent *tangent, const name_parameters *parameters);
+name_real name_tangent_estimate(const name_tangent *tangent, int lane);
 int name_tangent_sample(
     const name_tangent *tangent, name_real tau0, name_real dtau, size_t count, name_real *out);
 

@@ -224,7 +224,7 @@ static real estimated_of(const batch_of *b, const wide *missed, const name_param
     laws_of(parameters, &law);
     (void)set;
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        worst = larger(worst, relative(&law, output, LANE(missed[output], set), LANE(b->largest[output], set)));
+        worst = larger(worst, relative(&law, &law, OF_VALUES, output, LANE(missed[output], set), LANE(b->largest[output], set)));
     }
     return worst;
 }

@@ -55,7 +55,7 @@ static void kept(model_of *m, const laws *law, progress *now)
     real *const all = m->series + now->place;
     clear(all, now->degree);
     listen(m, m->waves, law->gain, m->total, now->window, now->degree, all);
-    look(m, now->window);
+    look(m, m->series, now->window, m->mean, m->largest);
     weigh(&now->heard, all, now->degree);
     now->place += (size_t)NAME_STRANDS * (size_t)(now->degree + 2);
     now->window += 1;
@@ -90,6 +90,7 @@ static int begun_lane(name_tangent *tangent, const laws *law, const laws *slope,
     started_lane(tangent, slope, lane);
     start_sums(tangent->total[lane], tangent->load[lane], tangent->since[lane]);
     tangent->size[lane][0] = 0;
+    tangent->missed[lane] = 0;
     return 0;
 }
 
@@ -97,12 +98,13 @@ static int begun_lane(name_tangent *tangent, const laws *law, const laws *slope,
 static void follow_all(name_tangent *tangent, const name_parameters *parameters, const laws *law, progress *now, int before)
 {
     laws slope;
+    real missed[NAME_LANES];
     for (;;) {
         int late = 0;
         for (int lane = 0; lane < NAME_LANES; ++lane) {
             slopes_of(parameters, lane, &slope);
-            const real missed = follow_lane(tangent, law, &slope, lane, now, before);
-            late |= !(missed <= (real)LENIENT * share * tangent->size[lane][1]);
+            missed[lane] = follow_lane(tangent, law, &slope, lane, now, before);
+            late |= !(missed[lane] <= (real)LENIENT * share * tangent->size[lane][1]);
         }
         if (!late || now->degree == NAME_DEGREE) {
             break;
@@ -112,8 +114,34 @@ static void follow_all(name_tangent *tangent, const name_parameters *parameters,
     }
     for (int lane = 0; lane < NAME_LANES; ++lane) {
         tangent->size[lane][0] = tangent->size[lane][1];
+        tangent->missed[lane] += missed[lane];
         settle_lane(tangent, lane);
     }
+}
+
+/* The estimate of the derivatives by a parameter: what their own polynomials miss, their own roundings, and what values are
+ * wrong by, which acts on them on every window, as laws change; `inherited` is that, added up. */
+static void ended_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now,
+                       real inherited)
+{
+    const model_of *const m = &tangent->value;
+    const real of_values = wrong_by(now->missed, now->size, now->degree);
+    const real missed = wrong_by(tangent->missed[lane], tangent->size[lane][0], now->degree) + felt(law, slope) * inherited;
+    real mean[NAME_OUTPUTS], largest[NAME_OUTPUTS];
+    real worst = 0;
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        mean[output] = 0;
+        largest[output] = 0;
+    }
+    for (int window = 0; window < NAME_WINDOWS; ++window) {
+        look(m, tangent->series[lane], window, mean, largest);
+    }
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        const real error = weight_of(law, output) * missed + weight_of(slope, output) * of_values +
+                           read_by(now->degree) * largest[output];
+        worst = larger(worst, relative(law, slope, lane, output, error, largest[output]));
+    }
+    tangent->estimate[lane] = worst;
 }
 
 int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
@@ -121,6 +149,7 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
     model_of *const m = &tangent->value;
     laws law, slope;
     progress now = {0, LEAST, 0, 0, 0, 0, 0, 0, 0};
+    real inherited = 0;
     int status = begun(m, parameters, &law);
     for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
         slopes_of(parameters, lane, &slope);
@@ -156,7 +185,13 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
         }
         if (status == 0) {
             kept(m, &law, &now);
+            inherited += wrong_by(now.missed, now.size, now.degree);
         }
     }
-    return status ? status : ended(m, &law, &now);
+    status = status ? status : ended(m, &law, &now);
+    for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
+        slopes_of(parameters, lane, &slope);
+        ended_lane(tangent, &law, &slope, lane, &now, inherited);
+    }
+    return status;
 }

@@ -61,7 +61,7 @@ static void climb(const part *p, summit *top, real left, real at_left, real righ
         const real higher = at_left > at_end[last] ? at_left : at_end[last];
         if (last < DEEPEST - 1 && higher + p->bend * width * width / 8 > top->best + slack) {
             const real middle = left + width / 2;
-            const real found = value(p->m, p->window, p->section, p->output, middle);
+            const real found = value(p->m, p->m->series, p->window, p->section, p->output, middle);
             seen(top, found, cycle_begin(p->window) + middle);
             ++last;
             end[last] = middle;

@@ -36,6 +36,15 @@ static int section_at(real tau)
     return found < end ? found : end - 1;
 }
 
+name_real name_tangent_estimate(const name_tangent *tangent, int lane)
+{
+    const model_of *const m = &tangent->value;
+    if (lane < 0 || lane > NAME_LANES || !m->built) {
+        return not_a_number();
+    }
+    return lane == 0 ? m->estimate : tangent->estimate[lane - 1];
+}
+
 int name_model_eval(const name_model *model, name_real tau, name_real *out)
 {
     if (!(model->built && tau == tau && tau >= 0 && tau <= NAME_TAU_MAX)) {
@@ -49,7 +58,7 @@ int name_model_eval(const name_model *model, name_real tau, name_real *out)
     const int section = at % SECTIONS;
     const real t = tau - cycle_begin(window);
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        out[output] = value(model, window, section, output, t);
+        out[output] = value(model, model->series, window, section, output, t);
     }
     return 0;
 }

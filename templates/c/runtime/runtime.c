@@ -11,12 +11,21 @@ typedef real wave_of[NAME_PANELS][NAME_NODES + 2][NAME_ROW];
 /* How many numbers of a wave follow its series: zeros. */
 enum { SPARE = NAME_ROW - NAME_DEGREE };
 
-/* Which waves and bodies differ from what they were at first, window by window, as march sends them: what numbers that
- * cancel leave of outputs does not matter. */
-static int reached(const laws *law, int output)
+/* Which waves and bodies differ from what they were at first, LIT, and which differ from that as a parameter changes,
+ * CHANGED, window by window, as march sends them: what numbers that cancel leave of outputs does not matter. */
+enum { LIT = 1, CHANGED = 2 };
+
+static int differs(real value, real slope)
 {
+    return (magnitude(value) > 0 ? LIT : 0) | (magnitude(slope) > 0 ? CHANGED : 0);
+}
+
+static int reached(const laws *law, const laws *slope, int lane, int output)
+{
+    const int wanted = lane == OF_VALUES ? LIT : CHANGED;
     int lit[2][3][NAME_PANELS][NAME_NODES + 2];
     int stirred[NAME_NODES];
+    int turned[NAME_NODES]; /* whether a node answers otherwise */
     int pushed[NAME_FORCES + 1] = {0};
     int event = 0;
     for (int way = LEFT; way <= LOAD; ++way) {
@@ -28,15 +37,24 @@ static int reached(const laws *law, int output)
     }
     for (int node = 0; node < NAME_NODES; ++node) {
         const real alpha = magnitude(law->alpha[node]), beta = magnitude(law->beta[node]);
-        const real beside = alpha > 0 ? law->rod[node] : law->rod[node + 1];
-        stirred[node] = (alpha > 0 && beta > 0 && magnitude(law->rod[node] - law->rod[node + 1]) > 0) ||
-                        (is_body[node] && magnitude(law->motion[node] - beside) > 0);
+        const int beside = alpha > 0 ? node : node + 1;
+        stirred[node] = 0;
+        if (alpha > 0 && beta > 0) {
+            stirred[node] |= differs(law->rod[node] - law->rod[node + 1], slope->rod[node] - slope->rod[node + 1]);
+        }
+        if (is_body[node]) {
+            stirred[node] |= differs(law->motion[node] - law->rod[beside], slope->motion[node] - slope->rod[beside]);
+        }
+        turned[node] = magnitude(slope->alpha[node]) > 0 || magnitude(slope->beta[node]) > 0 || magnitude(slope->rate[node]) > 0;
     }
     for (int window = 0; window < NAME_WINDOWS; ++window) {
         const int half = window % 2;
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
             for (; event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel; ++event) {
-                pushed[event_force[event]] |= magnitude(law->load[event_load[event]]) > 0;
+                const real load = law->load[event_load[event]], strength = law->strength[event_strength[event]];
+                const int own = LOAD_LANE >= 0 && lane == LOAD_LANE + event_load[event];
+                pushed[event_force[event]] |=
+                    differs(load, load * slope->strength[event_strength[event]]) | differs(0, own ? strength : (real)0);
             }
             for (int f = 0; f < NAME_FORCES; ++f) {
                 lit[half][LOAD][panel][f] = pushed[f];
@@ -44,11 +62,15 @@ static int reached(const laws *law, int output)
             for (int node = 0; node < NAME_NODES; ++node) {
                 const int a = lit[!half][RIGHT][panel][node], b = lit[!half][LEFT][panel][node + 2];
                 const real alpha = law->alpha[node], beta = law->beta[node];
-                const int from_left = a && magnitude(alpha) > 0, from_right = b && magnitude(beta) > 0;
-                stirred[node] |= (force_on[node] >= 0 && pushed[force_on[node]]) ||
-                                 (is_body[node] && (from_left || from_right));
-                lit[half][LEFT][panel][node + 1] = stirred[node] || from_right || (a && magnitude(alpha - 1) > 0);
-                lit[half][RIGHT][panel][node + 1] = stirred[node] || from_left || (b && magnitude(beta - 1) > 0);
+                const int from_left = magnitude(alpha) > 0 ? a : 0, from_right = magnitude(beta) > 0 ? b : 0;
+                stirred[node] |= (force_on[node] >= 0 ? pushed[force_on[node]] : 0) |
+                                 (is_body[node] ? from_left | from_right : 0);
+                const int more = turned[node] && ((stirred[node] | a | b) & LIT) ? CHANGED : 0;
+                stirred[node] |= is_body[node] ? more : 0;
+                lit[half][LEFT][panel][node + 1] =
+                    stirred[node] | more | from_right | (magnitude(alpha - 1) > 0 ? a : 0);
+                lit[half][RIGHT][panel][node + 1] =
+                    stirred[node] | more | from_left | (magnitude(beta - 1) > 0 ? b : 0);
             }
         }
         for (int section = 0; section < SECTIONS && (real)window + from[section] <= NAME_TAU_MAX; ++section) {
@@ -56,8 +78,10 @@ static int reached(const laws *law, int output)
             for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
                 for (int t = first_term[strand_at[k]]; t < first_term[strand_at[k] + 1]; ++t) {
                     const int then = term_back[t] ? !half : half;
-                    if (lit[then][term_way[t]][term_panel[t]][term_sender[t]] &&
-                        magnitude(law->gain[term_heard[t]]) > 0) {
+                    const int wave = lit[then][term_way[t]][term_panel[t]][term_sender[t]];
+                    const int weighs = differs(law->gain[term_heard[t]], slope->gain[term_heard[t]]);
+                    const int heard = (weighs & LIT ? wave : 0) | (wave & LIT ? weighs & CHANGED : 0);
+                    if (heard & wanted) {
                         return 1;
                     }
                 }
@@ -391,6 +415,24 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
         }
     }
     return missed;
+}
+
+/* How much of what values are wrong by acts on their derivatives on a window, at most: p by alpha and beta, p - q by the
+ * rate, and a slow body takes up no more than its share of it. */
+static real felt(const laws *law, const laws *slope)
+{
+    real most = 0;
+    for (int node = 0; node < NAME_NODES; ++node) {
+        const real rate = law->rate[node];
+        const real arrives = magnitude(slope->alpha[node]) + magnitude(slope->beta[node]);
+        if (!(rate > 0)) {
+            most = larger(most, arrives);
+        } else {
+            most = larger(most, (rate < 1 ? rate : (real)1) * arrives);
+            most = larger(most, 2 * (rate < 1 ? slope->rate[node] : slope->rate[node] / rate));
+        }
+    }
+    return most;
 }
 
 /* What begins a march. */

@@ -5,9 +5,9 @@
 #endif
 /* Each march says this of itself; read by itself, this text has a stand-in. */
 #ifndef NAME_MARCHED
-static int reached(const laws *law, int output)
+static int reached(const laws *law, const laws *slope, int lane, int output)
 {
-    return law->gain[0] > 0 || output > 0;
+    return law->gain[0] > 0 || slope->gain[0] > 0 || lane + output > 0;
 }
 #endif
 
@@ -191,8 +191,8 @@ static int in_cycle(int window, int section)
     return window % CYCLE * SECTIONS + section;
 }
 
-/* An output on a section of a window, t after the start of its cycle. */
-static real value(const model_of *m, int window, int section, int output, real t)
+/* An output, or a derivative of it, on a section of a window, t after the start of its cycle. */
+static real value(const model_of *m, const real *series, int window, int section, int output, real t)
 {
     const int at = section * NAME_OUTPUTS + output;
     const int degree = m->degree[window];
@@ -201,16 +201,16 @@ static real value(const model_of *m, int window, int section, int output, real t
         const int s = strand_at[k];
         const int now = window % CYCLE * NAME_STRANDS + s;
         const real u = ((t - strand_start[now]) + strand_excess[now]) * strand_scale[s] - 1;
-        sum += series_at(m->series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u);
+        sum += series_at(series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u);
     }
     return sum;
 }
 
 /* Look for the largest value of each output, or nearly: in the middle of sections whose mean is half as much again as
  * that of those looked at, or much more than what was found. What lies beyond TAU_MAX does not count. */
-static void look(model_of *m, int window)
+static void look(const model_of *m, const real *series, int window, real *means, real *largest)
 {
-    const real *const all = m->series + m->place[window];
+    const real *const all = series + m->place[window];
     for (int section = 0; section < SECTIONS; ++section) {
         const int here = in_cycle(window, section);
         const real reach = NAME_TAU_MAX - cycle_begin(window);
@@ -221,10 +221,10 @@ static void look(model_of *m, int window)
             for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
                 mean += all[(size_t)strand_at[k] * (size_t)(m->degree[window] + 2)];
             }
-            if (2 * magnitude(mean) > 3 * m->mean[output] || magnitude(mean) > 4 * m->largest[output]) {
+            if (2 * magnitude(mean) > 3 * means[output] || magnitude(mean) > 4 * largest[output]) {
                 const real middle = from[here] + (end - from[here]) / 2;
-                m->mean[output] = larger(m->mean[output], mean);
-                m->largest[output] = larger(m->largest[output], value(m, window, section, output, middle));
+                means[output] = larger(means[output], mean);
+                largest[output] = larger(largest[output], value(m, series, window, section, output, middle));
             }
         }
     }
@@ -252,26 +252,34 @@ static void weigh(real *sum, const real *all, int degree)
     *sum += (real)(4 * (degree + 2)) * (total_of(&some) + others);
 }
 
-/* Whether anything can be felt in an output up to TAU_MAX. */
-static int reached(const laws *law, int output);
+/* Whether anything can be felt in an output up to TAU_MAX, or in its derivative by a parameter, of which `slope` is what
+ * the laws change by. OF_VALUES stands for no parameter; then `slope` does not count. */
+enum { OF_VALUES = -1 };
+static int reached(const laws *law, const laws *slope, int lane, int output);
 
-/* Whether an output is 0 whatever the parameters are: no wave counts in it. */
-static int is_silent(const laws *law, int output)
+/* How an output weighs waves, added up. */
+static real weight_of(const laws *law, int output)
 {
     real weight = 0;
     for (int k = 0; k < NAME_HEARD; ++k) {
         weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
     }
-    return !(weight > 0);
+    return weight;
+}
+
+/* Whether an output is 0 whatever the parameters are: no wave counts in it. */
+static int is_silent(const laws *law, int output)
+{
+    return !(weight_of(law, output) > 0);
 }
 
 /* An error relative to what is surely there of an output; of one that waves have reached that may be nothing. */
-static real relative(const laws *law, int output, real error, real largest)
+static real relative(const laws *law, const laws *slope, int lane, int output, real error, real largest)
 {
     if (error < largest) {
         return error / (largest - error);
     }
-    return error > 0 && (largest > 0 || reached(law, output)) ? infinity() : (real)0;
+    return !(error <= 0) && (largest > 0 || reached(law, slope, lane, output)) ? infinity() : (real)0;
 }
 
 /* How often a velocity of size 1 is rounded, about. The sums of a body, of so many coefficients, lose up to a sixteenth of
@@ -291,11 +299,9 @@ static real estimated(const model_of *m, const laws *law, real missed, int degre
 {
     real worst = 0;
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        real weight = 0;
-        for (int k = 0; k < NAME_HEARD; ++k) {
-            weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
-        }
-        worst = larger(worst, relative(law, output, weight * missed + read_by(degree) * m->largest[output], m->largest[output]));
+        const real largest = m->largest[output];
+        const real error = weight_of(law, output) * missed + read_by(degree) * largest;
+        worst = larger(worst, relative(law, law, OF_VALUES, output, error, largest));
     }
     return worst;
 }
@@ -317,10 +323,16 @@ static int higher_than(int degree)
     return higher < NAME_DEGREE ? higher : NAME_DEGREE;
 }
 
-/* Errors were up to five times what polynomials miss; docs/march.md of wavesym has what was measured. */
+/* About what velocities are wrong by, at worst. Errors were up to five times what polynomials miss; docs/march.md of
+ * wavesym has what was measured. */
+static real wrong_by(real missed, real size, int degree)
+{
+    return 6 * missed + rounded_by(degree) * size;
+}
+
 static int ended(model_of *m, const laws *law, const progress *now)
 {
-    const real missed = 6 * now->missed + rounded_by(now->degree) * now->size;
+    const real missed = wrong_by(now->missed, now->size, now->degree);
     m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);
     m->estimate = m->built ? estimated(m, law, missed, now->degree) : not_a_number();
     return !m->built;
