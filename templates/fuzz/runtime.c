@@ -36,6 +36,10 @@ static void derived(const name_parameters *set, const name_model *model, int sta
     const int found = name_build_tangent(&tangent, set);
     const int outside = name_tangent_sample(&tangent, tau0, dtau, count, rows);
     look(&tangent.value, found, tau0, out);
+    for (int lane = -1; lane <= NAME_LANES + 1; ++lane) {
+        const name_real estimate = name_tangent_estimate(&tangent, lane);
+        MUST(found || lane < 0 || lane > NAME_LANES ? estimate != estimate : estimate >= 0);
+    }
     /* of two degrees rounding may make one too low: where it hides most digits, which the estimate tells */
     MUST(status == 0 || found != 0 || (status == 2 && name_error_estimate(&tangent.value) > (name_real)1e-6));
     const name_real slack = found ? 0 : apart(&tangent.value, model);

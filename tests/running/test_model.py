@@ -69,6 +69,8 @@ def test_derivatives_are_those_of_the_exact_outputs(model):
         both = [wavesym.evaluator(scene(kappa + side * step))(tau) for side in (1, -1)]
         # central differences: of the third derivative, of order 1 here, times h^2/6
         assert np.allclose(found.by["kappa"][0, place], (both[0] - both[1]) / (2 * h), rtol=0, atol=1e-9)
+    assert [found.estimates[name].shape for name in ("kappa", "load")] == [(1, 3), (1, len(model.parameters["load"]))]
+    assert np.max(found.estimates["kappa"]) < 1e-8
     # outputs are linear in loads
     sums = np.einsum("nlot,l->not", found.by["load"], model.parameters["load"])
     assert np.allclose(sums, found.values, rtol=0, atol=1e-13)
@@ -108,7 +110,9 @@ def test_a_refused_set_is_nan_and_no_other(model):
     assert np.isnan(values[1:]).all()
     assert np.isnan(values[0]).any(axis=(0, 1)).tolist() == [False, False, True]
     assert np.isnan(model.peaks(kappa=kappa).max).all(axis=1).tolist() == [False, True, True]
-    assert np.isnan(model.gradients(kappa=kappa, tau=[1.0]).by["load"]).all(axis=(1, 2, 3)).tolist() == [
+    slopes = model.gradients(kappa=kappa, tau=[1.0])
+    assert np.isnan(slopes.estimates["kappa"]).all(axis=1).tolist() == [False, True, True]
+    assert np.isnan(slopes.by["load"]).all(axis=(1, 2, 3)).tolist() == [
         False,
         True,
         True,

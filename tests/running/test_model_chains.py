@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 import wavesym
 from tests.support.builds import LANGUAGES, STRICT
 from tests.support.built_model import BuiltModel
+from tests.support.slopes import beyond, slope_of
+from tests.support.without_compiler import without_compiler
 from tests.targets.test_runtime_c import SANITIZED
 from wavesym.errors import WavesymError
 from wavesym.running.toolchain import compiler
@@ -209,6 +211,49 @@ def test_derivatives_are_those_of_exact_values(make):
             errors = np.max(np.abs(found.by[name][0, k] - true), axis=1)
             # differences leave about 1e-10 of second order and 1e-16/1e-5 of rounding
             assert np.all(errors <= 1e-7 * np.max(np.abs(true), axis=1) + 1e-9)
+
+
+def beyond_estimate(make, numbers, name, k):
+    """The error of a derivative over its estimate, the truth from exact values."""
+    tau = np.linspace(0, model_of(make).tau_max, 33)
+    found, own = model_of(make).gradients(tau, **numbers), Fraction(numbers[name][k])
+
+    def values(number):
+        changed = [*numbers[name][:k], number, *numbers[name][k + 1 :]]
+        return wavesym.evaluator(make(exact(numbers | {name: changed})))(tau)
+
+    assert found.checks.status[0] == 0
+    true, slack = slope_of(values, own, own / 128)
+    return beyond(found.by[name][0, k], true, slack, found.estimates[name][0, k])
+
+
+PART = st.floats(-1, 1).map(lambda power: float(f"{10**power:.3g}"))
+
+
+@pytest.mark.slow
+@EVERY
+@settings(max_examples=6, suppress_health_check=list(HealthCheck), phases=[Phase.generate])
+@given(data=st.data())
+def test_estimates_of_derivatives_hold(make, data):
+    name = data.draw(st.sampled_from([name for name in NUMBERS[make] if name not in ("velocity", "load")]))
+    numbers = {
+        name: data.draw(st.lists(ANY if name in ("velocity", "load") else PART, min_size=len(of), max_size=len(of)))
+        for name, of in NUMBERS[make].items()
+    }
+    assert beyond_estimate(make, numbers, name, data.draw(st.integers(0, len(numbers[name]) - 1))) < 1
+
+
+@pytest.mark.slow
+@EVERY
+def test_numpy_estimates_the_same(make):
+    """But for degrees, which are those of values there, too."""
+    tau, numbers = [1.0], NUMBERS[make]
+    with without_compiler():
+        plain = wavesym.model(make(numbers), runtime=list(numbers)).gradients(tau)
+    found = model_of(make).gradients(tau)
+    for name in numbers:
+        ratio = plain.estimates[name] / found.estimates[name]
+        assert np.all((ratio > 1 / 4) & (ratio < 4))
 
 
 @pytest.mark.slow

@@ -76,6 +76,9 @@ class BuiltModel:
         self._build_tangent.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
         self._tangents = getattr(self.library, f"{name}_tangent_sample")
         self._tangents.argtypes = self._sample.argtypes
+        self._tangent_estimate = getattr(self.library, f"{name}_tangent_estimate")
+        self._tangent_estimate.argtypes = [ctypes.c_void_p, ctypes.c_int]
+        self._tangent_estimate.restype = ctypes.c_double
 
     def tangents(self, parameters, tau0, dtau, count):
         """Values and derivatives, of shape (1 + parameters, outputs, count)."""
@@ -83,6 +86,9 @@ class BuiltModel:
         status = self._build_tangent(self.tangent.ctypes.data, given.ctypes.data)
         out = np.empty((1 + len(given), self.outputs, count))
         return status or self._tangents(self.tangent.ctypes.data, tau0, dtau, count, out.ctypes.data), out
+
+    def tangent_estimate(self, lane):
+        return self._tangent_estimate(self.tangent.ctypes.data, lane)
 
     def build(self, *parameters):
         given = np.array([float(number) for number in parameters])

@@ -63,8 +63,8 @@ def test_an_output_that_cancels_is_not_claimed(tmp_path):
 
 @pytest.mark.slow
 def test_it_would_be_without_the_light_cone(tmp_path):
-    old = "(largest > 0 || reached(law, output))"
-    made = BuiltModel(STOREYS, ["kappa", "load"], tmp_path, [(old, "largest > 0 && reached(law, output)")])
+    old = "(largest > 0 || reached(law, slope, lane, output))"
+    made = BuiltModel(STOREYS, ["kappa", "load"], tmp_path, [(old, "largest > 0 && reached(law, slope, lane, output)")])
     assert wrongly_claimed(made, HEAVY)[-1]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NoReturn
 
 import numpy as np
@@ -48,12 +49,14 @@ class SetPeaks:
 @dataclass(frozen=True)
 class SetGradients:
     """`values` of shape (sets, outputs, *tau.shape), and `by[field]`, their derivatives by each number of a field, of
-    shape (sets, numbers, outputs, *tau.shape). The estimate of `checks` is that of the values.
+    shape (sets, numbers, outputs, *tau.shape). `estimates[field]`, of shape (sets, numbers), are about the largest
+    error of any output's derivative relative to its largest value, as the estimate of `checks` is of the values.
     """
 
     values: Array
     by: Mapping[str, Array]
     checks: SetChecks
+    estimates: Mapping[str, Array]
 
 
 class RuntimeModel:
@@ -96,8 +99,10 @@ class RuntimeModel:
         shape = (len(self.outputs), *instants.shape)
         lanes = found.values.reshape(*found.values.shape[:2], *shape)
         ends = np.cumsum([1, *map(len, self.parameters.values())])
-        by = {name: lanes[:, begin:end] for name, begin, end in zip(self.parameters, ends[:-1], ends[1:], strict=True)}
-        return SetGradients(lanes[:, 0], by, SetChecks(found.status, found.estimate))
+        places = {name: slice(*of) for name, of in zip(self.parameters, pairwise(ends), strict=True)}
+        by = {name: lanes[:, place] for name, place in places.items()}
+        estimates = {name: found.estimate[:, place] for name, place in places.items()}
+        return SetGradients(lanes[:, 0], by, SetChecks(found.status, found.estimate[:, 0]), estimates)
 
     def peaks(self, **parameters: ArrayLike) -> SetPeaks:
         """Extremes on the whole horizon, between samples, too."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.arrays.engine import ArraySets
-from wavesym.programs.runtime.engine import Array, Engine, FoundSets
+from wavesym.programs.runtime.engine import Array, Engine, FoundSets, no_sets
 from wavesym.running.native import FAST, address, library
 from wavesym.running.toolchain import CompilerError, compiler
 from wavesym.targets.files import runtime_sets
@@ -66,11 +66,14 @@ class CompiledSets:
     def values(self, given: Array, tau: Array) -> FoundSets:
         """See `Engine`."""
         batch = self._batch()
-        return self._at(self._values, [batch, np.empty(self._size, np.uint8)], given, tau, 1)
+        shape = (1, self._outputs, len(tau))
+        return self._at(self._values, [batch, np.empty(self._size, np.uint8)], given, tau, no_sets(len(given), shape))
 
     def tangents(self, given: Array, tau: Array) -> FoundSets:
         """See `Engine`."""
-        return self._at(self._tangents, [np.empty(self._tangent_size, np.uint8)], given, tau, 1 + given.shape[1])
+        lanes = 1 + given.shape[1]
+        found = no_sets(len(given), (lanes, self._outputs, len(tau)), (lanes,))
+        return self._at(self._tangents, [np.empty(self._tangent_size, np.uint8)], given, tau, found)
 
     def peaks(self, given: Array) -> FoundSets:
         """See `Engine`."""
@@ -88,7 +91,7 @@ class CompiledSets:
 
         def misfits(given: Array) -> FoundSets:
             _ = numbers  # C reads them, so that they must live as long as this
-            found = _none(len(given), ())
+            found = no_sets(len(given), ())
             batch = _aligned(self._batch_size)
             self._misfits(address(given), len(given), address(batch), address(kept), *_places(found))
             return found
@@ -106,7 +109,7 @@ class CompiledSets:
         given: Array,
         shape: tuple[int, ...],
     ) -> FoundSets:
-        found = _none(len(given), shape)
+        found = no_sets(len(given), shape)
         function(address(given), len(given), *map(_place, room), *_places(found))
         return found
 
@@ -116,11 +119,10 @@ class CompiledSets:
         room: Sequence[Memory | None],
         given: Array,
         tau: Array,
-        lanes: int,
+        found: FoundSets,
     ) -> FoundSets:
         even = len(tau) > 1 and _even(tau)
         told = np.array([tau[0], tau[1] - tau[0]]) if even else tau
-        found = _none(len(given), (lanes, self._outputs, len(tau)))
         function(address(given), len(given), *map(_place, room), address(told), even, len(tau), *_places(found))
         return found
 
@@ -134,10 +136,6 @@ def _aligned(size: int) -> Memory:
     memory = np.empty(size + 64, np.uint8)
     begin = -memory.ctypes.data % 64
     return memory[begin : begin + size]
-
-
-def _none(sets: int, shape: tuple[int, ...]) -> FoundSets:
-    return FoundSets(np.empty(sets, np.int32), np.empty(sets), np.empty((sets, *shape)))
 
 
 def _places(found: FoundSets) -> tuple[int, int, int]:

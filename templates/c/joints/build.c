@@ -38,6 +38,75 @@ static void listen(const model_of *m, track_of *waves, const real *gains, real *
     }
 }
 
+/* For how long what acts on a state is felt on a window: a mass in a dashpot or between bars forgets it before long. */
+static real felt_for(const laws *law, int joint, int state)
+{
+    const real own = magnitude(law->rates[at_rates[joint] + state * (states_of(joint) + 1)]);
+    return own * window_length > 1 ? 1 / own : window_length;
+}
+
+/* How much of what values are wrong by acts on their derivatives on a window, at most: in velocities, where a spring is
+ * longer by a velocity times a window. */
+static real felt(const laws *law, const laws *slope)
+{
+    real most = 0;
+    for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+        const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
+        real acts[NAME_WIDEST], more[NAME_WIDEST], taken[NAME_WIDEST];
+        for (int j = 0; j < points; ++j) {
+            acts[j] = more[j] = 0;
+        }
+        for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+            acts[point_of[port]] += magnitude(law->push[port]);
+            more[point_of[port]] += magnitude(slope->push[port]);
+        }
+        for (int i = 0; i < n; ++i) {
+            real pull = 0;
+            for (int j = 0; j < n; ++j) {
+                const real length = is_mass[first + j] ? (real)1 : window_length;
+                pull += length * magnitude(slope->rates[at_rates[joint] + i * n + j]);
+            }
+            for (int j = 0; j < points; ++j) {
+                const int at = at_pushed[joint] + i * points + j;
+                pull += magnitude(slope->pushed[at]) * acts[j] + magnitude(law->pushed[at]) * more[j];
+            }
+            taken[i] = pull * felt_for(law, joint, i);
+        }
+        for (int i = 0; i < points; ++i) {
+            real sum = 0;
+            for (int j = 0; j < n; ++j) {
+                const int at = at_shown[joint] + i * n + j;
+                const real length = is_mass[first + j] ? (real)1 : window_length;
+                sum += magnitude(law->shown[at]) * taken[j] + length * magnitude(slope->shown[at]);
+            }
+            for (int j = 0; j < points; ++j) {
+                const int at = at_passed[joint] + i * points + j;
+                sum += magnitude(slope->passed[at]) * acts[j] + magnitude(law->passed[at]) * more[j];
+            }
+            most = larger(most, sum);
+        }
+    }
+    return most;
+}
+
+/* The largest of what acts on the derivatives of a joint as its laws change, before it cancels: of its means. */
+static real acting_more(const laws *law, const laws *slope, int joint, real (*x)[NAME_ROW], real (*s)[NAME_ROW])
+{
+    const int n = states_of(joint), points = points_of(joint);
+    real most = 0;
+    for (int i = 0; i < n; ++i) {
+        real sum = 0;
+        for (int j = 0; j < n; ++j) {
+            sum += magnitude(slope->rates[at_rates[joint] + i * n + j] * x[j][0]);
+        }
+        for (int j = 0; j < points; ++j) {
+            sum += magnitude(slope->pushed[at_pushed[joint] + i * points + j] * s[j][0]);
+        }
+        most = larger(most, sum * felt_for(law, joint, i));
+    }
+    return most;
+}
+
 /* One window of the derivatives by a parameter, of which `slope` is what the laws change by: with x' = A x + B s and
  * q = S x + P s,
  *
@@ -74,6 +143,7 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
                 add_series(slope->rates + at_rates[joint], n, n, x, degree, f);
                 moved(m, joint, panel, degree, f, tangent->state[lane][1] + first, dx);
                 add_missed(law, joint, panel, degree, f, dx, &missed);
+                tangent->acts[lane] = larger(tangent->acts[lane], acting_more(law, slope, joint, x, s));
                 add_series(law->shown + at_shown[joint], points, n, dx, degree, q);
                 add_series(slope->shown + at_shown[joint], points, n, x, degree, q);
             }
@@ -109,51 +179,6 @@ static int refused(const laws *law)
         }
     }
     return window_length * window_length * fastest < 1 ? 0 : 2;
-}
-
-/* How much of what values are wrong by acts on their derivatives on a window, at most: in velocities, where a spring is
- * longer by a velocity times a window, and a mass in a dashpot or between bars forgets what acted on it before long. */
-static real felt(const laws *law, const laws *slope)
-{
-    real most = 0;
-    for (int joint = 0; joint < NAME_JOINTS; ++joint) {
-        const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
-        real acts[NAME_WIDEST], more[NAME_WIDEST], moved_by[NAME_WIDEST];
-        for (int j = 0; j < points; ++j) {
-            acts[j] = more[j] = 0;
-        }
-        for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-            acts[point_of[port]] += magnitude(law->push[port]);
-            more[point_of[port]] += magnitude(slope->push[port]);
-        }
-        for (int i = 0; i < n; ++i) {
-            const real own = magnitude(law->rates[at_rates[joint] + i * n + i]);
-            real pull = 0;
-            for (int j = 0; j < n; ++j) {
-                const real length = is_mass[first + j] ? (real)1 : window_length;
-                pull += length * magnitude(slope->rates[at_rates[joint] + i * n + j]);
-            }
-            for (int j = 0; j < points; ++j) {
-                const int at = at_pushed[joint] + i * points + j;
-                pull += magnitude(slope->pushed[at]) * acts[j] + magnitude(law->pushed[at]) * more[j];
-            }
-            moved_by[i] = own * window_length > 1 ? pull / own : pull * window_length;
-        }
-        for (int i = 0; i < points; ++i) {
-            real sum = 0;
-            for (int j = 0; j < n; ++j) {
-                const int at = at_shown[joint] + i * n + j;
-                const real length = is_mass[first + j] ? (real)1 : window_length;
-                sum += magnitude(law->shown[at]) * moved_by[j] + length * magnitude(slope->shown[at]);
-            }
-            for (int j = 0; j < points; ++j) {
-                const int at = at_passed[joint] + i * points + j;
-                sum += magnitude(slope->passed[at]) * acts[j] + magnitude(law->passed[at]) * more[j];
-            }
-            most = larger(most, sum);
-        }
-    }
-    return most;
 }
 
 /* What begins a march. */

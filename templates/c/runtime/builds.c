@@ -91,6 +91,7 @@ static int begun_lane(name_tangent *tangent, const laws *law, const laws *slope,
     start_sums(tangent->total[lane], tangent->load[lane], tangent->since[lane]);
     tangent->size[lane][0] = 0;
     tangent->missed[lane] = 0;
+    tangent->acts[lane] = 0;
     return 0;
 }
 
@@ -119,14 +120,17 @@ static void follow_all(name_tangent *tangent, const name_parameters *parameters,
     }
 }
 
-/* The estimate of the derivatives by a parameter: what their own polynomials miss, their own roundings, and what values are
- * wrong by, which acts on them on every window, as laws change; `inherited` is that, added up. */
+/* The estimate of the derivatives by a parameter: what their own polynomials miss, their own roundings (`acts` is the
+ * largest of what acts on them as laws change, which may cancel with loads), and what values are wrong by, which acts on them on every window, as laws change; `inherited` is that, added up. As such errors do not all
+ * have one sign, an eighth of it counts; docs/march.md of wavesym has what was measured. */
 static void ended_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now,
                        real inherited)
 {
     const model_of *const m = &tangent->value;
     const real of_values = wrong_by(now->missed, now->size, now->degree);
-    const real missed = wrong_by(tangent->missed[lane], tangent->size[lane][0], now->degree) + felt(law, slope) * inherited;
+    const real size = larger(tangent->size[lane][0], tangent->acts[lane]);
+    const real own = wrong_by(tangent->missed[lane], size, now->degree);
+    const real missed = own + felt(law, slope) * inherited / 8;
     real mean[NAME_OUTPUTS], largest[NAME_OUTPUTS];
     real worst = 0;
     for (int output = 0; output < NAME_OUTPUTS; ++output) {

@@ -37,6 +37,7 @@ typedef struct {
     name_real velocity[NAME_LANES][2][NAME_NODES];
     name_real size[NAME_LANES][2];
     name_real missed[NAME_LANES];
+    name_real acts[NAME_LANES];
     name_real total[NAME_LANES][NAME_HEARD + 1];
     name_real change[NAME_LANES][NAME_EVENTS + 1];
     name_real load[NAME_LANES][NAME_FORCES + 1][3];

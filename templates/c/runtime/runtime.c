@@ -45,7 +45,8 @@ static int reached(const laws *law, const laws *slope, int lane, int output)
         if (is_body[node]) {
             stirred[node] |= differs(law->motion[node] - law->rod[beside], slope->motion[node] - slope->rod[beside]);
         }
-        turned[node] = magnitude(slope->alpha[node]) > 0 || magnitude(slope->beta[node]) > 0 || magnitude(slope->rate[node]) > 0;
+        turned[node] = magnitude(slope->alpha[node]) > 0 || magnitude(slope->beta[node]) > 0 ||
+                       magnitude(slope->rate[node]) > 0;
     }
     for (int window = 0; window < NAME_WINDOWS; ++window) {
         const int half = window % 2;
@@ -355,6 +356,26 @@ static void listen(const model_of *m, wave_of (*waves)[3], const real *gains, re
     }
 }
 
+/* How much of p - q a body takes up on a window as its rate changes, at most: a slow one no more than its share. */
+static real turned_by(const laws *law, const laws *slope, int node)
+{
+    const real rate = law->rate[node];
+    return magnitude(rate < 1 ? slope->rate[node] : slope->rate[node] / rate);
+}
+
+/* How much of what values are wrong by acts on their derivatives on a window, at most. */
+static real felt(const laws *law, const laws *slope)
+{
+    real most = 0;
+    for (int node = 0; node < NAME_NODES; ++node) {
+        const real rate = law->rate[node];
+        const real arrives = magnitude(slope->alpha[node]) + magnitude(slope->beta[node]);
+        most = larger(most, rate > 0 && rate < 1 ? rate * arrives : arrives);
+        most = larger(most, 2 * turned_by(law, slope, node));
+    }
+    return most;
+}
+
 /* One window of the derivatives by a parameter, of which `slope` is what the laws change by. With q'/rate + q = p,
  *
  *     dq'/rate + dq = dp + drate/rate (p - q).
@@ -367,7 +388,7 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
     real *const velocity = tangent->velocity[lane][1];
     real *const size = &tangent->size[lane][1];
     moving bodies;
-    real missed = 0;
+    real missed = 0, acts = tangent->acts[lane];
     bodies.count = 0;
     bodies.node[0] = 0;
     bodies.node[1] = 0;
@@ -403,6 +424,7 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
                     const real load = f >= 0 && k < 3 ? m->force[panel][f][k] : (real)0;
                     const real pushed = law->alpha[node] * a[k] + law->beta[node] * b[k] + load;
                     p[k] += share_of_rate * (pushed - (back[k] + a[k]));
+                    acts = k == 0 ? larger(acts, turned_by(law, slope, node) * pushed) : acts;
                 }
                 bodies.node[bodies.count] = node;
                 bodies.count += 1;
@@ -414,25 +436,8 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
             }
         }
     }
+    tangent->acts[lane] = acts;
     return missed;
-}
-
-/* How much of what values are wrong by acts on their derivatives on a window, at most: p by alpha and beta, p - q by the
- * rate, and a slow body takes up no more than its share of it. */
-static real felt(const laws *law, const laws *slope)
-{
-    real most = 0;
-    for (int node = 0; node < NAME_NODES; ++node) {
-        const real rate = law->rate[node];
-        const real arrives = magnitude(slope->alpha[node]) + magnitude(slope->beta[node]);
-        if (!(rate > 0)) {
-            most = larger(most, arrives);
-        } else {
-            most = larger(most, (rate < 1 ? rate : (real)1) * arrives);
-            most = larger(most, 2 * (rate < 1 ? slope->rate[node] : slope->rate[node] / rate));
-        }
-    }
-    return most;
 }
 
 /* What begins a march. */

@@ -69,7 +69,8 @@ void name_sets_peaks(const name_parameters *parameters, size_t sets, name_batch 
     }
 }
 
-/* As name_sets, with derivatives: out[((set*(LANES + 1) + lane)*OUTPUTS + output)*count + k]. */
+/* As name_sets, with derivatives: out[((set*(LANES + 1) + lane)*OUTPUTS + output)*count + k], estimate[set*(LANES + 1) +
+ * lane]. */
 void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tangent *tangent, const name_real *tau,
                         int even, size_t count, int *status, name_real *estimate, name_real *out)
 {
@@ -77,7 +78,9 @@ void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tan
     for (size_t set = 0; set < sets; ++set) {
         name_real *const all = out + set * rows * count;
         status[set] = name_build_tangent(tangent, parameters + set);
-        estimate[set] = name_error_estimate(&tangent->value);
+        for (size_t lane = 0; lane <= NAME_LANES; ++lane) {
+            estimate[set * (NAME_LANES + 1) + lane] = name_tangent_estimate(tangent, (int)lane);
+        }
         if (even) {
             (void)name_tangent_sample(tangent, tau[0], tau[1], count, all);
         }

@@ -12,7 +12,7 @@ from wavesym.programs.runtime.arrays.march import ArrayMarch
 from wavesym.programs.runtime.arrays.peaks import array_peaks
 from wavesym.programs.runtime.arrays.tables import ArrayTables
 from wavesym.programs.runtime.arrays.values import array_values
-from wavesym.programs.runtime.engine import Array, FoundSets
+from wavesym.programs.runtime.engine import Array, FoundSets, no_sets
 
 _SERIES = 1 << 27  # bytes of series at a time
 
@@ -53,13 +53,14 @@ class ArraySets:
     def _some(
         self, given: Array, shape: tuple[int, ...], read: Callable[[ArrayMarch], Array], *, lanes: bool = False
     ) -> FoundSets:
-        found = FoundSets(np.empty(len(given), np.int32), np.empty(len(given)), np.empty((len(given), *shape)))
+        estimates = (1 + given.shape[1],) if lanes else ()
+        found = no_sets(len(given), shape, estimates)
         sizes = self._tables.sizes
         of_set = 8 * sizes["windows"] * sizes["strands"] * (sizes["degree"] + 2) * (1 + lanes * given.shape[1])
         step = max(1, _SERIES // of_set)
         for begin in range(0, len(given), step):
             here = slice(begin, begin + step)
             march = ArrayMarch(self._tables, given[here], lanes=lanes)
-            found.status[here], found.estimate[here] = march.status, march.estimate
+            found.status[here], found.estimate[here] = march.status, march.estimate.T if lanes else march.estimate[0]
             found.values[here] = read(march)
         return found

@@ -18,6 +18,8 @@ from wavesym.programs.runtime.arrays.tables import ArrayTables
 from wavesym.programs.runtime.arrays.tracks import ArrayTracks
 from wavesym.programs.runtime.engine import Array
 
+_MATRICES = ("rates", "pushed", "shown", "passed")
+
 
 @dataclass(frozen=True)
 class _Joint:
@@ -134,6 +136,7 @@ class ArrayJoints(ArrayMotion[ArrayTracks]):
                 f += _changed(joint.matrix(slope, "pushed"), s) + _changed(joint.matrix(slope, "rates"), x)
                 dx, after[:, joint.states] = solver.moved(f, after[:, joint.states])
                 missed += solver.missed(f, dx, self._mass[joint.states])
+                self.acts = np.maximum(self.acts, self._acting_more(joint, slope, x[0], s[0]))
                 dq = _times(joint.matrix(law, "shown"), dx) + _times(joint.matrix(law, "passed"), ds)
                 dq += _changed(joint.matrix(slope, "shown"), x) + _changed(joint.matrix(slope, "passed"), s)
                 self._send(joint, lanes, window, panel, dq)
@@ -142,7 +145,44 @@ class ArrayJoints(ArrayMotion[ArrayTracks]):
 
     def reached(self) -> NDArray[np.bool_]:
         """See `ArrayMotion`."""
-        return np.ones((self._tables.outputs, self._law["push"].shape[1]), bool)
+        lanes = 0 if self._slope is None else len(self._slope["push"])
+        return np.ones((1 + lanes, self._tables.outputs, self._law["push"].shape[1]), bool)
+
+    def felt(self, slope: ArrayLaws) -> Array:
+        """See `ArrayMotion`: in velocities, where a spring is longer by a velocity times a window."""
+        law = self._law
+        most = np.zeros((len(slope["push"]), law["push"].shape[1]))
+        for joint in self._joints:
+            points, of = joint.points.stop - joint.points.start, {name: joint.matrix(law, name) for name in _MATRICES}
+            slopes = {name: np.abs(joint.matrix(slope, name)) for name in _MATRICES}
+            acts, more = np.zeros((points, most.shape[1])), np.zeros((len(most), points, most.shape[1]))
+            for port, point, *_ in joint.ports:
+                acts[point] += np.abs(law["push"][port])
+                more[:, point] += np.abs(slope["push"][:, port])
+            length = np.where(self._mass[joint.states], 1.0, self._tables.step)
+            pull = np.einsum("lijs,j->lis", slopes["rates"], length) + np.einsum("lijs,js->lis", slopes["pushed"], acts)
+            pull += np.einsum("ijs,ljs->lis", np.abs(of["pushed"]), more)
+            sums = np.einsum("ijs,ljs->lis", np.abs(of["shown"]), pull * self._felt_for(joint))
+            sums += np.einsum("lijs,j->lis", slopes["shown"], length)
+            sums += np.einsum("lijs,js->lis", slopes["passed"], acts)
+            sums += np.einsum("ijs,ljs->lis", np.abs(of["passed"]), more)
+            most = np.maximum(most, np.max(sums, axis=1, initial=0.0))
+        return most
+
+    def _felt_for(self, joint: _Joint) -> Array:
+        """For how long what acts on states is felt on a window: (states, sets). A mass in a dashpot or between bars
+        forgets it before long.
+        """
+        own = np.abs(np.einsum("iis->is", joint.matrix(self._law, "rates")))
+        found: Array = 1 / np.maximum(own, 1 / self._tables.step)
+        return found
+
+    def _acting_more(self, joint: _Joint, slope: ArrayLaws, x: Array, s: Array) -> Array:
+        """The largest of what acts on derivatives of a joint as its laws change, before it cancels."""
+        sums = np.einsum("lijs,js->lis", np.abs(joint.matrix(slope, "rates")), np.abs(x))
+        sums += np.einsum("lijs,js->lis", np.abs(joint.matrix(slope, "pushed")), np.abs(s))
+        found: Array = np.max(sums * self._felt_for(joint), axis=1, initial=0.0)
+        return found
 
     def _acting(self, joint: _Joint, of: ArrayTracks, law: ArrayLaws, window: int, panel: int) -> Array:
         """What arriving waves act with on its points: (degree + 2, ..., points, sets), nothing at degree + 1."""

@@ -16,8 +16,9 @@ _LENIENT = 64.0  # a derivative may miss so much more of itself than a value
 
 
 class ArrayMarch:
-    """Of the sets that are the rows of `given`: their `status` and `estimate`, and `series`, of each window an array of
-    shape (strands, degree + 2, 1 + lanes, sets). There are `lanes`, derivatives by the parameters, where asked for.
+    """Of the sets that are the rows of `given`: their `status`, their `estimate`, of shape (1 + lanes, sets), and
+    `series`, of each window an array of shape (strands, degree + 2, 1 + lanes, sets). There are `lanes`, derivatives by
+    the parameters, where asked for.
 
     All sets have the degree of the one that needs most. One that is refused goes on with the scene's own parameters.
     """
@@ -37,17 +38,16 @@ class ArrayMarch:
         self._law = array_laws(laws, given)
         self._motion = motion(tables, self._law, array_slopes(laws, given) if lanes else None)
         self._motion.tabulate()
-        self._missed, self._size = np.zeros((2, len(given)))
-        self._sizes: Array = np.zeros(1)  # of derivatives
+        self._missed, self._size, self._of_windows = np.zeros((3, len(given)))
+        self._misses: Array = np.zeros(1)  # of derivatives
+        self._sizes: Array = np.zeros(1)
         with np.errstate(all="ignore"):  # sets that are refused on the way may grow beyond all numbers
             self.series = [self._window(window) for window in range(tables.sizes["windows"])]
             heard = sum(4.0 * len(each[0]) * np.abs(each).sum(axis=(0, 1, 2)) for each in self.series)
-            degree = self._motion.value.degree
-            rounded = tables.unit * (degree + tables.sizes["windows"] + degree * degree / 16)
-            missed = 6 * self._missed + rounded * self._size
-            self.estimate = self._estimated(missed)
-        self.status[(self.status == 0) & ~np.isfinite(self._size + missed + heard)] = 1
-        self.estimate[self.status != 0] = np.nan
+            wrong = self._wrong_by(self._missed, self._size)
+            self.estimate = self._estimated(wrong)
+        self.status[(self.status == 0) & ~np.isfinite(self._size + wrong + heard)] = 1
+        self.estimate[:, self.status != 0] = np.nan
 
     def _window(self, window: int) -> Array:
         """The series of a window, at the lowest degree, raised by quarters, that misses no more than its share."""
@@ -65,35 +65,44 @@ class ArrayMarch:
                 if motion.value.degree == highest or not behind.any():
                     break
             motion.lengthen(min(raised(motion.value.degree), highest))
-        self._sizes = sizes
+        self._misses, self._sizes = self._misses + missed, sizes
         self.status[late] = np.where(np.isfinite(leak + size), 2, 1)[late]
         self._missed += leak
         self._size = size
+        self._of_windows += self._wrong_by(self._missed, size)
         motion.settled()
         return motion.heard(window)
 
-    def _estimated(self, missed: Array) -> Array:
-        """Of the largest value of an output, about what `missed`, as a velocity, makes of it: relative to what is
-        surely there, infinite where that is nothing though waves have reached it.
+    def _wrong_by(self, missed: Array, size: Array) -> Array:
+        """About what velocities are wrong by, at worst."""
+        tables, degree = self._tables, self._motion.value.degree
+        return 6 * missed + tables.unit * (degree + tables.sizes["windows"] + degree * degree / 16) * size
+
+    def _estimated(self, wrong: Array) -> Array:
+        """Of the largest value of an output, about what `wrong`, as a velocity, makes of it: relative to what is
+        surely there, infinite where that is nothing though waves have reached it; and the same of its derivatives.
         """
-        tables = self._tables
-        lost = np.zeros((tables.outputs, len(missed)), bool)
+        tables, weights = self._tables, self._tables.weights(self._law["gain"])
+        inherited, weighed = self._motion.inherited(wrong, self._of_windows)
+        missed = inherited.copy()
+        missed[0] += wrong
+        missed[1:] += self._wrong_by(self._misses, np.maximum(self._sizes, self._motion.acts))
+        lost = np.zeros((len(missed), tables.outputs, len(wrong)), bool)
         worst = np.zeros_like(missed)
         for output in range(tables.outputs):
-            weight = np.abs(self._law["gain"][tables.ints("heard_output") == output]).sum(axis=0)
             largest = self._largest(output)
-            error = weight * missed
+            error = weights[output] * missed + weighed[:, output]
             sure = error < largest
             worst = np.maximum(worst, np.divide(error, largest - error, out=np.zeros_like(missed), where=sure))
-            lost[output] = ~sure & (error > 0)
+            lost[:, output] = ~sure & ~(error <= 0)
         if np.any(lost & (self.status == 0)):
-            worst[np.any(lost & self._motion.reached(), axis=0)] = np.inf
+            worst[np.any(lost & self._motion.reached(), axis=1)] = np.inf
         return worst
 
     def _largest(self, output: int) -> Array:
-        """The largest value in the middle of a section, as far as these lie on the horizon."""
+        """The largest value, and derivatives, in the middle of a section, as far as these lie on the horizon."""
         tables = self._tables
-        largest = np.zeros_like(self._missed)
+        largest: Array = np.zeros(1)
         for window, series in enumerate(self.series):
             begun = float(tables.begins(np.array(window)))
             phase = window % tables.cycle
@@ -103,6 +112,6 @@ class ArrayMarch:
                 middle = np.array(begin + (end - begin) / 2)
                 if begin <= end:
                     strands = tables.strands(section, output)
-                    value = sum(chebval(float(tables.on(s, middle, phase)), series[s, :, 0]) for s in strands)
+                    value = sum(chebval(float(tables.on(s, middle, phase)), series[s]) for s in strands)
                     largest = np.maximum(largest, np.abs(value))
         return largest

@@ -40,6 +40,8 @@ class ArrayMotion(ABC, Generic[S]):
         self._tables, self._law, self._slope = tables, law, slope
         self.value = signals(tables, law, _changes(tables, law, law))
         self._lanes: S | None = None
+        self.acts: Array = np.zeros(1)
+        """The largest of what acts on derivatives as laws change, before it cancels: (lanes, sets)."""
         if slope is not None:
             self._lanes = signals(tables, slope, _changes(tables, slope, law) + _changes(tables, law, slope))
 
@@ -82,7 +84,24 @@ class ArrayMotion(ABC, Generic[S]):
 
     @abstractmethod
     def reached(self) -> NDArray[np.bool_]:
-        """Of each output and set (outputs, sets), whether anything can be felt there up to the horizon."""
+        """Of each output and set whether anything can be felt there up to the horizon, and in the derivatives by each
+        parameter: (1 + lanes, outputs, sets).
+        """
+
+    @abstractmethod
+    def felt(self, slope: ArrayLaws) -> Array:
+        """How much of what values are wrong by acts on derivatives on a window, at most: (lanes, sets)."""
+
+    def inherited(self, wrong: Array, of_windows: Array) -> tuple[Array, Array]:
+        """What derivatives are wrong by as values are, by `wrong`, and by `of_windows` on all windows together, of
+        which an eighth counts: as velocities, of shape (1 + lanes, sets), and of each output, as it weighs waves
+        otherwise, (1 + lanes, outputs, sets).
+        """
+        none, here = np.zeros((1, len(wrong))), np.zeros((1, self._tables.outputs, len(wrong)))
+        if self._slope is None:
+            return none, here
+        weights = self._tables.weights(self._slope["gain"])
+        return np.concatenate([none, self.felt(self._slope) * of_windows / 8]), np.concatenate([here, weights * wrong])
 
     def heard(self, window: int) -> Array:
         """All strands of a window that was settled, and their derivatives: (strands, degree + 2, 1 + lanes, sets)."""

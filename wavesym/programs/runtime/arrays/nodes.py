@@ -79,6 +79,7 @@ class ArrayNodes(ArrayMotion[ArrayWaves]):
             p = law["alpha"] * da + law["beta"] * db + slope["alpha"] * a[:, None] + slope["beta"] * b[:, None]
             lanes.push(p, panel, self._on)
             p += share * (push - q)[:, None]
+            self.acts = np.maximum(self.acts, np.max(self._turned(slope) * np.abs(push[0]), axis=1))
             dq, after = bodies.moved(p, velocity)
             dq, velocity = np.where(massive, dq, p), np.where(massive, after, 0.0)
             lanes.send(window, panel, dq)
@@ -90,4 +91,17 @@ class ArrayNodes(ArrayMotion[ArrayWaves]):
 
     def reached(self) -> NDArray[np.bool_]:
         """See `ArrayMotion`."""
-        return reached(self._tables, self._law)
+        return reached(self._tables, self._law, self._slope)
+
+    def felt(self, slope: ArrayLaws) -> Array:
+        """See `ArrayMotion`."""
+        rate, massive = self._law["rate"], self._massive
+        arrives = np.abs(slope["alpha"]) + np.abs(slope["beta"])
+        arrives *= np.where(massive, np.minimum(rate, 1.0), 1.0)
+        found: Array = np.max(np.maximum(arrives, 2 * self._turned(slope)), axis=1)
+        return found
+
+    def _turned(self, slope: ArrayLaws) -> Array:
+        """How much of p - q bodies take up on a window as rates change, at most: slow ones no more than their share."""
+        found: Array = np.abs(slope["rate"]) / np.maximum(self._law["rate"], 1.0)
+        return found

@@ -43,6 +43,12 @@ class ArrayTables:
         first = self.ints("first_strand")
         return self.ints("strand_at")[first[at] : first[at + 1]]
 
+    def weights(self, gain: Array) -> Array:
+        """How outputs weigh waves, added up: gains of shape (..., heard, sets) become (..., outputs, sets)."""
+        of = self.ints("heard_output")
+        sums = [np.abs(gain[..., of == output, :]).sum(axis=-2) for output in range(self.outputs)]
+        return np.stack(sums, axis=-2)
+
     def windows(self, phase: int) -> Ints:
         """Those of a phase."""
         return np.arange(phase, self.sizes["windows"], self.cycle)
