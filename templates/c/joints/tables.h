@@ -32,13 +32,13 @@ enum {
     NAME_GROUPS = 6
 };
 
-#include "model.h"
-#include "batch.h"
-#include "../runtime/data.h"
-
 typedef struct {
     name_real mass[3];
 } name_parameters;
+
+#include "model.h"
+#include "batch.h"
+#include "../runtime/data.h"
 
 int name_build(name_model *model, const name_parameters *parameters);
 name_real name_error_estimate(const name_model *model);

@@ -120,40 +120,13 @@ static void follow_all(name_tangent *tangent, const name_parameters *parameters,
     }
 }
 
-/* The estimate of the derivatives by a parameter: what their own polynomials miss, their own roundings (`acts` is the
- * largest of what acts on them as laws change, which may cancel with loads), and what values are wrong by, which acts on them on every window, as laws change; `inherited` is that, added up. As such errors do not all
- * have one sign, an eighth of it counts; docs/march.md of wavesym has what was measured. */
-static void ended_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now,
-                       real inherited)
-{
-    const model_of *const m = &tangent->value;
-    const real of_values = wrong_by(now->missed, now->size, now->degree);
-    const real size = larger(tangent->size[lane][0], tangent->acts[lane]);
-    const real own = wrong_by(tangent->missed[lane], size, now->degree);
-    const real missed = own + felt(law, slope) * inherited / 8;
-    real mean[NAME_OUTPUTS], largest[NAME_OUTPUTS];
-    real worst = 0;
-    for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        mean[output] = 0;
-        largest[output] = 0;
-    }
-    for (int window = 0; window < NAME_WINDOWS; ++window) {
-        look(m, tangent->series[lane], window, mean, largest);
-    }
-    for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        const real error = weight_of(law, output) * missed + weight_of(slope, output) * of_values +
-                           read_by(now->degree) * largest[output];
-        worst = larger(worst, relative(law, slope, lane, output, error, largest[output]));
-    }
-    tangent->estimate[lane] = worst;
-}
-
 int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
 {
     model_of *const m = &tangent->value;
     laws law, slope;
     progress now = {0, LEAST, 0, 0, 0, 0, 0, 0, 0};
-    real inherited = 0;
+    tangent->parameters = *parameters;
+    tangent->wrong[1] = 0;
     int status = begun(m, parameters, &law);
     for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
         slopes_of(parameters, lane, &slope);
@@ -189,13 +162,40 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
         }
         if (status == 0) {
             kept(m, &law, &now);
-            inherited += wrong_by(now.missed, now.size, now.degree);
+            tangent->wrong[0] = wrong_by(now.missed, now.size, now.degree);
+            tangent->wrong[1] += tangent->wrong[0];
         }
     }
-    status = status ? status : ended(m, &law, &now);
-    for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
-        slopes_of(parameters, lane, &slope);
-        ended_lane(tangent, &law, &slope, lane, &now, inherited);
+    return status ? status : ended(m, &law, &now);
+}
+
+/* The estimate of the derivatives by a parameter: what their own polynomials miss, their own roundings (`acts` is the
+ * largest of what acts on them as laws change, which may cancel with loads), and what values are wrong by, which acts on
+ * them on every window, as laws change. As errors of windows do not all have one sign, an eighth of that counts;
+ * docs/march.md of wavesym has what was measured. */
+static real estimated_slope(const name_tangent *tangent, int lane)
+{
+    const model_of *const m = &tangent->value;
+    const int degree = m->degree[NAME_WINDOWS - 1];
+    const real size = larger(tangent->size[lane][0], tangent->acts[lane]);
+    const real own = wrong_by(tangent->missed[lane], size, degree);
+    real mean[NAME_OUTPUTS], largest[NAME_OUTPUTS];
+    real worst = 0;
+    laws law, slope;
+    laws_of(&tangent->parameters, &law);
+    slopes_of(&tangent->parameters, lane, &slope);
+    const real missed = own + felt(&law, &slope) * tangent->wrong[1] / 8;
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        mean[output] = 0;
+        largest[output] = 0;
     }
-    return status;
+    for (int window = 0; window < NAME_WINDOWS; ++window) {
+        look(m, tangent->series[lane], window, mean, largest);
+    }
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        const real error = weight_of(&law, output) * missed + weight_of(&slope, output) * tangent->wrong[0] +
+                           read_by(degree) * largest[output];
+        worst = larger(worst, relative(&law, &slope, lane, output, error, largest[output]));
+    }
+    return worst;
 }

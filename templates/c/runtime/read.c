@@ -42,7 +42,7 @@ name_real name_tangent_estimate(const name_tangent *tangent, int lane)
     if (lane < 0 || lane > NAME_LANES || !m->built) {
         return not_a_number();
     }
-    return lane == 0 ? m->estimate : tangent->estimate[lane - 1];
+    return lane == 0 ? m->estimate : estimated_slope(tangent, lane - 1);
 }
 
 int name_model_eval(const name_model *model, name_real tau, name_real *out)

@@ -424,8 +424,9 @@ static real follow(name_tangent *tangent, const laws *law, const laws *slope, in
                     const real load = f >= 0 && k < 3 ? m->force[panel][f][k] : (real)0;
                     const real pushed = law->alpha[node] * a[k] + law->beta[node] * b[k] + load;
                     p[k] += share_of_rate * (pushed - (back[k] + a[k]));
-                    acts = k == 0 ? larger(acts, turned_by(law, slope, node) * pushed) : acts;
                 }
+                const real pushed = law->alpha[node] * a[0] + law->beta[node] * b[0] + (f >= 0 ? m->force[panel][f][0] : (real)0);
+                acts = larger(acts, turned_by(law, slope, node) * pushed);
                 bodies.node[bodies.count] = node;
                 bodies.count += 1;
             } else {

@@ -23,14 +23,14 @@ enum {
     NAME_GROUPS = 6
 };
 
+typedef struct {
+    name_real kappa[3];
+} name_parameters;
+
 #include "model.h"
 
 #include "batch.h"
 #include "data.h"
-
-typedef struct {
-    name_real kappa[3];
-} name_parameters;
 
 int name_build(name_model *model, const name_parameters *parameters);
 name_real name_error_estimate(const name_model *model);
