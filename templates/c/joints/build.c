@@ -54,7 +54,8 @@ static real felt(const laws *law, const laws *slope)
         const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
         real acts[NAME_WIDEST], more[NAME_WIDEST], taken[NAME_WIDEST];
         for (int j = 0; j < points; ++j) {
-            acts[j] = more[j] = 0;
+            acts[j] = 0;
+            more[j] = 0;
         }
         for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
             acts[point_of[port]] += magnitude(law->push[port]);
