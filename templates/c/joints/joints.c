@@ -19,13 +19,12 @@ static int slot(int track, int window, int ago)
     return ring[track] + (window + turn - ago) % turn;
 }
 
-/* Ends that stay where they are cancel exactly what reaches them: of a chain an output that is 0 is taken for one that
- * nothing has reached. */
+/* Of a chain an output that is 0, though it need not be, is taken for one of which rounding has left nothing. */
 static int reached(const laws *law, int output)
 {
     (void)law;
     (void)output;
-    return 0;
+    return 1;
 }
 
 static int states_of(int joint)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 from flint import fmpq, fmpq_mpoly
 
@@ -11,6 +12,7 @@ from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.programs.runtime.laws import RuntimeLaws
+from wavesym.programs.runtime.ranges import ranges, slope_ranges
 from wavesym.programs.runtime.units import Function, ParameterUnit
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
@@ -23,12 +25,15 @@ LIMITS = {"double": "DBL", "single": "FLT"}
 
 @dataclass(frozen=True)
 class CRuntimeField:
-    """A field of the parameters: what its numbers are called, and what they are in the scene."""
+    """A field of the parameters: what its numbers are called, what they are in the scene, and from where to where they
+    may be, for values and for derivatives.
+    """
 
     name: str
     constant: str
     count: str
-    check: str
+    range: tuple[str, str]
+    slope_range: tuple[str, str]
     labels: tuple[str, ...]
     values: Lines
 
@@ -149,12 +154,18 @@ def runtime_selftest(scene: Description, program: Program, reference: ReferenceV
 
 def parameter_fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:
     """The fields of the parameters, as C tells them."""
+    all_numbers = (f"-{LIMITS[real.name]}_MAX", f"{LIMITS[real.name]}_MAX")
+    own, of_slopes = (
+        {name: (c_literal(least, real), c_literal(largest, real)) for name, (least, largest) in found.items()}
+        for found in (ranges(laws, real), slope_ranges(laws, real))
+    )
     for field in laws.fields:
         yield CRuntimeField(
             name=field.name,
             constant=field.name.upper(),
             count=str(len(field.values)),
-            check="positive_number" if field.positive else "finite_number",
+            range=own.get(field.name, all_numbers),
+            slope_range=of_slopes.get(field.name, all_numbers),
             labels=tuple(map(_told, field.told, field.units)),
             values=c_literals(map(real.nearest, field.values), real),
         )
@@ -175,17 +186,8 @@ def assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: 
 def slopes(laws: RuntimeLaws, real: Real) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
     """The derivatives that are not 0, by the number of the parameter."""
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
-    for lane, label in enumerate(places):
-        found = [
-            (f"{array}[{k}]", expression(slope, places, real))
-            for array, functions in laws.functions.items()
-            for k, function in enumerate(functions)
-            if isinstance(function, Ratio) and label in function.ring.names
-            for slope in [function.derivative(label)]
-            if slope != 0
-        ]
-        if found:
-            yield str(lane), tuple(found)
+    for lane, found in groupby(laws.slopes, key=lambda slope: slope[0]):
+        yield str(lane), tuple((f"{array}[{k}]", expression(slope, places, real)) for _, array, k, slope in found)
 
 
 def load_lane(laws: RuntimeLaws) -> str:

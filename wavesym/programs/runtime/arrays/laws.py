@@ -13,6 +13,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.numbers.ratio import Ratio
 from wavesym.programs.runtime.engine import Array
 from wavesym.programs.runtime.laws import RuntimeLaws
+from wavesym.programs.runtime.ranges import Ranges
 from wavesym.programs.runtime.units import Function
 
 ArrayLaws = Mapping[str, Array]
@@ -28,12 +29,11 @@ def finite(laws: ArrayLaws) -> NDArray[np.bool_]:
     return found
 
 
-def allowed(laws: RuntimeLaws, given: Array) -> NDArray[np.bool_]:
-    """Which sets, the rows of `given`, have finite numbers, and positive ones where they have to be."""
-    positive = np.array([field.positive for field in laws.fields for _ in field.labels], bool)
-    fine = np.isfinite(given)
-    fine[:, positive] &= given[:, positive] > 0
-    every: NDArray[np.bool_] = np.all(fine, axis=1)
+def allowed(laws: RuntimeLaws, given: Array, within: Ranges) -> NDArray[np.bool_]:
+    """Which sets, the rows of `given`, have finite numbers, and those that have a range are in it."""
+    ends = [within.get(field.name, (-np.inf, np.inf)) for field in laws.fields for _ in field.labels]
+    least, largest = np.array(ends).reshape(-1, 2).T
+    every: NDArray[np.bool_] = np.all(np.isfinite(given) & (given >= least) & (given <= largest), axis=1)
     return every
 
 
