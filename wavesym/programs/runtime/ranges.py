@@ -46,7 +46,7 @@ def _ranges(laws: RuntimeLaws, functions: Iterable[Function], real: Real) -> Ran
     sizes = {
         label: _log(unit.size) for field in laws.fields for label, unit in zip(field.labels, field.units, strict=True)
     }
-    found = {name: (smallest, largest) for name in positive.values()}
+    found = dict.fromkeys(positive.values(), (smallest, largest))
     for symbols, factors in (product for function in set(functions) for product in _products(function)):
         degree = sum(_degree(factor) for factor in factors)
         extents = [_extent(factor, [sizes[name] for name in symbols]) for factor in factors]
