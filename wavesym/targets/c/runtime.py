@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -12,7 +12,7 @@ from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.ranges import ranges, slope_ranges
+from wavesym.programs.runtime.products import products
 from wavesym.programs.runtime.units import Function, ParameterUnit
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
@@ -25,15 +25,12 @@ LIMITS = {"double": "DBL", "single": "FLT"}
 
 @dataclass(frozen=True)
 class CRuntimeField:
-    """A field of the parameters: what its numbers are called, what they are in the scene, and from where to where they
-    may be, for values and for derivatives.
-    """
+    """A field of the parameters: what its numbers are called, and what they are in the scene."""
 
     name: str
     constant: str
     count: str
-    range: tuple[str, str]
-    slope_range: tuple[str, str]
+    check: str
     labels: tuple[str, ...]
     values: Lines
 
@@ -53,12 +50,16 @@ class CRuntimeHeader:
 class CRuntime:
     """templates/c/runtime/runtime.c.j2; `laws` are what is assigned, with the expression; every table as its lines.
 
-    `slopes` are their derivatives, by the number of a parameter; `load_lane` is that of the first load, -1 for none.
+    `products` are what is multiplied and added up on the way to them, `slope_products` to their
+    derivatives. `slopes` are these derivatives, by the number of a parameter; `load_lane` is that of the first load, -1 for
+    none.
     """
 
     scene: Description
     fields: tuple[CRuntimeField, ...]
+    products: Lines
     laws: tuple[tuple[str, str], ...]
+    slope_products: Lines
     slopes: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]
     load_lane: str
     tables: dict[str, Lines]
@@ -102,7 +103,9 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     context = CRuntime(
         scene=scene,
         fields=fields,
+        products=multiplied(laws, laws.every, program.real),
         laws=tuple(assigned(laws, laws.functions, program.real)),
+        slope_products=multiplied(laws, laws.every_slope, program.real),
         slopes=tuple(slopes(laws, program.real)),
         largest=f"{LIMITS[program.real.name]}_MAX",
         least=f"{LIMITS[program.real.name]}_MIN",
@@ -154,18 +157,12 @@ def runtime_selftest(scene: Description, program: Program, reference: ReferenceV
 
 def parameter_fields(laws: RuntimeLaws, real: Real) -> Iterator[CRuntimeField]:
     """The fields of the parameters, as C tells them."""
-    all_numbers = (f"-{LIMITS[real.name]}_MAX", f"{LIMITS[real.name]}_MAX")
-    own, of_slopes = (
-        {name: (c_literal(least, real), c_literal(largest, real)) for name, (least, largest) in found.items()}
-        for found in (ranges(laws, real), slope_ranges(laws, real))
-    )
     for field in laws.fields:
         yield CRuntimeField(
             name=field.name,
             constant=field.name.upper(),
             count=str(len(field.values)),
-            range=own.get(field.name, all_numbers),
-            slope_range=of_slopes.get(field.name, all_numbers),
+            check="positive_number" if field.positive else "finite_number",
             labels=tuple(map(_told, field.told, field.units)),
             values=c_literals(map(real.nearest, field.values), real),
         )
@@ -181,6 +178,17 @@ def assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: 
     for array, functions in arrays.items():
         for k, function in enumerate(functions):
             yield f"{array}[{k}]", expression(function, places, real)
+
+
+def multiplied(laws: RuntimeLaws, functions: Iterable[Ratio], real: Real) -> Lines:
+    """What is multiplied and added up on the way to some functions, each once."""
+    places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
+    found = (
+        " * ".join(_sum(factor, [places[name] for name in function.ring.names], real) for factor in product)
+        for function in functions
+        for product in products(function, laws.positive)
+    )
+    return tuple(dict.fromkeys(found))
 
 
 def slopes(laws: RuntimeLaws, real: Real) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:

@@ -29,9 +29,9 @@ class ArrayMarch:
         own = np.array([float(value) for field in laws.fields for value in field.values])
         with np.errstate(all="ignore"):
             own_laws = array_laws(laws, given)
-            fine = allowed(laws, given, tables.ranges) & finite(own_laws) & motion.serves(tables, own_laws)
+            fine = allowed(laws, given, laws.every) & finite(own_laws) & motion.serves(tables, own_laws)
             if lanes:
-                fine &= allowed(laws, given, tables.slope_ranges) & finite(array_slopes(laws, given))
+                fine &= allowed(laws, given, laws.every_slope) & finite(array_slopes(laws, given))
         self.status = np.where(fine, 0, 1).astype(np.int32)
         given = np.where(fine[:, None], given, own)
         self._law = array_laws(laws, given)

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.engine import Array
-from wavesym.programs.runtime.ranges import ranges, slope_ranges
 
 Ints = NDArray[np.int64]
 
@@ -26,7 +25,6 @@ class ArrayTables:
         self.tau_max = program.tau_max
         self.sizes = {name: int(value) for name, value in program.constants.items() if value == int(value)}
         self.faint = 2.0**-1022 / program.constants["unit"]
-        self.ranges, self.slope_ranges = (of(self.laws, program.real) for of in (ranges, slope_ranges))
         self.share, self.unit = program.constants["share"], program.constants["unit"]
         self.step, self.span = (program.constants.get(name, 1.0) for name in ("step", "span"))
         self.cycle = self.sizes.get("cycle", 1)
