@@ -137,7 +137,10 @@ fmi2Status FMI2(fmi2SetBoolean)(fmi2Component c, const fmi2ValueReference refere
     instance *const it = (instance *)c;
     verdict found = FINE;
     for (size_t k = 0; k < count && found == FINE; ++k) {
-        found = set_linear(&it->run, reference[k], value[k]);
+        found = may_be_linear(&it->run, reference[k]);
+    }
+    for (size_t k = 0; k < count && found == FINE; ++k) {
+        it->run.now.linear = value[k] != 0;
     }
     return answer(it, found);
 }

@@ -169,7 +169,10 @@ FMI3_SET(Boolean)
     simulation *const s = &((instance *)it)->run;
     verdict found = single(s, references, count);
     for (size_t k = 0; k < references && found == FINE; ++k) {
-        found = set_linear(s, reference[k], value[k]);
+        found = may_be_linear(s, reference[k]);
+    }
+    for (size_t k = 0; k < references && found == FINE; ++k) {
+        s->now.linear = value[k];
     }
     return answer((instance *)it, found);
 }

@@ -560,6 +560,26 @@ def test_a_clock_that_is_rounded_raises_no_alarm(late):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("precision", "powers"), [("double", (-900, -540, 540)), ("single", (-90, -70, 70))])
+def test_what_is_lost_does_not_depend_on_units(precision, powers):
+    """Loads that change inside of panels, and by chance so that little is lost; powers of 2 are exact."""
+    made = built(PULSED.with_({"output.tolerance": "1e-4"}), precision)
+
+    def statuses(power):
+        stream = made.start()
+        loads = [[np.ldexp(k % 3 - 1, power), np.ldexp(1, power)] for k in range(30)]
+        told = [stream.step(1e-4 if k < 20 else 0.1, load)[0] for k, load in enumerate(loads)]
+        return told, stream.lost
+
+    told, lost = statuses(0)
+    assert sorted(set(told)) == [0, 2]
+    for power in powers:
+        scaled, also = statuses(power)
+        assert scaled == told
+        assert also == pytest.approx(lost, rel=1e-5)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [1e307, 1e180])
 def test_an_overflow_is_told_until_init(size):
     stream = built(PULSED).start()

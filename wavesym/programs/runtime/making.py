@@ -165,6 +165,7 @@ def _tables(made: RuntimePlan, real: Real) -> dict[str, tuple[float, ...]]:
         "term_low": reals(term.low for term in terms),
         "term_high": reals(term.high for term in terms),
         "heard_output": tuple(output for output, _ in made.heard),
+        "silent": tuple(map(int, made.silent)),
     }
 
 

@@ -67,7 +67,10 @@ class Strand:
 
 @dataclass(frozen=True)
 class RuntimePlan:
-    """`plan` has symbols for parameters and no loads; `model` is the scene's own, `loads` are what acts, but for 0."""
+    """`plan` has symbols for parameters and no loads; `model` is the scene's own, `loads` are what acts, but for 0.
+
+    Of each output `silent` says whether it is 0 whatever the parameters are.
+    """
 
     model: Model
     plan: Plan
@@ -77,6 +80,7 @@ class RuntimePlan:
     pushes: tuple[Push, ...]
     heard: tuple[tuple[int, HeardWave], ...]
     strands: tuple[Strand, ...]
+    silent: tuple[bool, ...]
 
     @property
     def sections(self) -> tuple[fmpq, ...]:
@@ -126,6 +130,7 @@ def runtime_plan(
         _pushes(made, model.named, acting, units, load_kept(model, free)),
         heard,
         tuple(_strands(made, heard)),
+        tuple(silent),
     )
 
 

@@ -224,6 +224,7 @@ def _tables(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[
         "term_low": reals(term.low for term in terms),
         "term_high": reals(term.high for term in terms),
         "heard_output": tuple(output for output, _ in made.heard),
+        "silent": tuple(map(int, made.silent)),
     }
 
 

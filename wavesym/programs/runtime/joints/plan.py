@@ -44,7 +44,10 @@ class JointStrand:
 
 @dataclass(frozen=True)
 class JointsPlan:
-    """`plan` has joints that are functions, and no loads that matter; `own` is that of the scene's numbers."""
+    """`plan` has joints that are functions, and no loads that matter; `own` is that of the scene's numbers.
+
+    Of each output `silent` says whether it is 0 whatever the parameters are.
+    """
 
     model: Model
     plan: RingPlan
@@ -53,6 +56,7 @@ class JointsPlan:
     pushes: tuple[Push, ...]
     heard: tuple[tuple[int, Any], ...]
     strands: tuple[JointStrand, ...]
+    silent: tuple[bool, ...]
 
     @property
     def sections(self) -> tuple[fmpq, ...]:
@@ -82,7 +86,7 @@ def joints_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real:
     )
     chosen = [unit.size for field in free.fields if field.name == "load" for unit in field.units]
     pushes = ordered(_pushes(plan, model, acting, chosen or [fmpq(1)] * len(loads)))
-    return JointsPlan(model, plan, own, free, pushes, heard, tuple(_strands(plan, heard)))
+    return JointsPlan(model, plan, own, free, pushes, heard, tuple(_strands(plan, heard)), tuple(silent))
 
 
 def _pushes(plan: RingPlan, model: Model, acting: Sequence[Sequence[Applied]], sizes: Sequence[fmpq]) -> Iterator[Push]:
