@@ -156,8 +156,17 @@ def test_from_python_what_is_wrong_is_told() -> None:
         wavesym.generate(scene, evaluator="clsed")
     with pytest.raises(wavesym.WavesymError, match=r"^precision: half given, double or single expected$"):
         wavesym.generate(scene, precision="half")
+    for wanted in (wavesym.evaluator, wavesym.summary, wavesym.tables, wavesym.generate):
+        with pytest.raises(wavesym.SceneError, match="str given, a Scene expected"):
+            wanted("drive_m1")  # type: ignore[operator]
     with pytest.raises(wavesym.SceneError, match="str given, a Scene expected"):
-        wavesym.evaluator("drive_m1")  # type: ignore[arg-type]
+        wavesym.model("drive_m1", ["load"])  # type: ignore[arg-type]
+    with pytest.raises(wavesym.WavesymError, match=r'^runtime: "kappa" given, a list of names expected$'):
+        wavesym.model(scene, "kappa")
+    with pytest.raises(wavesym.WavesymError, match=r'^--runtime: kapa given, .* expected. Did you mean "kappa"\?$'):
+        wavesym.model(scene, ["kapa"])
+    with pytest.raises(wavesym.WavesymError, match=r"^--runtime: x given, kappa, inertia or load expected$"):
+        wavesym.model(scene, ["x"])
     assert issubclass(wavesym.CostError, wavesym.WavesymError)
     assert issubclass(wavesym.ToleranceError, wavesym.WavesymError)
 

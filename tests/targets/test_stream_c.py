@@ -239,7 +239,7 @@ def test_what_is_refused_changes_nothing_and_a_copy_goes_on():
 @pytest.mark.parametrize("step", ["0", "-1/8", "soon", "1e-400"])
 def test_a_step_is_a_positive_number(step, capsys):
     assert main(["generate", "drive_m1", "--stream", "--step", step]) == 2
-    assert f"{step} given, a positive number such as 0.1 or 1/8 expected" in capsys.readouterr().err
+    assert f"{step} given, a positive number of tau such as 0.1 or 1/8 expected" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -72,7 +72,10 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
     for output, error in zip(plan.rings.outputs, verdict.bounds, strict=True):
         if not isfinite(error):
             told = f"output.tolerance: {nearest(tolerance):g} cannot be met: stream: "
-            raise ToleranceError(f"{told}rounding may leave nothing of {output.name} (other outputs help)")
+            better = "" if real is REALS["double"] else "double precision or "
+            raise ToleranceError(
+                f"{told}rounding may leave nothing of {output.name} ({better}a shorter horizon helps, or other outputs)"
+            )
     if free:
         refuse_stiff(plan)
         degree, quicker = quick_enough(free, plan, degree, nearest(tolerance), real)
