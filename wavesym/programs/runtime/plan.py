@@ -31,7 +31,7 @@ from wavesym.programs.runtime.quiet import drawn, quiet
 from wavesym.programs.runtime.request import RuntimeField
 from wavesym.programs.runtime.units import Function, force_kept, load_kept
 
-_HELPS = "to which samples may be interpolated"
+_HELPS = "in tau, to which samples may be interpolated in a scene without units"
 
 
 @dataclass(frozen=True)
