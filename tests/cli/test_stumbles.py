@@ -199,3 +199,17 @@ def test_a_path_that_leads_nowhere(path: str, wrong: str) -> None:
     with pytest.raises(wavesym.SceneError) as found:
         wavesym.Scene.from_toml("building_m2").with_({path: -1})
     assert wrong in str(found.value)
+
+
+def test_a_package_is_checked_with_all_its_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    asked = ["generate", "drive_m1", "--package", "-o", str(tmp_path / "out")]
+    assert main(asked) == 0
+    capsys.readouterr()
+    assert (main([*asked, "--check"]), capsys.readouterr().out) == (0, "")
+    cmake = tmp_path / "out" / "CMakeLists.txt"
+    cmake.write_text(cmake.read_text() + "# mine\n")
+    assert main([*asked, "--check"]) == 1
+    assert capsys.readouterr().out.startswith(f"changed: {cmake}\n")
+    cmake.unlink()
+    assert main([*asked, "--check"]) == 1
+    assert capsys.readouterr().out.startswith(f"missing: {cmake}\n")

@@ -92,7 +92,7 @@ def check(
     request = _request(evaluator, precision, windows, optimize, runtime, stream, step)
     made = _written(scene, directory, language, request, package)
     folder = Path(directory or scene.name)
-    found = [path for path in folder.glob(f"{scene.name}*") if path.is_file()]
+    found = [path for path in {*folder.glob(f"{scene.name}*"), *made} if path.is_file()]
     left = [path for path, place in traces(folder) if place.name.startswith(scene.name)]
     difference = Difference(made, [*found, *left])
     options = ["--language", language, *request.options.split(), *(["--package"] if package else [])]
