@@ -125,5 +125,5 @@ def test_panels_of_any_lengths_are_marched_one_after_the_other():
 
 def test_whose_rates_are_too_much_is_said(monkeypatch):
     monkeypatch.setattr(choosing, "_HIGHEST", 40)
-    with pytest.raises(CostError, match=r"^output.until: rates to 300 for kappa up to 100 need polynomials of degree"):
+    with pytest.raises(CostError, match=r"^output.until: rates to 100 for kappa up to 100 need polynomials of degree"):
         model(Scene.from_toml("drive_m1"), ["kappa"])
