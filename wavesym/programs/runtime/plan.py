@@ -30,7 +30,7 @@ from wavesym.programs.runtime.quiet import drawn, quiet
 from wavesym.programs.runtime.request import RuntimeField
 from wavesym.programs.runtime.units import Function, force_kept, load_kept
 
-HELPS = "to which samples may be interpolated"
+HELPS = "in tau, to which samples may be interpolated in a scene without units"
 """Beside another spacing, where loads leave too many panels."""
 
 
