@@ -19,17 +19,6 @@ static int slot(int track, int window, int ago)
     return ring[track] + (window + turn - ago) % turn;
 }
 
-/* Ends that stay where they are cancel exactly what reaches them: of a chain an output that is 0 is taken for one that
- * nothing has reached. */
-static int reached(const laws *law, const laws *slope, int lane, int output)
-{
-    (void)law;
-    (void)slope;
-    (void)lane;
-    (void)output;
-    return 0;
-}
-
 static int states_of(int joint)
 {
     return first_state[joint + 1] - first_state[joint];
@@ -38,6 +27,119 @@ static int states_of(int joint)
 static int points_of(int joint)
 {
     return first_point[joint + 1] - first_point[joint];
+}
+
+/* From which panel on, counted through all windows, something moves at a joint, or acts on it: its own, at first. Of
+ * derivatives, where `of` is what the laws change by: what differs as the parameter does. */
+static int stirred(const laws *law, const laws *of, int lane, int joint)
+{
+    int since = NAME_WINDOWS * NAME_PANELS;
+    for (int event = NAME_EVENTS - 1; event >= 0; --event) {
+        const int loaded = magnitude(law->load[event_load[event]]) > 0;
+        const int own = LOAD_LANE >= 0 && lane == LOAD_LANE + event_load[event];
+        const int acts = own || (loaded && (lane == OF_VALUES || magnitude(of->strength[event_strength[event]]) > 0));
+        for (int point = first_point[joint]; point < first_point[joint + 1]; ++point) {
+            if (force_on[point] == event_force[event] && acts) {
+                since = event_window[event] * NAME_PANELS + event_panel[event];
+            }
+        }
+    }
+    for (int state = first_state[joint]; state < first_state[joint + 1]; ++state) {
+        since = magnitude(of->begun[state]) > 0 ? 0 : since;
+    }
+    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+        since = magnitude(of->held[arrive[port]]) > 0 || magnitude(of->held[send[port]]) > 0 ? 0 : since;
+    }
+    return since;
+}
+
+/* The same where its laws change: as soon as values move there. `since` says from which panel on they are sent. */
+static int turned(const laws *law, const laws *slope, const int *since, int joint)
+{
+    const int n = states_of(joint), points = points_of(joint);
+    int when = stirred(law, law, OF_VALUES, joint);
+    real most = 0;
+    for (int k = 0; k < n * n; ++k) {
+        most = larger(most, slope->rates[at_rates[joint] + k]);
+    }
+    for (int k = 0; k < n * points; ++k) {
+        most = larger(larger(most, slope->pushed[at_pushed[joint] + k]), slope->shown[at_shown[joint] + k]);
+    }
+    for (int k = 0; k < points * points; ++k) {
+        most = larger(most, slope->passed[at_passed[joint] + k]);
+    }
+    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+        const int then = since[arrive[port]] + steps[arrive[port]] * NAME_PANELS;
+        most = larger(most, slope->push[port]);
+        when = then < when ? then : when;
+    }
+    return most > 0 ? when : NAME_WINDOWS * NAME_PANELS;
+}
+
+/* From which panel on something is sent into each track, from what joints have of their own. */
+static void spread_out(int *since)
+{
+    for (int turn = 0; turn < NAME_JOINTS; ++turn) {
+        for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+            for (int in = first_port[joint]; in < first_port[joint + 1]; ++in) {
+                const int then = since[arrive[in]] + steps[arrive[in]] * NAME_PANELS;
+                for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+                    since[send[port]] = then < since[send[port]] ? then : since[send[port]];
+                }
+            }
+        }
+    }
+}
+
+/* Whether an output hears what is sent, or what is there at first, up to TAU_MAX. */
+static int heard_since(const laws *of, const int *since, int output)
+{
+    for (int window = 0; window < NAME_WINDOWS; ++window) {
+        for (int s = 0; s < SECTIONS && cycle_begin(window) + from[in_cycle(window, s)] <= NAME_TAU_MAX; ++s) {
+            const int at = s * NAME_OUTPUTS + output;
+            for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+                for (int t = first_term[strand_at[k]]; t < first_term[strand_at[k] + 1]; ++t) {
+                    const int when = (window - term_back[t]) * NAME_PANELS + term_panel[t];
+                    if (when >= since[term_track[t]] || magnitude(of->held[term_track[t]]) > 0) {
+                        return 1;
+                    }
+                }
+            }
+        }
+    }
+    return 0;
+}
+
+/* Whether a joint that something has come to can be felt in an output: what numbers that cancel leave does not matter. Of
+ * derivatives that is a joint whose laws change. */
+static int reached(const laws *law, const laws *slope, int lane, int output)
+{
+    int since[NAME_TRACKS], changed[NAME_TRACKS];
+    real weight = 0;
+    for (int track = 0; track < NAME_TRACKS; ++track) {
+        since[track] = NAME_WINDOWS * NAME_PANELS;
+        changed[track] = NAME_WINDOWS * NAME_PANELS;
+    }
+    for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+        for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+            since[send[port]] = stirred(law, law, OF_VALUES, joint);
+        }
+    }
+    spread_out(since);
+    if (lane == OF_VALUES) {
+        return heard_since(law, since, output);
+    }
+    for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+        const int own = stirred(law, slope, lane, joint), of_laws = turned(law, slope, since, joint);
+        for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+            changed[send[port]] = own < of_laws ? own : of_laws;
+        }
+    }
+    spread_out(changed);
+    for (int k = 0; k < NAME_HEARD; ++k) {
+        weight = heard_output[k] == output ? larger(weight, slope->gain[k]) : weight;
+    }
+    return heard_since(slope, changed, output) || (weight > 0 && heard_since(law, since, output));
 }
 
 /* Where the matrices of a joint begin, of those of a degree. */

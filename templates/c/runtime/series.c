@@ -260,22 +260,19 @@ static int reached(const laws *law, const laws *slope, int lane, int output);
 /* How an output weighs waves, added up. */
 static real weight_of(const laws *law, int output)
 {
-    real weight = 0;
+    real weight = faint; /* gains may underflow */
     for (int k = 0; k < NAME_HEARD; ++k) {
         weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
     }
     return weight;
 }
 
-/* Whether an output is 0 whatever the parameters are: no wave counts in it. */
-static int is_silent(const laws *law, int output)
-{
-    return !(weight_of(law, output) > 0);
-}
-
 /* An error relative to what is surely there of an output; of one that waves have reached that may be nothing. */
 static real relative(const laws *law, const laws *slope, int lane, int output, real error, real largest)
 {
+    if (silent[output]) {
+        return 0;
+    }
     if (error < largest) {
         return error / (largest - error);
     }

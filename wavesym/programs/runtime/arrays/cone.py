@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from wavesym.programs.march.plan import LEFT, LOAD, RIGHT
 from wavesym.programs.runtime.arrays.laws import ArrayLaws
-from wavesym.programs.runtime.arrays.tables import ArrayTables
+from wavesym.programs.runtime.arrays.tables import ArrayTables, Ints
 
 Bools = NDArray[np.bool_]
 
@@ -67,4 +67,22 @@ def _heard(tables: ArrayTables, weighs: Bools, lit: Bools, window: int) -> Bools
                     )
                     wave = lit[(window + back) % 2, way, panel, :, sender]
                     found[:, output] |= wave & weighs[0, heard] | wave[0] & weighs[:, heard]
+    return found
+
+
+def heard_since(tables: ArrayTables, since: Ints) -> Bools:
+    """Of each output and set, whether it hears a track from that panel on, counted through all windows, from which
+    something is sent into it: (tracks, sets).
+    """
+    found = np.zeros((tables.outputs, since.shape[1]), bool)
+    first, panels = tables.ints("first_term"), tables.sizes["panels"]
+    track, back, panel = (tables.ints(f"term_{name}") for name in ("track", "back", "panel"))
+    for window in range(tables.sizes["windows"]):
+        begun, phase = float(tables.begins(np.array(window))), window % tables.cycle
+        for section, output in np.ndindex(tables.sizes["sections"], tables.outputs):
+            if begun + tables.section(phase, section)[0] <= tables.tau_max:
+                for strand in tables.strands(section, output):
+                    terms = slice(first[strand], first[strand + 1])
+                    when = (window - back[terms]) * panels + panel[terms]
+                    found[output] |= np.any(when[:, None] >= since[track[terms]], axis=0)
     return found

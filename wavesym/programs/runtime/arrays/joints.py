@@ -11,10 +11,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.programs.runtime.arrays.cone import Bools, heard_since
 from wavesym.programs.runtime.arrays.laws import ArrayLaws
 from wavesym.programs.runtime.arrays.motion import ArrayMotion, WindowTried
 from wavesym.programs.runtime.arrays.solver import ArraySolver
-from wavesym.programs.runtime.arrays.tables import ArrayTables
+from wavesym.programs.runtime.arrays.tables import ArrayTables, Ints
 from wavesym.programs.runtime.arrays.tracks import ArrayTracks
 from wavesym.programs.runtime.engine import Array
 
@@ -145,8 +146,64 @@ class ArrayJoints(ArrayMotion[ArrayTracks]):
 
     def reached(self) -> NDArray[np.bool_]:
         """See `ArrayMotion`."""
-        lanes = 0 if self._slope is None else len(self._slope["push"])
-        return np.ones((1 + lanes, self._tables.outputs, self._law["push"].shape[1]), bool)
+        tables, law = self._tables, self._law
+        loads = law["load"][tables.ints("event_load")] != 0
+        since = self._since([self._stirred(joint, law, loads) for joint in self._joints])
+        found = [heard_since(tables, np.where(law["held"] != 0, -since.max(), since))]
+        for lane in range(0 if self._slope is None else len(self._slope["push"])):
+            found.append(self._changed_at(lane, since, found[0]))
+        return np.array(found)
+
+    def _changed_at(self, lane: int, since: Ints, values: Bools) -> Bools:
+        """The same of the derivatives in a lane, where values are sent since these panels, and reach outputs."""
+        tables, law, of = self._tables, self._law, {name: each[lane] for name, each in (self._slope or {}).items()}
+        load, strength = (tables.ints(f"event_{name}") for name in ("load", "strength"))
+        loads = (law["load"][load] != 0) & (of["strength"][strength] != 0)
+        loads |= (of["load"][load] != 0) & (law["strength"][strength] != 0)
+        begun = []
+        for joint in self._joints:
+            steps = tables.ints("steps") * tables.sizes["panels"]
+            arrives = [since[arrive] + steps[arrive] for _, _, _, arrive, _ in joint.ports]
+            moves = np.min([self._stirred(joint, law, law["load"][load] != 0), *arrives], axis=0)
+            turned = np.any([np.any(joint.matrix(of, name) != 0, axis=(0, 1)) for name in _MATRICES], axis=0)
+            turned |= np.any([of["push"][port] != 0 for port, *_ in joint.ports], axis=0)
+            begun.append(np.minimum(self._stirred(joint, of, loads), np.where(turned, moves, self._never)))
+        changed = self._since(begun)
+        found = heard_since(tables, np.where(of["held"] != 0, -changed.max(), changed))
+        weighs = tables.weights(of["gain"]) > 0
+        return found | weighs & values
+
+    @property
+    def _never(self) -> int:
+        return self._tables.sizes["windows"] * self._tables.sizes["panels"]
+
+    def _since(self, begun: list[Ints]) -> Ints:
+        """From which panel on something is sent into each track, from when joints have something of their own."""
+        tables = self._tables
+        since = np.full((len(tables.ints("steps")), begun[0].shape[0]), self._never)
+        for joint, own in zip(self._joints, begun, strict=True):
+            for port in joint.ports:
+                since[port[4]] = own
+        for joint in len(self._joints) * self._joints:
+            for _, _, _, arrive, _ in joint.ports:
+                then = since[arrive] + tables.ints("steps")[arrive] * tables.sizes["panels"]
+                for _, _, _, _, send in joint.ports:
+                    since[send] = np.minimum(since[send], then)
+        return since
+
+    def _stirred(self, joint: _Joint, law: ArrayLaws, loads: Bools) -> Ints:
+        """From which panel on, counted through all windows, something moves at a joint, or acts on it: its own. `loads`
+        says which events act.
+        """
+        tables = self._tables
+        since = np.full(loads.shape[1], self._never)
+        for event in reversed(range(tables.sizes["events"])):
+            if tables.ints("event_force")[event] in joint.loads:
+                when = tables.ints("event_window")[event] * tables.sizes["panels"] + tables.ints("event_panel")[event]
+                since = np.where(loads[event], when, since)
+        held = law["held"][[track for port in joint.ports for track in port[3:]]]
+        moving = np.any(law["begun"][joint.states] != 0, axis=0) | np.any(held != 0, axis=0)
+        return np.where(moving, 0, since)
 
     def felt(self, slope: ArrayLaws) -> Array:
         """See `ArrayMotion`: in velocities, where a spring is longer by a velocity times a window."""

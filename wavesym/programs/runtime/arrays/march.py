@@ -30,9 +30,9 @@ class ArrayMarch:
         own = np.array([float(value) for field in laws.fields for value in field.values])
         with np.errstate(all="ignore"):
             own_laws = array_laws(laws, given)
-            fine = allowed(laws, given) & finite(own_laws) & motion.serves(tables, own_laws)
+            fine = allowed(laws, given, laws.every) & finite(own_laws) & motion.serves(tables, own_laws)
             if lanes:
-                fine &= finite(array_slopes(laws, given))
+                fine &= allowed(laws, given, laws.every_slope) & finite(array_slopes(laws, given))
         self.status = np.where(fine, 0, 1).astype(np.int32)
         given = np.where(fine[:, None], given, own)
         self._law = array_laws(laws, given)
@@ -91,7 +91,8 @@ class ArrayMarch:
         worst = np.zeros_like(missed)
         for output in range(tables.outputs):
             largest = self._largest(output)
-            error = weights[output] * missed + weighed[:, output]
+            error = (weights[output] + tables.faint) * missed + weighed[:, output]
+            error *= tables.ints("silent")[output] == 0
             sure = error < largest
             worst = np.maximum(worst, np.divide(error, largest - error, out=np.zeros_like(missed), where=sure))
             lost[:, output] = ~sure & ~(error <= 0)
