@@ -1,7 +1,6 @@
 """Pieces: their waves against the exact tables, their bound against balls, and no more modelled than is needed."""
 
 import re
-from fractions import Fraction
 
 import numpy as np
 import pytest
