@@ -163,6 +163,13 @@ static verdict finish(simulation *s)
     return allowed;
 }
 
+/* A step that cannot be gone on from. */
+static verdict outgrown(simulation *s)
+{
+    snprintf(s->said, sizeof s->said, "doStep: outputs have grown beyond all numbers, a reset expected");
+    return WRONG;
+}
+
 /* A stream that goes on in equal steps: as many of them as there are in dtau. */
 static verdict march(simulation *s, double dtau)
 {
@@ -185,8 +192,7 @@ static verdict march(simulation *s, double dtau)
             load[j] = k < steps ? from[j] + (s->now.input[j] - from[j]) * (k / all) : s->now.input[j];
         }
         if (stream_step(&s->now.stream, STEP_LENGTH, load, s->now.output) == 2) {
-            snprintf(s->said, sizeof s->said, "doStep: outputs have grown beyond all numbers, a reset expected");
-            return WRONG;
+            return outgrown(s);
         }
     }
     return FINE;
@@ -195,6 +201,7 @@ static verdict march(simulation *s, double dtau)
 /* One that goes any way. */
 static verdict flow(simulation *s, double dtau)
 {
+    int status;
     if (!(dtau >= STEP_LEAST && dtau <= STEP_MOST)) {
         snprintf(s->said, sizeof s->said, "communicationStepSize: %.17g given, %.3g to %.3g expected",
                  dtau * SECONDS_PER_TAU, STEP_LEAST * SECONDS_PER_TAU, STEP_MOST * SECONDS_PER_TAU);
@@ -203,7 +210,13 @@ static verdict flow(simulation *s, double dtau)
     if (!s->now.linear) {
         stream_step(&s->now.stream, 0, s->now.input, s->now.output);
     }
-    if (stream_step(&s->now.stream, dtau, s->now.input, s->now.output) == 2 && !s->now.losing) {
+    status = stream_step(&s->now.stream, dtau, s->now.input, s->now.output);
+    for (int output = 0; output < OUTPUTS; ++output) {
+        if (!is_number(s->now.output[output])) {
+            return outgrown(s);
+        }
+    }
+    if (status == 2 && !s->now.losing) {
         s->now.losing = 1;
         snprintf(s->said, sizeof s->said,
                  "inputs changed inside of a panel (%.17g long), or fronts have grown steep: %.2g of the largest wave may be "
@@ -321,16 +334,13 @@ static verdict set_reals(simulation *s, const unsigned *reference, size_t count,
     return FINE;
 }
 
-static verdict set_linear(simulation *s, unsigned reference, int value)
+/* Whether what is true or false may be set. */
+static verdict may_be_linear(simulation *s, unsigned reference)
 {
     if (reference != LINEAR_REFERENCE) {
         return unknown(s, reference, "a parameter that is true or false");
     }
-    if (need(s, s->now.phase <= INITIALIZING, "setting a fixed parameter") != FINE) {
-        return WRONG;
-    }
-    s->now.linear = value != 0;
-    return FINE;
+    return need(s, s->now.phase <= INITIALIZING, "setting a fixed parameter");
 }
 
 /* FNV-1a */

@@ -1,5 +1,7 @@
 """The proved bound of a model of a chain: no error is larger, whatever the parameters, and whatever is wrong."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import wavesym
 from tests.running.test_chain_sets import drawn
 from tests.running.test_model_chains import EVERY, HARD, NUMBERS, exact, frame, model_of, shaft, tree
 from tests.support.built_model import BuiltModel
+from tests.support.without_compiler import without_compiler
 
 pytestmark = pytest.mark.slow
 
@@ -83,6 +86,63 @@ def test_what_underflows_is_in_the_bound():
         assert refused or np.all(wrong <= (model.bounds(**scaled)[0] + bounds) * 1.1)
         lost = lost if refused else max(lost, np.max(wrong))
     assert lost > 1e-9
+
+
+def linked(until=4, **output):
+    """A mass, and two rods that a dashpot links."""
+    parts = [{"mass": 1, "velocity": 1, "name": "a"}, {"rod": 1}, {"dashpot": 1}, {"rod": 1, "impedance": 2}, "free"]
+    output = output or {"velocity": ["1/2", "3/2"]}
+    return wavesym.Scene(name="linked", system={"type": "chain", "parts": parts}, output={"until": until, **output})
+
+
+@pytest.mark.parametrize("power", [-520, -515, -500, 500, 515, 700, 1015])
+def test_what_products_of_parameters_lose_is_refused(power):
+    """In other units nothing changes, or the chain would be another one: then no value is given, and no bound."""
+    model = wavesym.model(linked(), ["mass", "dashpot", "impedance"])
+    tau = np.linspace(0, 4, 101)
+    scaled = {name: np.ldexp(1.1 * of, power) for name, of in model.parameters.items()}
+    usual = model.run(tau, **{name: 1.1 * of for name, of in model.parameters.items()})
+    status, bounds = model.check(**scaled).status[0], model.bounds(**scaled)
+    assert status == (0 if abs(power) < 505 else 1)
+    assert np.isnan(bounds).all() if status else np.all(bounds < 1e-10)
+    assert status or np.max(np.abs(model.run(tau, **scaled) - usual)) < 1e-13
+
+
+def test_an_output_whose_weight_underflows_is_not_silent():
+    """The acceleration of a mass by a spring, stiffness over mass: nothing is left of it, and that is said."""
+    parts = [{"mass": 1, "velocity": 1, "name": "a"}, {"spring": 1}, {"mass": 1, "velocity": 0}, {"rod": 1}, "free"]
+    scene = wavesym.Scene(
+        name="faint", system={"type": "chain", "parts": parts}, output={"until": 4, "acceleration": ["a"]}
+    )
+    model = wavesym.model(scene, ["mass", "spring"])
+    faint = {"mass": [1e200, 1], "spring": [1e-200]}
+    assert model.check(**faint).status[0] == 0
+    assert model.bounds(**faint)[0, 0] == np.inf
+    assert model.check(**faint).estimate[0] == np.inf
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_what_a_chain_cannot_tell_is_not_claimed(compiled):
+    """What moves 1e-20 as far as the waves that it sends back, is 0 in doubles; what nothing has reached is 0, too."""
+    heavy = {"mass": [[1e20], [1.0]]}
+    parts = [{"mass": 1, "name": "a"}, {"rod": 1}, {"mass": 1, "name": "b"}, {"rod": 1}, "free"]
+    scene = wavesym.Scene(
+        name="heavy",
+        system={"type": "chain", "parts": [{"rod": 1, "velocity": 1}, {"mass": 1, "velocity": 0, "name": "b"}]},
+        output={"until": 4, "velocity": ["b"]},
+    )
+    late = wavesym.Scene(
+        name="late",
+        system={"type": "chain", "parts": parts},
+        load=[{"at": at, "times": [0], "steps": [1]} for at in "ab"],
+        output={"until": "3/2", "velocity": ["a", "7/4"]},
+    )
+    with nullcontext() if compiled else without_compiler():
+        estimate = wavesym.model(scene, ["mass"]).check(**heavy).estimate
+        told = wavesym.model(late, ["mass", "load"]).check(load=[[1, 0], [0, 1], [1, 1]]).estimate
+    assert estimate[0] == np.inf
+    assert estimate[1] < 1e-9
+    assert np.all(told < 1e-9)
 
 
 # what is computed wrong, so that errors are far above rounding: what is sent is judged, not how it was found

@@ -236,10 +236,23 @@ def test_what_is_refused_changes_nothing_and_a_copy_goes_on():
         stream.step(0.1, [1.0, 2.0])
 
 
+@pytest.mark.parametrize("precision", ["single", "double"])
+def test_what_rounding_may_do_is_said_where_it_is_more_than_was_asked_for(precision, tmp_path, capsys):
+    given = ["generate", "building_m2", "--stream", "--precision", precision, "-o", str(tmp_path)]
+    assert main(given) == 0
+    said = re.search(r"; rounding at worst (\S+) of the largest (\S+), (\S+) wanted$", capsys.readouterr().err, re.M)
+    header = (tmp_path / "building_m2.h").read_text()
+    errors = re.findall(r"^ \* +(\S+@\S+) +(\d\S*)$", header, re.M)
+    name, worst = max(errors, key=lambda row: float(row[1]))
+    assert (said is not None) == (precision == "single")
+    assert said is None or (said[2], said[1]) == (name, worst)
+    assert (float(worst) > 1e-5) == (precision == "single")
+
+
 @pytest.mark.parametrize("step", ["0", "-1/8", "soon", "1e-400"])
 def test_a_step_is_a_positive_number(step, capsys):
     assert main(["generate", "drive_m1", "--stream", "--step", step]) == 2
-    assert f"{step} given, a positive number such as 0.1 or 1/8 expected" in capsys.readouterr().err
+    assert f"{step} given, a positive number of tau such as 0.1 or 1/8 expected" in capsys.readouterr().err
 
 
 @pytest.mark.slow
@@ -557,6 +570,26 @@ def test_a_clock_that_is_rounded_raises_no_alarm(late):
         assert stream.step(dtau, [0.0, 0.0])[0] == 0
     for dtau in (0.0, *[0.125] * 20):
         assert stream.step(dtau, [0.0, 100.0])[0] == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("precision", "powers"), [("double", (-900, -540, 540)), ("single", (-90, -70, 70))])
+def test_what_is_lost_does_not_depend_on_units(precision, powers):
+    """Loads that change inside of panels, and by chance so that little is lost; powers of 2 are exact."""
+    made = built(PULSED.with_({"output.tolerance": "1e-4"}), precision)
+
+    def statuses(power):
+        stream = made.start()
+        loads = [[np.ldexp(k % 3 - 1, power), np.ldexp(1, power)] for k in range(30)]
+        told = [stream.step(1e-4 if k < 20 else 0.1, load)[0] for k, load in enumerate(loads)]
+        return told, stream.lost
+
+    told, lost = statuses(0)
+    assert sorted(set(told)) == [0, 2]
+    for power in powers:
+        scaled, also = statuses(power)
+        assert scaled == told
+        assert also == pytest.approx(lost, rel=1e-5)
 
 
 @pytest.mark.slow

@@ -1,1 +1,1 @@
-"""Laws run in exact and ball arithmetic: joints, tables, contacts, modes, and outputs as functions of tau from these."""
+"""Laws run in exact and ball arithmetic: joints, tables, contacts, modes; outputs as functions of tau from these."""

@@ -117,7 +117,7 @@ static void add_slices(const real *numbers, const slice *series, const slice *si
 {
     for (int j = 0; j < count; ++j) {
         *sum += numbers[j] * series[j];
-        *size += magnitude(numbers[j]) * sizes[j];
+        *size += (magnitude(numbers[j]) + faint) * sizes[j];
     }
 }
 

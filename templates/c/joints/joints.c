@@ -19,15 +19,6 @@ static int slot(int track, int window, int ago)
     return ring[track] + (window + turn - ago) % turn;
 }
 
-/* Ends that stay where they are cancel exactly what reaches them: of a chain an output that is 0 is taken for one that
- * nothing has reached. */
-static int reached(const laws *law, int output)
-{
-    (void)law;
-    (void)output;
-    return 0;
-}
-
 static int states_of(int joint)
 {
     return first_state[joint + 1] - first_state[joint];
@@ -36,6 +27,64 @@ static int states_of(int joint)
 static int points_of(int joint)
 {
     return first_point[joint + 1] - first_point[joint];
+}
+
+/* From which panel on, counted through all windows, something moves at a joint, or acts on it: its own, at first. */
+static int stirred(const laws *law, int joint)
+{
+    int since = NAME_WINDOWS * NAME_PANELS;
+    for (int event = NAME_EVENTS - 1; event >= 0; --event) {
+        for (int point = first_point[joint]; point < first_point[joint + 1]; ++point) {
+            if (force_on[point] == event_force[event] && magnitude(law->load[event_load[event]]) > 0) {
+                since = event_window[event] * NAME_PANELS + event_panel[event];
+            }
+        }
+    }
+    for (int state = first_state[joint]; state < first_state[joint + 1]; ++state) {
+        since = magnitude(law->begun[state]) > 0 ? 0 : since;
+    }
+    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+        since = magnitude(law->held[arrive[port]]) > 0 || magnitude(law->held[send[port]]) > 0 ? 0 : since;
+    }
+    return since;
+}
+
+/* Whether a joint that something has come to can be felt in an output: what numbers that cancel leave does not matter. */
+static int reached(const laws *law, int output)
+{
+    int since[NAME_TRACKS]; /* from which panel on something is sent */
+    for (int track = 0; track < NAME_TRACKS; ++track) {
+        since[track] = NAME_WINDOWS * NAME_PANELS;
+    }
+    for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+        for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+            since[send[port]] = stirred(law, joint);
+        }
+    }
+    for (int turn = 0; turn < NAME_JOINTS; ++turn) {
+        for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+            for (int in = first_port[joint]; in < first_port[joint + 1]; ++in) {
+                const int then = since[arrive[in]] + steps[arrive[in]] * NAME_PANELS;
+                for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+                    since[send[port]] = then < since[send[port]] ? then : since[send[port]];
+                }
+            }
+        }
+    }
+    for (int window = 0; window < NAME_WINDOWS; ++window) {
+        for (int of = 0; of < SECTIONS && cycle_begin(window) + from[in_cycle(window, of)] <= NAME_TAU_MAX; ++of) {
+            const int at = of * NAME_OUTPUTS + output;
+            for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
+                for (int t = first_term[strand_at[k]]; t < first_term[strand_at[k] + 1]; ++t) {
+                    const int when = (window - term_back[t]) * NAME_PANELS + term_panel[t];
+                    if (when >= since[term_track[t]] || magnitude(law->held[term_track[t]]) > 0) {
+                        return 1;
+                    }
+                }
+            }
+        }
+    }
+    return 0;
 }
 
 /* Where the matrices of a joint begin, of those of a degree. */

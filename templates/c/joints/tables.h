@@ -88,6 +88,7 @@ typedef struct {
 } laws_batch;
 
 int good(const name_parameters *p);
+int good_for_slopes(const name_parameters *p);
 void laws_of(const name_parameters *p, laws *law);
 int laws_within_reach(const laws *law);
 void slopes_of(const name_parameters *p, int lane, laws *law);
@@ -95,6 +96,8 @@ void spread(laws_batch *all, int set, const laws *law);
 
 extern const real largest_number;
 extern const real least_number;
+extern const real faint;
+extern const int silent[];
 extern const real roundings;
 extern const real share;
 extern const real unit;

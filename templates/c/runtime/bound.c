@@ -42,7 +42,7 @@ static void begun_wrong(model_of *m, const laws *law, wrong *w)
         const real before = impedance;
         impedance = alpha > 0 && beta > 0 ? impedance * (beta / alpha) : impedance;
         const real mass = beta > 0 ? impedance / beta : before / alpha;
-        const real half_mass = is_body[node] ? mass / law->rate[node] : 0;
+        const real half_mass = is_body[node] ? (law->rate[node] < least_number ? infinity() : mass / law->rate[node]) : 0;
         real moved_here = 0;
         w->mass[node] = root(half_mass);
         for (int panel = 0; panel < NAME_PANELS; ++panel) {

@@ -35,7 +35,7 @@ static real output_wrong(const laws *law, const wrong *w, const int *summed, int
                 error = w->beside.total[k] + w->beside.reading[0] * w->beside.most[k];
                 read = 2 * window_length * read;
             }
-            sum += magnitude(law->gain[k]) * (error + read) + spare;
+            sum += (magnitude(law->gain[k]) + faint) * (error + read) + spare;
         }
     }
     return sum;
@@ -120,7 +120,7 @@ int name_error_bound(name_model *model, const name_parameters *parameters, name_
         const real error = output_wrong(&law, &w, summed, output, now.degree) * (real)1.01;
         const real size = size_seen(model, &w.beside, output);
         const real known = error < size && finite_number(w.energy) ? error / (size - error) * (1 + 4 * unit) : infinity();
-        bound[output] = is_silent(&law, output) ? 0 : known;
+        bound[output] = silent[output] ? 0 : known;
     }
     return status;
 }

@@ -122,6 +122,7 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
     laws law, slope;
     progress now = {0, LEAST, 0, 0, 0, 0, 0, 0, 0};
     int status = begun(m, parameters, &law);
+    status = status || good_for_slopes(parameters) ? status : 1;
     for (int lane = 0; lane < NAME_LANES && status == 0; ++lane) {
         slopes_of(parameters, lane, &slope);
         status = begun_lane(tangent, &law, &slope, lane);

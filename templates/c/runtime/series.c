@@ -255,19 +255,12 @@ static void weigh(real *sum, const real *all, int degree)
 /* Whether anything can be felt in an output up to TAU_MAX. */
 static int reached(const laws *law, int output);
 
-/* Whether an output is 0 whatever the parameters are: no wave counts in it. */
-static int is_silent(const laws *law, int output)
-{
-    real weight = 0;
-    for (int k = 0; k < NAME_HEARD; ++k) {
-        weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
-    }
-    return !(weight > 0);
-}
-
 /* An error relative to what is surely there of an output; of one that waves have reached that may be nothing. */
 static real relative(const laws *law, int output, real error, real largest)
 {
+    if (silent[output]) {
+        return 0;
+    }
     if (error < largest) {
         return error / (largest - error);
     }
@@ -291,7 +284,7 @@ static real estimated(const model_of *m, const laws *law, real missed, int degre
 {
     real worst = 0;
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        real weight = 0;
+        real weight = faint; /* gains may underflow */
         for (int k = 0; k < NAME_HEARD; ++k) {
             weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
         }

@@ -66,11 +66,14 @@ typedef struct {
 } laws;
 
 int good(const name_parameters *p);
+int good_for_slopes(const name_parameters *p);
 void laws_of(const name_parameters *p, laws *law);
 void slopes_of(const name_parameters *p, int lane, laws *law);
 
 extern const real largest_number;
 extern const real least_number;
+extern const real faint;
+extern const int silent[];
 extern const real share;
 extern const real unit;
 extern const real window_length;

@@ -21,12 +21,34 @@ static real absolute(real x)
     return x < 0 ? -x : x;
 }
 
+/* Of a positive number that is finite: the root of a number from 1/4 to 4, by Newton, times a power of 2. */
+static real root(real square)
+{
+    real power = 1;
+    real near = 1;
+    while (square > 4) {
+        square /= 4;
+        power *= 2;
+    }
+    while (square < (real)0.25) {
+        square *= 4;
+        power /= 2;
+    }
+    for (int k = 0; k < 6; ++k) {
+        near = (near + square / near) / 2;
+    }
+    return power * near;
+}
+
 /* A polynomial will miss so much. What is sent on a panel of a window is felt on that panel of others: all other panels
- * know nothing of it. */
+ * know nothing of it. Squares are added up, but none is taken that could vanish. */
 static void lose(stream *state, real much)
 {
     real *const missed = state->missed + state->phase;
-    *missed += much * much;
+    const real more = absolute(much);
+    const real large = more > *missed ? more : *missed;
+    const real part = (more > *missed ? *missed : more) / large;
+    *missed = part >= 0 ? large * root(1 + part * part) : large + more; /* of nothing, or of what is no number */
     state->lost = *missed > state->lost ? *missed : state->lost;
 }
 
@@ -435,25 +457,6 @@ static int is_number(real x)
     return x - x == 0;
 }
 
-/* Of a positive number that is finite: the root of a number from 1/4 to 4, by Newton, times a power of 2. */
-static real root(real square)
-{
-    real power = 1;
-    real near = 1;
-    while (square > 4) {
-        square /= 4;
-        power *= 2;
-    }
-    while (square < (real)0.25) {
-        square *= 4;
-        power /= 2;
-    }
-    for (int k = 0; k < 6; ++k) {
-        near = (near + square / near) / 2;
-    }
-    return power * near;
-}
-
 void name_init(stream *state)
 {
     state->time = 0;
@@ -526,7 +529,7 @@ static real against(const stream *state)
 static void raise_alarm(stream *state, const real *out)
 {
     const real most = tolerance * against(state);
-    int fine = state->lost <= most * most && is_number(most * most);
+    int fine = state->lost <= most && is_number(most);
     for (int k = 0; k < NAME_PANELS; ++k) {
         fine &= is_number(state->missed[k]);
     }
@@ -588,5 +591,5 @@ int name_step(stream *state, real dtau, const real *load, real *out)
 
 real name_lost(const stream *state)
 {
-    return state->lost > 0 && is_number(state->lost) ? root(state->lost) / against(state) : state->lost;
+    return state->lost > 0 && is_number(state->lost) ? state->lost / against(state) : state->lost;
 }

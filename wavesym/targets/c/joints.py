@@ -13,6 +13,7 @@ from wavesym.targets.c.runtime import (
     CRuntimeHeader,
     assigned,
     load_lane,
+    multiplied,
     parameter_fields,
     runtime_selftest,
     slopes,
@@ -48,7 +49,9 @@ class CRuntimeJoints:
     scene: Description
     fields: tuple[CRuntimeField, ...]
     arrays: tuple[tuple[str, str], ...]
+    products: Lines
     laws: tuple[tuple[str, str], ...]
+    slope_products: Lines
     slopes: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]
     load_lane: str
     tables: dict[str, Lines]
@@ -89,7 +92,9 @@ def files(scene: Description, program: Program) -> dict[str, str]:
         scene=scene,
         fields=fields,
         arrays=tuple((name, str(len(functions))) for name, functions in laws.functions.items()),
+        products=multiplied(laws, laws.every, real),
         laws=tuple(assigned(laws, laws.functions, real)),
+        slope_products=multiplied(laws, laws.every_slope, real),
         slopes=tuple(slopes(laws, real)),
         load_lane=load_lane(laws),
         tables=c_tables(program.tables, real),

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 from flint import fmpq, fmpq_mpoly
 
@@ -11,6 +12,7 @@ from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.program import Program, ReferenceValues
 from wavesym.programs.runtime.laws import RuntimeLaws
+from wavesym.programs.runtime.products import products
 from wavesym.programs.runtime.units import Function, ParameterUnit
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
@@ -48,12 +50,15 @@ class CRuntimeHeader:
 class CRuntime:
     """templates/c/runtime/runtime.c.j2; `laws` are what is assigned, with the expression; every table as its lines.
 
-    `slopes` are their derivatives, by the number of a parameter; `load_lane` is that of the first load, -1 for none.
+    `products` are what is multiplied and added up on the way to them, `slope_products` to their derivatives. `slopes`
+    are these derivatives, by the number of a parameter; `load_lane` is that of the first load, -1 for none.
     """
 
     scene: Description
     fields: tuple[CRuntimeField, ...]
+    products: Lines
     laws: tuple[tuple[str, str], ...]
+    slope_products: Lines
     slopes: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]
     load_lane: str
     tables: dict[str, Lines]
@@ -97,7 +102,9 @@ def files(scene: Description, program: Program) -> dict[str, str]:
     context = CRuntime(
         scene=scene,
         fields=fields,
+        products=multiplied(laws, laws.every, program.real),
         laws=tuple(assigned(laws, laws.functions, program.real)),
+        slope_products=multiplied(laws, laws.every_slope, program.real),
         slopes=tuple(slopes(laws, program.real)),
         largest=f"{LIMITS[program.real.name]}_MAX",
         least=f"{LIMITS[program.real.name]}_MIN",
@@ -172,20 +179,22 @@ def assigned(laws: RuntimeLaws, arrays: Mapping[str, Sequence[Function]], real: 
             yield f"{array}[{k}]", expression(function, places, real)
 
 
+def multiplied(laws: RuntimeLaws, functions: Iterable[Ratio], real: Real) -> Lines:
+    """What is multiplied and added up on the way to some functions, each once."""
+    places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
+    found = (
+        " * ".join(_sum(factor, [places[name] for name in function.ring.names], real) for factor in product)
+        for function in functions
+        for product in products(function, laws.positive)
+    )
+    return tuple(dict.fromkeys(found))
+
+
 def slopes(laws: RuntimeLaws, real: Real) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
     """The derivatives that are not 0, by the number of the parameter."""
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
-    for lane, label in enumerate(places):
-        found = [
-            (f"{array}[{k}]", expression(slope, places, real))
-            for array, functions in laws.functions.items()
-            for k, function in enumerate(functions)
-            if isinstance(function, Ratio) and label in function.ring.names
-            for slope in [function.derivative(label)]
-            if slope != 0
-        ]
-        if found:
-            yield str(lane), tuple(found)
+    for lane, found in groupby(laws.slopes, key=lambda slope: slope[0]):
+        yield str(lane), tuple((f"{array}[{k}]", expression(slope, places, real)) for _, array, k, slope in found)
 
 
 def load_lane(laws: RuntimeLaws) -> str:

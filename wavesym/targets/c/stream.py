@@ -9,7 +9,7 @@ from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.program import Program, SteppedValues
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
-from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assigned, parameter_fields
+from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assigned, multiplied, parameter_fields
 from wavesym.targets.description import Description, constants
 from wavesym.targets.literals import Lines, c_constants, c_literals, c_tables
 
@@ -32,9 +32,11 @@ class CStream:
     kernel: str
     fields: tuple[CRuntimeField, ...]
     arrays: tuple[tuple[str, str], ...]
+    products: Lines
     laws: tuple[tuple[str, str], ...]
     heard: str
     largest: str
+    least: str
     made: str
 
 
@@ -76,9 +78,11 @@ def source(scene: Description, program: Program) -> str:
         kernel=kernel("stream/stream.c", scene),
         fields=_fields(program),
         arrays=_arrays(program),
+        products=multiplied(laws, laws.every, program.real) if laws else (),
         laws=tuple(assigned(laws, laws.functions, program.real)) if laws else (),
         heard=str(len(laws.functions["gain"])) if laws else "",
         largest=f"{LIMITS[program.real.name]}_MAX",
+        least=f"{LIMITS[program.real.name]}_MIN",
         made=kernel("stream/made.c", scene) if laws else "",
     )
     return render("c/stream/stream.c.j2", context)

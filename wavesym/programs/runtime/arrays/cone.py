@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from wavesym.programs.march.plan import LEFT, LOAD, RIGHT
 from wavesym.programs.runtime.arrays.laws import ArrayLaws
-from wavesym.programs.runtime.arrays.tables import ArrayTables
+from wavesym.programs.runtime.arrays.tables import ArrayTables, Ints
 
 Bools = NDArray[np.bool_]
 
@@ -53,4 +53,22 @@ def _heard(tables: ArrayTables, law: ArrayLaws, lit: Bools, window: int) -> Bool
                         int(tables.ints(f"term_{name}")[term]) for name in ("way", "panel", "sender", "back", "heard")
                     )
                     found[output] |= lit[(window + back) % 2, way, panel, sender] & (law["gain"][heard] != 0)
+    return found
+
+
+def heard_since(tables: ArrayTables, since: Ints) -> Bools:
+    """Of each output and set, whether it hears a track from that panel on, counted through all windows, from which
+    something is sent into it: (tracks, sets).
+    """
+    found = np.zeros((tables.outputs, since.shape[1]), bool)
+    first, panels = tables.ints("first_term"), tables.sizes["panels"]
+    track, back, panel = (tables.ints(f"term_{name}") for name in ("track", "back", "panel"))
+    for window in range(tables.sizes["windows"]):
+        begun, phase = float(tables.begins(np.array(window))), window % tables.cycle
+        for section, output in np.ndindex(tables.sizes["sections"], tables.outputs):
+            if begun + tables.section(phase, section)[0] <= tables.tau_max:
+                for strand in tables.strands(section, output):
+                    terms = slice(first[strand], first[strand + 1])
+                    when = (window - back[terms]) * panels + panel[terms]
+                    found[output] |= np.any(when[:, None] >= since[track[terms]], axis=0)
     return found

@@ -11,10 +11,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.programs.runtime.arrays.cone import heard_since
 from wavesym.programs.runtime.arrays.laws import ArrayLaws
 from wavesym.programs.runtime.arrays.motion import ArrayMotion, WindowTried
 from wavesym.programs.runtime.arrays.solver import ArraySolver
-from wavesym.programs.runtime.arrays.tables import ArrayTables
+from wavesym.programs.runtime.arrays.tables import ArrayTables, Ints
 from wavesym.programs.runtime.arrays.tracks import ArrayTracks
 from wavesym.programs.runtime.engine import Array
 
@@ -142,7 +143,30 @@ class ArrayJoints(ArrayMotion[ArrayTracks]):
 
     def reached(self) -> NDArray[np.bool_]:
         """See `ArrayMotion`."""
-        return np.ones((self._tables.outputs, self._law["push"].shape[1]), bool)
+        tables, law = self._tables, self._law
+        panels = tables.sizes["panels"]
+        since = np.full(law["held"].shape, tables.sizes["windows"] * panels)
+        for joint in self._joints:
+            for port in joint.ports:
+                since[port[4]] = self._stirred(joint)
+        for joint in len(self._joints) * self._joints:
+            for _, _, _, arrive, _ in joint.ports:
+                then = since[arrive] + tables.ints("steps")[arrive] * panels
+                for _, _, _, _, send in joint.ports:
+                    since[send] = np.minimum(since[send], then)
+        return heard_since(tables, np.where(law["held"] != 0, -since.max(), since))
+
+    def _stirred(self, joint: _Joint) -> Ints:
+        """From which panel on, counted through all windows, something moves at a joint, or acts on it: its own."""
+        tables, law = self._tables, self._law
+        since = np.full(law["held"].shape[1], tables.sizes["windows"] * tables.sizes["panels"])
+        for event in reversed(range(tables.sizes["events"])):
+            if tables.ints("event_force")[event] in joint.loads:
+                when = tables.ints("event_window")[event] * tables.sizes["panels"] + tables.ints("event_panel")[event]
+                since = np.where(law["load"][tables.ints("event_load")[event]] != 0, when, since)
+        held = law["held"][[track for port in joint.ports for track in port[3:]]]
+        moving = np.any(law["begun"][joint.states] != 0, axis=0) | np.any(held != 0, axis=0)
+        return np.where(moving, 0, since)
 
     def _acting(self, joint: _Joint, of: ArrayTracks, law: ArrayLaws, window: int, panel: int) -> Array:
         """What arriving waves act with on its points: (degree + 2, ..., points, sets), nothing at degree + 1."""

@@ -13,6 +13,7 @@ from wavesym.numbers.doubles import nearest
 from wavesym.numbers.ratio import Ratio
 from wavesym.programs.runtime.engine import Array
 from wavesym.programs.runtime.laws import RuntimeLaws
+from wavesym.programs.runtime.products import products
 from wavesym.programs.runtime.units import Function
 
 ArrayLaws = Mapping[str, Array]
@@ -28,12 +29,19 @@ def finite(laws: ArrayLaws) -> NDArray[np.bool_]:
     return found
 
 
-def allowed(laws: RuntimeLaws, given: Array) -> NDArray[np.bool_]:
-    """Which sets, the rows of `given`, have finite numbers, and positive ones where they have to be."""
+def allowed(laws: RuntimeLaws, given: Array, functions: Sequence[Ratio]) -> NDArray[np.bool_]:
+    """Which sets, the rows of `given`, have finite numbers, positive ones where they have to be; and so have what
+    `functions` are made of.
+    """
     positive = np.array([field.positive for field in laws.fields for _ in field.labels], bool)
     fine = np.isfinite(given)
     fine[:, positive] &= given[:, positive] > 0
     every: NDArray[np.bool_] = np.all(fine, axis=1)
+    symbols, least = _symbols(laws, given), np.finfo(np.float64).tiny
+    for function in functions:
+        for product in products(function, laws.positive):
+            size = np.abs(prod((_sum(factor, _own(function, symbols)) for factor in product), start=np.float64(1)))
+            every &= (size >= least) & np.isfinite(size)
     return every
 
 
@@ -87,9 +95,13 @@ def _value(function: Function, symbols: Mapping[str, Array]) -> Array | float:
     if not isinstance(function, Ratio):
         return nearest(function)
     ring = function.ring
-    own = [symbols[name] for name in ring.names]
+    own = _own(function, symbols)
     below = [_sum(ring.forms[form], own) for form, power in function.denominator.items() for _ in range(power)]
     return _sum(function.numerator, own) / prod(below, start=np.float64(1))
+
+
+def _own(function: Ratio, symbols: Mapping[str, Array]) -> list[Array]:
+    return [symbols[name] for name in function.ring.names]
 
 
 def _sum(polynomial: fmpq_mpoly, own: Sequence[Array]) -> Array | np.float64:

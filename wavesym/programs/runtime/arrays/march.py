@@ -29,9 +29,9 @@ class ArrayMarch:
         own = np.array([float(value) for field in laws.fields for value in field.values])
         with np.errstate(all="ignore"):
             own_laws = array_laws(laws, given)
-            fine = allowed(laws, given) & finite(own_laws) & motion.serves(tables, own_laws)
+            fine = allowed(laws, given, laws.every) & finite(own_laws) & motion.serves(tables, own_laws)
             if lanes:
-                fine &= finite(array_slopes(laws, given))
+                fine &= allowed(laws, given, laws.every_slope) & finite(array_slopes(laws, given))
         self.status = np.where(fine, 0, 1).astype(np.int32)
         given = np.where(fine[:, None], given, own)
         self._law = array_laws(laws, given)
@@ -82,7 +82,7 @@ class ArrayMarch:
         for output in range(tables.outputs):
             weight = np.abs(self._law["gain"][tables.ints("heard_output") == output]).sum(axis=0)
             largest = self._largest(output)
-            error = weight * missed
+            error = (weight + tables.faint) * missed * (tables.ints("silent")[output] == 0)
             sure = error < largest
             worst = np.maximum(worst, np.divide(error, largest - error, out=np.zeros_like(missed), where=sure))
             lost[output] = ~sure & (error > 0)

@@ -24,6 +24,7 @@ class ArrayTables:
         self.outputs = len(program.outputs)
         self.tau_max = program.tau_max
         self.sizes = {name: int(value) for name, value in program.constants.items() if value == int(value)}
+        self.faint = 2.0**-1022 / program.constants["unit"]
         self.share, self.unit = program.constants["share"], program.constants["unit"]
         self.step, self.span = (program.constants.get(name, 1.0) for name in ("step", "span"))
         self.cycle = self.sizes.get("cycle", 1)
