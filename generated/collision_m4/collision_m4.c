@@ -5,9 +5,14 @@
  */
 #include "collision_m4.h"
 
-#if (defined(__FAST_MATH__) || defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)) && \
+#if (defined(__FAST_MATH__) || defined(_M_FP_FAST) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
+     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)) && \
     !defined(COLLISION_M4_ALLOW_FAST_MATH)
 #error "-ffast-math: bounds of errors no longer hold, nor NaN out of range (-D COLLISION_M4_ALLOW_FAST_MATH takes it all the same)"
+#endif
+#if defined(__FLT_EVAL_METHOD__) && (__FLT_EVAL_METHOD__ == 2 || __FLT_EVAL_METHOD__ < 0) && \
+    !defined(COLLISION_M4_ALLOW_FAST_MATH)
+#error "x87: bounds of errors no longer hold (-msse2 -mfpmath=sse helps; -D COLLISION_M4_ALLOW_FAST_MATH takes it all the same)"
 #endif
 
 typedef double real;

@@ -1,18 +1,17 @@
-/* fmi2.c: simulation.h as FMI 2.0 calls it, for co-simulation. */
+/* fmi2.c: simulation.h as FMI 2.0 calls it, for co-simulation. Errors and warnings are logged always, and nothing else. */
 #include "fmi2.h"
 #include "simulation.h"
 
 typedef struct {
     simulation run;
     fmi2CallbackFunctions calls;
-    int logging;
     char name[64];
 } instance;
 
 static fmi2Status answer(instance *it, verdict found)
 {
     const fmi2Status status = found == FINE ? fmi2OK : found == LOSING ? fmi2Warning : fmi2Error;
-    if (status != fmi2OK && it->logging && it->calls.logger) {
+    if (status != fmi2OK && it->calls.logger) {
         it->calls.logger(it->calls.componentEnvironment, it->name, status,
                          status == fmi2Warning ? "logStatusWarning" : "logStatusError", "%s", it->run.said);
     }
@@ -38,9 +37,10 @@ const char *FMI2(fmi2GetVersion)(void)
 
 fmi2Status FMI2(fmi2SetDebugLogging)(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[])
 {
+    (void)c;
+    (void)on;
     (void)count;
     (void)categories;
-    ((instance *)c)->logging = on;
     return fmi2OK;
 }
 
@@ -51,6 +51,7 @@ fmi2Component FMI2(fmi2Instantiate)(fmi2String name, fmi2Type type, fmi2String g
     instance *it = NULL;
     (void)resources;
     (void)visible;
+    (void)logging;
     if (type != fmi2CoSimulation) {
         wrong = "fmuType: co-simulation expected";
     } else if (guid == NULL || strcmp(guid, TOKEN) != 0) {
@@ -67,7 +68,6 @@ fmi2Component FMI2(fmi2Instantiate)(fmi2String name, fmi2Type type, fmi2String g
     if (calls) {
         it->calls = *calls;
     }
-    it->logging = logging;
     snprintf(it->name, sizeof it->name, "%s", name ? name : "");
     reset(&it->run);
     return it;

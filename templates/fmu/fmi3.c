@@ -1,4 +1,4 @@
-/* fmi3.c: simulation.h as FMI 3.0 calls it, for co-simulation. */
+/* fmi3.c: simulation.h as FMI 3.0 calls it, for co-simulation. Errors and warnings are logged always, and nothing else. */
 #include "fmi3.h"
 #include "simulation.h"
 
@@ -6,13 +6,12 @@ typedef struct {
     simulation run;
     fmi3LogMessageCallback log;
     fmi3InstanceEnvironment environment;
-    bool logging;
 } instance;
 
 static fmi3Status answer(instance *it, verdict found)
 {
     const fmi3Status status = found == FINE ? fmi3OK : found == LOSING ? fmi3Warning : fmi3Error;
-    if (status != fmi3OK && it->logging && it->log) {
+    if (status != fmi3OK && it->log) {
         it->log(it->environment, status, status == fmi3Warning ? "logStatusWarning" : "logStatusError", it->run.said);
     }
     return status;
@@ -39,9 +38,10 @@ const char *FMI3(fmi3GetVersion)(void)
 
 fmi3Status FMI3(fmi3SetDebugLogging)(fmi3Instance it, fmi3Boolean on, size_t count, const fmi3String categories[])
 {
+    (void)it;
+    (void)on;
     (void)count;
     (void)categories;
-    ((instance *)it)->logging = on;
     return fmi3OK;
 }
 
@@ -56,6 +56,7 @@ fmi3Instance FMI3(fmi3InstantiateCoSimulation)(fmi3String name, fmi3String token
     (void)name;
     (void)resources;
     (void)visible;
+    (void)logging;
     (void)early;
     (void)intermediate;
     (void)update;
@@ -74,7 +75,6 @@ fmi3Instance FMI3(fmi3InstantiateCoSimulation)(fmi3String name, fmi3String token
     }
     it->log = log;
     it->environment = environment;
-    it->logging = logging;
     reset(&it->run);
     return it;
 }

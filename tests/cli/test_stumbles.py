@@ -156,8 +156,17 @@ def test_from_python_what_is_wrong_is_told() -> None:
         wavesym.generate(scene, evaluator="clsed")
     with pytest.raises(wavesym.WavesymError, match=r"^precision: half given, double or single expected$"):
         wavesym.generate(scene, precision="half")
+    for wanted in (wavesym.evaluator, wavesym.summary, wavesym.tables, wavesym.generate):
+        with pytest.raises(wavesym.SceneError, match="str given, a Scene expected"):
+            wanted("drive_m1")  # type: ignore[operator]
     with pytest.raises(wavesym.SceneError, match="str given, a Scene expected"):
-        wavesym.evaluator("drive_m1")  # type: ignore[arg-type]
+        wavesym.model("drive_m1", ["load"])  # type: ignore[arg-type]
+    with pytest.raises(wavesym.WavesymError, match=r'^runtime: "kappa" given, a list of names expected$'):
+        wavesym.model(scene, "kappa")
+    with pytest.raises(wavesym.WavesymError, match=r'^--runtime: kapa given, .* expected. Did you mean "kappa"\?$'):
+        wavesym.model(scene, ["kapa"])
+    with pytest.raises(wavesym.WavesymError, match=r"^--runtime: x given, kappa, inertia or load expected$"):
+        wavesym.model(scene, ["x"])
     assert issubclass(wavesym.CostError, wavesym.WavesymError)
     assert issubclass(wavesym.ToleranceError, wavesym.WavesymError)
 
@@ -190,3 +199,17 @@ def test_a_path_that_leads_nowhere(path: str, wrong: str) -> None:
     with pytest.raises(wavesym.SceneError) as found:
         wavesym.Scene.from_toml("building_m2").with_({path: -1})
     assert wrong in str(found.value)
+
+
+def test_a_package_is_checked_with_all_its_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    asked = ["generate", "drive_m1", "--package", "-o", str(tmp_path / "out")]
+    assert main(asked) == 0
+    capsys.readouterr()
+    assert (main([*asked, "--check"]), capsys.readouterr().out) == (0, "")
+    cmake = tmp_path / "out" / "CMakeLists.txt"
+    cmake.write_text(cmake.read_text() + "# mine\n")
+    assert main([*asked, "--check"]) == 1
+    assert capsys.readouterr().out.startswith(f"changed: {cmake}\n")
+    cmake.unlink()
+    assert main([*asked, "--check"]) == 1
+    assert capsys.readouterr().out.startswith(f"missing: {cmake}\n")

@@ -13,7 +13,7 @@ from scipy.linalg import eigh
 from tests.support.modal import NASTY, building, by_elements, chain
 from wavesym.derivation.node_law import node_law
 from wavesym.errors import UnservedError
-from wavesym.exact.modes import cluster
+from wavesym.exact.modes import equal_frequencies
 from wavesym.exact.modes import frequencies as found
 from wavesym.exact.modes.frequencies import Spectrum, frequencies, searched
 from wavesym.exact.modes.statics import Statics
@@ -298,7 +298,7 @@ def test_the_shapes_of_a_cluster_are_proved(monkeypatch):
 
 
 def test_shapes_that_cannot_be_told_are_refused(monkeypatch):
-    monkeypatch.setattr(cluster, "_APART", (2,))
+    monkeypatch.setattr(equal_frequencies, "_APART", (2,))
     monkeypatch.setattr(found, "_TIMES", (1, 8))
     with pytest.raises(UnservedError, match=r"frequencies meet near 0\.86.*pieces and march serve it"):
         frequencies(CLUSTERS["beyond most bits"].network, 5)

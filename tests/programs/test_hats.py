@@ -27,7 +27,7 @@ from wavesym.programs.hats import evaluator as hats
 from wavesym.programs.hats.evaluator import HatMarch, hat_march
 from wavesym.programs.hats.split import rest_of, split, told
 from wavesym.programs.making import program
-from wavesym.programs.march.evaluator import march
+from wavesym.programs.march.evaluator import marched
 from wavesym.programs.rings.evaluator import ring_march
 from wavesym.programs.schemes.hats import ShiftedHats
 from wavesym.running.compiled import imported
@@ -76,7 +76,7 @@ def looked_at(found: HatMarch, most: int = 40) -> np.ndarray:
 def test_a_record_that_no_window_takes(first: int) -> None:
     model = shaken([first, *SAMPLES])
     with pytest.raises(CostError, match=r"times at a spacing of 1.37 have 26 different fractional parts, at most 16"):
-        march(model)
+        marched(model)
     found = choose(replace(model, tolerance=fmpq(1, 10**6)), "march").evaluator
     assert isinstance(found, HatMarch)
     assert found.rest == bool(first)

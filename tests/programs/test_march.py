@@ -13,8 +13,9 @@ from tests.support.generated import assemble, numpy_text
 from wavesym.errors import CostError, ToleranceError
 from wavesym.exact.silence import silent
 from wavesym.numbers.reals import DOUBLE, SINGLE
+from wavesym.programs.choice import choose
 from wavesym.programs.march.bound import judge
-from wavesym.programs.march.evaluator import march, marched
+from wavesym.programs.march.evaluator import marched
 from wavesym.programs.march.operator import operator
 from wavesym.programs.march.plan import plan
 from wavesym.programs.march.run import LEFT, RIGHT, Run
@@ -98,7 +99,7 @@ def test_random_scenes_are_within_the_bound(scene):
 
 def test_long_horizons_agree_with_direct_integration():
     scene = building(60, KINKS, m=3)
-    made = march(lower(scene))
+    made = marched(lower(scene))
     taus = np.random.default_rng(1).uniform(0, 60, 200)
     coarse, fine = (integrate(scene.system.chain, lower(scene).loads, made.tau_max, steps) for steps in (64, 128))
     for probe, row in zip(lower(scene).probes, program(scene, made)(taus), strict=True):
@@ -159,7 +160,7 @@ def test_a_degree_that_is_too_low_is_never_silent():
     assert low.error_bound > 1e-3  # what is lost is in the bound
     with pytest.raises(ArithmeticError, match="degree 16 is too low"):
         program(scene, low)(300.0)
-    truth = program(scene, march(lower(scene)))(np.linspace(290, 300, 101))
+    truth = program(scene, marched(lower(scene)))(np.linspace(290, 300, 101))
     coarse = np.abs(truth).max()
     # and it was lost indeed: without the alarm the values are wrong
     text = numpy_text(lower(scene), low).replace("if self._leak >", "if 0 * self._leak >")
@@ -230,17 +231,17 @@ def test_what_is_zero_by_symmetry_is_exactly_zero():
 
 def test_what_cannot_be_had_is_refused():
     with pytest.raises(ToleranceError, match=r"march: rounding leaves a bound of \S+ to tau = 50 for"):
-        march(lower(building(50, SHORT_PULSE, tolerance="1e-14")))
+        choose(lower(building(50, SHORT_PULSE, tolerance="1e-14")), "march")
     many = [Fraction(k, 17) for k in range(17)]
     with pytest.raises(CostError, match="17 different fractional parts, at most 16 expected"):
-        march(lower(building(2, {"times": many, "a": [1] * 17, "b": [0] * 17})))
+        marched(lower(building(2, {"times": many, "a": [1] * 17, "b": [0] * 17})))
     with pytest.raises(CostError, match="polynomials of degree"):
-        march(lower(building(10**8, SHORT_PULSE)))
+        marched(lower(building(10**8, SHORT_PULSE)))
 
 
 def test_single_precision_has_a_bound_of_its_own():
     scene = building(5, KINKS, tolerance="1e-2")
-    made = march(lower(scene), SINGLE)
+    made = marched(lower(scene), SINGLE)
     assert 1e-6 < made.error_bound < 1e-2
     truth = known(lower(scene))
     taus = [tau for tau in truth.taus if float(np.float32(tau)) == tau]

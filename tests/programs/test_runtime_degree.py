@@ -7,7 +7,8 @@ import pytest
 from flint import fmpq
 
 from tests.support.shaken import SAMPLES, shaken
-from wavesym import Scene
+from wavesym import Scene, model
+from wavesym.errors import CostError
 from wavesym.programs.march.plan import MarchPanel, plan
 from wavesym.programs.march.run import Run, Since
 from wavesym.programs.runtime import degree as choosing
@@ -120,3 +121,9 @@ def test_panels_of_any_lengths_are_marched_one_after_the_other():
                 now[:, c] = p[:, k, c, 0] + (now[:, c] - p[:, k, c, 0]) * decay
                 np.testing.assert_allclose(np.sum(q[:, k, c], axis=-1), now[:, c], rtol=0, atol=1e-13)
         np.testing.assert_allclose(ends[:, k], now, rtol=0, atol=1e-13)
+
+
+def test_whose_rates_are_too_much_is_said(monkeypatch):
+    monkeypatch.setattr(choosing, "_HIGHEST", 40)
+    with pytest.raises(CostError, match=r"^output.until: rates to 100 for kappa up to 100 need polynomials of degree"):
+        model(Scene.from_toml("drive_m1"), ["kappa"])

@@ -34,13 +34,38 @@ TURNED = wavesym.Scene(
     ],
     output={"until": 5, "tolerance": "1e-11", "strain": ["1/2", "3/2"], "velocity": [1], "acceleration": [0]},
 )
-KAPPA = {"shaken": [2, 0.25, 0.75], "turned": [0.25, 30]}
+LINKED = wavesym.Scene(
+    name="linked",
+    system={
+        "type": "chain",
+        "parts": [
+            {"motion": "acceleration", "name": "ground"},
+            {"rod": 1, "impedance": 2},
+            {"mass": 1, "name": "disc", "dashpot": "1/8"},
+            {"rod": "3/2", "impedance": "1/2"},
+            {"mass": "1/3", "name": "end"},
+        ],
+    },
+    load=[
+        {"at": "ground", "spacing": "3/4", "samples": SAMPLES},
+        {"at": "disc", "spacing": "1/8", "samples": SAMPLES * 3},
+        {"at": "end", "times": [1, 2], "steps": [1, -1]},
+    ],
+    output={"until": 5, "tolerance": "1e-11", "strain": ["1/2", 2], "velocity": [1], "displacement": ["5/2"]},
+)
+# what changes at run time, by path in the scene, and as it is given
+CHANGED = {
+    "shaken": ({"system.kappa": [2, 0.25, 0.75]}, {"kappa": [2, 0.25, 0.75]}),
+    "turned": ({"system.kappa": [0.25, 30]}, {"kappa": [0.25, 30]}),
+    "linked": ({"system.parts[2].mass": 4, "system.parts[4].mass": 0.25}, {"mass": [4, 0.25]}),
+}
 TAU = np.linspace(0, 5, 41)
 
 
 def times(scene, factors):
-    """The scene with kappa as it is given, each load times its factor, and these as numbers of the field `load`."""
-    changes, given = {"system.kappa": KAPPA[scene.name]}, []
+    """The scene with what changes, each load times its factor, and these as numbers of the field `load`."""
+    own, others = CHANGED[scene.name]
+    changes, given = dict(own), []
     for number, (load, factor) in enumerate(zip(scene.load, factors, strict=True)):
         steps = getattr(load, "steps", ())
         if hasattr(load, "record"):
@@ -49,7 +74,7 @@ def times(scene, factors):
             name = "steps" if steps else "samples"
             changes[f"load[{number}].{name}"] = [factor * value for value in getattr(load, name)]
         given += [float(factor * value) for value in steps] or [float(factor)]
-    return scene.with_(changes), {"kappa": KAPPA[scene.name], "load": given}
+    return scene.with_(changes), others | {"load": given}
 
 
 def check(model, scene, factors):
@@ -65,28 +90,28 @@ def check(model, scene, factors):
     return given, wrong
 
 
-@pytest.mark.parametrize("scene", [SHAKEN, pytest.param(TURNED, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("scene", [SHAKEN, LINKED, pytest.param(TURNED, marks=pytest.mark.slow)])
 def test_a_record_counts_times_its_factor(scene):
     factors = [Fraction(-2), Fraction(1, 2), Fraction(3)][: len(scene.load)]
     with without_compiler():
-        model = wavesym.model(scene, runtime=["kappa", "load"])
+        model = wavesym.model(scene, runtime=[*CHANGED[scene.name][1], "load"])
     assert model.labels["load"][0].startswith("factor of load 0, samples at ")
     assert model.parameters["load"][0] == 1
     check(model, scene, factors)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", [SHAKEN, PULLED, TURNED], ids=["ground", "force", "drive"])
-@pytest.mark.parametrize("runtime", [["kappa"], ["kappa", "load"]])
-def test_a_record_in_c(scene, runtime, monkeypatch):
+@pytest.mark.parametrize("scene", [SHAKEN, PULLED, TURNED, LINKED], ids=["ground", "force", "drive", "chain"])
+@pytest.mark.parametrize("chosen", [[], ["load"]])
+def test_a_record_in_c(scene, chosen, monkeypatch):
     monkeypatch.setattr(sets, "FAST", ("-O1",))
-    model = wavesym.model(scene, runtime=runtime)
-    if "load" not in runtime:
+    model = wavesym.model(scene, runtime=[*CHANGED[scene.name][1], *chosen])
+    if not chosen:
         scaled, given = times(scene, [1] * len(scene.load))
         true = wavesym.evaluator(scaled)(TAU)
-        found = model.run(TAU, kappa=given["kappa"])[0]
-        wrong = np.max(np.abs(found - true), axis=1) / np.max(np.abs(true), axis=1)
         del given["load"]
+        found = model.run(TAU, **given)[0]
+        wrong = np.max(np.abs(found - true), axis=1) / np.max(np.abs(true), axis=1)
     else:
         given, wrong = check(model, scene, [Fraction(5, 2)] * len(scene.load))
     assert np.all(wrong <= model.bounds(**given)[0])
@@ -98,13 +123,15 @@ def test_a_record_in_c(scene, runtime, monkeypatch):
     assert same < 1e-20 * np.sum(data**2) < other
 
 
-def test_samples_that_only_add_up_are_seen():
-    program = runtime_program(lower(SHAKEN), Request(runtime=("load",)), amplitudes(SHAKEN))
+@pytest.mark.parametrize("scene", [SHAKEN, LINKED])
+def test_samples_that_only_add_up_are_seen(scene):
+    program = runtime_program(lower(scene), Request(runtime=("load",)), amplitudes(scene))
     added = replace(
         program, tables=program.tables | {"event_power": tuple(k % 3 for k in program.tables["event_power"])}
     )
-    true = wavesym.evaluator(SHAKEN)(TAU)
-    right, wrong = (ArraySets(each).values(np.ones((1, 1)), TAU).values[0, 0] - true for each in (program, added))
+    true = wavesym.evaluator(scene)(TAU)
+    numbers = np.concatenate([field.values for field in program.laws.fields]).astype(float)[None]
+    right, wrong = (ArraySets(each).values(numbers, TAU).values[0, 0] - true for each in (program, added))
     assert np.max(np.abs(right)) < 1e-11 < 0.1 < np.max(np.abs(wrong))
 
 
@@ -126,8 +153,18 @@ def test_records_that_are_refused(changes, expected, monkeypatch):
     assert str(refused.value).startswith(expected)
 
 
-def test_a_chain_has_no_factor_of_a_record():
-    scene = wavesym.Scene.from_toml("stepped_shaft")
-    sampled = {"at": scene.load[0].at, "spacing": 1, "samples": [0, 1]}
-    with pytest.raises(UnservedError, match="--runtime: load given with samples in a chain, loads with times expected"):
-        wavesym.model(scene.with_({"load": [sampled]}), runtime=["load"])
+def test_the_factor_of_a_record_has_no_unit():
+    storeys = {"count": 2, "height": "3.5 m", "stiffness": "277 MN/m", "column_mass": "11 t", "floor_mass": "350 t"}
+    scene = wavesym.Scene(
+        name="frame",
+        units={},
+        system={"type": "building", "base": "ground", "storey": [storeys]},
+        load=[{"spacing": "0.1 s", "samples": [0, 0.3, -0.3, 0], "unit": "g"}],
+        output={"until": "0.5 s", "tolerance": 1e-9, "drift": [1]},
+    )
+    with without_compiler():
+        model = wavesym.model(scene, runtime=["load"])
+    assert model.units["load"] == ("",)
+    true = wavesym.evaluator(scene.with_({"load[0].samples": [0, 0.6, -0.6, 0]}))
+    times = np.linspace(0, 0.5, 21)
+    assert model.run(times, load=[2])[0] == pytest.approx(true(times), rel=1e-9, abs=1e-12)

@@ -113,6 +113,8 @@ def missed(case):
 def test_another_set_is_another_scene(case):
     error, model = missed(case)
     assert error < 1e-10
+    until = CASES[case][0]()[0]["output"]["until"]
+    assert model.tau_max * model.seconds_per_tau == pytest.approx(float(until.removesuffix(" ms")) / 1000)
     assert {name: units[0] for name, units in model.units.items()} == CASES[case][1]
 
 

@@ -653,6 +653,12 @@ def test_what_is_refused_later_speaks_of_seconds_too(tmp_path: Path, capsys: pyt
         said.append(capsys.readouterr().err)
     assert re.search(r"3 nodes times [0-9.e+]+ units of tau \(2000 s\) are", said[0])
     assert "load: a jumps by 2.94199 m/s^2 at 0 s, no jump expected in modes" in said[1]
+    assert "`start`, one spacing, of a record" in said[1]
+    another = '[[system.storey]]\nheight = "3 m"\nstiffness = "1 GN/m"\ncolumn_mass = "9 t"\nfloor_mass = "300 t"\n'
+    differing = tmp_path / "differing.toml"
+    differing.write_text(file.read_text().replace("[[load]]", another + "[[load]]"))
+    assert main(["generate", str(differing), "--evaluator", "modes", "--check"]) == 2
+    assert "load: what acts at 0 jumps by 2.94199 m/s^2 at 0 s" in capsys.readouterr().err
     file.write_text(file.read_text().replace("10.871 t", "1e200 kg").replace("350 t", "1e-200 kg"))
     assert main(["run", str(file)]) == 2
     assert capsys.readouterr().err.startswith(f"{file}: system: its quantities make kappa[0]: a number of about 400")

@@ -46,7 +46,7 @@ class Instance:
             instanceName="one",
         )
         self.said: list[str] = []
-        self.slave.instantiate(loggingOn=True, **self._logger())
+        self.slave.instantiate(loggingOn=False, **self._logger())  # what is refused is told all the same
 
     def _logger(self) -> dict[str, Any]:
         if not self.two:

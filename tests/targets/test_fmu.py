@@ -147,7 +147,7 @@ REFUSED = {
     "precision": ({"precision": "single"}, "precision: single given with --target, double expected"),
     "runtime": ({"runtime": ["load"]}, "--runtime: load given with a stream, other parameters expected"),
     "modes": ({"runtime": ["kappa"], "evaluator": "modes"}, "runtime: kappa given with modes and --target"),
-    "package": ({"package": True}, "package: True given with --target, False expected"),
+    "package": ({"package": True}, "--package: True given with --target, nothing expected"),
     "evaluator": ({"evaluator": "march"}, "--evaluator: march given with --stream, auto expected"),
     "step": ({"evaluator": "modes", "step": Fraction(1, 8)}, "--step: 1/8 given with --evaluator modes"),
     "target": ({"target": "fmu1"}, "target: fmu1 given, fmu2 or fmu3 expected"),

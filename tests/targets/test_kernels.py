@@ -1,5 +1,6 @@
 """The plain C among the templates, read by a compiler as it stands; and put into programs with a scene's name."""
 
+import platform
 import re
 import shutil
 from pathlib import Path
@@ -9,7 +10,7 @@ import pytest
 from tests.support.builds import LANGUAGES, SOURCES, STRICT, scene, source
 from tests.support.generated import assemble
 from wavesym.programs.choice import choose
-from wavesym.running.toolchain import CompilerError, compiler
+from wavesym.running.toolchain import CompilerError, at_hand, compiler
 from wavesym.scene import lower
 
 C = Path(__file__).parents[2] / "templates" / "c"
@@ -75,3 +76,13 @@ def test_a_program_is_its_kernel_under_its_own_name(of):
 def test_fast_math_is_refused_unless_it_is_asked_for(kernel):
     assert "no longer hold" in complaint(kernel, C, "-ffast-math")
     assert complaint(kernel, C, "-ffast-math", "-DNAME_ALLOW_FAST_MATH") == ""
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64" or not at_hand(("gcc",)), reason="no gcc for x86-64 here")
+@pytest.mark.parametrize("flag", ["-funsafe-math-optimizations", "-freciprocal-math", "-mfpmath=387"])
+def test_arithmetic_that_is_not_that_of_the_bounds_is_refused(flag, monkeypatch):
+    """Sums in another order were wrong by 2.8 bounds; the x87 refused TAU_MAX, and took wrong sides of jumps."""
+    monkeypatch.setenv("CC", "gcc")
+    for kernel in ("closed/closed.c", "pieces/pieces.c"):
+        assert "bounds of errors no longer hold" in complaint(kernel, C, flag)
+    assert complaint("closed/closed.c", C, flag, "-DNAME_ALLOW_FAST_MATH") == ""

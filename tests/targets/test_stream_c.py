@@ -236,10 +236,23 @@ def test_what_is_refused_changes_nothing_and_a_copy_goes_on():
         stream.step(0.1, [1.0, 2.0])
 
 
+@pytest.mark.parametrize("precision", ["single", "double"])
+def test_what_rounding_may_do_is_said_where_it_is_more_than_was_asked_for(precision, tmp_path, capsys):
+    given = ["generate", "building_m2", "--stream", "--precision", precision, "-o", str(tmp_path)]
+    assert main(given) == 0
+    said = re.search(r"; rounding at worst (\S+) of the largest (\S+), (\S+) wanted$", capsys.readouterr().err, re.M)
+    header = (tmp_path / "building_m2.h").read_text()
+    errors = re.findall(r"^ \* +(\S+@\S+) +(\d\S*)$", header, re.M)
+    name, worst = max(errors, key=lambda row: float(row[1]))
+    assert (said is not None) == (precision == "single")
+    assert said is None or (said[2], said[1]) == (name, worst)
+    assert (float(worst) > 1e-5) == (precision == "single")
+
+
 @pytest.mark.parametrize("step", ["0", "-1/8", "soon", "1e-400"])
 def test_a_step_is_a_positive_number(step, capsys):
     assert main(["generate", "drive_m1", "--stream", "--step", step]) == 2
-    assert f"{step} given, a positive number such as 0.1 or 1/8 expected" in capsys.readouterr().err
+    assert f"{step} given, a positive number of tau such as 0.1 or 1/8 expected" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from flint import fmpq
 
+from wavesym.errors import ToleranceError
 from wavesym.mechanics.damping import Damping
 from wavesym.scene import Scene, lower
 from wavesym.verification import damped as module
@@ -40,3 +41,13 @@ def test_other_damping_is_seen(monkeypatch):
     text, passed = verify([lower(frame())])
     assert not passed
     assert text.count("FAIL") == 3
+
+
+def test_what_has_no_program_is_not_verified(monkeypatch):
+    def refusing(*_, **__):
+        raise ToleranceError("output.tolerance: 1e-06 cannot be met")
+
+    monkeypatch.setattr(module, "make", refusing)
+    text, passed = verify([lower(frame())])
+    assert not passed
+    assert (text.count("refused  FAIL"), text.count("cannot be met")) == (3, 1)

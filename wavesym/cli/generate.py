@@ -37,7 +37,7 @@ class StepParameter(click.ParamType[Fraction]):
         except ValueError:
             step = Fraction(0)
         if step <= 0:
-            self.fail(f"{value} given, a positive number such as 0.1 or 1/8 expected", param, ctx)
+            self.fail(f"{value} given, a positive number of tau such as 0.1 or 1/8 expected", param, ctx)
         return step
 
 

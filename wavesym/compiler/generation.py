@@ -92,7 +92,7 @@ def check(
     request = _request(evaluator, precision, windows, optimize, runtime, stream, step)
     made = _written(scene, directory, language, request, package)
     folder = Path(directory or scene.name)
-    found = [path for path in folder.glob(f"{scene.name}*") if path.is_file()]
+    found = [path for path in {*folder.glob(f"{scene.name}*"), *made} if path.is_file()]
     left = [path for path, place in traces(folder) if place.name.startswith(scene.name)]
     difference = Difference(made, [*found, *left])
     options = ["--language", language, *request.options.split(), *(["--package"] if package else [])]
@@ -123,12 +123,12 @@ def _written(
     scene: Scene, directory: str | Path | None, language: str, request: Request, package: bool
 ) -> dict[Path, str]:
     """The text of every file of a scene, by path."""
-    folder = Path(directory or scene.name)
     refuse_unknown("language", language, LANGUAGES)
     request.refuse_unknown()
     if package and language not in ("c", "all"):
-        raise WavesymError(f"package: language {language} given, c or all expected, since CMake builds C")
+        raise WavesymError(f"language: {language} given with --package, c or all expected, since CMake builds C")
     model = lower(scene)
+    folder = Path(directory or model.name)
     if request.stream and request.evaluator != "modes":
         if language != "c":
             raise WavesymError(f"language: {language} given with --stream, c expected")
@@ -153,7 +153,7 @@ def _fmu(scene: Scene, language: str, request: Request, package: bool) -> bytes:
     for option, given, usual in (
         ("language", language, "c"),
         ("precision", request.precision, "double"),
-        ("package", str(package), "False"),
+        ("--package", "True" if package else "", ""),
     ):
         if given != usual:
             raise WavesymError(f"{option}: {given} given with --target, {usual or 'nothing'} expected")

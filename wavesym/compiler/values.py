@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wavesym.documents.summary import summary_text as told
-from wavesym.errors import SceneError
+from wavesym.errors import WavesymError
 from wavesym.fields.loads import SampledLoad
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.request import Request
@@ -44,8 +44,6 @@ def evaluator(scene: Scene) -> Response:
     >>> response([2.0, 4.0])[0]
     array([-1.34196715, -1.0316365 ])
     """
-    if not isinstance(scene, Scene):
-        raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
     return Response(lower(scene))
 
 
@@ -66,8 +64,11 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     """
     from wavesym.programs.runtime.making import runtime_program
 
+    if isinstance(runtime, str):
+        raise WavesymError(f'runtime: "{runtime}" given, a list of names expected')
+    model = lower(scene)
     given = amplitudes(scene) if "load" in runtime else ()
-    return RuntimeModel(runtime_program(lower(scene), Request(runtime=tuple(runtime)), given))
+    return RuntimeModel(runtime_program(model, Request(runtime=tuple(runtime)), given))
 
 
 def summary(scene: Scene, *, at_samples: bool = False) -> Summary:

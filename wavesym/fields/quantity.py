@@ -24,6 +24,7 @@ _QUANTITY = re.compile(r"([+-]?[0-9]+(?:/[0-9]+|(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)
 _NAME = r"[A-Za-z\u00b5\u03bc%][A-Za-z_0-9]*"  # with either mu, for micro
 _UNIT = re.compile(rf"{_NAME}(?:\^-?[1-9])?(?:[*/]{_NAME}(?:\^-?[1-9])?)*")
 _FACTOR = re.compile(rf"([*/]?)({_NAME})(?:\^(-?[1-9]))?")
+_RUN_TOGETHER = re.compile(r"N([ms])(?![A-Za-z_0-9])")  # Nm is a unit of its own, of yarn
 _MOST_FACTORS = 12
 _LARGEST = Fraction(10) ** LARGEST_EXPONENT
 
@@ -84,7 +85,10 @@ def _fitting(text: str, dimension: str, value: str) -> _Meaning:
     meaning = _meaning(text, value, gravity=dimension in ("acceleration", "jerk"))
     if not fits(meaning.powers, DIMENSIONS[dimension]):
         expected = f'{with_article(dimension)} such as "{DIMENSIONS[dimension].example}" expected'
-        raise wrong(f"{shown(value)} given ({called(meaning.powers)}), {expected}")
+        parted = _RUN_TOGETHER.sub(r"N*\1", text)
+        meant = parted != text and fits(_meaning(parted, value, gravity=False).powers, DIMENSIONS[dimension])
+        hint = f'. Did you mean "{parted}"?' if meant else ""
+        raise wrong(f"{shown(value)} given ({called(meaning.powers)}), {expected}{hint}")
     return meaning
 
 

@@ -79,7 +79,9 @@ class Model:
         """A step of a load, in units where there are any: how much, and when."""
         factor, unit = self.inputs.get(load.source, (fmpq(1), ""))
         when = self.clock.told(load.time) if self.clock else f"tau = {nearest(load.time):g}"
-        return f"{load.source} jumps by {nearest(load.weight * factor):g}{unit and ' '}{unit} at {when}"
+        node, parts, _ = load.source.partition(":")  # of a chain, NODE:step
+        name = f"what acts at {node}" if parts else node
+        return f"{name} jumps by {nearest(load.weight * factor):g}{unit and ' '}{unit} at {when}"
 
     @cached_property
     def sums(self) -> Mapping[Probe, Sum]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from wavesym.exact.contacts.contact import contact_ends
+from wavesym.exact.contacts.collision import contact_ends
 from wavesym.exact.contacts.events import events
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import Made, choose

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from wavesym.exact.contacts.contact import contact_ends
+from wavesym.exact.contacts.collision import contact_ends
 from wavesym.exact.field import Field
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational

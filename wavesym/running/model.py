@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wavesym.errors import WavesymError
+from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.engine import Array
 
@@ -82,6 +83,9 @@ class RuntimeModel:
         """Their units; empty where they have none."""
         self.outputs = tuple(output.name for output in program.outputs)
         self.tau_max = program.tau_max
+        clock = program.provenance.model.clock
+        self.seconds_per_tau = nearest(clock.seconds) if clock else None
+        """What one tau is; None of a scene without units."""
 
     def run(self, tau: ArrayLike, **parameters: ArrayLike) -> Array:
         """Values of shape (sets, outputs, *tau.shape)."""

@@ -9,6 +9,7 @@ from fractions import Fraction
 
 from flint import fmpq
 
+from wavesym.errors import SceneError
 from wavesym.fields.loads import Load, TimedLoad
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.loads import Applied, AppliedRecord, merged
@@ -22,7 +23,9 @@ from wavesym.systems.place import Place
 
 
 def lower(scene: Scene) -> Model:
-    """The model of a scene; every number in it is an fmpq."""
+    """The model of a scene; every number in it is an fmpq. SceneError for what is no Scene: a path, say."""
+    if not isinstance(scene, Scene):
+        raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
     output = scene.output
     chain, network = scene.system.made(scene.load)
     return Model(

@@ -34,7 +34,7 @@ def needed(*libraries: str) -> None:
 
     if missing := [name for name in libraries if not find_spec(name)]:
         told = " and ".join(missing)
-        raise WavesymError(f"sweep: {told} not installed, the extra `sweep` expected (pip install wavesym[sweep])")
+        raise WavesymError(f"sweep: {told} not installed, the extra `sweep` expected (pip install 'wavesym[sweep]')")
 
 
 @dataclass(frozen=True)

@@ -34,8 +34,8 @@ def damped(known: Known) -> list[Outcome]:
         return []
     try:
         program = make(model, tested=True)
-    except ToleranceError as error:
-        return [Outcome(probe.name, {"N": "refused"}, True, str(error)) for probe in model.probes]
+    except ToleranceError as error:  # nothing else looks at damped modes: nothing is verified
+        return [Outcome(probe.name, {"N": "refused"}, False, str(error)) for probe in model.probes]
     made = files(program, "all")
     with compiled(made, len(model.probes)) as built:
         sound = built.selftest() == 0

@@ -8,8 +8,8 @@ import numpy as np
 from flint import arb, ctx, fmpq
 
 from wavesym.errors import UnservedError
-from wavesym.exact.modes.cluster import WIDE, clustered, met
 from wavesym.exact.modes.cuts import Cut, cut
+from wavesym.exact.modes.equal_frequencies import WIDE, clustered, met
 from wavesym.exact.modes.shape import Mode, Trial, rigid, trial
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness, Vector
 from wavesym.mechanics.network import Network

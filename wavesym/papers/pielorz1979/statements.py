@@ -13,7 +13,7 @@ from pathlib import Path
 from flint import arb, fmpq
 
 from wavesym.derivation.delay import delay_equations
-from wavesym.exact.contacts.contact import contact_ends
+from wavesym.exact.contacts.collision import contact_ends
 from wavesym.exact.tables.table import Function
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.loads import Applied

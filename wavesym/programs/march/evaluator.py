@@ -26,7 +26,6 @@ from wavesym.programs.march.plan import Plan, plan
 from wavesym.programs.march.run import operator_count, operators, steps
 from wavesym.programs.march.tables import march_constants, march_tables
 from wavesym.programs.program import Driven, Program, ProgramOutput, Provenance
-from wavesym.programs.request import unmet
 
 _HIGHEST_DEGREE = 2000
 _MOST_WORK = 1e9  # nodes * coefficients * windows, half a minute or so
@@ -121,20 +120,9 @@ class MarchEvaluator:
         )
 
 
-def march(model: Model, real: Real = DOUBLE) -> MarchEvaluator:
-    """The march of a model in `real` numbers, of the least sufficient degree.
-
-    ToleranceError where its bound is above the model's tolerance, CostError where it would be long.
-    """
-    made = marched(model, real)
-    tolerance = model.tolerance
-    if not (math.isfinite(made.error_bound) and rational(made.error_bound) <= tolerance):
-        raise unmet(tolerance, made.shortfall(tolerance))
-    return made
-
-
 def marched(model: Model, real: Real = DOUBLE, degree: int | None = None, windows: int | None = None) -> MarchEvaluator:
-    """The same, whatever its bound, of the least sufficient degree or of the one given (at least 8).
+    """The march of a model in `real` numbers, whatever its bound, of the least sufficient degree or of the one given
+    (at least 8).
 
     With `windows` the degree suffices for loads that are given while it runs for so long; WavesymError where none can
     be. OverflowError where numbers would be beyond those of the format.

@@ -35,10 +35,11 @@ LEFT, RIGHT, LOAD = 0, 1, 2
 """What is heard: waves that nodes send, or loads."""
 
 MOST_PANELS = 16
+HELPS = "fewer samples, modes, or for what does not jump NumPy or run"
+"""Beside another spacing, where loads leave more panels."""
 # of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
 _ESTIMATED = 100
 _LONG = 30  # characters of a number that nobody reads
-_HELPS = "fewer samples, modes, or for what does not jump NumPy or run"
 _ZERO, _ONE = fmpq(0), fmpq(1)
 
 
@@ -211,7 +212,7 @@ def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
     )
 
 
-def panels(times: Sequence[fmpq], helps: str = _HELPS) -> tuple[MarchPanel, ...]:
+def panels(times: Sequence[fmpq], helps: str = HELPS) -> tuple[MarchPanel, ...]:
     """The parts of every window between which loads begin or bend. SpacingError where there are too many, with what
     helps beside another spacing.
     """

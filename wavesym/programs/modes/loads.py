@@ -76,8 +76,8 @@ def linear_loads(
             break
         if load.source in steps:
             raise UnservedError(
-                f"load: {told(load)}, no jump expected in modes (a steep ramp in place of a step, or a record that "
-                "starts a step later, has none)"
+                f"load: {told(load)}, no jump expected in modes (a steep ramp in place of a step helps, or "
+                "`start`, one spacing, of a record)"
             )
         if load.time != times[-1]:
             after = load.time - times[-1]

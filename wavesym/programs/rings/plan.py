@@ -26,7 +26,7 @@ from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.load_events import LoadEvent, load_changes, load_events
-from wavesym.programs.march.plan import MOST_PANELS, MarchPanel, Stretch, common, suiting, told
+from wavesym.programs.march.plan import HELPS, MOST_PANELS, MarchPanel, Stretch, common, suiting, told
 from wavesym.programs.rings.space import SHOWN, JointSpace, Port, joint_space
 
 FINEST = 64
@@ -147,8 +147,10 @@ class RingPlan:
         return tuple(found)
 
 
-def ring_plan(model: Model, real: Real = DOUBLE, space: Callable[[Network, Joint], Any] = joint_space) -> RingPlan:
-    """The plan of a chain in `real` numbers; `space` makes the laws of its joints.
+def ring_plan(
+    model: Model, real: Real = DOUBLE, space: Callable[[Network, Joint], Any] = joint_space, helps: str = HELPS
+) -> RingPlan:
+    """The plan of a chain in `real` numbers; `space` makes the laws of its joints, `helps` is for a refusal.
 
     UnservedError for contacts; CostError where the step would be too small, or load times have too many remainders.
     """
@@ -175,7 +177,7 @@ def ring_plan(model: Model, real: Real = DOUBLE, space: Callable[[Network, Joint
     load_of = {point: len(tracks) + k for k, point in enumerate(p for p in sorted(loads.numbers) if p in pushed)}
     silent = len(tracks) + len(load_of)  # a track on which nothing is ever sent
     tracks += [Track(0, _ZERO, _ZERO, True)] * (len(load_of) + 1)
-    panels = _panels([time for time, _, _ in loads.changes], step)
+    panels = _panels([time for time, _, _ in loads.changes], step, helps)
     marched = []
     for number in reached:
         joint = network.joints[number]
@@ -217,13 +219,12 @@ def _step(delays: list[fmpq]) -> fmpq:
     return step
 
 
-def _panels(times: list[fmpq], step: fmpq) -> tuple[MarchPanel, ...]:
+def _panels(times: list[fmpq], step: fmpq, helps: str) -> tuple[MarchPanel, ...]:
     cuts = sorted({_ZERO, step} | {time - (time / step).floor() * step for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise SpacingError(
             f"load: times at a spacing of {told(common(times))} leave {len(cuts) - 1} different remainders of the step "
-            f"{told(step)}, at most {MOST_PANELS} expected in a march ({suiting(times, step)}, fewer samples, modes, "
-            "or for what does not jump NumPy or run, helps)"
+            f"{told(step)}, at most {MOST_PANELS} expected in a march ({suiting(times, step)}, {helps}, helps)"
         )
     return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
 

@@ -47,7 +47,7 @@ def degrees(given: RuntimePlan, tolerance: fmpq, real: Real) -> tuple[int, int]:
     degree = _enough(_numbers(given, fmpq(0)), LEAST, allowed)
     first = max(LEAST, 4 * degree // 5)
     if any(field.positive for field in given.fields):
-        degree = _enough(_numbers(given, STIFF), degree, allowed)
+        degree = _enough(_numbers(given, STIFF), degree, allowed, f" for kappa up to {STIFF}")
     size = real.bytes * given.plan.windows * len(given.strands) * (degree + 2)
     if size > LARGEST_MODEL:
         raise CostError(
@@ -72,8 +72,8 @@ def _numbers(given: RuntimePlan, least: fmpq) -> Plan:
     return plan(replace(model, chain=chain, network=network_of(chain), loads=ordered or model.loads))
 
 
-def _enough(prepared: Plan, degree: int, allowed: float) -> int:
-    """The first of the degrees from one on whose march misses nothing.
+def _enough(prepared: Plan, degree: int, allowed: float, told: str = "") -> int:
+    """The first of the degrees from one on whose march misses nothing; `told` is whose, where there are too many.
 
     About which one that is is seen in one march, where each degree goes on from the window that is too much for the one
     before. What that one left out is not missed again, though, so the degree is then tried from the start.
@@ -84,18 +84,18 @@ def _enough(prepared: Plan, degree: int, allowed: float) -> int:
         if missed:
             since, size = missed
             degree = raised(degree)
-            _refuse_high(prepared, degree)
+            _refuse_high(prepared, degree, told)
         elif since and since.window:
             since, size = None, 0.0
         else:
             return degree
 
 
-def _refuse_high(prepared: Plan, degree: int) -> None:
+def _refuse_high(prepared: Plan, degree: int, told: str) -> None:
     work = prepared.windows * len(prepared.panels) * len(prepared.junctions) * degree
     if degree > _HIGHEST or work > _MOST_WORK:
         raise CostError(
-            f"output.until: rates to {nearest(prepared.rate):g} need polynomials of degree {degree} to tau = "
+            f"output.until: rates to {nearest(prepared.rate):g}{told} need polynomials of degree {degree} to tau = "
             f"{prepared.tau_max:g}, at most {_HIGHEST} and {_MOST_WORK:.1e} operations expected "
             "(a shorter horizon helps)"
         )

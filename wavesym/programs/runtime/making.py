@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from flint import fmpq
 
-from wavesym.errors import UnservedError, WavesymError
-from wavesym.mechanics.loads import Applied, AppliedRecord
+from wavesym.errors import WavesymError
+from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
@@ -20,7 +20,8 @@ from wavesym.programs.request import Request
 from wavesym.programs.runtime.degree import STIFF, degrees, share
 from wavesym.programs.runtime.joints.making import joints_program
 from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.plan import Push, RuntimePlan, runtime_plan
+from wavesym.programs.runtime.plan import RuntimePlan, runtime_plan
+from wavesym.programs.runtime.pushes import Push, as_one
 from wavesym.programs.runtime.request import fields
 from wavesym.programs.runtime.roundings import most_roundings
 from wavesym.programs.runtime.units import Function
@@ -47,13 +48,11 @@ def runtime_program(
     real = REALS[request.precision]
     tolerance = max(model.tolerance, FINEST[real.name])
     if model.chain is None:
-        if any(isinstance(load, AppliedRecord) for _, load in amplitudes):
-            raise UnservedError("--runtime: load given with samples in a chain, loads with times expected")
         program = joints_program(model, request, amplitudes, tolerance, real)
         return _with_reference(program) if tested else program
     given = fields(model, request.runtime, amplitudes)
     chosen = any(field.name == "load" for field in given)
-    loads = [load for _, load in amplitudes] if chosen else _as_one(model)
+    loads = [load for _, load in amplitudes] if chosen else as_one(model)
     made = runtime_plan(model, given, loads, real)
     least, degree = degrees(made, tolerance, real)
     light = f" and for kappa up to {STIFF}" if any(field.positive for field in given) else ""
@@ -85,12 +84,6 @@ def runtime_program(
         laws=laws,
     )
     return _with_reference(program) if tested else program
-
-
-def _as_one(model: Model) -> list[Applied]:
-    """All loads of a model, which have no amplitude of their own."""
-    loads = tuple(load for load in model.loads if load.source != "impact")
-    return [AppliedRecord(loads[0].source, loads[0].time, fmpq(1), loads)] if loads else []
 
 
 def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:

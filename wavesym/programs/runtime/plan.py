@@ -10,13 +10,11 @@ sent at the same instant, on panels of the same length, are added up once, to a 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from itertools import groupby
+from dataclasses import dataclass, replace
 from typing import Any
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.errors import UnservedError
 from wavesym.exact.joints.node_rules import node_rule
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.loads import Applied
@@ -27,28 +25,13 @@ from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ring
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.plan import HeardWave, Plan, Stretch, panels, plan
+from wavesym.programs.runtime.pushes import Push, ordered, told
 from wavesym.programs.runtime.quiet import drawn, quiet
 from wavesym.programs.runtime.request import RuntimeField
 from wavesym.programs.runtime.units import Function, force_kept, load_kept
 
-_HELPS = "to which samples may be interpolated"
-
-
-@dataclass(frozen=True)
-class Push:
-    """From panel `panel` of window `window` on, `strength` and `weight` times amplitude `load` times the `power` of the
-    time since acts as load `force` (in the units of a law that is divided by g): added to what acts there, or, `anew`,
-    in its place.
-    """
-
-    window: int
-    panel: int
-    force: int
-    power: int
-    strength: Function
-    load: int
-    weight: fmpq = field(default_factory=lambda: fmpq(1))
-    anew: bool = False
+HELPS = "in tau, to which samples may be interpolated in a scene without units"
+"""Beside another spacing, where loads leave too many panels."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +109,7 @@ def runtime_plan(
     acting = [[change for change in load.changes if change.time <= until] for load in loads]
     made = replace(
         plan(replace(model, chain=free, network=network_of(free), loads=()), real),
-        panels=panels([change.time for changes in acting for change in changes], _HELPS),
+        panels=panels([change.time for changes in acting for change in changes], HELPS),
     )
     kept: list[Any] = [force_kept(model, free) if probe.quantity == "force" else fmpq(1) for probe in model.probes]
     heard = tuple(
@@ -187,17 +170,11 @@ def _pushes(
         powers, size = _unit_loads(own.nodes[made.first + column], node)
         for number, changes in enumerate(acting):
             strength = size * (rule.load / rule.same) * kept / units[number]
-            for time, power, weight, anew in _told(changes, powers):
+            for time, power, weight, anew in told(changes, powers):
                 window = int(time.floor())
                 panel = next(place for place, panel in enumerate(made.panels) if panel.start == time - window)
                 found.append(Push(window, panel, force, power, strength, number, weight, anew))
-    for force in {push.force for push in found if push.anew}:
-        if len({push.load for push in found if push.force == force}) > 1:
-            raise UnservedError(
-                "--runtime: load given where samples act beside another load on the same body, one load expected "
-                "there (samples that are added up, or loads as in the scene, help)"
-            )
-    return tuple(sorted(found, key=lambda push: (push.window, push.panel)))
+    return ordered(found)
 
 
 def _unit_loads(own: Node, node: Node) -> tuple[dict[str, fmpq_poly], Function]:
@@ -206,19 +183,6 @@ def _unit_loads(own: Node, node: Node) -> tuple[dict[str, fmpq_poly], Function]:
     size = own.loads[0].coefficients[first]
     powers = {unit.source: fmpq_poly([coefficient / size for coefficient in unit.coefficients]) for unit in own.loads}
     return powers, node.loads[0].coefficients[first]
-
-
-def _told(changes: Sequence[Applied], powers: Mapping[str, fmpq_poly]) -> Iterator[tuple[fmpq, int, fmpq, bool]]:
-    """When, which power and how much of it: at each change all that acts, so that nothing adds up."""
-    since, acts, begun = fmpq(0), fmpq_poly(), False
-    for time, same in groupby(changes, key=lambda change: change.time):
-        new = sum((change.weight * powers[change.source] for change in same if change.source in powers), fmpq_poly())
-        if new:
-            since, acts = time, acts(fmpq_poly([time - since, 1])) + new
-            told = [(power, acts[power]) for power in range(3) if acts[power]] or [(0, fmpq(0))]
-            for place, (power, weight) in enumerate(told):
-                yield time, power, weight, begun and place == 0
-            begun = True
 
 
 def _strands(made: Plan, heard: Sequence[tuple[int, HeardWave]]) -> Iterator[Strand]:

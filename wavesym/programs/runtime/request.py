@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
-from wavesym.errors import WavesymError
+from wavesym.errors import WavesymError, did_you_mean
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.programs.runtime.units import ParameterUnit, unit_of, unit_of_load
@@ -69,7 +69,8 @@ def refuse_others(names: Sequence[str], known: Sequence[str]) -> None:
     """WavesymError for a name that a scene does not have, and for one that is given twice."""
     for place, name in enumerate(names):
         if name not in known:
-            raise WavesymError(f"--runtime: {name or 'nothing'} given, {_one_of(known)} expected")
+            expected = f"{_one_of(known)} expected. {did_you_mean(name, known)}".rstrip(". ")
+            raise WavesymError(f"--runtime: {name or 'nothing'} given, {expected}")
         if name in names[:place]:
             raise WavesymError(f"--runtime: {name} given twice, once expected")
 

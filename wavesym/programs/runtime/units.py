@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from flint import fmpq
 
 from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import Applied, AppliedRecord
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.node import RAMPS
 from wavesym.numbers.ratio import Ratio
@@ -43,8 +43,8 @@ def unit_of(model: Model, name: str) -> ParameterUnit:
 
 
 def unit_of_load(model: Model, load: Applied) -> ParameterUnit:
-    """That of an amplitude: of a step, or of a ramp per unit of time."""
-    if model.clock is None:
+    """That of an amplitude: of a step, or of a ramp per unit of time; the factor of a record has none."""
+    if model.clock is None or isinstance(load, AppliedRecord):
         return PLAIN
     size, text = model.inputs[load.source]
     ramp = load.source.endswith(":ramp") if model.chain is None else load.source[0] in RAMPS

@@ -72,7 +72,10 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
     for output, error in zip(plan.rings.outputs, verdict.bounds, strict=True):
         if not isfinite(error):
             told = f"output.tolerance: {nearest(tolerance):g} cannot be met: stream: "
-            raise ToleranceError(f"{told}rounding may leave nothing of {output.name} (other outputs help)")
+            better = "" if real is REALS["double"] else "double precision or "
+            raise ToleranceError(
+                f"{told}rounding may leave nothing of {output.name} ({better}a shorter horizon helps, or other outputs)"
+            )
     if free:
         refuse_stiff(plan)
         degree, quicker = quick_enough(free, plan, degree, nearest(tolerance), real)
@@ -88,7 +91,7 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
         made.tables(),
         made.constants(nearest(tolerance)),
         made.bytes,
-        Provenance(model, _reason(plan, degree, made), request.options),
+        Provenance(model, _reason(plan, degree, made) + _at_worst(plan, verdict, tolerance), request.options),
         sources=tuple(f"{given.name} [{given.unit}]" if given.unit else given.name for given in plan.inputs),
         proved=False,
         direct=plan.direct,
@@ -123,6 +126,14 @@ def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:
         f"march as a stream, {count} panels a window{step}, degree {degree}, a state of about "
         f"{-(-made.state_bytes // 1024)} KiB, {made.panel_operations} multiplications a panel"
     )
+
+
+def _at_worst(plan: StreamPlan, verdict: Verdict, tolerance: fmpq) -> str:
+    """How far rounding may take an output, all of it with one sign, where that is beyond the tolerance."""
+    error, output = max(zip(verdict.bounds, plan.rings.outputs, strict=True), key=lambda pair: pair[0])
+    if error <= nearest(tolerance):
+        return ""
+    return f"; rounding at worst {bound(arb(error)):g} of the largest {output.name}, {nearest(tolerance):g} wanted"
 
 
 def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from wavesym.errors import WavesymError
-from wavesym.exact.contacts.contact import ContactEnd, contact_ends
+from wavesym.exact.contacts.collision import ContactEnd, contact_ends
 from wavesym.exact.field import Field
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from wavesym.documents.advice import WAVES, Advice, Candidate
 from wavesym.errors import WavesymError
-from wavesym.exact.contacts.contact import contact_ends
+from wavesym.exact.contacts.collision import contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.report.timescale import Timescale

@@ -22,6 +22,7 @@ from wavesym.programs.runtime.degree import LARGEST_MODEL, LEAST, MARGIN
 from wavesym.programs.runtime.joints.network import free_network
 from wavesym.programs.runtime.joints.plan import JointsPlan, joints_plan
 from wavesym.programs.runtime.laws import RuntimeLaws
+from wavesym.programs.runtime.pushes import as_one
 from wavesym.programs.runtime.roundings import most_roundings
 from wavesym.programs.runtime.units import Function
 
@@ -37,7 +38,7 @@ def joints_program(
     """The program of a chain. WavesymError, UnservedError as `free_network` says, CostError as `joints_plan`."""
     free = free_network(model, request.runtime, amplitudes)
     chosen = "load" in request.runtime
-    loads = [load for _, load in amplitudes] if chosen else list(model.loads)
+    loads = [load for _, load in amplitudes] if chosen else as_one(model)
     made = joints_plan(model, free, loads, real)
     _refuse_large(made)
     least, degree = _degrees(made.own)
@@ -48,7 +49,7 @@ def joints_program(
             f"{LARGEST_MODEL:.1e} expected (a shorter horizon, or fewer outputs, helps)"
         )
     share = max(nearest(tolerance / (MARGIN * made.plan.windows)), 2 * nearest(real.roundoff))
-    laws = _laws(made, () if chosen else tuple(real.nearest(load.weight) for load in loads))
+    laws = _laws(made, () if chosen else (1.0,) * len(loads))
     tables = _tables(made, laws, real)
     positive = [label for field in laws.fields if field.positive for label in field.labels]
     constants = {
@@ -200,7 +201,8 @@ def _tables(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[
         "event_window": tuple(push.window for push in pushes),
         "event_panel": tuple(push.panel for push in pushes),
         "event_force": tuple(push.force for push in pushes),
-        "event_power": tuple(push.power for push in pushes),
+        # of a load that is told anew 3 more
+        "event_power": tuple(push.power + 3 * push.anew for push in pushes),
         "event_weight": reals(push.weight for push in pushes),
         "event_strength": tuple(strengths.index(push.strength) for push in pushes),
         "event_load": tuple(push.load for push in pushes),

@@ -6,18 +6,18 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from flint import fmpq
+from flint import fmpq, fmpq_poly
 
-from wavesym.exact.joints.node_rules import joint_rule
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import Stretch
-from wavesym.programs.rings.plan import Heard, RingPlan, ring_plan
+from wavesym.programs.rings.plan import Heard, RingPlan, moved_by, ring_plan
 from wavesym.programs.rings.space import joint_rows
 from wavesym.programs.runtime.joints.network import FreeNetwork
-from wavesym.programs.runtime.plan import Push
+from wavesym.programs.runtime.plan import HELPS
+from wavesym.programs.runtime.pushes import Push, ordered, told
 from wavesym.programs.runtime.quiet import quiet
 
 
@@ -70,44 +70,34 @@ class JointsPlan:
 
 
 def joints_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real: Real) -> JointsPlan:
-    """The plan of a chain; CostError as for a march."""
+    """The plan of a chain; each of `loads` has an amplitude. CostError as for a march, UnservedError as `ordered`."""
     until = rational(model.horizon(real))
-    acting = [(load.time, number) for number, load in enumerate(loads) if load.time <= until]
-    # so that none of them is left out
-    all_loads = tuple(sorted((replace(load, weight=fmpq(1)) for load in loads), key=lambda load: load.time))
-    own = ring_plan(replace(model, loads=all_loads), real)
-    plan = ring_plan(replace(model, network=free.network, loads=all_loads), real, joint_rows)
+    acting = [[change for change in load.changes if change.time <= until] for load in loads]
+    # as if each weighed 1, so that none of them is left out
+    changes = {(change.time, change.source) for load in acting for change in load}
+    felt = tuple(Applied(source, time, fmpq(1)) for time, source in sorted(changes))
+    own = ring_plan(replace(model, loads=felt), real)
+    plan = ring_plan(replace(model, network=free.network, loads=felt), real, joint_rows, HELPS)
     silent = quiet(replace(model, network=free.some), loads, real)
     heard = tuple(
         (number, replace(wave, gain=fmpq(0)) if silent[number] else wave)
         for number, output in enumerate(plan.outputs)
         for wave in output.heard
     )
-    units = [unit.size for field in free.fields if field.name == "load" for unit in field.units]
-    sizes = units or [fmpq(1)] * len(loads)
-    pushes = tuple(_pushes(plan, model, loads, [number for _, number in sorted(acting)], sizes))
+    chosen = [unit.size for field in free.fields if field.name == "load" for unit in field.units]
+    pushes = ordered(_pushes(plan, model, acting, chosen or [fmpq(1)] * len(loads)))
     return JointsPlan(model, plan, own, free, pushes, heard, tuple(_strands(plan, heard)), tuple(silent))
 
 
-def _pushes(
-    plan: RingPlan, model: Model, loads: Sequence[Applied], acting: Sequence[int], sizes: Sequence[fmpq]
-) -> Iterator[Push]:
+def _pushes(plan: RingPlan, model: Model, acting: Sequence[Sequence[Applied]], sizes: Sequence[fmpq]) -> Iterator[Push]:
     places = {panel.start: number for number, panel in enumerate(plan.panels)}
-    rule = joint_rule()
-    for number in acting:
-        load = loads[number]
-        window = int((load.time / plan.step).floor())
-        panel = places[load.time - window * plan.step]
-        for force, point in enumerate(model.network.points[k] for k in plan.pushed):
-            for unit in point.loads:
-                for power, of_unit in enumerate(unit.coefficients):
-                    coefficient = of_unit / sizes[number]
-                    if unit.source == load.source and coefficient != 0:
-                        if point.motion == "acceleration":  # a velocity is prescribed
-                            yield Push(window, panel, force, power + 1, coefficient / (power + 1), number)
-                        else:
-                            factor = rule.load if point.motion is None else fmpq(1)
-                            yield Push(window, panel, force, power, factor * coefficient, number)
+    for force, point in enumerate(model.network.points[k] for k in plan.pushed):
+        powers = {unit.source: fmpq_poly(list(moved_by(point, unit))) for unit in point.loads}
+        for number, changes in enumerate(acting):
+            for time, power, weight, anew in told(changes, powers):
+                window = int((time / plan.step).floor())
+                panel = places[time - window * plan.step]
+                yield Push(window, panel, force, power, 1 / sizes[number], number, weight, anew)
 
 
 def _strands(plan: RingPlan, heard: Sequence[tuple[int, Heard]]) -> Iterator[JointStrand]:

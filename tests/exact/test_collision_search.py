@@ -7,7 +7,7 @@ from math import factorial
 import pytest
 from flint import arb, arb_poly, ctx, fmpq
 
-from wavesym.exact.contacts.contact import _compressed_at_first, _first_return, _not_compressed, _Series, _zero
+from wavesym.exact.contacts.collision import _compressed_at_first, _first_return, _not_compressed, _Series, _zero
 from wavesym.exact.tables.ball import Segment
 from wavesym.exact.tables.signal import Arrival, Signal
 from wavesym.numbers.balls import precise

@@ -14,8 +14,8 @@ import wavesym
 from tests.support.drawn import systems
 from tests.support.truth import Truth
 from wavesym.errors import CostError
-from wavesym.exact.contacts import contact
-from wavesym.exact.contacts.contact import contact_ends
+from wavesym.exact.contacts import collision as room
+from wavesym.exact.contacts.collision import contact_ends
 from wavesym.numbers.doubles import fraction, middle, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.scene import lower
@@ -68,16 +68,16 @@ def test_rates_that_nearly_meet_move_the_end_no_further_than_they_differ():
 
 def test_a_search_that_does_not_end_is_refused(monkeypatch):
     model = lower(wavesym.Scene.from_toml("collision_m4"))
-    assert contact.contact_ends(model)
-    monkeypatch.setattr(contact, "_first_return", lambda strain, until, bits: None)  # no precision tells
+    assert room.contact_ends(model)
+    monkeypatch.setattr(room, "_first_return", lambda strain, until, bits: None)  # no precision tells
     with pytest.raises(CostError, match=r"output.until: to know when the contact at x = 2 opens, more than"):
-        contact.contact_ends(model)
+        room.contact_ends(model)
 
 
 def test_a_contact_whose_table_would_be_large_is_refused(monkeypatch):
-    monkeypatch.setattr(contact, "_MOST_COEFFICIENTS", 10)
+    monkeypatch.setattr(room, "_MOST_COEFFICIENTS", 10)
     with pytest.raises(CostError, match="coefficients"):
-        contact.contact_ends(lower(wavesym.Scene.from_toml("collision_m4")))
+        room.contact_ends(lower(wavesym.Scene.from_toml("collision_m4")))
 
 
 def seen(scene, x, tau, reach):
@@ -134,7 +134,7 @@ def test_balls_that_tell_nothing_are_no_ends():
 def test_heavy_bodies_part_late(until):
     """What is looked at first is shorter than that."""
     scene = collision(["1/60", "1/40"], [1, 0], until)
-    assert contact._FIRST < 17
+    assert room._FIRST < 17
     assert seen(scene, 2, ends(scene).get(2, math.inf), Fraction(until))
     assert bool(ends(scene)) == (until == 50)
 
