@@ -194,14 +194,18 @@ def test_outputs_that_are_no_numbers_are_an_error(gears):
     state, before = instance.keep(), instance.get(OUTPUTS)
     instance.put({"load@M1": 1.7e308})
     with pytest.raises(Exception, match="status 3"):
-        for k in range(1, 80):
-            instance.step(k / 2, 0.5)
+        go_on(instance, 80)
     assert not np.all(np.isfinite(instance.get(OUTPUTS)))
     instance.back(state)
     assert instance.get(OUTPUTS) == before
     instance.step(0.5, 0.5)
     assert np.all(np.isfinite(instance.get(OUTPUTS)))
     instance.end()
+
+
+def go_on(instance, count):
+    for k in range(1, count):
+        instance.step(k / 2, 0.5)
 
 
 def refused(instance, calls):
