@@ -149,6 +149,9 @@ def test_reset_state_and_a_second_instance(gears):
 
 def test_bad_calls_return_errors_and_change_nothing(gears):
     instance = Instance(*gears)
+    linear = instance.references["linear"]
+    refused(instance, [lambda: instance.slave.setBoolean([linear, 1], [True, True])])
+    assert not instance.slave.getBoolean([linear])[0]
     bad = [
         lambda: instance.step(0.0, 0.1),
         lambda: instance.slave.exitInitializationMode(),
@@ -182,6 +185,27 @@ def test_bad_calls_return_errors_and_change_nothing(gears):
     instance.slave.terminate()
     refused(instance, [lambda: instance.step(0.5, 0.1), lambda: instance.put({"load@M1": 1.0})])
     instance.end()
+
+
+def test_outputs_that_are_no_numbers_are_an_error(gears):
+    """Of waves as of modes; a state from before is as good as ever."""
+    instance = Instance(*gears).begin({"load@M1": 1.0})
+    instance.step(0.0, 0.5)
+    state, before = instance.keep(), instance.get(OUTPUTS)
+    instance.put({"load@M1": 1.7e308})
+    with pytest.raises(Exception, match="status 3"):
+        go_on(instance, 80)
+    assert not np.all(np.isfinite(instance.get(OUTPUTS)))
+    instance.back(state)
+    assert instance.get(OUTPUTS) == before
+    instance.step(0.5, 0.5)
+    assert np.all(np.isfinite(instance.get(OUTPUTS)))
+    instance.end()
+
+
+def go_on(instance, count):
+    for k in range(1, count):
+        instance.step(k / 2, 0.5)
 
 
 def refused(instance, calls):

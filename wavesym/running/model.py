@@ -15,7 +15,11 @@ from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.engine import Array
 
-_WHY = ("", "a number that is not finite, or not positive where it has to be, or too large", "bodies too light")
+_WHY = (
+    "",
+    "a number that is not finite, or not positive where it has to be, or too large or small",
+    "bodies too light",
+)
 
 
 @dataclass(frozen=True)

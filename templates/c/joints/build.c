@@ -200,7 +200,7 @@ static void settle(model_of *m)
     }
 }
 
-/* The same of derivatives by a parameter; and these on the window of now. */
+/* What begins derivatives by a parameter. */
 static void started_lane(name_tangent *tangent, const laws *slope, int lane)
 {
     start_waves(tangent->waves[lane], slope);
@@ -209,6 +209,7 @@ static void started_lane(name_tangent *tangent, const laws *slope, int lane)
     }
 }
 
+/* As settle. */
 static void settle_lane(name_tangent *tangent, int lane)
 {
     for (int k = 0; k < NAME_STATES; ++k) {
@@ -216,6 +217,7 @@ static void settle_lane(name_tangent *tangent, int lane)
     }
 }
 
+/* Derivatives on the window of now. What their polynomials miss. */
 static real follow_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now,
                         int before)
 {

@@ -3,7 +3,8 @@
 
     name_real time;      /* since the current panel began, */
     name_real time_low;  /* and what is lost of that by rounding */
-    name_real lost;      /* what polynomials have missed so far, on that panel of a window where it is most, */
+    name_real lost;      /* what polynomials have missed so far, on that panel of a window where it is most: squares of */
+    name_real most;      /* parts of the most that one has; */
     name_real size;      /* and the largest wave that it is small against, */
     name_real due;       /* until there is one, what loads so far would make of it within a panel */
     int alarm;           /* whether step has returned 2 */

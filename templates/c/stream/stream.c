@@ -41,15 +41,24 @@ static real root(real square)
 }
 
 /* A polynomial will miss so much. What is sent on a panel of a window is felt on that panel of others: all other panels
- * know nothing of it. Squares are added up, but none is taken that could vanish. */
+ * know nothing of it. Squares are those of parts of the largest: they neither vanish nor overflow. */
 static void lose(stream *state, real much)
 {
     real *const missed = state->missed + state->phase;
     const real more = absolute(much);
-    const real large = more > *missed ? more : *missed;
-    const real part = (more > *missed ? *missed : more) / large;
-    *missed = part >= 0 ? large * root(1 + part * part) : large + more; /* of nothing, or of what is no number */
-    state->lost = *missed > state->lost ? *missed : state->lost;
+    if (!(more <= state->most)) {
+        const real part = state->most / more;
+        for (int k = 0; k < NAME_PANELS; ++k) {
+            state->missed[k] *= part * part;
+        }
+        state->lost *= part * part;
+        state->most = more;
+    }
+    if (more > 0) {
+        const real part = more / state->most;
+        *missed += part * part;
+        state->lost = *missed > state->lost ? *missed : state->lost;
+    }
 }
 
 /* y += M a, M by rows */
@@ -462,6 +471,7 @@ void name_init(stream *state)
     state->time = 0;
     state->time_low = 0;
     state->lost = 0;
+    state->most = 0;
     state->size = 0;
     state->due = 0;
     state->alarm = 0;
@@ -528,8 +538,9 @@ static real against(const stream *state)
 /* More than the tolerance is lost, or numbers are beyond all bounds: for good, even where larger waves follow. */
 static void raise_alarm(stream *state, const real *out)
 {
-    const real most = tolerance * against(state);
-    int fine = state->lost <= most && is_number(most);
+    const real all = against(state);
+    const real most = tolerance * (all / state->most);
+    int fine = is_number(all) && (!(state->most > 0) || state->lost <= most * most);
     for (int k = 0; k < NAME_PANELS; ++k) {
         fine &= is_number(state->missed[k]);
     }
@@ -591,5 +602,5 @@ int name_step(stream *state, real dtau, const real *load, real *out)
 
 real name_lost(const stream *state)
 {
-    return state->lost > 0 && is_number(state->lost) ? state->lost / against(state) : state->lost;
+    return state->lost > 0 && is_number(state->lost) ? root(state->lost) * (state->most / against(state)) : state->lost;
 }

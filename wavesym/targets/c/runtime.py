@@ -51,7 +51,7 @@ class CRuntime:
     """templates/c/runtime/runtime.c.j2; `laws` are what is assigned, with the expression; every table as its lines.
 
     `products` are what is multiplied and added up on the way to them, `slope_products` to their derivatives. `slopes`
-    are these derivatives, by the number of a parameter; `load_lane` is that of the first load, -1 for none.
+    are these, by the number of a parameter; `load_lane` is that of the first load, -1 for none.
     """
 
     scene: Description
