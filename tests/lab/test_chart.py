@@ -13,9 +13,9 @@ import pytest
 from wavesym.cli import main
 from wavesym.compiler import evaluator
 from wavesym.lab.chart import subjects as listed
-from wavesym.lab.chart.floor import floor
 from wavesym.lab.chart.measure import ChartRow, Measured, _Judge, measure, to_csv
 from wavesym.lab.chart.subjects import Subject, opponent, spacing, subjects, taus
+from wavesym.lab.floor import floor
 from wavesym.lab.timing import medians
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.sums import summing
@@ -153,9 +153,9 @@ def test_medians_have_no_patience_with_slow_calls():
 
 @pytest.mark.parametrize("single", [False, True])
 def test_the_floor_is_a_straight_line(single):
-    values = floor(2, 1000, single)()
+    values = floor(2, 1000, 4, single=single)()
     assert values.dtype == (np.float32 if single else np.float64)
-    np.testing.assert_array_equal(values, np.tile(1 + 0.5 * np.arange(1000), (2, 1)))
+    np.testing.assert_array_equal(values, np.tile(3 + 0.5 * np.arange(1000), (2, 1)))  # that of the last call
 
 
 def row(name, k, kind="rival", **changes):

@@ -64,9 +64,8 @@ class BuiltModel:
         self._build.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
         self._estimate = getattr(self.library, f"{name}_error_estimate")
         self._estimate.argtypes, self._estimate.restype = [ctypes.c_void_p], ctypes.c_double
-        if bound := getattr(self.library, f"{name}_error_bound", None):
-            self._bound = bound
-            self._bound.argtypes = [ctypes.c_void_p] * 3
+        self._bound = getattr(self.library, f"{name}_error_bound")
+        self._bound.argtypes = [ctypes.c_void_p] * 3
         self._eval = getattr(self.library, f"{name}_model_eval")
         self._eval.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p]
         self._sample = getattr(self.library, f"{name}_model_sample")

@@ -1,1 +1,1 @@
-"""Laws run in exact and ball arithmetic: tables, arrivals, waves on windows, reference values, contacts that end."""
+"""Laws run in exact and ball arithmetic: joints, tables, contacts, modes; outputs as functions of tau from these."""

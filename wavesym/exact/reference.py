@@ -1,7 +1,7 @@
 """The reference: values of a model's outputs that are right to the last bit, whatever they cost.
 
-Two routes lead there, and both are balls: the exact tables, where they are of moderate size, and power series on
-windows, where they are not (many unequal rates, many reflections).
+Two routes lead there, and both are balls: the exact tables, where they are of moderate size, and power series from
+knot to knot, where they are not (many unequal rates, many reflections).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from wavesym.numbers.reals import DOUBLE, Real
 
 # bytes of waves that are known in a second or two
 _QUICK = 10**8
-# coefficients of the tables from which on windows are cheaper
+# coefficients of the tables from which on power series are cheaper
 _MODERATE = 50_000
 _SHORTEST = fmpq(8)
 # more bits tell nothing more where contacts open and close

@@ -129,7 +129,7 @@ static void settle(model_of *m)
     }
 }
 
-/* The same of derivatives by a parameter; and these on the window of now. */
+/* What begins derivatives by a parameter. */
 static void started_lane(name_tangent *tangent, const laws *slope, int lane)
 {
     start_waves(tangent->waves[lane], slope);
@@ -138,6 +138,7 @@ static void started_lane(name_tangent *tangent, const laws *slope, int lane)
     }
 }
 
+/* As settle. */
 static void settle_lane(name_tangent *tangent, int lane)
 {
     for (int k = 0; k < NAME_STATES; ++k) {
@@ -145,6 +146,7 @@ static void settle_lane(name_tangent *tangent, int lane)
     }
 }
 
+/* Derivatives on the window of now. What their polynomials miss. */
 static real follow_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now,
                         int before)
 {

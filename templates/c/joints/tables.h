@@ -1,5 +1,4 @@
-/* tables.h: stands for what joints.c.j2 writes above the text of joints.c, where that is
- * read by itself. */
+/* tables.h: stands for what joints.c.j2 writes above the text of joints.c, where that is read by itself. */
 #include <stddef.h>
 
 #ifdef SINGLE

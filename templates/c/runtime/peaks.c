@@ -1,5 +1,6 @@
 /* peaks.c: the least and the greatest value of each output of a model, between samples, too.
- * Plain C that is put below runtime.c in NAME.c; what stands below the first empty line. */
+ * Plain C that is put below all of NAME.c, for callers that take many sets at once; what stands below the first empty
+ * line. */
 #ifndef NAME_JOINTED
 #include "misfit.c"
 #endif

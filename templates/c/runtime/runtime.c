@@ -411,7 +411,7 @@ static void settle(model_of *m)
     }
 }
 
-/* The same of derivatives by a parameter; and these on the window of now, where that before had another degree. */
+/* What begins derivatives by a parameter. */
 static void started_lane(name_tangent *tangent, const laws *slope, int lane)
 {
     start_waves(tangent->waves[lane], slope, LEAST);
@@ -420,6 +420,7 @@ static void started_lane(name_tangent *tangent, const laws *slope, int lane)
     }
 }
 
+/* As settle. */
 static void settle_lane(name_tangent *tangent, int lane)
 {
     for (int node = 0; node < NAME_NODES; ++node) {
@@ -427,6 +428,7 @@ static void settle_lane(name_tangent *tangent, int lane)
     }
 }
 
+/* Derivatives on the window of now; `before` is the degree of the one before. What their polynomials miss. */
 static real follow_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now,
                         int before)
 {

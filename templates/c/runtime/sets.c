@@ -1,5 +1,5 @@
 /* sets.c: many sets of parameters in one call, for callers to whom a call costs more than a model.
- * Plain C that is put below NAME.c and peaks.c; what stands below the first empty line. */
+ * Plain C that is put below peaks.c; what stands below the first empty line. */
 #ifndef NAME_JOINTED
 #include "peaks.c"
 #endif

@@ -51,7 +51,7 @@ void name_batch_misfit(const name_batch *batch, const name_data *data, name_real
 #include "../real.h"
 typedef name_model model_of;
 
-enum { LEAST = 8, LOAD_LANE = -1, STRENGTHS = 1, SECTIONS = 3, CYCLE = 1, JOINTED = 0, TERMS = 6 };
+enum { LEAST = 8, LOAD_LANE = -1, STRENGTHS = 1, SECTIONS = 3, CYCLE = 1, JOINTED = 0 };
 
 /* What parameters make of nodes, rods, loads and outputs. */
 typedef struct {

@@ -168,8 +168,8 @@ def _increment(rule: Rule, source: str, response: Mapping[Function, list[Increme
 def full_table(chain: Chain, intervals: int | None, until: fmpq, most: float = inf) -> Table:
     """All functions of all rods, all sources: `intervals` of each, or those that reach its rod until tau = `until`.
 
-    CostError beyond about `most` coefficients, or what half a minute makes (size.py). The numbers are of the chain's
-    kind: exact, or symbolic (`symbolic`).
+    CostError beyond about `most` coefficients, or what half a minute makes (table_size.py). The numbers are of the
+    chain's kind: exact, or symbolic (`symbolic`).
     """
     rules = Rules(chain)
     wanted = {}

@@ -69,7 +69,7 @@ def ratios(one: Fitted, other: Fitted, flags: tuple[str, ...]) -> Iterator[float
     """Time a value over time a value of the `other`: with as many samples, and with as many on a piece."""
     per_piece = SAMPLES * one.count // other.count
     calls = [
-        many("many", each.scene, each.c, flags, samples=samples)
+        many(each.scene, each.c, flags, samples=samples)
         for each, samples in ((other, SAMPLES), (one, SAMPLES), (one, per_piece))
     ]
     base, same, denser = medians(calls)

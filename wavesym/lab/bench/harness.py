@@ -1,11 +1,12 @@
-"""The generated C of a scene in a loop that is C, too, so that nothing else is timed; and what it is compared with."""
+"""The generated C of a scene in a loop that is C, too, so that nothing else is timed; the most that a core can do."""
 
 from __future__ import annotations
 
 import ctypes
 import os
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -18,30 +19,13 @@ PLAIN = ("-O2",)
 # for this machine, for most of its kind (vectors of 256 bits), and as nothing is said
 _COMMON = ("-O3", "-march=x86-64-v3", "-ffp-contract=fast")
 EVERY = (FAST, *([_COMMON] if platform.machine().lower() in {"x86_64", "amd64"} else []), PLAIN)
-# In C, so that nothing else is timed: many calls of sample, as many straight lines of the same size, many of eval.
 CALLS = 20
+"""Of `sample`, or of the floor, in a turn: so many that what it takes to call C does not count."""
 _HARNESS = """
 void many(double dtau, size_t count, double *out, int calls)
 {
     for (int call = 0; call < calls; ++call) {
         NAME_sample(0.0, dtau, count, out);
-    }
-}
-
-void straight(double v, double d, size_t count, double *out);
-__attribute__((noinline)) void straight(double v, double d, size_t count, double *out)
-{
-    for (size_t k = 0; k < count; ++k) {
-        out[k] = v + d * (double)(int)k;
-    }
-}
-
-void lines(double d, size_t count, double *out, int calls)
-{
-    for (int call = 0; call < calls; ++call) {
-        for (size_t row = 0; row < PREFIX_OUTPUTS; ++row) {
-            straight((double)call, d, count, out + row * count);
-        }
     }
 }
 
@@ -79,36 +63,32 @@ def compilers() -> list[Compiler]:
     return [compiler for compiler in at_hand() if compiler.name in _UNROLLED]
 
 
-class chosen_compiler:
+@contextmanager
+def chosen_compiler(name: str) -> Iterator[None]:
     """The C compiler that `toolchain` is to choose, for a while."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-        self._before = os.environ.get("CC")
-
-    def __enter__(self) -> None:
+    before = os.environ.get("CC")
+    library.cache_clear()
+    os.environ["CC"] = name
+    try:
+        yield
+    finally:
         library.cache_clear()
-        os.environ["CC"] = self._name
-
-    def __exit__(self, *_: object) -> None:
-        library.cache_clear()
-        if self._before is None:
+        if before is None:
             del os.environ["CC"]
         else:
-            os.environ["CC"] = self._before
+            os.environ["CC"] = before
 
 
 def _library(each: Scene, made: dict[str, str], flags: tuple[str, ...]) -> ctypes.CDLL:
     name = each.name
-    harness = _HARNESS.replace("NAME", name).replace("PREFIX", name.upper())
-    return library(made[f"{name}.c"] + harness, flags, (f"{name}.h", made[f"{name}.h"]))
+    return library(made[f"{name}.c"] + _HARNESS.replace("NAME", name), flags, (f"{name}.h", made[f"{name}.h"]))
 
 
 def many(
-    which: str, each: Scene, made: dict[str, str], flags: tuple[str, ...], calls: int = CALLS, samples: int = SAMPLES
+    each: Scene, made: dict[str, str], flags: tuple[str, ...], calls: int = CALLS, samples: int = SAMPLES
 ) -> Callable[[], object]:
-    """So many calls of "many", that is of `sample` for so many samples, or of "lines", which only write."""
-    function = getattr(_library(each, made, flags), which)
+    """So many calls of `sample` for so many samples."""
+    function = _library(each, made, flags).many
     function.argtypes = [ctypes.c_double, ctypes.c_size_t, ctypes.c_void_p, ctypes.c_int]
     step = lower(each).horizon() / (samples - 1)
     out = np.empty((len(each.outputs), samples))

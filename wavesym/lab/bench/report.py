@@ -18,6 +18,7 @@ import numpy as np
 from wavesym.lab.bench import many_sets, panels, parameters, recorded, streamed, swept
 from wavesym.lab.bench.equal_degree import Fitted, at_degree, fitted, ratios
 from wavesym.lab.bench.harness import CALLS, EVERY, PLAIN, SAMPLES, chosen_compiler, compilers, many, one_by_one, peak
+from wavesym.lab.floor import floor
 from wavesym.lab.timing import least, medians, ran
 from wavesym.numbers.doubles import rational
 from wavesym.programs.choice import choose
@@ -34,8 +35,6 @@ NAMED = "BDC"
 
 COUNTS = (300, 1001, SAMPLES)
 """Of samples: runs are short with few of them, and with many all time goes into polynomials."""
-
-_WAYS = ("lines", "many")  # the write floor, and `sample`
 
 CHAINS = "LSE"
 """Written out: three lengths, a spring, contact events."""
@@ -215,8 +214,8 @@ def _evaluating(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
             for flags in EVERY:
                 with chosen_compiler(compiler.name):
                     calls: list[Callable[[], object]] = [
-                        many("lines", each, made, flags),
-                        many("many", each, made, flags),
+                        floor(outputs, SAMPLES, CALLS, flags=flags),
+                        many(each, made, flags),
                         one_by_one(each, made, flags, form.tau_max),
                         partial(module.evaluate, taus),
                         peak(compiler.name, flags),
@@ -239,15 +238,16 @@ def _evaluating(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
 
 def _sampling(given: dict[str, Scene]) -> Iterator[Sequence[str]]:
     for label, each in given.items():
-        made = files(make(lower(each), Request(evaluator="pieces")), "c")
+        made, outputs = files(make(lower(each), Request(evaluator="pieces")), "c"), len(each.outputs)
         for compiler in compilers():
             for flags in EVERY:
                 times, ratios = [], []
                 for count in COUNTS:
                     calls = CALLS * SAMPLES // count  # so many that what calls C takes no time beside them
                     with chosen_compiler(compiler.name):
-                        low, sample = least([many(which, each, made, flags, calls, count) for which in _WAYS])
-                    times.append(f"{1e9 * sample / (calls * count * len(each.outputs)):.3f}")
+                        lines = floor(outputs, count, calls, flags=flags)
+                        low, sample = least([lines, many(each, made, flags, calls, count)])
+                    times.append(f"{1e9 * sample / (calls * count * outputs):.3f}")
                     ratios.append(f"{sample / low:.2f}")
                 yield label, compiler.name, f"`{' '.join(flags)}`", *times, *ratios
 
@@ -279,7 +279,7 @@ def _generating(folder: Path) -> Iterator[Sequence[str]]:
     tall = scene("tower", 20_000, tower, [step], tolerance="1e-6", strain=["1/2"], velocity=[10])
     yield _generated("building of 10 storeys to tau = 20 000", _toml(tall), "march")
     made = files(make(lower(tall), Request(evaluator="march")))
-    (seconds,) = medians([many("many", tall, made, FAST, calls=1)])
+    (seconds,) = medians([many(tall, made, FAST, calls=1)])
     yield "one run of its C, 10 001 samples", f"{seconds:.3f}", "", "march"
 
 

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.errors import WavesymError
-from wavesym.lab.chart.floor import floor
 from wavesym.lab.chart.standard import standard
 from wavesym.lab.chart.subjects import Subject, opponents, reference, subjects, taus
+from wavesym.lab.floor import floor
 from wavesym.lab.timing import medians
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.making import runtime_program
@@ -31,6 +31,7 @@ SAMPLES = 10001
 # samples whose errors are looked at: of the uniform ones about so many, of the arrivals at most so many
 _CHECKED = 1000
 _FRONTS = 150
+_LINES = 20  # calls in a turn of the floor
 _OFFSETS = (-0.015, -0.005, -0.0005, 0.0, 0.0005, 0.005, 0.015)
 # a sample that is left of a jump by less than this is there by rounding, and nobody's error
 _ROUNDED = {False: 1e-9, True: 1e-5}  # by whether it is in single precision
@@ -81,7 +82,7 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
     again = _again(scene, samples)
     progress("timing")
     outputs = len(scene.outputs)
-    line, *times = medians([floor(outputs, samples), *(subject.sample for subject, _ in found), *again])
+    line, *times = medians([floor(outputs, samples, _LINES), *(subject.sample for subject, _ in found), *again])
     new_parameters = times.pop() if again else None
     rows = (
         ChartRow(
@@ -98,7 +99,7 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
         )
         for (subject, (away, fronts)), seconds in zip(found, times, strict=True)
     )
-    return Measured(tuple(rows), line / (samples * outputs) * 1e9, samples, judge.known.bound, new_parameters)
+    return Measured(tuple(rows), line / (_LINES * samples * outputs) * 1e9, samples, judge.known.bound, new_parameters)
 
 
 def _again(scene: Scene, samples: int) -> list[Callable[[], object]]:
