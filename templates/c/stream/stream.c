@@ -105,7 +105,7 @@ static void move(stream *state, int joint)
     real *const x = state->x + first_state[joint];
     real given[WIDEST];
     real found[WIDEST];
-    real missed[MOST_JOINED];
+    real missed[MOST_JOINED] = {0};
     for (int k = 0; k < width; ++k) {
         given[k] = k < points * SIZE ? (real)0 : x[k - points * SIZE];
         found[k] = 0;
@@ -126,9 +126,6 @@ static void move(stream *state, int joint)
         for (int k = 0; k < SIZE; ++k) {
             out[k] = ratio[port] * q[k] - a[k];
         }
-    }
-    for (int k = 0; k < points; ++k) {
-        missed[k] = 0;
     }
     multiply(missed, slip + first_slip[joint], given, points, width);
     for (int k = 0; k < points; ++k) {
