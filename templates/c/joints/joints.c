@@ -29,11 +29,14 @@ static int points_of(int joint)
     return first_point[joint + 1] - first_point[joint];
 }
 
+/* A panel, counted through all windows, that there is not: what begins there does not begin. */
+enum { NEVER = NAME_WINDOWS * NAME_PANELS };
+
 /* From which panel on, counted through all windows, something moves at a joint, or acts on it: its own, at first. Of
  * derivatives, where `of` is what the laws change by: what differs as the parameter does. */
 static int stirred(const laws *law, const laws *of, int lane, int joint)
 {
-    int since = NAME_WINDOWS * NAME_PANELS;
+    int since = NEVER;
     for (int event = NAME_EVENTS - 1; event >= 0; --event) {
         const int loaded = magnitude(law->load[event_load[event]]) > 0;
         const int own = LOAD_LANE >= 0 && lane == LOAD_LANE + event_load[event];
@@ -53,7 +56,15 @@ static int stirred(const laws *law, const laws *of, int lane, int joint)
     return since;
 }
 
-/* The same where its laws change: as soon as values move there. `since` says from which panel on they are sent. */
+/* From which panel on something arrives at a port; `since` says from which on it is sent into each track. */
+static int arrives(const int *since, int port)
+{
+    const int wait = steps[arrive[port]] * NAME_PANELS;
+    const int sent = since[arrive[port]];
+    return sent < NEVER - wait ? sent + wait : NEVER;
+}
+
+/* What `stirred` says, where its laws change: as soon as values move there. */
 static int turned(const laws *law, const laws *slope, const int *since, int joint)
 {
     const int n = states_of(joint), points = points_of(joint);
@@ -69,11 +80,11 @@ static int turned(const laws *law, const laws *slope, const int *since, int join
         most = larger(most, slope->passed[at_passed[joint] + k]);
     }
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        const int then = since[arrive[port]] + steps[arrive[port]] * NAME_PANELS;
+        const int then = arrives(since, port);
         most = larger(most, slope->push[port]);
         when = then < when ? then : when;
     }
-    return most > 0 ? when : NAME_WINDOWS * NAME_PANELS;
+    return most > 0 ? when : NEVER;
 }
 
 /* From which panel on something is sent into each track, from what joints have of their own. */
@@ -82,7 +93,7 @@ static void spread_out(int *since)
     for (int turn = 0; turn < NAME_JOINTS; ++turn) {
         for (int joint = 0; joint < NAME_JOINTS; ++joint) {
             for (int in = first_port[joint]; in < first_port[joint + 1]; ++in) {
-                const int then = since[arrive[in]] + steps[arrive[in]] * NAME_PANELS;
+                const int then = arrives(since, in);
                 for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
                     since[send[port]] = then < since[send[port]] ? then : since[send[port]];
                 }
@@ -117,8 +128,8 @@ static int reached(const laws *law, const laws *slope, int lane, int output)
     int since[NAME_TRACKS], changed[NAME_TRACKS];
     real weight = 0;
     for (int track = 0; track < NAME_TRACKS; ++track) {
-        since[track] = NAME_WINDOWS * NAME_PANELS;
-        changed[track] = NAME_WINDOWS * NAME_PANELS;
+        since[track] = NEVER;
+        changed[track] = NEVER;
     }
     for (int joint = 0; joint < NAME_JOINTS; ++joint) {
         for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
