@@ -219,8 +219,9 @@ def test_rivals_at_fronts():
 
 @pytest.mark.slow
 def test_rivals_as_drawn():
-    """Five of eight never converge at a front, and the others do."""
+    """Five of eight never converge at a front, and the others do; the title counts them."""
     family = fronts.family(quietly)
+    assert "5 of 8" in family.title
     last = {name: family.curve(fronts.AT, name)[-1].error for name in family.curves(fronts.AT)}
     assert len(last) == 8
     assert sum(error > 0.1 for error in last.values()) == 5
