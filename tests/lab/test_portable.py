@@ -167,8 +167,8 @@ def test_an_answer_is_asked_for_once_unless_the_question_changes(tmp_path):
         (JOINTS, "return found < end ? found : end - 1;", "return found;"),
         (CHAIN, "for (int k = 0; k <= degree + 1; ++k) {\n            series", ZEROS_MISSING),
         (CHAIN_TANGENT, "real acting[JOINTS_LEVEL_DOUBLE_POINTS]", "real acting[JOINTS_LEVEL_DOUBLE_POINTS - 1]"),
-        (CHAIN_BOUND, "sizes[JOINTS_BRIEF_DOUBLE_WIDEST];", "sizes[JOINTS_BRIEF_DOUBLE_WIDEST - 1];"),
-        (CHAIN_BATCH, "k <= higher; ++k", "k <= higher + 1; ++k"),
+        (CHAIN_BOUND, "x_size[JOINTS_BRIEF_DOUBLE_WIDEST]", "x_size[JOINTS_BRIEF_DOUBLE_WIDEST - 1]"),
+        (CHAIN_BATCH, "set >= 0 && set <", "set <"),
         (CHAIN_MISFIT, "while (event < JOINTS_LEVEL_DOUBLE_EVENTS && ", "while ("),
     ],
 )
