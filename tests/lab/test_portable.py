@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
 
 import pytest
 
-from tests.support.builds import needs_binutils, needs_zig
+from tests.support.builds import STRICT, needs_binutils, needs_zig
 from tests.test_documents import document
 from wavesym.lab.portable import misra, prove, targets
 from wavesym.lab.portable.kept import kept
@@ -148,6 +150,18 @@ def test_an_answer_is_asked_for_once_unless_the_question_changes(tmp_path):
     assert (ask(["a", "b"], [1, "x"]), ask(["a", "b"], [2]), ask(["ab"], [3])) == ([1, "x"], [1, "x"], [3])
     assert asked == [["a", "b"], ["ab"]]
     assert (ask(["c"], None, worth=bool), ask(["c"], [4], worth=bool)) == (None, [4])
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc here")
+@pytest.mark.parametrize("optimised", ["-O1", "-O2", "-O3", "-Os"])
+@pytest.mark.parametrize("subject", COMPILED, ids=lambda subject: subject.name)
+def test_no_optimisation_makes_a_warning(subject, optimised, tmp_path):
+    """What is seen of a program depends on what is put into what."""
+    written(subject, tmp_path)
+    command = ["gcc", "-std=c99", optimised, *STRICT, "-c", f"{subject.name}.c", "-o", "made.o"]
+    made = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (made.returncode, made.stderr) == (0, "")
 
 
 @needs_prover

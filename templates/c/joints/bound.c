@@ -164,8 +164,8 @@ static void defect(const model_of *m, const laws *law, wrong *w, int joint, int 
     real moved_by[NAME_WIDEST][NAME_ROW + LANES + 1];
     slice x[NAME_WIDEST], x_size[NAME_WIDEST], s[NAME_WIDEST], s_size[NAME_WIDEST];
     slice begins[NAME_WIDEST], ends[NAME_WIDEST], aparts[NAME_PORTS], reads[NAME_PORTS];
-    for (int i = 0; i < n; ++i) {
-        begins[i] = ends[i] = nothing;
+    for (int i = 0; i < NAME_WIDEST; ++i) { /* all, so that no compiler thinks that a sum begins with nothing */
+        begins[i] = ends[i] = x[i] = x_size[i] = nothing;
     }
     for (int port = ports; port < first_port[joint + 1]; ++port) {
         aparts[port] = reads[port] = nothing;

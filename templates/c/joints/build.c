@@ -52,7 +52,8 @@ static real felt(const laws *law, const laws *slope)
     real most = 0;
     for (int joint = 0; joint < NAME_JOINTS; ++joint) {
         const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
-        real acts[NAME_WIDEST], more[NAME_WIDEST], taken[NAME_WIDEST];
+        real acts[NAME_WIDEST], more[NAME_WIDEST];
+        real taken[NAME_WIDEST] = {0}; /* so that no compiler thinks that a sum begins with nothing */
         for (int j = 0; j < points; ++j) {
             acts[j] = 0;
             more[j] = 0;
