@@ -101,7 +101,7 @@ def test_a_sample_is_the_same_whatever_changes_elsewhere():
 
 
 def test_the_tests_of_a_file_come_first():
-    assert related("wavesym/exact/contacts/collision.py")[0] == "tests/exact/test_collision.py"
+    assert related("wavesym/exact/contacts/schedule.py")[0].startswith("tests/exact/")
     assert related("templates/c/march/march.c")[0] == "tests/targets/test_march_c.py"
 
 

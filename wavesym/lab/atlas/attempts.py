@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.errors import CostError
+from wavesym.errors import CostError, UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.lab.atlas.family import AtlasPoint
 from wavesym.lab.atlas.scenes import AIM
@@ -80,8 +80,8 @@ def attempt(known: Truth, name: str) -> Attempt:
     model, taus = known.model, known.taus
     nothing = np.full(len(taus), math.inf)
     try:
-        form = MAKERS[name](model.tolerating(rational(AIM)), DOUBLE, True, None, "speed")
-    except (CostError, OverflowError) as error:
+        form = MAKERS[name](model.tolerating(rational(AIM)), DOUBLE, True, None, "speed", False)
+    except (CostError, UnservedError, OverflowError) as error:
         return Attempt(name, taus, None, nothing, str(error))
     met = rational(min(form.error_bound, 2.0)) <= model.tolerance
     refused = "" if met else form.shortfall(model.tolerance)

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from wavesym.fields.numbers import decimal_text
 from wavesym.lab.atlas import shaken
 from wavesym.lab.atlas.attempts import Array
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
@@ -77,9 +78,10 @@ def family(progress: Progress, ratios: Sequence[Fraction] = RATIOS, panels: Sequ
     )
 
 
-def damping(panel: str, ratio: Fraction) -> Fraction | Mapping[str, Any]:
-    """What a scene says of it."""
-    return ratio if panel == ALL else {"modes": [1, 2], "ratio": ratio}
+def damping(panel: str, ratio: Fraction) -> Fraction | str | Mapping[str, Any]:
+    """What a scene says of it; above critical damping in percent."""
+    said = ratio if ratio <= 1 else f"{decimal_text(100 * ratio)} %"
+    return said if panel == ALL else {"modes": [1, 2], "ratio": said}
 
 
 def extrapolated(model: Model) -> Extrapolated:

@@ -10,8 +10,7 @@ import numpy as np
 from wavesym.lab.atlas.attempts import truth
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import drive
-from wavesym.programs.request import Request
-from wavesym.programs.runtime.making import runtime_program
+from wavesym.programs.runtime.making import sets_program
 from wavesym.running.model import RuntimeModel
 from wavesym.scene import lower
 
@@ -68,7 +67,7 @@ def _points(panel: str, kappa: Sequence[Fraction], until: int, x: float) -> list
     """The error with its bound, and the estimate, of a model whose own kappa is 1."""
     known = truth(drive(list(kappa), [1] * (len(kappa) + 1), until), per_unit=8)
     own = drive([Fraction(1)] * len(kappa), [1] * (len(kappa) + 1), until).with_({"output.tolerance": _TOLERANCE})
-    model = RuntimeModel(runtime_program(lower(own), Request(runtime=("kappa",)), ()))
+    model = RuntimeModel(sets_program(lower(own), ["kappa"]))
     given = np.array([float(value) for value in kappa])
     checks = model.check(kappa=given)
     (why,), (estimate,) = checks.why, checks.estimate

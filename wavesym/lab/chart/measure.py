@@ -17,8 +17,7 @@ from wavesym.lab.chart.standard import standard
 from wavesym.lab.chart.subjects import Subject, opponents, reference, subjects, taus
 from wavesym.lab.floor import floor
 from wavesym.lab.timing import medians
-from wavesym.programs.request import Request
-from wavesym.programs.runtime.making import runtime_program
+from wavesym.programs.runtime.making import sets_program
 from wavesym.running.model import RuntimeModel
 from wavesym.scene import Scene, lower
 
@@ -105,7 +104,7 @@ def measure(scene: Scene, samples: int = SAMPLES, progress: Callable[[str], None
 def _again(scene: Scene, samples: int) -> list[Callable[[], object]]:
     """A call that gives values for new kappa, where a program takes them when it runs."""
     try:
-        program = runtime_program(lower(scene), Request(runtime=("kappa",)), ())
+        program = sets_program(lower(scene), ["kappa"])
     except WavesymError:
         return []
     model = RuntimeModel(program)

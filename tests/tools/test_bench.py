@@ -1,0 +1,65 @@
+"""The scenes of the benchmark are what their names say, and what they are compared with has their degree."""
+
+from pathlib import Path
+
+from flint import fmpq
+
+from tools.bench import equal_degree, recorded, report
+from tools.bench.equal_degree import Fitted, at_degree, fitted, ratios
+from wavesym.exact.contacts.events import events
+from wavesym.exact.knots import Knots
+from wavesym.numbers.doubles import rational
+from wavesym.running.native import FAST
+from wavesym.scene import lower
+
+FOLDER = Path(__file__).parents[2] / "bench"
+CHAINS = report.scenes(FOLDER, report.CHAINS)
+
+
+def test_the_chains_have_what_they_are_for():
+    lengths, spring, wagons = (lower(CHAINS[label]) for label in "LSE")
+    assert len({bar.delay for bar in lengths.network.bars}) == 3
+    assert spring.network.links[0].stiffness == 10
+    assert len(events(wagons)) == 20
+
+
+def test_three_lengths_cost_their_knots():
+    """A common grid would have 2e11 steps; the ways from the pushed mass and back are few."""
+    model = lower(CHAINS["L"])
+    rods = [bar.delay for bar in model.network.bars]
+    coming = [(fmpq(0), 0)]  # at the mass between rods `place - 1` and `place`
+    met = {(fmpq(0), 0)}
+    while coming:
+        time, place = coming.pop()
+        for other, rod in ((place - 1, place - 1), (place + 1, place)):
+            if 0 <= rod < 3 and (at := (time + rods[rod], other)) not in met and at[0] <= 20:
+                met.add(at)
+                coming.append(at)
+    ways = {time for time, place in met if place == 0}
+    knots = Knots(model, rational(model.horizon())).joints[0]
+    assert {knot for knot in knots if knot <= fmpq(39, 2)} == {way for way in ways if way <= fmpq(39, 2)}
+
+
+def test_a_chain_is_fitted_to_a_degree(monkeypatch):
+    monkeypatch.setattr(equal_degree, "_DIGITS", (4, 6, 8))
+    aim = fitted(CHAINS["S"], fmpq(1, 10**6))
+    found = at_degree(CHAINS["S"], aim.degree)
+    assert isinstance(found, Fitted)
+    assert found.degree == aim.degree
+    assert min(aim.form.degrees) <= aim.degree <= max(aim.form.degrees)
+
+
+def test_a_scene_takes_as_long_as_itself():
+    """Nothing is asserted of the time itself."""
+    one = fitted(CHAINS["S"], fmpq(1, 10**6))
+    assert all(0 < ratio < 100 for ratio in ratios(one, one, FAST))
+
+
+def test_a_record_has_rows_of_modes_and_elements(monkeypatch):
+    monkeypatch.setattr(recorded, "SAMPLES", 120)
+    monkeypatch.setattr(recorded, "medians", lambda ways, **_: [1.0] * len(ways))
+    assert len(recorded.frame().outputs) == 31
+    (_, _, error), *elements = recorded.rows()
+    assert float(error) < 1e-6
+    errors = [float(error) for _, _, error in elements]
+    assert errors[0] > 2 * errors[-1] > 0

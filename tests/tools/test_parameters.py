@@ -1,0 +1,59 @@
+"""What parameters at run time are measured beside, and the rows of the benchmark."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import wavesym
+from tools.bench import parameters
+from tools.bench.harness import EVERY
+from wavesym.errors import UnservedError
+from wavesym.rivals.line import stated
+from wavesym.rivals.specialised import SampleGrid, in_c, in_numpy
+from wavesym.scene import lower
+
+FOLDER = Path(__file__).parents[2] / "bench"
+SCENES = parameters.scenes(FOLDER)
+
+
+def errors(scene, stride):
+    problem = stated(lower(scene))
+    grid = SampleGrid(problem, 101, stride)
+    other = stated(lower(scene.with_({"system.kappa": [2] * len(scene.system.kappa)})))
+    found = in_c(grid, problem)(problem)()
+    by_numpy = in_numpy(grid, [other, problem])
+    assert np.allclose(by_numpy[1], found, rtol=0, atol=1e-12 * np.max(np.abs(found)))
+    assert np.max(np.abs(by_numpy[0] - found)) > 1e-3
+    true = wavesym.evaluator(scene)(np.linspace(0, problem.until, 101))
+    return np.max(np.abs(found - true)) / np.max(np.abs(true))
+
+
+@pytest.mark.slow
+def test_what_is_written_by_hand_is_right():
+    coarse, fine = (errors(SCENES["building, m = 2, to 20"], stride) for stride in (4, 16))
+    assert fine < 1e-5
+    assert 3.5 < np.log2(coarse / fine) / 2 < 4.5
+
+
+def test_what_is_off_the_grid_is_refused():
+    problem = stated(lower(SCENES["building, m = 2, to 20"]))
+    with pytest.raises(UnservedError, match="a strain or velocity on the grid expected"):
+        SampleGrid(problem, 101, 1)
+    with pytest.raises(UnservedError, match="a whole number from 4 on"):
+        SampleGrid(problem, 1000, 1)
+
+
+@pytest.mark.slow
+def test_rows_say_time_and_error(monkeypatch):
+    monkeypatch.setattr(parameters, "medians", lambda calls, **_: [1.0 for call in calls if call() is not calls])
+    monkeypatch.setattr(parameters, "scenes", lambda _: dict(list(SCENES.items())[:1]))
+    rows = list(parameters.rows(FOLDER))
+    ours = [row for row in rows if row[1].startswith("wavesym, C")]
+    assert len(ours) == 2 * len(EVERY)
+    for row in ours:
+        error, _, bound = map(float, row[4:])
+        assert error <= bound < 1e-7
+    assert max(float(row[4]) for row in ours[: len(EVERY)]) < 1e-12
+    theirs = [float(row[4]) for row in rows if row[1].startswith("by hand, C")]
+    assert theirs == sorted(theirs, reverse=True)

@@ -1,0 +1,1 @@
+"""What measures and proves wavesym for its makers; users have no need of it."""

@@ -1,0 +1,82 @@
+"""python -m tools.portable prove|misra|targets|fuzz PAGE: run the tool and put its table into the page.
+
+`fuzz PAGE SECONDS` takes so many seconds for each program.
+
+Exit status 1 where something is not as it has to be; 0 with a word where the tool is not on this machine.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from tools.portable import fuzz, misra, prove, targets
+from tools.portable.external import absent, version
+from tools.portable.kept import FOLDER as KEPT
+from tools.portable.page import between, put, table
+from tools.portable.subjects import CHECKED, COMPILED, PROVED
+from wavesym.writing import write_whole
+
+
+def main(what: str, page: Path, seconds: str = "0") -> int:
+    """Run one of them; what failed is told line by line."""
+    clang = fuzz.fuzzer() if what == "fuzz" else None
+    missing = {
+        "prove": absent(prove.TOOL),
+        "misra": absent(misra.TOOL),
+        "targets": absent("size", "nm"),
+        "fuzz": [] if clang else ["clang with libFuzzer"],
+    }[what]
+    if what == "targets" and not find_spec("ziglang"):
+        missing.append("ziglang")
+    if missing:
+        print(f"{what}: skipped, no {', '.join(missing)} on this machine")
+        return 0
+    failed: list[str] = []
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        match what:
+            case "prove":
+                made = table(prove.HEAD, _told(prove.rows(PROVED, folder, KEPT, failed)))
+                told = f"Frama-C {version(prove.TOOL)}, data as of {', '.join(prove.MACHINES)}."
+            case "misra":
+                seen = misra.every(CHECKED, folder, KEPT)
+                made = table(misra.HEAD, _told(misra.rows(seen, failed)))
+                write_whole({page.with_name(misra.LIST): misra.by_function(seen)})
+                told = f"{version(misra.TOOL)}, in {', '.join(subject.name for subject in CHECKED)}."
+            case "fuzz":
+                assert clang
+                learning = Path("build", "fuzz").resolve()  # the next run goes on with what this one has learnt
+                made = table(
+                    fuzz.HEAD, _told(fuzz.rows(fuzz.FUZZED, clang, learning, fuzz.CORPUS, int(seconds), failed))
+                )
+                told = f"{fuzz.tool(clang)}."
+            case _:
+                found = list(_told(targets.rows(COMPILED, targets.TARGETS, folder, KEPT, failed)))
+                lines = targets.status(found, targets.TARGETS, proved(page))
+                made = f"{table(targets.STATUS_HEAD, lines)}\n{table(targets.HEAD, found)}"
+                told = f"{targets.compiler()}, `-Os`."
+    put(page, what, f"{told}\n\n{made}")
+    print(*failed, sep="\n", end="\n" if failed else "")
+    return 1 if failed else 0
+
+
+def proved(page: Path) -> set[str]:
+    """The programs in the table of `make prove`, none of whose rows has an alarm."""
+    lines = between(page.read_text(encoding="utf-8"), "prove").splitlines()[4:]
+    rows = [(line.strip("| ").split(" | ")[0], line.endswith("| 0 |")) for line in lines]
+    return {name for name, _ in rows} - {name for name, fine in rows if not fine}
+
+
+def _told(rows: Iterator[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
+    """The rows, each on standard error when it is there."""
+    for row in rows:
+        print(*row, sep="  ", file=sys.stderr, flush=True)
+        yield row
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1], Path(sys.argv[2]), *sys.argv[3:]))

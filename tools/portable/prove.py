@@ -1,0 +1,121 @@
+"""Frama-C's Eva on every program: it covers all that C can do for any argument, and alarms where that is undefined.
+
+That is: access out of bounds or of what was never set, overflow of integers, of conversions to integers, of shifts,
+comparison of pointers into different things. Numbers may be any, NaN and infinities included: these are no alarms.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+from tools.portable.external import started, version
+from tools.portable.kept import kept
+from tools.portable.subjects import PortableProgram
+
+TOOL = "frama-c"
+HEAD = ("program", "made by", "called, any argument", "counts", "statements reached", "alarms")
+MACHINES = ("gcc_x86_64",)
+"""Layouts of data: integers, long and pointers as on these machines."""
+
+_SECONDS = 600.0
+_OPTIONS = (
+    *("-eva", "-eva-no-show-progress", "-eva-msg-key=-final-states,-initial-state"),
+    *("-warn-special-float", "none"),
+)
+# what the driver repeats for ever is joined at once; loops of the program are unrolled
+_FOR_EVER = ("-eva-slevel-function", "main:0")
+# every loop, for each degree by itself
+_TO_THE_END = (
+    *("-eva-precision", "0", "-eva-slevel", "20000", "-eva-ilevel", "64"),
+    *("-eva-split-return", "auto"),
+)
+# a batch of none has no laws
+_NONE_IS_NONE = ("-eva-split-return-function", "begun_batch:0")
+_WITH_ITS_DEGREE = "integrate,empty,empty_batch,add_series,add_series_batch,acting_again,gather"
+_AT_ONCE = ("-eva-precision", "0", "-eva-split-return", "auto", "-eva-initialized-locals")
+_ONE_BY_ONE = "main:100,name_build_with:100,sampled:100,run:100,output_block:100"
+_EFFORTS = {
+    "usual": ("-eva-precision", "2", *_FOR_EVER),
+    "more": ("-eva-precision", "3", *_FOR_EVER),
+    "followed": _TO_THE_END,
+    # of models
+    "unrolled": (*_TO_THE_END, "-inline-calls", "integrate", *_NONE_IS_NONE),
+    # of chains: what is asked of a copy of the degree is known of the degree
+    "equal": (*_TO_THE_END, "-inline-calls", _WITH_ITS_DEGREE, *_NONE_IS_NONE, "-eva-domains", "equality"),
+    # windows and samples one by one, all else at once: which locals were set is not followed then
+    "bounds": (*_AT_ONCE, "-eva-slevel-function", _ONE_BY_ONE),
+    # and joints of a chain one by one
+    "joints": (*_AT_ONCE, "-eva-slevel-function", f"{_ONE_BY_ONE},march:100"),
+    # tables that are made at run time: short loops by themselves, up to the terms of a power series
+    "made": ("-eva-precision", "0", "-eva-auto-loop-unroll", "20", *_FOR_EVER),
+}
+
+
+class ProofVerdict(NamedTuple):
+    """Of one run: alarms (None: it did not come to an end), statements reached of those there are, and each alarm."""
+
+    alarms: int | None
+    reached: int
+    statements: int
+    told: list[str]
+
+
+def command(subject: PortableProgram) -> list[str]:
+    """The prover with the options that a program needs."""
+    return [TOOL, *_OPTIONS, *(subject.spelt(option) for option in _EFFORTS[subject.effort])]
+
+
+def verdict(subject: PortableProgram, count: int, machine: str, folder: Path) -> ProofVerdict:
+    """Prove a program, whose files are in `folder`, under its driver."""
+    driver = f"{subject.name}_{subject.driver}_{count}_{machine}_driver.c"
+    (folder / driver).write_text(subject.driven(count), encoding="utf-8")
+    said = started([*command(subject), "-machdep", machine, driver, f"{subject.name}.c"], folder, _SECONDS)
+    found = re.search(r"(\d+) alarms? generated", said.out)
+    covered = re.search(r"(\d+) statements reached \(out of (\d+)\)", said.out)
+    if said.status != 0 or not found or not covered:
+        return ProofVerdict(None, 0, 0, [said.errors or said.out[-500:]])
+    told = re.findall(r"^\[eva:alarm\] (.*?): Warning:\s*(.*(?:\n  .*)*)", said.out, re.MULTILINE)
+    alarms = [f"{place}: {' '.join(what.split())}" for place, what in told]
+    return ProofVerdict(int(found[1]), int(covered[1]), int(covered[2]), alarms)
+
+
+def rows(
+    subjects: Sequence[PortableProgram], folder: Path, kept_in: Path, failed: list[str]
+) -> Iterator[tuple[str, ...]]:
+    """A row for each program, its counts together; what was not proved is added to `failed`."""
+    tool = version(TOOL)
+    texts = {subject.name: subject.files() for subject in subjects}
+    for files in texts.values():
+        for file, text in files.items():
+            (folder / file).write_text(text, encoding="utf-8")
+
+    def asked(subject: PortableProgram, machine: str, count: int) -> ProofVerdict:
+        question = (tool, *command(subject), machine, subject.driven(count), *texts[subject.name].values())
+
+        def answer() -> ProofVerdict:
+            return verdict(subject, count, machine, folder)
+
+        return ProofVerdict(*kept(kept_in, question, answer, worth=lambda found: found.alarms is not None))
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = [
+            [pool.submit(asked, subject, machine, count) for machine in MACHINES for count in subject.counts or (0,)]
+            for subject in subjects
+        ]
+        for subject, run in zip(subjects, runs, strict=True):
+            found = [one.result() for one in run]
+            alarms = [one.alarms for one in found]
+            failed += [f"{subject.name}, {subject.driver}: {line}" for one in found for line in one.told]
+            yield (
+                subject.name,
+                f"`{subject.asked}`",
+                ", ".join(f"`{name}`" for name in subject.called),
+                ", ".join(map(str, subject.counts)) or "",
+                f"{max(one.reached for one in found)} of {max(one.statements for one in found)}",
+                "not finished" if None in alarms else str(max(one for one in alarms if one is not None)),
+            )
