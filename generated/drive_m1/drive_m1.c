@@ -24,6 +24,50 @@ static real not_a_number(void)
     return zero / zero;
 }
 
+/* Bytes of the widest vectors that the compiler may use; 0 where it knows none, or DRIVE_M1_PLAIN asks for plain C. Wider ones
+ * would go through memory. */
+#if !defined(__GNUC__) || defined(__FRAMAC__) || defined(DRIVE_M1_PLAIN)
+#define VECTOR 0
+#elif defined(__AVX512F__)
+#define VECTOR 64
+#elif defined(__AVX__)
+#define VECTOR 32
+#elif defined(__SSE2__) || defined(__aarch64__) || defined(__VSX__) || defined(__wasm_simd128__)
+#define VECTOR 16
+#else
+#define VECTOR 0
+#endif
+
+#if VECTOR
+typedef real lanes __attribute__((vector_size(VECTOR)));
+typedef real slice __attribute__((vector_size(VECTOR), aligned(sizeof(real)), may_alias)); /* anywhere in an array */
+typedef __typeof__(*(const lanes *)0 < *(const lanes *)0) choice; /* of numbers: all their bits, or none */
+#else
+typedef real lanes;
+typedef real slice;
+#endif
+enum { LANES = sizeof(slice) / sizeof(real) };
+
+/* Of functions whose counts of vectors and outputs are known where they are called. */
+#if defined(__GNUC__) && !defined(__FRAMAC__)
+#define WITHIN static inline __attribute__((always_inline))
+#elif defined(_MSC_VER)
+#define WITHIN static __forceinline
+#else
+#define WITHIN static
+#endif
+
+/* Loops over a few vectors are unrolled, so that they stay in registers; not where size counts more than speed. */
+#if defined(__OPTIMIZE_SIZE__)
+#define UNROLLED
+#elif defined(__clang__)
+#define UNROLLED _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define UNROLLED _Pragma("GCC unroll 16")
+#else
+#define UNROLLED
+#endif
+
 enum { GRIDS = 2 };
 
 const char drive_m1_output_name[DRIVE_M1_OUTPUTS][15] = {
@@ -297,46 +341,21 @@ static const real coefficient[] = {
 /* Up to here numbers of samples are exact. */
 static const real exact = 9007199254740992.0;
 
-/* Samples are computed in the widest vectors that the compiler may use, or in numbers where it knows none; as single
- * values where size counts more than speed. */
-#if !defined(__GNUC__) || defined(__OPTIMIZE_SIZE__) || defined(__FRAMAC__)
-#define VECTOR 0
-#elif defined(__AVX512F__)
-#define VECTOR 64
-#elif defined(__AVX__)
-#define VECTOR 32
-#elif defined(__SSE2__) || defined(__aarch64__) || defined(__VSX__) || defined(__wasm_simd128__)
-#define VECTOR 16
-#else
-#define VECTOR 0
-#endif
-
+/* What is computed in vectors is apart, so that these stay in registers. */
 #if VECTOR
-typedef real lanes __attribute__((vector_size(VECTOR)));
-typedef real stored __attribute__((vector_size(VECTOR), aligned(sizeof(real)), may_alias)); /* anywhere in an array */
-typedef __typeof__(*(const lanes *)0 < *(const lanes *)0) choice; /* of numbers: all their bits, or none */
-#define LANES ((size_t)(VECTOR / sizeof(real)))
-#define APART static __attribute__((noinline)) /* so that its vectors stay in registers */
+#define APART static __attribute__((noinline))
 #else
-typedef real lanes;
-typedef real stored;
-#define LANES ((size_t)1)
 #define APART static
 #endif
 
-/* Of functions whose counts of vectors and outputs are known where they are called. */
-#if defined(__GNUC__) && !defined(__FRAMAC__)
-#define WITHIN static inline __attribute__((always_inline))
-#elif defined(_MSC_VER)
-#define WITHIN static __forceinline
-#else
-#define WITHIN static
-#endif
-
+/* Where size counts more than speed, samples are computed one by one if there are no vectors; and what is found of runs
+ * ahead of them is found as they begin. */
 #ifdef __OPTIMIZE_SIZE__
-enum { IN_RUNS = 0 };
+enum { IN_RUNS = VECTOR > 0 };
+#define LOOKS_AHEAD 0
 #else
 enum { IN_RUNS = 1 };
+#define LOOKS_AHEAD VECTOR
 #endif
 
 static const real offset[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -470,13 +489,13 @@ WITHIN block onward(int width, block sum, block w, real power)
 
 WITHIN void store(int width, block sum, real *to)
 {
-    *(stored *)to = sum.a;
+    *(slice *)to = sum.a;
     if (width > 1) {
-        *(stored *)(to + LANES) = sum.b;
+        *(slice *)(to + LANES) = sum.b;
     }
     if (width > 2) {
-        *(stored *)(to + 2 * LANES) = sum.c;
-        *(stored *)(to + 3 * LANES) = sum.d;
+        *(slice *)(to + 2 * LANES) = sum.c;
+        *(slice *)(to + 3 * LANES) = sum.d;
     }
 }
 
@@ -571,7 +590,7 @@ WITHIN size_t run_end(const samples *s, real edge, size_t k)
     return end;
 }
 
-#if VECTOR
+#if LOOKS_AHEAD
 enum { AHEAD = 32 };
 
 /* Where runs end at edges of a grid from number `first` on: found together, for less, and long before they are needed,
@@ -595,7 +614,7 @@ static void look_ahead(const samples *s, const real *edges, int last, run_ends *
     real ends[AHEAD];
     for (int i = 0; i < many; i += wide) {
         const int from = i + wide > many ? many - wide : i;
-        const lanes edge = *(const stored *)(edges + found->first + from);
+        const lanes edge = *(const slice *)(edges + found->first + from);
         lanes nearest = (edge - t.tau0) * s->per_tau + whole;
 #ifdef __SSE2__
         __asm__("" : "+v"(nearest)); /* so it is rounded, whatever may be assumed of sums */
@@ -608,7 +627,7 @@ static void look_ahead(const samples *s, const real *edges, int last, run_ends *
         end = (lanes)((end > none) & (choice)end);
         const choice inside = end < count;
         end = (lanes)((inside & (choice)end) | (~inside & (choice)count));
-        *(stored *)(ends + from) = end;
+        *(slice *)(ends + from) = end;
     }
     for (int i = 0; i < many; ++i) {
         found->end[i] = (size_t)(ptrdiff_t)ends[i];
@@ -640,7 +659,7 @@ APART size_t run(int grid, int piece, const samples *s, size_t k)
     polynomials p;
     p.members = first_member[grid + 1] - first_member[grid];
     p.rows = s->rows + first_member[grid];
-#if VECTOR
+#if LOOKS_AHEAD
     /* worth it where a piece has samples, and samples are on some pieces */
     const real step = t.dtau < 0 ? -t.dtau : t.dtau;
     const real width = edges[piece + 1] - edges[piece];
@@ -651,14 +670,14 @@ APART size_t run(int grid, int piece, const samples *s, size_t k)
 #endif
     for (; piece >= 0 && piece < pieces; piece += s->next) {
         const real middle = centre[begin + piece];
-#if VECTOR
+#if LOOKS_AHEAD
         const size_t end = ahead ? end_ahead(s, edges, piece + s->later, pieces + 1, &known)
                                  : run_end(s, edges[piece + s->later], k);
 #else
         const size_t end = run_end(s, edges[piece + s->later], k);
 #endif
         if (end <= k) {
-#if VECTOR
+#if LOOKS_AHEAD
             if (ahead) {
                 continue;
             }
@@ -670,7 +689,7 @@ APART size_t run(int grid, int piece, const samples *s, size_t k)
         if (end > k + 2 * LANES && k < s->fours) {
             const size_t left = end - 2 * LANES; /* from here on there are two vectors at most */
             const size_t fours = left < s->fours ? left : s->fours;
-            lanes numbers = number(k) + *(const stored *)offset;
+            lanes numbers = number(k) + *(const slice *)offset;
             for (; k < fours; k += 4 * LANES) {
                 const block w = places(4, &t, numbers, middle);
                 numbers = numbers + (real)(4 * LANES);
@@ -684,11 +703,11 @@ APART size_t run(int grid, int piece, const samples *s, size_t k)
             }
         }
         if (end > k + LANES && k < s->twos) {
-            few(2, &p, places(2, &t, number(k) + *(const stored *)offset, middle), k);
+            few(2, &p, places(2, &t, number(k) + *(const slice *)offset, middle), k);
             k += 2 * LANES;
         }
         if (end > k && k < s->ones) {
-            few(1, &p, places(1, &t, number(k) + *(const stored *)offset, middle), k);
+            few(1, &p, places(1, &t, number(k) + *(const slice *)offset, middle), k);
             k += LANES;
         }
         for (; k < end; ++k) {

@@ -35,7 +35,7 @@ typedef struct {
 typedef struct {
     situation now;
     stream_state trial; /* for outputs that follow inputs at once */
-    char said[200];
+    char said[256];
 } simulation;
 
 /* As bytes: what it belongs to, a check of what follows, and the situation. */
@@ -93,7 +93,7 @@ static verdict refresh(simulation *s)
         return WRONG;
     }
     if (s->now.stale && !STEPPED && follows) {
-        memcpy(&s->trial, &s->now.stream, sizeof s->trial);
+        memcpy(&s->trial, &s->now.stream, stream_used(&s->now.stream));
         stream_step(&s->trial, 0, s->now.input, s->now.output);
     }
     s->now.stale = 0;
@@ -219,9 +219,10 @@ static verdict flow(simulation *s, double dtau)
     if (status == 2 && !s->now.losing) {
         s->now.losing = 1;
         snprintf(s->said, sizeof s->said,
-                 "inputs changed inside of a panel (%.17g long), or fronts have grown steep: %.2g of the largest wave may be "
-                 "lost, an estimate",
-                 PANEL * SECONDS_PER_TAU, stream_lost(&s->now.stream));
+                 "inputs changed at more instants than there is room for, or fronts have grown steep: more may be lost than "
+                 "the tolerance, %.2g of an output at most (steps of whole panels, %.17g long, help, or a model made for "
+                 "these instants)",
+                 stream_lost(&s->now.stream), PANEL * SECONDS_PER_TAU);
         return LOSING;
     }
     return FINE;

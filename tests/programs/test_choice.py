@@ -107,18 +107,18 @@ def test_a_march_is_made_only_where_nothing_else_does(makers):
 def test_only_the_one_asked_for_is_made(makers):
     made = makers(closed=Made("closed", 1e-9), pieces=Made("pieces", 1), march=Made("march", 1e-9))
     assert choose(lower(scene()), "closed", "single") == ("closed", made.closed, "closed is good to 1e-09")
-    assert made.closed.asked == [(lower(scene()), REALS["single"], True, None, "size")]
+    assert made.closed.asked == [(lower(scene()), REALS["single"], True, None, "size", False)]
     assert not made.pieces.asked + made.march.asked
     with pytest.raises(ToleranceError, match=r"cannot be met: pieces: 1 at best$"):
         choose(lower(scene()), "pieces")
     choose(lower(scene()))
-    assert made.closed.asked[1:] == [(lower(scene()), REALS["double"], False, None, "speed")]
+    assert made.closed.asked[1:] == [(lower(scene()), REALS["double"], False, None, "speed", False)]
 
 
 def test_windows_are_those_of_a_march(makers):
     made = makers(march=Made("march", 1e-9))
     choose(lower(scene()), "march", windows=7)
-    assert made.march.asked == [(lower(scene()), REALS["double"], True, 7, "speed")]
+    assert made.march.asked == [(lower(scene()), REALS["double"], True, 7, "speed", False)]
     for name in ("auto", "pieces"):
         with pytest.raises(WavesymError, match=f"--windows goes with --evaluator march, {name} given"):
             choose(lower(scene()), name, windows=7)
@@ -184,19 +184,19 @@ def test_what_was_tried(makers):
 
 
 def test_closed_forms_are_made_of_small_tables_unless_asked_for(monkeypatch):
-    """A hundred outputs, and loads that come later, bring 2 * 100 * 301 increments."""
+    """A hundred outputs, and loads that come later, bring 2 * 100 * 300 increments."""
     later = [{"body": 1, "times": [0, "1/2"], "steps": [1, -1]}]
     places = [f"{k}/101" for k in range(1, 101)]
     many = wavesym.Scene(
         name="many",
         system={"type": "drive", "m": 1, "kappa": [1], "inertia": [1, 1]},
         load=later,
-        output={"until": 300, "strain": places},
+        output={"until": 600, "strain": places},
     )
     monkeypatch.setattr(choice, "signals", lambda scene, most, real: (scene, most, real))
     monkeypatch.setattr(choice, "closed_form", lambda signals, tau_max, real: (signals, tau_max, real))
     double = REALS["double"]
     with pytest.raises(CostError, match=r"^load: 6.0e\+04 increments would arrive"):
         choice._closed(lower(many), double, False, None)
-    assert choice._closed(lower(many), double, True, None) == ((lower(many), float("inf"), double), 300.0, double)
+    assert choice._closed(lower(many), double, True, None) == ((lower(many), float("inf"), double), 600.0, double)
     assert choice._closed(lower(scene()), double, False, None) == ((lower(scene()), 50_000, double), 3.0, double)

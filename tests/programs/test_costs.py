@@ -53,7 +53,7 @@ def long_numbers(count):
 def idle(monkeypatch):
     """Nothing that takes long may begin."""
     monkeypatch.setattr(motion, "NetworkWaves", begun)
-    monkeypatch.setattr("wavesym.exact.tables.signal.unit_response", begun)
+    monkeypatch.setattr("wavesym.exact.tables.network_response.departures", begun)
 
 
 def test_numbers_of_99_characters_cost_tables_and_not_windows(idle):
@@ -126,7 +126,7 @@ def test_a_heavy_shaft_for_long_is_refused_by_all_but_the_tables(monkeypatch):
         choose(lower(scene))
     assert Reference(lower(scene)).signals is not None
     three = drive([10000] * 3, [1] * 4, 200)
-    with pytest.raises(CostError, match=r"^output.until: the waves of .* with 65536 bits would take .* bytes, at most"):
+    with pytest.raises(CostError, match=r"^output.until: .* more than 131072 bits would be needed, at most"):
         Reference(lower(three)).values([20.0 * k for k in range(11)])
 
 
@@ -206,3 +206,16 @@ def test_one_value_that_needs_many_bits_does_not_cost_the_others(monkeypatch):
     assert first[-1] == 0.0
     assert lengths[fmpq(1, 4), 2048]
     assert max(lengths[fmpq(1, 2), 128]) <= 33
+
+
+def test_pieces_take_no_longer_than_they_are_worth_where_a_closed_form_serves(monkeypatch):
+    """Springs that swing fast beside joints without mass make many stretches of pieces, and few exponentials."""
+    parts = [{"rod": 1, "velocity": 1}, {"joint": True, "spring": 20_000}, {"rod": 1}, "fixed"]
+    fields = {"system": {"type": "chain", "parts": parts}, "output": {"until": "3/4", "strain": ["3/4"]}}
+    model = lower(wavesym.Scene(name="stiff", **fields))
+    monkeypatch.setattr(choice, "_OF_MANY", 0.1)
+    chosen = choice.choose(model)
+    assert chosen.name == "closed"
+    assert "s, at most 0.1 s expected where another program serves (--evaluator pieces helps)" in chosen.reason
+    monkeypatch.setattr(choice, "_OF_MANY", 5)
+    assert " expected where another program serves" not in choice.choose(model.shortened(fmpq(1, 100))).reason

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from flint import fmpq
+from flint import arb, ctx, fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -25,15 +25,16 @@ from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.programs.choice import choose
 from wavesym.programs.hats import evaluator as hats
 from wavesym.programs.hats.evaluator import HatMarch, hat_march
-from wavesym.programs.hats.split import rest_of, split, told
+from wavesym.programs.hats.split import rest_of, split, still, told
 from wavesym.programs.making import program
 from wavesym.programs.march.evaluator import marched
-from wavesym.programs.rings.evaluator import ring_march
+from wavesym.programs.rings.bound import RingVerdict
+from wavesym.programs.rings.evaluator import RingMarch, judged_march, ring_march
 from wavesym.programs.schemes.hats import ShiftedHats
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
+from wavesym.verification.characteristics import integrate
 from wavesym.verification.graph import graph
-from wavesym.verification.graph_characteristics import integrate_graph
 from wavesym.verification.observed import observed
 
 HALF_ULP = 2.0**-53
@@ -180,6 +181,43 @@ def test_evenly_lie_an_even_number_of_instants_from_sample_to_sample() -> None:
     places = (taus - 0.09) / 0.31
     inside = np.floor(places[(places > -1e-9) & (places < 15 - 1e-9)] + 1e-9)
     assert set(np.bincount(inside.astype(int)).tolist()) == {4}
+
+
+def allowed(count: int, error: float, height: float, smooth: int) -> tuple[RingMarch, float]:
+    """The march of a hat and what is allowed of `count` of them, all of size 1, each so wrong, so large and level."""
+    model = chain([{"at": "a", "spacing": "0.37", "samples": [1, 2, -1, 3, 0, 1, 5]}])
+    (record,) = split(model).records
+    march, _ = judged_march(still(model, record), degree=smooth)
+    verdict = RingVerdict(smooth, (error,), (height,), 0.0, 0.0, True, smooth, (height,), (0.0,))
+    return march, float(hats._added(replace(record, samples=(fmpq(1),) * count), march, verdict)[0, 0])
+
+
+def test_rounding_of_hats_that_are_added_one_by_one_is_bounded() -> None:
+    """Hats of 1 that are right, and every sample, product and sum too large by u."""
+    count = 2000
+    _, most = allowed(count, 1e-300, 1.0, 8)
+    with ctx.workprec(300):
+        more = 1 + arb(2) ** -53
+        total = arb(0)
+        for _ in range(count):
+            total = (total + more * more) * more
+        lost = float((total - count).mid())
+    assert lost <= most <= 4 * lost
+
+
+def test_hats_that_are_read_on_the_next_panel_are_bounded() -> None:
+    """What is computed is 0, and 2 from an edge on; the truth is a polynomial within 1 that reaches 1 at that edge.
+
+    So both panels are within 1 of it. It is as steep there as can be, and is read as much later as counts as one phase.
+    """
+    smooth = 18
+    march, most = allowed(1, 1.0, 2.0, smooth)
+    late = rational(ShiftedHats.NEAR * march.tau_max)
+    shortest = min(panel.length for panel in march.plan.panels)
+    with ctx.workprec(300):
+        before = arb(1 - 2 * late / shortest).chebyshev_t(smooth)
+        lost = float((1 - before).mid())  # besides the 1 of a panel by itself
+    assert 1e-13 < lost <= most - 1 <= 10 * lost
 
 
 def test_what_no_record_is_stays_as_it_is() -> None:
@@ -362,7 +400,7 @@ def test_dampers_between_floors_under_el_centro_are_what_integration_along_chara
     taus = np.random.default_rng(2).uniform(0, 22, 60)
     values = found.scheme.evaluate(taus)
     views = observed(model)
-    motions = [integrate_graph(graph(model), 22.0, steps) for steps in (60, 120)]
+    motions = [integrate(graph(model), 22.0, steps) for steps in (60, 120)]
     coarse, fine = (
         np.array([view.values(lambda probe, motion=motion: motion.at(probe, taus), taus) for view in views])
         for motion in motions

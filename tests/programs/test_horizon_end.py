@@ -50,6 +50,10 @@ SCENES = {
     ),
 }
 
+SCENES["2.3"] = SCENES["10/3"].with_(
+    {"load[0].times": [0, "2.3"], "load[0].a": ["1/1000", 1], "output.until": "2.3", "output.strain": [0]}
+)
+
 
 def closed(scene, real):
     return closed_form(signals(lower(scene), real=real), lower(scene).horizon(real), real)
@@ -69,6 +73,7 @@ CASES = [
     ("pieces", SINGLE, "8.00001"),
     ("pieces", DOUBLE, "1e-200"),
     ("pieces", SINGLE, "1e-40"),
+    *((maker, real, "2.3") for maker in ("closed", "pieces") for real in (DOUBLE, SINGLE)),
 ]
 
 

@@ -22,6 +22,7 @@ from wavesym.programs.march.run import LEFT, RIGHT, Run
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
 from wavesym.verification.characteristics import integrate
+from wavesym.verification.graph import graph
 from wavesym.verification.reference import known
 
 
@@ -101,7 +102,7 @@ def test_long_horizons_agree_with_direct_integration():
     scene = building(60, KINKS, m=3)
     made = marched(lower(scene))
     taus = np.random.default_rng(1).uniform(0, 60, 200)
-    coarse, fine = (integrate(scene.system.chain, lower(scene).loads, made.tau_max, steps) for steps in (64, 128))
+    coarse, fine = (integrate(graph(lower(scene)), made.tau_max, steps) for steps in (64, 128))
     for probe, row in zip(lower(scene).probes, program(scene, made)(taus), strict=True):
         expected = fine.at(probe, taus.tolist())
         error = np.abs(expected - coarse.at(probe, taus.tolist())).max() / 4  # of fourth order

@@ -116,6 +116,16 @@ def test_what_sums_and_the_mean_lose_is_counted_by_itself(slack, loss, degree):
     assert counted <= claimed <= 25 * counted
 
 
+def test_what_one_coefficient_loses_is_handed_on_to_all_below_it():
+    """With ratios of 1, to which those of light bodies come; a product that underflows is then lost in all of them."""
+    degree = 64
+    one = (0.0,) + (1.0,) * degree
+    of = PanelOperator(1.0, one, one, one, 0.0, 0.0, 2.0**-40)
+    *_, claimed = _constants(of).coefficients
+    *_, counted = norms(*in_c(of))[0]
+    assert counted <= claimed <= 100 * counted
+
+
 def test_an_upper_bound_of_a_norm_is_one_and_near():
     random = np.random.default_rng(1)
     for matrix in (*random.uniform(0, 1, (20, 7, 5)), np.eye(4), np.diag([1.0, 1e-9, 3, 1e3]), np.ones((3, 1))):

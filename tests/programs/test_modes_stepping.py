@@ -7,6 +7,7 @@ import pytest
 from flint import arb, ctx, fmpq
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.signal import lfilter
 
 from tests.support import oscillators
 from tests.support.assembly import exact
@@ -98,6 +99,54 @@ def test_rounding_is_bounded(real):
     assert np.all(wrong <= made.rounding.errors)
     assert np.all(made.rounding.errors < (1e-11 if real is DOUBLE else 5e-3) * made.rounding.largest)
     assert np.all(wrong > 0)
+
+
+class OneMode(ModesScheme):
+    """One mode on equal panels, all of which are stepped at once."""
+
+    BLOCK = 1 << 20
+
+    def _stepped(self, state, first, last):
+        p11, p12, p21, p22, one, two = (float(part[0, 0]) for part in self._turned(self._length))
+        ramp, start = self.load[:2, first:last, 0].astype(float)
+        y, v = one * start + two * ramp, p12 * start + one * ramp
+        past = [1, -p11 - p22, p11 * p22 - p12 * p21]
+        made = np.zeros((last - first + 1, 2, 1), self._real)
+        made[1:, 0, 0] = lfilter([1, -p22], past, y) + lfilter([0, p12], past, v)
+        made[1:, 1, 0] = lfilter([1, -p11], past, v) + lfilter([0, p21], past, y)
+        return made
+
+
+@pytest.mark.parametrize(
+    ("turn", "damping", "count", "fast"),
+    [(np.pi, 0.02, 3200, False), (0.0056, 0.5, 170_000, True)],
+    ids=["a mode in resonance", "a force that changes long before a mode feels it"],
+)
+def test_what_rounded_times_do_is_bounded(turn, damping, count, fast):
+    """Nothing else counts after many panels, as what they lost is damped away: times are absolute.
+
+    A load of 1, -1, 1, ..., of which a mode turns by `turn` in a panel; displacements, or velocities if it is `fast`.
+    Just after tau = 512 a rounding is as large as it can be.
+    """
+    spacing = fmpq(520_000, 1000 * count + 1)
+    h, ones = float(spacing), np.ones(1)
+    w = float(np.float32(turn / h))
+    until = float(np.float32(h * count))
+    tables = {"frequency": w * ones, "damping": np.float32(damping) * ones, "push": ones, "direct": np.zeros(3)}
+    tables |= {"moved": ones * (not fast), "moving": ones * fast, "kind": np.zeros(count, int), "length": h * ones}
+    tables |= {"time": h * np.arange(count + 1), "slope": np.zeros(1)}
+    tables["sample"] = np.array([0.0, *[1.0, -1.0] * (count // 2)])
+    taus = np.linspace(until - 12 * h, until, 2000, dtype=np.float32)
+    exact, made = (OneMode(tables, {"loads": 1}, until, real) for real in (np.float64, np.float32))
+    wrong = np.abs(made.evaluate(taus) - exact.evaluate(taus)).max()
+    one = np.ones((1, 1))
+    system = ModalSystem(
+        w * ones, tables["damping"], one, one * (not fast), one * fast, tables["direct"].reshape(1, 1, 3)
+    )
+    rows = [(fmpq(0),), *[(fmpq(1),), (fmpq(-1),)] * (count // 2)]
+    loads = LinearLoads(tuple(spacing * k for k in range(count + 1)), tuple(rows), (fmpq(0),))
+    (bound,) = rounding.rounded(system, loads, made, until, SINGLE).errors
+    assert wrong <= bound <= 15 * wrong
 
 
 @pytest.mark.parametrize(

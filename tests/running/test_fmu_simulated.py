@@ -246,14 +246,36 @@ def test_what_a_load_does_at_once_is_seen_at_once(tmp_path):
         instance.end()
 
 
-def test_a_jump_inside_of_a_panel_is_told_once(gears):
+def test_a_jump_inside_of_a_panel_is_exact(gears):
     instance = Instance(*gears).begin({"load@M1": 1.0})
     instance.step(0.0, 0.3)
-    assert instance.get(["lost"])[0] < 1e-12
     instance.put({"load@M1": -1.0})
-    for k in range(5):
-        instance.step(0.3 + k / 2, 0.5)
-    assert instance.get(["lost"])[0] > 1e-7
+    found, times = [], [0.3 + k / 2 for k in range(1, 6)]
+    for tau in times:
+        instance.step(tau - 0.5, 0.5)
+        found.append(instance.get(OUTPUTS))
+    true = GEARS.with_({"load": [{"body": 1, "times": [0, Fraction(0.3)], "steps": [1, -2]}]})
+    assert missed(found, times, true) < 1e-12
+    assert instance.get(["lost"])[0] < 1e-11
+    assert not instance.said
+    instance.end()
+
+
+def test_more_jumps_than_there_is_room_for_are_told_once(gears):
+    """Each at another place of a window."""
+    instance = Instance(*gears).begin()
+    drawn, at = Random(7), 0.0
+    while not instance.said:
+        assert at < 20
+        instance.put({"load@M1": drawn.uniform(-1, 1)})
+        step = drawn.uniform(0.005, 0.015)
+        instance.step(at, step)
+        at += step
+    assert at > 5
+    assert instance.get(["lost"])[0] > 1e-12
+    for k in range(50):
+        instance.put({"load@M1": drawn.uniform(-1, 1)})
+        instance.step(at + k / 64, 1 / 64)
     assert len(instance.said) == 1
     instance.end()
 
@@ -351,6 +373,40 @@ def test_undamped_waves_in_seconds(tmp_path):
     instance.end()
 
 
+@pytest.mark.parametrize("linear", [False, True])
+@pytest.mark.parametrize("milliseconds", ["1", "0.1", "0.618033988749895"])
+def test_samples_in_seconds_meet_the_tolerance(milliseconds, linear, tmp_path):
+    """Steps that have no measure in common with the panels, of which the scene says nothing."""
+    step = Fraction(milliseconds) / 1000
+    samples = [(37 * k * k) % 101 - 50 for k in range(1, 50)]
+    times = [f"{k * step} s" for k in range(len(samples) + 1)]
+    if linear:
+        loads = {"spacing": f"{step} s", "samples": [0, *samples], "unit": "m/s^2"}
+    else:
+        jumps = [later - sooner for sooner, later in pairwise([0, *samples])]
+        loads = {"times": times[:-1], "a": [f"{jump} m/s^2" for jump in jumps], "b": ["0 m/s^3"] * len(jumps)}
+    scene = wavesym.Scene(
+        name="frame",
+        units={"length": "mm"},
+        system={"type": "building", "base": "ground", "storey": STOREYS},
+        load=[{"times": ["0 s"], "a": ["1 m/s^2"], "b": ["0 m/s^3"]}],
+        output={"until": times[-1], "tolerance": "1e-9", "strain": ["1/2"], "displacement": [1], "drift": [1]},
+    )
+    instance = Instance(made(scene, tmp_path, "fmu2"), tmp_path / "extracted").begin(linear=linear)
+    found = []
+    for k, sample in enumerate(samples):
+        instance.put({"load@a": sample})
+        instance.step(float(k * step), float((k + 1) * step) - float(k * step))
+        found.append(instance.get(["strain@1/2", "displacement@1", "drift@1"]))
+    true = scene.with_({"load": [loads]})
+    until = wavesym.evaluator(true).tau_max
+    wrong = missed(found, [min((k + 1) * until / len(found), until) for k in range(len(found))], true)
+    assert wrong < 1e-11
+    assert wrong < instance.get(["lost"])[0] < 1e-8
+    assert not instance.said
+    instance.end()
+
+
 COLLISION = wavesym.Scene.from_toml("collision_m4")
 
 
@@ -392,7 +448,10 @@ FAULTS = {
     "a check": ("check != checksum(kept)", "0"),
     "a number": ('return is_number(value) ? FINE : refuse(s, "an input", value, "a finite number");', "return FINE;"),
     "an order": ('need(s, s->now.phase == STEPPING, "doStep") != FINE', "0"),
-    "a trial": ("memcpy(&s->trial, &s->now.stream, sizeof s->trial);", "stream_start(&s->trial, s->now.parameter);"),
+    "a trial": (
+        "memcpy(&s->trial, &s->now.stream, stream_used(&s->now.stream));",
+        "stream_start(&s->trial, s->now.parameter);",
+    ),
 }
 SEEN_BY = {
     "a time": lambda it: test_steps_of_any_length_give_exact_values(it, "0.1"),

@@ -24,7 +24,7 @@ def model(request):
     with without_compiler() if request.param == "NumPy" else pytest.MonkeyPatch.context() as machine:
         if machine:
             machine.setattr(sets, "FAST", ("-O1",))  # compiled sooner
-        return wavesym.model(SCENE, runtime=["kappa", "load"])
+        yield wavesym.model(SCENE, runtime=["kappa", "load"])
 
 
 def scene(kappa):
@@ -47,6 +47,18 @@ def test_each_set_is_its_scene(model, tau):
     # the largest value of an output may lie between these instants, so the estimate is of something larger
     assert np.all(error <= np.maximum(2 * estimate, 1e-11))
     assert np.all(estimate < 1e-9)
+
+
+@pytest.mark.parametrize("model", ["C"], indirect=True)
+def test_errors_are_within_bounds(model):
+    tau = np.linspace(0, 3, 25)
+    bounds = model.bounds(kappa=[KAPPA[0], -KAPPA[0]])
+    true = np.array(wavesym.evaluator(scene(KAPPA[0]))(tau))
+    error = np.max(np.abs(model.run(kappa=KAPPA[:1], tau=tau)[0] - true), axis=1)
+    # outputs may be larger between these instants
+    assert np.all(error <= 2 * bounds[0] * np.max(np.abs(true), axis=1))
+    assert np.all(bounds[0] < 1e-8)
+    assert np.isnan(bounds[1]).all()
 
 
 def test_extremes_are_those_of_the_exact_outputs(model):

@@ -315,7 +315,7 @@ def test_a_bad_number_is_refused(make, tmp_path):
     "change",
     [
         ("one - (real)(k == 0 ? 2 : 1) * now[i]", "one - (real)(k == 0 ? 1.999 : 1) * now[i]"),
-        ("half * ((k == 1 ? 2 * f[i][0]", "half * ((k == 1 ? 1.999 * f[i][0]"),
+        ("half * ((k == 1 ? (num)(2 * f[i][0])", "half * ((k == 1 ? (num)(1.999 * f[i][0])"),
         ("add_series(slope->rates", "if (0) add_series(slope->rates"),
         ("gather(m->waves, NULL, slope", "if (0) gather(m->waves, NULL, slope"),
     ],

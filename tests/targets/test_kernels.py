@@ -12,6 +12,7 @@ from tests.support.generated import assemble
 from wavesym.programs.choice import choose
 from wavesym.running.toolchain import CompilerError, at_hand, compiler
 from wavesym.scene import lower
+from wavesym.targets.c.tables import tables_text
 
 C = Path(__file__).parents[2] / "templates" / "c"
 KERNELS = sorted(path.relative_to(C).as_posix() for path in C.rglob("*.c"))
@@ -52,15 +53,24 @@ def test_a_broken_kernel_is_seen(kernel, right, wrong, tmp_path):
 
 
 @pytest.mark.parametrize("of", SOURCES, ids="-".join)
-def test_tables_are_declared_as_they_are_written(of):
-    """So that what a compiler says of a kernel holds for programs; and a program writes all tables that it has."""
+def test_a_program_writes_all_tables_that_it_has(of):
     made = source(*of)
-    text = made.made[f"{made.name}.c"]
-    written = set(re.findall(r"^static const (int|real) (\w+)\[\]", text, re.MULTILINE))
-    declared = re.findall(r"^extern const (int|real) (\w+)\[\];", (C / of[0] / "tables.h").read_text(), re.MULTILINE)
-    assert written == set(declared)
+    written = set(re.findall(r"^static const (?:int|real) (\w+)\[\]", made.made[f"{made.name}.c"], re.MULTILINE))
     of_program = assemble(choose(lower(scene(made.name, "1e-2")), *of).evaluator).tables
-    assert {name for _, name in written} == of_program.keys() - {"point"}  # which the header declares
+    assert written == of_program.keys() - {"point"}  # which the header declares
+
+
+def test_tables_are_written_as_they_are_declared():
+    """In order, with the comments above those that there are."""
+    values = {"steps": ("1, 2,", "3"), "ring": ("0",), "track": ("7",)}
+    first, second = tables_text("rings/tables.h", values)
+    assert first.startswith("/* tracks: how many windows later it arrives,")
+    assert "static const int steps[] = {\n    1, 2,\n    3\n};\n\nstatic const int ring[] = {\n    0\n};\n" in first
+    assert first.endswith("and delays. */\nstatic const int track[] = {\n    7\n};\n")
+    assert first.count("/*") == 2
+    assert second == ""
+    (lanes,) = tables_text("modes/tables.h", {"moved_row": ("0",)}, {"LANES": "4"})
+    assert lanes.startswith("/* The outputs that y counts in; 4 of them at a time,")
 
 
 @pytest.mark.parametrize("of", SOURCES, ids="-".join)

@@ -183,7 +183,7 @@ def test_a_stream_says_what_it_is(tmp_path):
 
 SHAKEN = """
 name = "shaken"
-system = { type = "building", m = 3, kappa = ["1/4", "1/5", "1/6", 1], base = "ground", damping = [0.05, 1.2] }
+system = { type = "building", m = 3, kappa = ["1/4", "1/5", "1/6", 1], base = "ground", damping = [0.05, "120 %"] }
 load = [{ spacing = "7/3", samples = [0, 1, -2, 0.5] }]
 output = { until = 30, tolerance = 1e-4, strain = [0], acceleration = [3] }
 """

@@ -89,9 +89,8 @@ WRONG = [
 ROUGH, CUT = WRONG[3], WRONG[-1]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("case", ["building", "drive"])
-@pytest.mark.parametrize("change", WRONG)
+@pytest.mark.parametrize("case", ["building", pytest.param("drive", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("change", [WRONG[0], *(pytest.param(change, marks=pytest.mark.slow) for change in WRONG[1:])])
 def test_what_is_computed_wrong_is_in_the_bound(change, case, tmp_path):
     scene, numbers = {"building": (BUILDING, CASES["building"][1]), "drive": (DRIVE, CASES["drive"][1])}[case]
     made = BuiltModel(scene, list(numbers), tmp_path, [change])
@@ -100,7 +99,6 @@ def test_what_is_computed_wrong_is_in_the_bound(change, case, tmp_path):
     assert np.all(bound >= wrong)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "changes",
     [

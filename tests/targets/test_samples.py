@@ -1,6 +1,7 @@
 """`sample` of pieces against `eval`: the same instants, the same pieces and, without contraction, the same bits."""
 
 import ctypes
+import platform
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 
 import wavesym
 from tests.support.generated import files
+from wavesym.lab.timing import least
 from wavesym.running.native import library
 from wavesym.scene import lower
 
@@ -40,7 +42,9 @@ GRIDS = (
     (0.0, float("inf")),
 )
 BUILDS = [
-    ("-Os", "-ffp-contract=off"),  # one by one
+    ("-Os", "-DSAMPLED_PLAIN", "-ffp-contract=off"),  # one by one
+    ("-Os", "-ffp-contract=off"),  # in runs, of which nothing is known ahead
+    pytest.param(("-O2", "-DSAMPLED_PLAIN", "-ffp-contract=off"), marks=pytest.mark.slow),  # in runs of plain numbers
     pytest.param(("-O2", "-ffp-contract=off"), marks=pytest.mark.slow),  # the narrowest vectors
     pytest.param(("-O3", "-march=native", "-ffp-contract=off"), marks=pytest.mark.slow),
     ("-O3", "-march=native", "-ffp-contract=fast"),
@@ -105,6 +109,20 @@ def test_long_runs_have_the_bits_of_single_values(made, flags):
         expected = evaluated(loaded, instants(tau0, dtau, 5999).tolist(), 3)
         _, found = sampled(loaded, tau0, dtau, 5999, 3)
         np.testing.assert_array_equal(found, expected, f"{tau0} {dtau}")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(platform.machine() not in {"x86_64", "AMD64", "aarch64"}, reason="vectors are not known here")
+def test_small_code_is_not_much_slower(made):
+    """Eight times as slow where samples were computed one by one."""
+
+    def timed(*flags):
+        call, out = built(made, *flags).sampled_sample, np.empty(3 * 10_000)
+        call.argtypes = [ctypes.c_double, ctypes.c_double, ctypes.c_size_t, DOUBLES]
+        return lambda: call(0.0, UNTIL / 10_000, 10_000, out.ctypes.data_as(DOUBLES))
+
+    usual, small = least([timed("-O2"), timed("-Os")])
+    assert small < 2 * usual
 
 
 @given(data=st.data())

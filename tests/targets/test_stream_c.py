@@ -1,4 +1,4 @@
-"""Loads given sample by sample: exact where straight on panels; where not, an estimate that is near the truth.
+"""Loads given sample by sample: exact where they change; where there is no room for that, a bound of what is lost.
 
 What is right comes from the exact program of the same scene, whose loads are known in advance.
 """
@@ -106,7 +106,7 @@ def test_what_is_straight_on_panels_is_exact(case):
     ran = run(built(scene), [row[:] for row in JUMPS[: len(scene.load)]], PANEL, Fraction(5), Fraction(1, 29))
     assert max(ran.status) == 0
     assert np.max(missed(ran, scene)) < 1e-12
-    assert max(ran.lost) < 1e-12
+    assert ran.lost[-1] < 1e-10  # worst cases of all steps, added up
 
 
 @cases("base force")
@@ -121,32 +121,37 @@ def test_a_step_may_be_many_panels_long(case):
 @cases("drive")
 @pytest.mark.parametrize("place", [Fraction(1, 2), pytest.param(Fraction(1, 50), marks=pytest.mark.slow)])
 def test_the_alarm_is_given_when_a_kink_is_lost_and_not_before(case, place):
-    """A jump inside of a panel: lost is what is lost, within a factor, and what comes before is exact."""
+    """A jump inside of a panel, no room for it: lost is no less than what is lost, and what comes before is exact."""
     scene, places = CASES[case]
     until, late = Fraction(3), 9 * PANEL + place * PANEL
     names = ("a", "b") if scene.system.type == "building" else ("steps", "ramps")
     table = {"times": [0, late], names[0]: [1, -2], names[1]: [0, 0]}
     scene = scene.with_({"load": [at | table for at in places]})
-    stream = built(scene).start()
-    stream.step(0.0, [1.0] * len(places))
-    status, _ = stream.step(float(late), [1.0] * len(places))
-    assert status == 0
-    assert stream.lost < 1e-13
-    status, _ = stream.step(0.0, [-1.0] * len(places))
-    estimate = stream.lost
-    tau, found, step = float(late), [], 1 / 97
-    taus = []
-    while tau + step < until:
-        status, out = stream.step(step, [-1.0] * len(places))
-        tau += step
-        taus.append(tau)
-        found.append(out)
-    true = wavesym.evaluator(scene)(taus)
-    largest = np.max(np.abs(true), axis=1)
-    error = np.max(np.max(np.abs(np.array(found).T - true), axis=1) / np.where(largest > 0, largest, 1))
-    assert status == 2
-    assert estimate > 1e-6
-    assert error / 10 < estimate < 40 * error
+    told = []
+    for room in (0, None):
+        stream = built(scene, room=room).start()
+        stream.step(0.0, [1.0] * len(places))
+        status, _ = stream.step(float(late), [1.0] * len(places))
+        assert status == 0
+        assert stream.lost < 1e-10
+        status, _ = stream.step(0.0, [-1.0] * len(places))
+        tau, found, step = float(late), [], 1 / 97.3  # off the fronts
+        taus = []
+        while tau + step < until:
+            last, out = stream.step(step, [-1.0] * len(places))
+            tau += step
+            taus.append(tau)
+            found.append(out)
+        true = wavesym.evaluator(scene)(taus)
+        largest = np.max(np.abs(true), axis=1)
+        error = np.max(np.max(np.abs(np.array(found).T - true), axis=1) / np.where(largest > 0, largest, 1))
+        told.append((status, last, stream.lost, error))
+    (at_once, _, lost, error), (_, fine, spare, exact) = told
+    assert at_once == 2
+    assert 1e-6 < error < lost < 10_000 * error
+    assert fine == 0
+    assert exact < 1e-12
+    assert spare < 1e-10
 
 
 def test_what_is_lost_beyond_the_horizon_is_seen():
@@ -167,11 +172,9 @@ def test_what_is_lost_beyond_the_horizon_is_seen():
     error = np.max(np.abs(np.array(found).T - true) / np.max(np.abs(true), axis=1, keepdims=True), axis=0)
     assert max(status[:6]) == 0
     assert status[-1] == 2
-    first = status.index(2)
-    assert lost[first - 1] <= 1e-12 < lost[first]
-    assert error[first - 1] < 1e-11
-    late = error[first:]
-    assert np.max(late) < 20 * lost[-1] < 400 * np.max(late)
+    assert error[status.index(2) - 1] < 1e-11
+    assert np.all(np.maximum.accumulate(error) <= lost)
+    assert lost[-1] < 3000 * np.max(error)
 
 
 TIGHT = "1e-12"
@@ -277,14 +280,8 @@ REFUSED = {
     ),
     "step": ({"step": Fraction(1, 8)}, "drive_m1", "1/8 given without --stream"),
     "modes": ({"stream": True, "step": Fraction(1, 8), "evaluator": "modes"}, "drive_m1", "1/8 given with --evaluator"),
-    "short": (
-        {"stream": True, "step": Fraction(1, 5000)},
-        "drive_m1",
-        "steps of 1/5000 are edges of 5000 panels in a window of 1, at most 1024 expected",
-    ),
     "beyond": ({"stream": True}, "beyond", "output: a stream needs numbers beyond the range of double precision"),
     "nothing left": ({"stream": True}, "weak", "rounding may leave nothing of strain@0.5"),
-    "near": ({"stream": True}, "near", "strain@1/3000 hears a loaded node after 1/3000, which takes 3000 panels"),
 }
 BOUNCING = {"type": "chain", "parts": [{"mass": 1, "velocity": 1, "name": "a"}, "contact", {"rod": 1}, "fixed"]}
 SCENES = {
@@ -292,7 +289,6 @@ SCENES = {
     "damped": GEARS.with_({"system.damping": 0.05, "load": [HELD]}),
     "beyond": STEPPED.with_({"system.kappa": ["1e200"]}),
     "weak": STEPPED.with_({"system.kappa": ["1e-30"], "output.strain": ["0.5"]}),
-    "near": STEPPED.with_({"output.strain": ["1/3000"]}),
     "drive_m1": STEPPED,
 }
 
@@ -376,17 +372,21 @@ def test_built_in_scenes_test_themselves_in_c_and_cpp(name, precision, tmp_path)
 
 
 BREAKS = {
-    "what arrives": ("slots[arrive[port]] - 1), SIZE);", "slots[arrive[port]] - 2), SIZE);"),
-    "a state": ("x[k] += own[k];", ""),
-    "a force": ("s[3 * force] = state->force[force];", "s[3 * force] = 0;"),
-    "a power": ("(length / (real)(power + 1))", "(length / (real)(power + 2))"),
-    "an instant": ("instant[k] <= from + length", "instant[k] < from"),
-    "what is sent": ("add(wave_sent(state, send[port]), ratio[port], c, SIZE);", ""),
-    "a jump": ("            press(state, load);\n        }", "        }"),
+    "what arrives": ("slot_of(state, number, slots[number] - 1)", "slot_of(state, number, slots[number] - 2)"),
+    "what arrives later": ("breakpoint, number, entries[number] - 1)", "breakpoint, number, 0)"),
+    "a state": ("            x[k] += found[points * SIZE + k];", ""),
+    "a state inside": ("gain_state(state, joint, found, until_end);", ""),
+    "a state later": ("gain_state(state, joint, found, panel - state->place[breakpoint]);", ""),
+    "a force": ("constant += strength[force * LOADS + j] * load[j];", ""),
+    "what is sent": ("add(out, ratio[port], breakpoint == NONE ? instead : velocity, SIZE);", ""),
+    "what follows": ("    follow(state);\n}", "}"),
+    "a place": ("state->place[found] = state->time;", "state->place[found] = 0;"),
+    "a jump": ("jump[j] = brief ? load[j] - straight : (real)0;", "jump[j] = 0;"),
     "a ring": ("state->at[k] + 1 : 0", "state->at[k] + 1 : 1"),
-    "an integral": ("state->total[output] += gain[k] * integral(state, k, panel);", ""),
-    "a moment of rest": ("state->moved[point] = 0;\n        }\n        for", "}\n        for"),
-    "what is read at once": ("own_ratio[k] * (summed[k] ?", "0 * (summed[k] ?"),
+    "a ring of windows": ("state->turn[k] + 1 : 0", "state->turn[k] : 0"),
+    "an integral": ("state->total[output] += gain[k] * gathered_since(state, k, panel);", ""),
+    "an integral inside": ("sum += integral(state->waves[slot_after(state, after, number, windows)], begin, end);", ""),
+    "a value inside": ("sum += series(state->waves[slot_after(state, after, number, windows)], u);", ""),
     "a step taken": ("dtau >= shortest && dtau <= longest", "dtau == dtau"),
 }
 
@@ -394,6 +394,7 @@ BREAKS = {
 @pytest.mark.slow
 @pytest.mark.parametrize("fault", BREAKS)
 def test_a_broken_stream_is_seen_by_its_selftest(fault, tmp_path):
+    """Loads jump inside of panels."""
     wavesym.generate(GEARS.with_({"load": [HELD]}), tmp_path, stream=True)
     source = tmp_path / "gears.c"
     right, wrong = BREAKS[fault]
@@ -458,7 +459,7 @@ CORTEX = ("-target", "thumb-freestanding-eabihf", "-mcpu=cortex_m4+vfp4d16sp", "
 def compact(name, precision, folder):
     """Bytes of code and tables, and of a state, for a Cortex-M4F; and what is called."""
     (zig,) = (each for each in at_hand(()) if each.name == "ziglang")
-    wavesym.generate(wavesym.Scene.from_toml(name), folder, precision=precision, stream=True)
+    wavesym.generate(wavesym.Scene.from_toml(name), folder, precision=precision, stream=True, step=Fraction(1, 8))
     (folder / "math.h").write_text('#define NAN __builtin_nanf("")\n')
     (folder / "state.c").write_text(f'#include "{name}.h"\nchar state[sizeof({name}_state)];\n')
     for file in (name, "state"):
@@ -482,18 +483,6 @@ def test_the_sizes_on_a_small_machine_are_those_of_the_page(tmp_path):
         assert kept == int(state), (name, precision)
         if precision == "single":
             assert not [symbol for symbol in called if symbol.startswith("__aeabi_d")]
-
-
-@pytest.mark.parametrize("runtime", [(), pytest.param(("kappa", "inertia"), marks=pytest.mark.slow)])
-def test_tables_are_declared_as_they_are_written(runtime, tmp_path):
-    wavesym.generate(STEPPED, tmp_path, stream=True, runtime=runtime)
-    text = (tmp_path / "drive_m1.c").read_text()
-    written = set(re.findall(r"^static const (int|real) (\w+)\[\]", text, re.MULTILINE))
-    tables = Path(__file__).parents[2] / "templates" / "c" / "stream/tables.h"
-    compiler().run(["-E", *(["-DNAME_RUNTIME"] if runtime else []), str(tables), "-o", "read.h"], tmp_path)
-    declared = re.findall(r"^extern const (int|real) (\w+)\[\];", (tmp_path / "read.h").read_text(), re.MULTILINE)
-    assert written == set(declared)
-    assert not re.search(r"\b(name|NAME)_|tables\.h", text)
 
 
 @pytest.mark.slow
@@ -548,8 +537,10 @@ PULSED = wavesym.Scene(
 
 @pytest.mark.slow
 def test_the_alarm_does_not_wait_for_the_first_wave():
-    """At rest so far, a moment jumps inside of a panel and goes back: nothing has been sent, and much is lost."""
-    stream = built(PULSED).start()
+    """At rest so far, a moment jumps inside of a panel and goes back: nothing has been sent, and without room much is
+    lost.
+    """
+    stream = built(PULSED, room=0).start()
     assert stream.step(9 / 64, [0.0, 0.0])[0] == 0
     for dtau, load in ((0.0, 100.0), *[(1 / 512, 0.0)] * 100):
         assert stream.step(dtau, [0.0, load])[0] == 2
@@ -557,8 +548,8 @@ def test_the_alarm_does_not_wait_for_the_first_wave():
     # and it stays, though so much larger a wave follows that what was lost is little beside it
     stream.step(20 * 0.125 - 9 / 64 - 100 / 512, [0.0, 0.0])
     stream.step(0.0, [1e12, 0.0])
-    assert stream.step(1.0, [1e12, 0.0])[0] == 2
-    assert stream.lost < 1e-10
+    assert stream.step(20.0, [1e12, 0.0])[0] == 2
+    assert stream.lost < 1e-8
 
 
 @pytest.mark.slow
@@ -575,13 +566,13 @@ def test_a_clock_that_is_rounded_raises_no_alarm(late):
 @pytest.mark.slow
 @pytest.mark.parametrize(("precision", "powers"), [("double", (-900, -540, 540)), ("single", (-90, -70, 70))])
 def test_what_is_lost_does_not_depend_on_units(precision, powers):
-    """Loads that change inside of panels, and by chance so that little is lost; powers of 2 are exact."""
-    made = built(PULSED.with_({"output.tolerance": "1e-4"}), precision)
+    """Loads that change inside of panels, with no room for that; powers of 2 are exact."""
+    made = built(PULSED.with_({"output.tolerance": "1e-4"}), precision, room=0)
 
     def statuses(power):
         stream = made.start()
-        loads = [[np.ldexp(k % 3 - 1, power), np.ldexp(1, power)] for k in range(30)]
-        told = [stream.step(1e-4 if k < 20 else 0.1, load)[0] for k, load in enumerate(loads)]
+        loads = [[0.0, 0.0]] * 3 + [[np.ldexp(k % 3 - 1, power), np.ldexp(1, power)] for k in range(30)]
+        told = [stream.step(1e-4 if 3 <= k < 23 else 0.1, load)[0] for k, load in enumerate(loads)]
         return told, stream.lost
 
     told, lost = statuses(0)

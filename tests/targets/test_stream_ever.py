@@ -1,4 +1,4 @@
-"""Streams for ever: 10^9 steps, leapt over and counted; and the alarm, on both sides of what may be lost."""
+"""Streams for ever: 10^9 windows, leapt over, and steps counted; and the alarm, on both sides of what may be lost."""
 
 import ctypes
 from fractions import Fraction
@@ -23,29 +23,41 @@ SCENE = wavesym.Scene(
 )
 FIELDS = """
 size_t rig_size(void);
-void rig_leap(stream *state, const stream *from, long long panels);
+void rig_leap(stream *state, const stream *from, long long windows);
 void rig_tick(stream *state, double dtau, long long steps);
+int rig_instants(const stream *state);
 
 size_t rig_size(void)
 {
     return sizeof(stream);
 }
 
-/* The same waves, so many panels later: rings have gone around, and with them the panels of a window. */
-void rig_leap(stream *state, const stream *from, long long panels)
+int rig_instants(const stream *state)
+{
+    return state->breakpoints;
+}
+
+/* The same waves, so many windows later: rings have gone around. */
+void rig_leap(stream *state, const stream *from, long long windows)
 {
     *state = *from;
-    state->phase = (int)((from->phase + panels) % RIG_PANELS);
-    for (int k = 0; k < RIG_PANELS; ++k) {
-        state->missed[(k + panels) % RIG_PANELS] = from->missed[k];
-    }
     for (int track = 0; track < TRACKS; ++track) {
-        const int turn = (int)(panels % slots[track]);
-        state->at[track] = (from->at[track] + turn) % slots[track];
+        const int shift = (int)(windows % slots[track] * RIG_PANELS % slots[track]);
+        const int later = (int)(windows % entries[track]);
+        state->at[track] = (from->at[track] + shift) % slots[track];
+        state->turn[track] = (from->turn[track] + later) % entries[track];
         for (int slot = 0; slot < slots[track]; ++slot) {
             for (int power = 0; power < SIZE; ++power) {
-                state->waves[first_slot[track] + (slot + turn) % slots[track]][power] =
+                state->waves[first_slot[track] + (slot + shift) % slots[track]][power] =
                     from->waves[first_slot[track] + slot][power];
+            }
+        }
+        for (int breakpoint = 0; breakpoint < from->breakpoints; ++breakpoint) {
+            const int first = RIG_SLOTS + breakpoint * ENTRIES + first_entry[track];
+            for (int slot = 0; slot < entries[track]; ++slot) {
+                for (int power = 0; power < SIZE; ++power) {
+                    state->waves[first + (slot + later) % entries[track]][power] = from->waves[first + slot][power];
+                }
             }
         }
     }
@@ -57,7 +69,7 @@ void rig_tick(stream *state, double dtau, long long steps)
     pair then = {state->time, state->time_low};
     for (; steps > 0; --steps) {
         then = plus(then, dtau, 0);
-        while (then.high > panel || (!(then.high < panel) && then.low >= panel_low)) {
+        while ((then.high - panel) + (then.low - panel_low) >= 0) {
             then = plus(then, -panel, -panel_low);
         }
     }
@@ -78,6 +90,7 @@ class Open:
         self.c.rig_step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p]
         self.c.rig_leap.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_longlong]
         self.c.rig_tick.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_longlong]
+        self.c.rig_instants.argtypes = [ctypes.c_void_p]
 
     def state(self):
         return np.zeros(self.c.rig_size(), np.uint8)
@@ -92,9 +105,9 @@ class Open:
         status = self.c.rig_step(address(state), dtau, address(np.array([load])), address(out))
         return status, out
 
-    def leapt(self, state, panels):
+    def leapt(self, state, windows):
         made = self.state()
-        self.c.rig_leap(address(made), address(state), panels)
+        self.c.rig_leap(address(made), address(state), windows)
         return made
 
 
@@ -107,17 +120,26 @@ def driven(model, state, steps, begin=0):
     return np.array(found)
 
 
-def differs(model, panels):
-    """Whether a stream that has leapt over so many panels goes on in another way."""
+def differs(model, windows):
+    """Whether a stream that has leapt over so many windows goes on in another way."""
     state = model.started()
     driven(model, state, 70)
-    later = model.leapt(state, panels)
+    later = model.leapt(state, windows)
     return not np.array_equal(driven(model, state, 200, 70), driven(model, later, 200, 70))
 
 
-@pytest.mark.parametrize("panels", [1, BILLION - 1, 10**18 + 3])
-def test_a_billion_panels_later_every_bit_is_the_same(panels):
-    assert not differs(Open(), panels)
+@pytest.mark.parametrize("windows", [1, BILLION - 1, 10**18 + 3])
+def test_a_billion_windows_later_every_bit_is_the_same(windows):
+    assert not differs(Open(), windows)
+
+
+def test_instants_that_rounding_moves_are_one():
+    """0.1 as a double is not a tenth: after 50 000 steps instants have moved by 3e-13, and are others twice."""
+    model = Open()
+    state = model.started()
+    for k in range(50_000):
+        model.step(state, 0.1, float(k % 7))
+    assert 8 <= model.c.rig_instants(address(state)) <= 24
 
 
 @pytest.mark.slow
@@ -126,6 +148,7 @@ def test_a_billion_panels_later_every_bit_is_the_same(panels):
     [
         ("state->at[k] + 1 < slots[k]", "state->at[k] + 1 < slots[k] - (k == 0)"),
         ("const int slot = state->at[number] - panels;", "const int slot = (state->at[number] - panels + 1) % 2;"),
+        ("const int slot = state->turn[number] - windows;", "const int slot = (state->turn[number] + 1) % 2;"),
     ],
 )
 def test_a_leap_would_see_a_ring_that_goes_wrong(right, wrong):
@@ -148,33 +171,30 @@ LOOSE = SCENE.with_({"output.tolerance": "1e-3", "output.until": 6, "output.disp
 LATE = Fraction(33, 16)  # in the middle of a panel
 
 
-def jumped(size):
-    """A moment of 1 that jumps by so much: the status, the most that is said to be lost, and the true error."""
-    stream = built(LOOSE).start()
+def jumped(model, size):
+    """A moment of 1 that jumps by so much: the status, what is said to be lost in the end, and the true error."""
+    stream = model.start()
     codes = [stream.step(0.0, [1.0])[0], stream.step(float(LATE), [1.0])[0], stream.step(0.0, [1.0 + size])[0]]
     taus = [float(LATE) + k / 64 for k in range(1, 150)]
-    found, lost = [], stream.lost
+    found = []
     for _ in taus:
         code, out = stream.step(1 / 64, [1.0 + size])
         codes.append(code)
         found.append(out)
-        lost = max(lost, stream.lost)  # less once larger waves follow
     load = {"body": 1, "times": [0, str(LATE)], "steps": [1, Fraction(size)]}
     true = wavesym.evaluator(LOOSE.with_({"load": [load]}))(taus)
     error = np.max(np.abs(np.array(found).T - true) / np.max(np.abs(true), axis=1, keepdims=True))
-    return max(codes), lost, error
+    return max(codes), stream.lost, error
 
 
 def test_the_alarm_is_on_the_right_side_of_the_tolerance():
-    """Of jumps from small to large the first ones lose less, and are silent; the others lose it, and are told."""
-    told = [jumped(2.0**power) for power in range(-5, 4, 2)]
+    """Where there is room for no instant: of jumps from small to large the first ones lose less, and are silent; the
+    others may lose it, and are told."""
+    model = built(LOOSE, room=0)
+    told = [jumped(model, 2.0**power) for power in range(-11, 4, 2)]
     alarms = [status == 2 for status, _, _ in told]
     assert alarms == sorted(alarms)
     assert {status for status, _, _ in told} == {0, 2}
     for status, lost, error in told:
-        assert (status == 2) == (lost > 1e-3)
-        assert lost / 40 < error < 10 * lost
-    silent = max(error for status, _, error in told if status == 0)
-    alarming = min(error for status, _, error in told if status == 2)
-    assert silent < 10 * 1e-3
-    assert alarming > 1e-3 / 40
+        assert error < lost < 1000 * error
+        assert status == 2 or error < 1e-3

@@ -1,5 +1,6 @@
 """A stream whose parameters come when it starts: held against the exact values of the scene that has them."""
 
+import re
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -18,6 +19,8 @@ from wavesym.compiler import check, stream_program
 from wavesym.errors import WavesymError
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.request import Request
+from wavesym.programs.runtime.request import NAMES as FIELDS
+from wavesym.programs.runtime.request import POSITIVE
 from wavesym.programs.stream.free import QUICKER, free_stream
 from wavesym.programs.stream.plan import inputs_of
 from wavesym.programs.stream.tables import StreamTables
@@ -115,6 +118,13 @@ def test_the_tables_are_those_of_balls_but_for_rounding(gears, program):
     for n, (first, end) in enumerate(pairwise(program.tables["answer"])):
         own = np.array(right["matrix"][right["answer"][n] :][: end - first])
         assert np.max(np.abs(matrix[first:end] - own)) <= 2.0**-50 * np.max(np.abs(own))
+
+
+def test_no_table_is_called_as_a_parameter_is(program):
+    """Tables are macros in C, which would take its name from a field."""
+    tables = re.findall(r"^#define (\w+) state->made\.", sources(program, "c")["gears.c"], re.M)
+    assert {"law", "gain", "matrix", "growth"} < set(tables)
+    assert not {*tables} & {*POSITIVE, *FIELDS}
 
 
 GROUND, *PARTS = EVERY["parts"]

@@ -31,6 +31,8 @@ _USUAL_TABLES = {"double": "speed", "single": "size"}
 # Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
 _WORTH_TRYING = 50_000
 _LAST = ("modes", "march")
+# seconds for pieces where another program serves
+_OF_MANY = 3
 
 
 class Evaluator(Protocol):
@@ -97,11 +99,13 @@ def choose(
     precision: str = "double",
     windows: int | None = None,
     optimize: str | None = None,
+    *,
+    asked: bool = True,
 ) -> Choice:
     """The evaluator `name` of a model, or with "auto" the best that meets its tolerance.
 
     Best is what takes least work or, where it is to `optimize` "size", has the least tables. Pieces in single precision
-    have small tables unless "speed" is asked for.
+    have small tables unless "speed" is asked for. More may be spent on an evaluator that is `asked` for by its name.
     `windows`: for how many of them a march is driven by hand; WavesymError for another evaluator.
     ToleranceError where none does: it says what can be had. CostError, RangeError where one is asked for that would
     cost too much or need numbers beyond those of its format.
@@ -110,7 +114,7 @@ def choose(
         raise WavesymError(f"--windows goes with --evaluator march, {name} given")
     if name == "auto":
         return best(model, attempts(model, precision, optimize), optimize)
-    only = attempt(model, name, precision, windows, optimize, asked=True)
+    only = attempt(model, name, precision, windows, optimize, asked=asked)
     if only.error:
         raise only.error
     return best(model, (only,), optimize)
@@ -124,9 +128,10 @@ def attempts(model: Model, precision: str = "double", optimize: str | None = Non
     """
     tried: list[Tried] = []
     for kind in ("modes",) if model.damping else MAKERS:
-        if kind in _LAST and any(not one.refusal for one in tried):
+        served = any(not one.refusal for one in tried)
+        if kind in _LAST and served:
             break
-        tried.append(attempt(model, kind, precision, optimize=optimize))
+        tried.append(attempt(model, kind, precision, optimize=optimize, served=served))
     return tuple(tried)
 
 
@@ -138,11 +143,12 @@ def attempt(
     optimize: str | None = None,
     *,
     asked: bool = False,
+    served: bool = False,
 ) -> Tried:
-    """One kind of program tried; more may be spent on one that is `asked` for by its name."""
+    """One kind of program tried; more may be spent on one that is `asked` for by its name, less where one `served`."""
     try:
-        form = MAKERS[kind](model, REALS[precision], asked, windows, optimize or _USUAL_TABLES[precision])
-    except CostError as refusal:
+        form = MAKERS[kind](model, REALS[precision], asked, windows, optimize or _USUAL_TABLES[precision], served)
+    except (CostError, UnservedError) as refusal:
         return Tried(kind, None, str(refusal), refusal)
     except ToleranceError as refusal:
         return Tried(kind, None, str(refusal).partition(f"{kind}: ")[2], refusal)
@@ -180,8 +186,8 @@ def _closed(model: Model, real: Real, asked: bool, *_: object) -> ClosedForm:
     return closed_form(merged, model.horizon(real), real)
 
 
-def _pieces(model: Model, real: Real, asked: bool, windows: int | None, optimize: str) -> Pieces:
-    return pieces(model, real, model.tolerance, optimize)
+def _pieces(model: Model, real: Real, asked: bool, windows: int | None, optimize: str, served: bool) -> Pieces:
+    return pieces(model, real, model.tolerance, optimize, _OF_MANY if served else inf)
 
 
 # modes and marches are loaded where they are tried: most scenes have pieces
@@ -191,7 +197,9 @@ def _modes(model: Model, real: Real, *_: object) -> ModesEvaluator:
     return modes(model, real)
 
 
-def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -> MarchEvaluator | RingMarch | HatMarch:
+def _march(
+    model: Model, real: Real, asked: bool, windows: int | None, *_: object
+) -> MarchEvaluator | RingMarch | HatMarch:
     from wavesym.programs.hats.evaluator import hat_march
     from wavesym.programs.march.evaluator import marched
     from wavesym.programs.rings.evaluator import ring_march
@@ -215,5 +223,5 @@ def _march(model: Model, real: Real, asked: bool, windows: int | None, _: str) -
         return hats
 
 
-Maker: TypeAlias = "Callable[[Model, Real, bool, int | None, str], Made]"
+Maker: TypeAlias = "Callable[[Model, Real, bool, int | None, str, bool], Made]"
 MAKERS: dict[str, Maker] = {"closed": _closed, "pieces": _pieces, "modes": _modes, "march": _march}

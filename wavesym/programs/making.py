@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from wavesym.exact.contacts.collision import contact_ends
 from wavesym.exact.contacts.events import events
+from wavesym.exact.contacts.opening import contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import Made, choose
 from wavesym.programs.program import Program, Provenance
@@ -15,15 +15,17 @@ from wavesym.programs.request import Request
 _USUAL = Request()
 
 
-def make(model: Model, request: Request = _USUAL, *, tested: bool = False) -> Program:
+def make(model: Model, request: Request = _USUAL, *, tested: bool = False, asked: bool = True) -> Program:
     """The program of a model, as `choose` takes it; where it is to be `tested`, with reference values.
+
+    More may be spent on a kind that is `asked` for by its name.
 
     ToleranceError where no evaluator, or not the one asked for, meets the model's tolerance; CostError where the one
     asked for would cost too much.
     """
-    _, form, reason = choose(model, request.evaluator, request.precision, request.windows, request.optimize)
+    _, form, why = choose(model, request.evaluator, request.precision, request.windows, request.optimize, asked=asked)
     happening = events(model, form.real) if model.network.contacts else None
-    provenance = Provenance(model, reason, request.options, contact_ends(model, form.real), happening)
+    provenance = Provenance(model, why, request.options, contact_ends(model, form.real), happening)
     return _made(model, form, provenance, tested)
 
 

@@ -46,10 +46,12 @@ _OFFSETS = 16
 # each.
 _USUAL = (4, 2, 1)
 _SHORTER = (2, 4, 8, 16, 32)
-# A fit at so many bits takes seconds, at twice as many the better part of a minute (the terms double with the bits).
+# A fit of series at so many bits takes seconds, at twice as many the better part of a minute (terms double with bits).
 _MOST_BITS = 1024
-# Pieces times bits: half a minute.
+# Pieces times four times the terms of a series, which are its bits: half a minute.
 _MOST_WORK = 15_000_000
+# Measured: seconds for a stretch of a wave, times its terms to the power of 3/2.
+_MOVED = 4e-7
 # The fastest are taken whose tables are no larger than this.
 _FAST_BYTES = 128 << 10
 # Fast is what takes little time for three calls of `sample`, of so many samples each.
@@ -172,13 +174,15 @@ class Pieces:
         return Program("pieces", self.real, self.tau_max, self.outputs, tables, constants, self.bytes, provenance)
 
 
-def pieces(model: Model, real: Real, tolerance: fmpq, optimize: str = "speed") -> Pieces:
+def pieces(
+    model: Model, real: Real, tolerance: fmpq, optimize: str = "speed", most_seconds: float = math.inf
+) -> Pieces:
     """The pieces of a model in `real` numbers, with degrees for `tolerance`, met or not: see `error_bound`.
 
-    CostError where the tables would be larger than `MOST_BYTES`, or take long to fit.
+    CostError where the tables would be larger than `MOST_BYTES`, or take long to fit, or waves longer than that.
     """
     # no finer than rounding: what is asked for beyond that is not had by more bits or more pieces
-    fits = _Fits(model, real, max(tolerance, real.roundoff / 8))
+    fits = _Fits(model, real, max(tolerance, real.roundoff / 8), most_seconds)
     found = _smallest(fits, tolerance) if optimize == "size" else _fastest(fits, tolerance)
     for shorter in _SHORTER:
         missed = rational(found.error_bound) > tolerance > real.roundoff / 8
@@ -237,7 +241,7 @@ def _smallest(fits: _Fits, tolerance: fmpq) -> Pieces:
 class _Fits:
     """The outputs of a model at the precision that its tolerance needs, and fits to them."""
 
-    def __init__(self, model: Model, real: Real, tolerance: fmpq) -> None:
+    def __init__(self, model: Model, real: Real, tolerance: fmpq, most_seconds: float = math.inf) -> None:
         self._model = model
         self._real = real
         # a little of it is left for printing the bound in two digits, rounded up
@@ -245,11 +249,24 @@ class _Fits:
         self._tau_max = model.horizon(real)
         self._motion = Motion(model, rational(self._tau_max))
         self._bits = self._motion.first_bits
-        if self._bits > _MOST_BITS:
+        if self._bits > self._most_bits:
             raise CostError(
                 f"output.until: {self._bits} bits would be needed for pieces to tau = {self._tau_max:g}, at most "
-                f"{_MOST_BITS} expected (a shorter horizon, or heavier bodies, helps)"
+                f"{self._most_bits} expected ({self._motion.helps} help)"
             )
+        if (seconds := self._motion.stretches * self._motion.terms(self._bits) ** 1.5 * _MOVED) > most_seconds:
+            raise CostError(
+                f"output.until: {self._motion.stretches} stretches in {self._bits} bits would take about {seconds:.0f} "
+                f"s, at most {most_seconds:g} s expected where another program serves (--evaluator pieces helps)"
+            )
+
+    @cached_property
+    def _most_bits(self) -> int:
+        """As many as fit in about the time of a series with `_MOST_BITS`."""
+        most = _MOST_BITS
+        while 2 * most * self._motion.terms(2 * most) <= _MOST_BITS**2 // 4:
+            most *= 2
+        return most
 
     @cached_property
     def _silent(self) -> set[int]:
@@ -263,16 +280,15 @@ class _Fits:
 
         def attempt(bits: int) -> Pieces | None:
             self._bits = bits  # what did for one number of pieces is where the next one starts
-            if self._least(per_unit) * self._bits > _MOST_WORK:
+            if self._least(per_unit) > (most_pieces := _MOST_WORK // (4 * self._motion.terms(bits))):
                 raise CostError(
-                    f"output.until: {self._least(per_unit):.1e} pieces would be fitted with {self._bits} bits, "
-                    f"at most {_MOST_WORK // self._bits:.1e} expected (a shorter horizon, fewer outputs or "
-                    "load times help)"
+                    f"output.until: {self._least(per_unit):.1e} pieces would be fitted with {bits} bits, at most "
+                    f"{most_pieces:.1e} expected (a shorter horizon, fewer outputs or load times help)"
                 )
             return self._fit(per_unit, most, bits)
 
         try:
-            return precise(attempt, self._bits, _MOST_BITS)
+            return precise(attempt, self._bits, self._most_bits)
         except OverflowError:  # of the numbers' format, which costs have nothing to do with
             raise
         except ArithmeticError as error:
@@ -287,15 +303,21 @@ class _Fits:
         """How many pieces there are at least, of all outputs."""
         return sum(
             len(places) * int(sum(((high - low) * per_unit).ceil() for low, high in pairwise(starts)))
-            for starts, places in self._shared.items()
+            for starts, places in self._shared
         )
 
     @cached_property
-    def _shared(self) -> dict[tuple[fmpq, ...], list[int]]:
+    def _shared(self) -> list[tuple[Sequence[fmpq], list[int]]]:
         """The outputs, by where they may jump or bend."""
-        shared: dict[tuple[fmpq, ...], list[int]] = {}
+        shared: list[tuple[Sequence[fmpq], list[int]]] = []
         for k, probe in enumerate(self._motion.probes):
-            shared.setdefault(tuple(self._motion.starts(probe)), []).append(k)
+            starts = self._motion.starts(probe)
+            for known, members in shared:
+                if known == starts:  # which differ early as a rule, and exact numbers are hashed slowly
+                    members.append(k)
+                    break
+            else:
+                shared.append((starts, [k]))
         return shared
 
     def _fit(self, per_unit: int, most: int, bits: int) -> Pieces | None:
@@ -303,7 +325,7 @@ class _Fits:
         grids: list[PieceGrid] = []
         bounds: dict[int, tuple[float, float]] = {}
         size = 0
-        for members in self._shared.values():
+        for _, members in self._shared:
             columns = []
             for k in members:
                 segments = self._motion.segments(probes[k], bits)
@@ -326,7 +348,7 @@ class _Fits:
         self, segments: Sequence[Segment], cuts: _Cuts, bits: int
     ) -> tuple[tuple[float, float], list[tuple[float, ...]]] | None:
         """Bound and largest value of an output, and its powers on every piece; None where so many bits do not do."""
-        if is_zero(segments):
+        if is_zero([segments[place] for place in cuts.places(segments)]):
             return _nothing(cuts)
         if self._motion.vanishes(Balls(segments).sizes(self._motion.until)):
             _, powers = _nothing(cuts)
@@ -372,10 +394,9 @@ def _nothing(cuts: _Cuts) -> tuple[tuple[float, float], list[tuple[float, ...]]]
 
 def _on_pieces(segments: Sequence[Segment], cuts: _Cuts, first: int = 0) -> Iterator[arb_poly]:
     """The output on every piece from the `first` on, in t; what is negligible is in the balls."""
-    starts = [segment.start for segment in segments]
     negligible = max(abs(p[0]).lower() for segment in segments for p in segment.families.values()) * _NEGLIGIBLE
-    for start, centre, half in list(zip(cuts.exact, cuts.middles, cuts.halves, strict=False))[first:]:
-        segment = segments[bisect_right(starts, start) - 1]
+    for place, centre, half in list(zip(cuts.places(segments), cuts.middles, cuts.halves, strict=True))[first:]:
+        segment = segments[place]
         (polynomial,) = segment.families.values()
         yield _shortened(polynomial(arb_poly([arb(centre - segment.start), arb(half)])), negligible)
 
@@ -415,6 +436,11 @@ class _Cuts:
             max(high - middle, middle - low)
             for (low, high), middle in zip(pairwise(self.exact), self.middles, strict=True)
         ]
+
+    def places(self, segments: Sequence[Segment]) -> list[int]:
+        """The segment that each piece is on; one on which no real number lies has none."""
+        starts = [segment.start for segment in segments]
+        return [bisect_right(starts, start) - 1 for start in self.exact[:-1]]
 
     def size(self, piece: int, polynomial: arb_poly) -> arb:
         """The largest of an output's values at both ends of a piece and at its centre, from its `polynomial` in t.

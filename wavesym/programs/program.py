@@ -7,7 +7,7 @@ from functools import cached_property
 from math import ceil
 from typing import TYPE_CHECKING
 
-from wavesym.exact.contacts.collision import ContactEnd
+from wavesym.exact.contacts.opening import ContactEnd
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
 from wavesym.numbers.reals import Real
@@ -102,7 +102,8 @@ class Program:
     `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march,
     modes and a stream, `sources` are the names of loads that it can be given; a march is `whole` where no node was left
     out. Its error is `proved`, or an estimate. Of a stream `direct` has for each output the sources that act on it at
-    once. `numpy_only` says why there is no C of it, and what helps.
+    once. `numpy_only` says why there is no C of it, and what helps. `parts` are what C with parameters at run time has
+    besides values.
     """
 
     kind: str
@@ -121,6 +122,7 @@ class Program:
     laws: RuntimeLaws | None = None
     direct: tuple[tuple[int, ...], ...] = ()
     numpy_only: str = ""
+    parts: tuple[str, ...] = ()
 
     @property
     def evaluator(self) -> str:

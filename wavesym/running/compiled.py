@@ -5,75 +5,141 @@ from __future__ import annotations
 import ctypes
 import re
 import subprocess
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import ModuleType
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from wavesym.running.toolchain import compiler
 
 _WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Wmissing-prototypes", "-Werror")
 FLAGS = ("-std=c99", "-O2", *_WARNINGS)
+_WHERE, _MANY = ctypes.c_void_p, ctypes.c_size_t
 
 
 class Compiled:
-    """The library and the self-test made from NAME.h, NAME.c and NAME_selftest.c; usable while `compiled` is open."""
+    """The library and the self-test made from NAME.h, NAME.c and NAME_selftest.c; usable while `compiled` is open.
 
-    def __init__(self, library: Path, selftest: Path, name: str, outputs: int, longest: int) -> None:
-        loaded = ctypes.CDLL(str(library))
-        doubles = ctypes.POINTER(ctypes.c_double)
-        self.streams = not hasattr(loaded, f"{name}_eval")
-        """Whether it takes loads sample by sample: it has no values at any tau then."""
-        if not self.streams:
-            self._eval = getattr(loaded, f"{name}_eval")
-            self._eval.argtypes = [ctypes.c_double, doubles]
-            self._sample = getattr(loaded, f"{name}_sample")
-            self._sample.argtypes = [ctypes.c_double, ctypes.c_double, ctypes.c_size_t, doubles]
-        self._selftest = selftest
-        self._outputs = outputs
-        names = (ctypes.c_char * longest * outputs).in_dll(loaded, f"{name}_output_name")
+    A library has values at any tau, or a `model` of parameters, which has them, or a `state` that takes loads step by
+    step. Its numbers are of the type `real`.
+    """
+
+    def __init__(
+        self, library: Path, selftest: Path, name: str, outputs: int, longest: int, real: type[np.floating[Any]]
+    ) -> None:
+        self._loaded, self._name = ctypes.CDLL(str(library)), name
+        self._selftest, self.outputs = selftest, outputs
+        self.real = real
+        self.number = ctypes.c_float if real is np.float32 else ctypes.c_double
+        self.streams = not hasattr(self._loaded, f"{name}_eval")
+        """Whether it has no values at any tau by itself."""
+        names = (ctypes.c_char * longest * outputs).in_dll(self._loaded, f"{name}_output_name")
         self.names = tuple(bytes(row.value).decode() for row in names)
         """The names of the outputs, in order."""
 
     def __call__(self, taus: Sequence[float]) -> NDArray[np.float64]:
         """All outputs at taus by NAME_eval: shape (outputs, len(taus)), NaN out of range."""
-        columns = np.empty((len(taus), self._outputs))
-        for tau, column in zip(taus, columns, strict=True):
-            self._eval(tau, _pointer(column))
-        return np.ascontiguousarray(columns.T)
+        return self._values(self.function("eval", [self.number, _WHERE]), taus)
 
     def sample(self, tau0: float, dtau: float, count: int) -> tuple[int, NDArray[np.float64]]:
         """What NAME_sample returns, and all outputs at tau0 + k dtau: shape (outputs, count), NaN out of range."""
-        out = np.empty((self._outputs, count))
-        return int(self._sample(tau0, dtau, count, _pointer(out))), out
+        out = np.empty((self.outputs, count), self.real)
+        sample = self.function("sample", [self.number, self.number, _MANY, _WHERE])
+        return int(sample(tau0, dtau, count, out.ctypes.data)), out.astype(np.float64)
+
+    def model(self, parameters: ArrayLike, taus: Sequence[float]) -> tuple[int, float, NDArray[np.float64]]:
+        """What NAME_build returns for parameters, in the order of the struct, its estimate, and all outputs at taus."""
+        given, model = np.array(parameters, self.real), self._memory("model")
+        status = int(self.function("build", [_WHERE, _WHERE])(model.ctypes.data, given.ctypes.data))
+        estimate = self.function("error_estimate", [_WHERE], self.number)
+        values = self.function("model_eval", [_WHERE, self.number, _WHERE])
+        return status, float(estimate(model.ctypes.data)), self._values(partial(values, model.ctypes.data), taus)
+
+    def stream(self, parameters: ArrayLike | None = None) -> CompiledStream:
+        """A state at tau = 0, built of parameters, in the order of the struct, where there are some."""
+        state = self._memory("state")
+        if parameters is None:
+            self.function("init", [_WHERE])(state.ctypes.data)
+        else:
+            given = np.array(parameters, self.real)
+            self.function("build", [_WHERE, _WHERE])(state.ctypes.data, given.ctypes.data)
+        return CompiledStream(self, state)
 
     def selftest(self) -> int:
         """The exit status of the self-test: 0 where the program on this machine gives the values it should."""
         return subprocess.run([self._selftest], capture_output=True, check=False).returncode
 
+    def function(self, name: str, arguments: Sequence[Any], result: Any = ctypes.c_int) -> ctypes._NamedFuncPointer:
+        """A function NAME_`name` of the library."""
+        found: ctypes._NamedFuncPointer = getattr(self._loaded, f"{self._name}_{name}")
+        found.argtypes, found.restype = list(arguments), result
+        return found
+
+    def _memory(self, kind: str) -> NDArray[np.uint8]:
+        return np.zeros(_MANY.in_dll(self._loaded, f"size_of_{kind}").value, np.uint8)
+
+    def _values(self, at: Callable[[float, int], object], taus: Sequence[float]) -> NDArray[np.float64]:
+        columns = np.empty((len(taus), self.outputs), self.real)
+        for tau, column in zip(taus, columns, strict=True):
+            at(tau, column.ctypes.data)
+        return np.ascontiguousarray(columns.T, np.float64)
+
+
+class CompiledStream:
+    """A state of a stream, which goes on step by step."""
+
+    def __init__(self, program: Compiled, state: NDArray[np.uint8]) -> None:
+        self._program, self._state = program, state
+        number = program.number
+        self._step = program.function("step", [_WHERE, number, _WHERE, _WHERE])
+
+    def step(self, dtau: float, loads: ArrayLike) -> NDArray[np.float64]:
+        """All outputs after dtau, in which loads go straight to `loads`, or jump to them where it is 0."""
+        given, out = np.array(loads, self._program.real), np.empty(self._program.outputs, self._program.real)
+        self._step(self._state.ctypes.data, dtau, given.ctypes.data, out.ctypes.data)
+        return out.astype(np.float64)
+
+    @property
+    def lost(self) -> float:
+        """What it says that polynomials have lost so far, relative to the largest wave."""
+        lost = self._program.function("lost", [_WHERE], self._program.number)
+        return float(lost(self._state.ctypes.data))
+
 
 @contextmanager
-def compiled(files: Mapping[str, str], outputs: int) -> Iterator[Compiled]:
+def compiled(
+    files: Mapping[str, str],
+    outputs: int,
+    real: type[np.floating[Any]] = np.float64,
+    flags: Sequence[str] = FLAGS,
+) -> Iterator[Compiled]:
     """Generated C (file name -> text) with `outputs` outputs, compiled in a directory that goes when this is closed.
 
-    CompilerError where there is no compiler, or where it finds anything to warn of.
+    Numbers are of the type `real`. There need not be a self-test. CompilerError where there is no compiler, or where it
+    finds anything to warn of.
     """
     chosen = compiler()
     (name,) = (file.removesuffix(".h") for file in files if file.endswith(".h"))
     declared = re.search(r"_output_name\[\w+\]\[(\d+)\]", files[f"{name}.h"])
     assert declared  # by every header
+    kept = re.findall(rf"^(?:struct|\}}) {name}_(model|state)(?:;| \{{)", files[f"{name}.h"], re.MULTILINE)
+    sizes = "".join(f"const size_t size_of_{kind} = sizeof({name}_{kind});\n" for kind in kept)
     with TemporaryDirectory() as directory:
         folder = Path(directory)
-        for file, text in files.items():
+        for file, text in {**files, "sizes.c": f'#include "{name}.h"\n{sizes}'}.items():
             (folder / file).write_text(text, encoding="utf-8")
-        chosen.run([*FLAGS, "-fPIC", "-shared", f"{name}.c", "-o", "library.so", "-lm"], folder)
-        chosen.run([*FLAGS, f"{name}.c", f"{name}_selftest.c", "-o", "selftest", "-lm"], folder)
-        yield Compiled(folder / "library.so", folder / "selftest", name, outputs, int(declared[1]))
+        chosen.run([*flags, "-fPIC", "-c", f"{name}.c", "-o", "made.o"], folder)
+        chosen.run(["-fPIC", "-shared", "made.o", "sizes.c", "-o", "library.so", "-lm"], folder)
+        if f"{name}_selftest.c" in files:
+            chosen.run([*flags, "made.o", f"{name}_selftest.c", "-o", "selftest", "-lm"], folder)
+        yield Compiled(folder / "library.so", folder / "selftest", name, outputs, int(declared[1]), real)
 
 
 def imported(text: str, name: str) -> ModuleType:
@@ -87,7 +153,3 @@ def imported(text: str, name: str) -> ModuleType:
         module = module_from_spec(spec)
         spec.loader.exec_module(module)
     return module
-
-
-def _pointer(values: NDArray[np.float64]) -> ctypes._Pointer[ctypes.c_double]:
-    return values.ctypes.data_as(ctypes.POINTER(ctypes.c_double))

@@ -14,6 +14,8 @@ from wavesym.errors import WavesymError
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
 from wavesym.programs.runtime.engine import Array
+from wavesym.results.horizon import check_horizon
+from wavesym.results.near_zero import is_near_zero, zero_within
 
 _WHY = (
     "",
@@ -41,7 +43,8 @@ class SetChecks:
 @dataclass(frozen=True)
 class SetPeaks:
     """The least and the greatest value of each output, and a tau of it, of shape (sets, outputs), NaN where `checks`
-    has a status that is not 0. Where an output jumps, what it comes from counts, too.
+    has a status that is not 0. Where an output jumps, what it comes from counts, too. What is within the estimate of
+    `checks` of 0 is 0, at tau = 0 where the output begins so, too.
     """
 
     min: Array
@@ -94,15 +97,29 @@ class RuntimeModel:
         self.seconds_per_tau = nearest(clock.seconds) if clock else None
         """What one tau is; None of a scene without units."""
 
-    def run(self, tau: ArrayLike, **parameters: ArrayLike) -> Array:
-        """Values of shape (sets, outputs, *tau.shape)."""
+    def run(self, tau: ArrayLike, *, strict: bool = False, **parameters: ArrayLike) -> Array:
+        """Values of all sets.
+
+        Args:
+            tau: instants, dimensionless, of any shape.
+            strict: whether an instant outside the horizon is an error.
+            parameters: arrays of shape (sets, numbers) or (numbers,), by the name of their field.
+
+        Returns:
+            Shape (sets, outputs, *tau.shape); NaN for sets that are refused and, with one warning, outside the horizon.
+
+        Raises:
+            WavesymError: where `strict`, for tau outside [0, tau_max]; for unknown fields and arrays of other shapes.
+        """
         instants = _numbers("tau", tau)
+        check_horizon(instants, self.tau_max, strict=strict)
         found = self._engine.values(self._given(parameters), instants.ravel())
         return found.values.reshape(len(found.values), len(self.outputs), *instants.shape)
 
-    def gradients(self, tau: ArrayLike, **parameters: ArrayLike) -> SetGradients:
-        """Values, and their derivatives by all parameters, given or not."""
+    def gradients(self, tau: ArrayLike, *, strict: bool = False, **parameters: ArrayLike) -> SetGradients:
+        """Values, and their derivatives by all parameters, given or not; arguments and errors are those of `run`."""
         instants = _numbers("tau", tau)
+        check_horizon(instants, self.tau_max, strict=strict)
         found = self._engine.tangents(self._given(parameters), instants.ravel())
         shape = (len(self.outputs), *instants.shape)
         lanes = found.values.reshape(*found.values.shape[:2], *shape)
@@ -114,9 +131,24 @@ class RuntimeModel:
 
     def peaks(self, **parameters: ArrayLike) -> SetPeaks:
         """Extremes on the whole horizon, between samples, too."""
-        found = self._engine.peaks(self._given(parameters))
-        least, tau_least, greatest, tau_greatest = np.moveaxis(found.values, 2, 0)
+        given = self._given(parameters)
+        found = self._engine.peaks(given)
+        values, taus = found.values[..., ::2].copy(), found.values[..., 1::2].copy()
+        zero_within(values, taus, found.estimate[:, None, None], self._first_zeros(given, values, taus, found.estimate))
+        (least, greatest), (tau_least, tau_greatest) = np.moveaxis(values, 2, 0), np.moveaxis(taus, 2, 0)
         return SetPeaks(least, tau_least, greatest, tau_greatest, SetChecks(found.status, found.estimate))
+
+    def _first_zeros(self, given: Array, values: Array, taus: Array, estimate: Array) -> Array:
+        """When outputs whose extremes are within the estimate of 0 first are that near: at the start, or then."""
+        bounds = estimate[:, None, None]
+        later = np.any(is_near_zero(values, bounds) & (taus > 0), axis=(1, 2))
+        if not later.any():
+            return taus
+        first = taus.copy()
+        begin = self._engine.values(given[later], np.zeros(1)).values.reshape(-1, len(self.outputs), 1)
+        rests = is_near_zero(values[later], bounds[later], begin)
+        first[later] = np.where(rests, 0.0, first[later])
+        return first
 
     def misfit(self, tau: ArrayLike, data: ArrayLike) -> Callable[..., Array]:
         """What makes of parameters, as `run` takes them, the sum of the squares of (output - data), of shape (sets,).

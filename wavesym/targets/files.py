@@ -5,6 +5,7 @@ Only this file talks to the folders of languages: a new one is a folder beside i
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
@@ -45,9 +46,10 @@ def sources(program: Program, language: str) -> dict[str, str]:
     return _target(language).files(describe(program), program)
 
 
-def runtime_sets(program: Program) -> dict[str, str]:
-    """The C of a program whose parameters come at run time, for many sets of them in one call."""
-    made: dict[str, str] = import_module(f"wavesym.targets.c.{program.kind}").sets(describe(program), program)
+def runtime_sets(program: Program, parts: tuple[str, ...]) -> dict[str, str]:
+    """The C of a program whose parameters come at run time, for many sets of them in one call: these parts of it."""
+    kind = import_module(f"wavesym.targets.c.{program.kind}")
+    made: dict[str, str] = kind.sets(describe(program), replace(program, parts=parts))
     return made
 
 

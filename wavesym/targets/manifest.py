@@ -77,7 +77,9 @@ def _output(output: ProgramOutput, program: Program) -> dict[str, object]:
 
 
 def _runtime(program: Program) -> dict[str, object]:
-    """The parameters that come at run time, with what they are in the scene, and the largest degree."""
+    """The parameters that come at run time, with what they are in the scene, what there is besides values, and the
+    largest degree and kappa.
+    """
     if program.laws is None:
         return {}
     given = {
@@ -89,7 +91,9 @@ def _runtime(program: Program) -> dict[str, object]:
         for field in program.laws.fields
         if any(unit.text for unit in field.units)
     }
-    return {"runtime": given, **({"runtime_units": units} if units else {}), "degree": program.constants["degree"]}
+    told: dict[str, object] = {"runtime": given, **({"runtime_units": units} if units else {})}
+    told["with"] = list(program.parts)
+    return told | {name: program.constants[name] for name in ("degree", "kappa_max") if name in program.constants}
 
 
 def _events(description: Description) -> dict[str, object]:

@@ -7,6 +7,7 @@
 
 real exponential(real x);
 
+/* The pulses of output o are first_pulse[o] ... first_pulse[o + 1] - 1, in order of start; so on for families, powers. */
 extern const int first_pulse[];
 extern const real start[];
 extern const real excess[];

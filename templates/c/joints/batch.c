@@ -10,18 +10,31 @@
 #undef SIZE
 #undef ZERO
 
-/* At rest, or as rods and masses move at first. */
-static void started_batch(batch_of *b, const laws_batch *law)
+static void tabulate_parts(part_of *p, const laws_batch *law, int degree)
 {
-    start_waves_batch(b->waves, law);
+    for (int side = 0; side < PARTS; ++side) {
+        tabulate_batch(p + side, law + side, degree);
+    }
+}
+
+static void march_parts(part_of *p, const laws_batch *law, int window, int degree, wide *size, wide *missed)
+{
+    for (int side = 0; side < PARTS; ++side) {
+        march_batch(p + side, law + side, window, degree, size + side, missed + side);
+    }
+}
+
+/* At rest, or as rods and masses move at first. */
+static void started_batch(part_of *b, const laws_batch *law)
+{
+    start_waves_batch(b->waves, law, LEAST + 1);
     for (int k = 0; k < NAME_STATES; ++k) {
         b->state[0][k] = law->begun[k];
     }
-    tabulate_batch(b, law, LEAST);
 }
 
 /* Series of another degree: what they had not is 0. */
-static void raise_batch(batch_of *b, const laws_batch *law, int degree, int higher)
+static void raise_batch(part_of *b, int degree, int higher)
 {
     for (int place = 0; place < NAME_SLOTS; ++place) {
         for (int panel = 0; panel < NAME_PANELS; ++panel) {
@@ -30,18 +43,17 @@ static void raise_batch(batch_of *b, const laws_batch *law, int degree, int high
             }
         }
     }
-    tabulate_batch(b, law, higher);
 }
 
 /* The next window begins as this one ends. */
-static void settle_batch(batch_of *b)
+static void settle_batch(part_of *b)
 {
     for (int k = 0; k < NAME_STATES; ++k) {
         b->state[0][k] = b->state[1][k];
     }
 }
 
-static const wide *sent_batch(batch_of *b, int t, int window)
+static const wide *sent_batch(part_of *b, int t, int window)
 {
     return b->waves[slot(term_track[t], window, term_back[t])][term_panel[t]];
 }

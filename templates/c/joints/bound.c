@@ -51,7 +51,7 @@ static real begun_joint(const laws *law, wrong *w, int joint)
 }
 
 /* Nothing is wrong but what laws are rounded by. */
-static void begun_wrong(model_of *m, const laws *law, wrong *w)
+static void begun_wrong(work_of *m, const laws *law, wrong *w)
 {
     const real rounded = roundings * unit;
     real steady = 0;
@@ -122,7 +122,7 @@ static void add_slices(const real *numbers, const slice *series, const slice *si
 }
 
 /* What acts on the points of a joint, from a coefficient on, and what that is the sum of in absolute values. */
-static void acting_again(const model_of *m, const laws *law, int joint, int panel, int window, size_t k, slice *acting,
+static void acting_again(const work_of *m, const laws *law, int joint, int panel, int window, size_t k, slice *acting,
                          slice *size)
 {
     const int first = first_point[joint];
@@ -155,7 +155,7 @@ static real forced(const wrong *w, const real *row, int joint, int panel)
 }
 
 /* What a joint adds to the energy of errors on a panel. */
-static void defect(const model_of *m, const laws *law, wrong *w, int joint, int panel, int window, int degree,
+static void defect(const work_of *m, const laws *law, wrong *w, int joint, int panel, int window, int degree,
                    slice *energy, real *apart)
 {
     const int n = states_of(joint), points = points_of(joint), first = first_state[joint], ports = first_port[joint];
@@ -228,7 +228,7 @@ static void defect(const model_of *m, const laws *law, wrong *w, int joint, int 
 }
 
 /* What a window adds to the errors, and how large those of its waves are. */
-static void worsen(const model_of *m, const laws *law, wrong *w, int window, int degree)
+static void worsen(const work_of *m, const laws *law, wrong *w, int window, int degree)
 {
     const real spare = (real)(256 * (degree + 4)) * least_number;
     slice energy = nothing;

@@ -9,6 +9,13 @@
  * to the state at both ends; START and END belong to x_0. */
 enum { SOLVE = 0, DOWN = 1, FIRST = 2, LAST = 3, START = 0, END = 1 };
 
+/* Bytes of vectors of many sets: clang keeps several registers side by side in one, which hides what joints wait for. */
+#if defined(__clang__) && VECTOR
+#define WIDE 64
+#else
+#define WIDE VECTOR
+#endif
+
 /* How many numbers of a wave follow its series: zeros. */
 enum { SPARE = NAME_ROW - NAME_DEGREE };
 
@@ -17,6 +24,20 @@ static int slot(int track, int window, int ago)
 {
     const int turn = steps[track] + 1;
     return ring[track] + (window + turn - ago) % turn;
+}
+
+/* Where each track has what is sent into it on a window, and what arrives from it: the oldest that it has. */
+typedef struct {
+    int sent[NAME_TRACKS], arrived[NAME_TRACKS];
+} places;
+
+static void placed(int window, places *now)
+{
+    for (int track = 0; track < NAME_TRACKS; ++track) {
+        const int sent = slot(track, window, 0);
+        now->sent[track] = sent;
+        now->arrived[track] = sent < ring[track] + steps[track] ? sent + 1 : ring[track];
+    }
 }
 
 static int states_of(int joint)

@@ -4,12 +4,31 @@
 #include "bound.c"
 #include "../runtime/bounds.c"
 #include "../runtime/lanes.c"
+#include "laws.h"
 
-typedef name_batch model_of_batch;
+/* What it takes to build the sets of a part: name_set of each of them. */
+typedef struct {
+    wide waves[NAME_SLOTS][NAME_PANELS][NAME_ROW];
+    wide state[2][NAME_STATES + 1];
+    wide acting[NAME_PANELS][NAME_POINTS][NAME_ROW];
+    wide path[NAME_PANELS][NAME_STATES + 1][NAME_ROW];
+    wide solver[NAME_PANELS][4][(NAME_DEGREE + 2) * NAME_SQUARES + 1];
+    wide edge[NAME_PANELS][2][NAME_SQUARES + 1];
+    wide total[NAME_HEARD + 1];
+    wide change[NAME_EVENTS + 1];
+    wide load[NAME_FORCES + 1][3];
+    wide force[NAME_PANELS][NAME_FORCES + 1][3];
+    wide largest[NAME_OUTPUTS];
+    wide mean[NAME_OUTPUTS];
+    wide worth[NAME_OUTPUTS];
+    wide sum[NAME_DEGREE + 2];
+} part_of;
+
+typedef part_of work_of_batch;
 
 static void add_magnitude_batch(wide *sum, const wide *x)
 {
-    *sum += MAGNITUDE(*x);
+    *sum += MAGNITUDES(*x);
 }
 
 #define num wide

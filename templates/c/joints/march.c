@@ -22,7 +22,7 @@ static void OF(multiply)(const num *a, const num *b, int n, num *c)
 }
 
 /* y += factor a x */
-static void OF(add_product)(const num *a, const num *x, int n, real factor, num *y)
+WITHIN void OF(add_product)(const num *a, const num *x, int n, real factor, num *y)
 {
     for (int i = 0; i < n; ++i) {
         for (int k = 0; k < n; ++k) {
@@ -72,7 +72,7 @@ static void OF(invert)(num *a, int n, num *b)
 
 /* With x' = rates x + f on a panel, x and f series, 2 k x_k + G (x_(k-1) - x_(k+1)) = r_k, G = -half the length times
  * rates: eliminated from the highest k down, where x_0 counts twice. */
-static void OF(tabulate_joint)(OF(model_of) *m, const OF(laws) *law, int joint, int panel, int degree)
+static void OF(tabulate_joint)(OF(work_of) *m, const OF(laws) *law, int joint, int panel, int degree)
 {
     const int n = states_of(joint);
     num g[NAME_WIDEST * NAME_WIDEST], d[NAME_WIDEST * NAME_WIDEST], found[NAME_WIDEST * NAME_WIDEST];
@@ -113,11 +113,8 @@ static void OF(tabulate_joint)(OF(model_of) *m, const OF(laws) *law, int joint, 
     }
 }
 
-static void OF(tabulate)(OF(model_of) *m, const OF(laws) *law, int degree)
+static void OF(tabulate)(OF(work_of) *m, const OF(laws) *law, int degree)
 {
-    for (int k = 1; k <= degree + SPARE; ++k) {
-        m->inverse[k] = 1 / (real)(2 * k);
-    }
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         for (int joint = 0; joint < NAME_JOINTS; ++joint) {
             if (states_of(joint) > 0) {
@@ -127,12 +124,13 @@ static void OF(tabulate)(OF(model_of) *m, const OF(laws) *law, int degree)
     }
 }
 
-static void OF(start_waves)(OF(track_of) *waves, const OF(laws) *law)
+/* Waves at first, as series of so many numbers. */
+static void OF(start_waves)(OF(track_of) *waves, const OF(laws) *law, int count)
 {
     for (int track = 0; track < NAME_TRACKS; ++track) {
         for (int place = ring[track]; place <= ring[track] + steps[track]; ++place) {
             for (int panel = 0; panel < NAME_PANELS; ++panel) {
-                for (int k = 0; k < NAME_ROW; ++k) {
+                for (int k = 0; k < count; ++k) {
                     waves[place][panel][k] = k == 0 ? law->held[track] : ZERO;
                 }
             }
@@ -141,8 +139,8 @@ static void OF(start_waves)(OF(track_of) *waves, const OF(laws) *law)
 }
 
 /* What acts on the points of a joint on a panel, as series, with nothing at degree + 1. */
-static void OF(gather)(OF(track_of) *waves, num (*force)[3], const OF(laws) *law, int joint, int panel, int window,
-                       int degree, int more, num (*acting)[NAME_ROW])
+static void OF(gather)(OF(track_of) *waves, num (*force)[3], const OF(laws) *law, int joint, int panel,
+                       const places *now, int degree, int more, num (*acting)[NAME_ROW])
 {
     const int first = first_point[joint];
     for (int point = first; point < first_point[joint + 1]; ++point) {
@@ -154,7 +152,7 @@ static void OF(gather)(OF(track_of) *waves, num (*force)[3], const OF(laws) *law
         }
     }
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        const num *const a = waves[slot(arrive[port], window, steps[arrive[port]])][panel];
+        const num *const a = waves[now->arrived[arrive[port]]][panel];
         num *const s = acting[first + point_of[port]];
         const num factor = law->push[port];
         for (int k = 0; k <= degree; ++k) {
@@ -163,31 +161,29 @@ static void OF(gather)(OF(track_of) *waves, num (*force)[3], const OF(laws) *law
     }
 }
 
-/* f += matrix * series, of `rows` times `columns` numbers */
-static void OF(add_series)(const num *matrix, int rows, int columns, num (*series)[NAME_ROW], int degree,
+/* f = matrix * series, or f += where there is `more`, of `rows` times `columns` numbers. */
+static void OF(add_series)(const num *matrix, int rows, int columns, num (*series)[NAME_ROW], int degree, int more,
                            num (*f)[NAME_ROW])
 {
     for (int i = 0; i < rows; ++i) {
+        f[i][degree + 1] = more ? f[i][degree + 1] : ZERO;
         for (int j = 0; j < columns; ++j) {
             const num factor = matrix[i * columns + j];
-            for (int k = 0; k <= degree; ++k) {
-                f[i][k] += factor * series[j][k];
+            if (more || j > 0) {
+                for (int k = 0; k <= degree; ++k) {
+                    f[i][k] += factor * series[j][k];
+                }
+            } else {
+                for (int k = 0; k <= degree; ++k) {
+                    f[i][k] = factor * series[j][k];
+                }
             }
         }
     }
 }
 
-static void OF(empty)(num (*series)[NAME_ROW], int rows, int degree)
-{
-    for (int i = 0; i < rows; ++i) {
-        for (int k = 0; k <= degree + 1; ++k) {
-            series[i][k] = ZERO;
-        }
-    }
-}
-
 /* How the states of a joint move on a panel under f: the series x; `state` goes from its start to its end. */
-static void OF(moved)(const OF(model_of) *m, int joint, int panel, int degree, num (*f)[NAME_ROW], num *state,
+static void OF(moved)(const OF(work_of) *m, int joint, int panel, int degree, num (*f)[NAME_ROW], num *state,
                       num (*x)[NAME_ROW])
 {
     const int n = states_of(joint);
@@ -205,7 +201,7 @@ static void OF(moved)(const OF(model_of) *m, int joint, int panel, int degree, n
         const size_t here = square_at(joint, k);
         num now[NAME_WIDEST];
         for (int i = 0; i < n; ++i) {
-            r[i] = half * ((k == 1 ? 2 * f[i][0] : f[i][k - 1]) - f[i][k + 1]);
+            r[i] = half * ((k == 1 ? (num)(2 * f[i][0]) : f[i][k - 1]) - f[i][k + 1]);
             now[i] = ZERO;
         }
         OF(add_product)(m->solver[panel][SOLVE] + here, r, n, 1, now);
@@ -243,11 +239,11 @@ static void OF(moved)(const OF(model_of) *m, int joint, int panel, int degree, n
 }
 
 /* What ends send: their points' velocities, less what arrives. */
-static void OF(send_out)(OF(track_of) *waves, int joint, int panel, int window, int degree, num (*q)[NAME_ROW])
+static void OF(send_out)(OF(track_of) *waves, int joint, int panel, const places *now, int degree, num (*q)[NAME_ROW])
 {
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        const num *const a = waves[slot(arrive[port], window, steps[arrive[port]])][panel];
-        num *const out = waves[slot(send[port], window, 0)][panel];
+        const num *const a = waves[now->arrived[arrive[port]]][panel];
+        num *const out = waves[now->sent[send[port]]][panel];
         for (int k = 0; k <= degree; ++k) {
             out[k] = ratio[port] * q[point_of[port]][k] - a[k];
         }
@@ -279,10 +275,12 @@ static void OF(add_missed)(const OF(laws) *law, int joint, int panel, int degree
 
 /* One window at a degree. To `missed` is added what its polynomials miss; `size` grows to the largest velocity or mean of
  * a wave. */
-static void OF(march)(OF(model_of) *m, const OF(laws) *law, int window, int degree, num *size, num *missed)
+static void OF(march)(OF(work_of) *m, const OF(laws) *law, int window, int degree, num *size, num *missed)
 {
     num f[NAME_WIDEST][NAME_ROW];
     num q[NAME_WIDEST][NAME_ROW];
+    places now;
+    placed(window, &now);
     for (int k = 0; k < NAME_STATES; ++k) {
         m->state[1][k] = m->state[0][k];
     }
@@ -291,24 +289,22 @@ static void OF(march)(OF(model_of) *m, const OF(laws) *law, int window, int degr
             const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
             num(*const x)[NAME_ROW] = m->path[panel] + first;
             num(*const s)[NAME_ROW] = m->acting[panel] + first_point[joint];
-            OF(gather)(m->waves, m->force[panel], law, joint, panel, window, degree, 0, m->acting[panel]);
-            OF(empty)(q, points, degree);
+            OF(gather)(m->waves, m->force[panel], law, joint, panel, &now, degree, 0, m->acting[panel]);
             if (n > 0) {
-                OF(empty)(f, n, degree);
-                OF(add_series)(law->pushed + at_pushed[joint], n, points, s, degree, f);
+                OF(add_series)(law->pushed + at_pushed[joint], n, points, s, degree, 0, f);
                 OF(moved)(m, joint, panel, degree, f, m->state[1] + first, x);
                 OF(add_missed)(law, joint, panel, degree, f, x, missed);
-                OF(add_series)(law->shown + at_shown[joint], points, n, x, degree, q);
+                OF(add_series)(law->shown + at_shown[joint], points, n, x, degree, 0, q);
             }
-            OF(add_series)(law->passed + at_passed[joint], points, points, s, degree, q);
-            OF(send_out)(m->waves, joint, panel, window, degree, q);
+            OF(add_series)(law->passed + at_passed[joint], points, points, s, degree, n > 0, q);
+            OF(send_out)(m->waves, joint, panel, &now, degree, q);
             for (int i = 0; i < n; ++i) {
                 if (is_mass[first + i]) {
                     OF(enlarge)(size, &m->state[1][first + i]);
                 }
             }
             for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-                OF(enlarge)(size, &m->waves[slot(send[port], window, 0)][panel][0]);
+                OF(enlarge)(size, &m->waves[now.sent[send[port]]][panel][0]);
             }
         }
     }

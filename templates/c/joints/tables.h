@@ -35,13 +35,27 @@ typedef struct {
     name_real mass[3];
 } name_parameters;
 
-#include "model.h"
+typedef struct name_work name_work;
+typedef struct name_model name_model;
+typedef struct name_tangent name_tangent;
+typedef struct name_batch name_batch;
+typedef struct name_data name_data;
+
+#include "work.h"
+struct name_model {
+#include "../runtime/model.h"
+};
+#include "tangent.h"
 #include "batch.h"
 #include "../runtime/data.h"
 
 int name_build(name_model *model, const name_parameters *parameters);
+int name_build_with(name_work *work, name_model *model, const name_parameters *parameters);
 name_real name_error_estimate(const name_model *model);
 int name_error_bound(name_model *model, const name_parameters *parameters, name_real *bound);
+int name_error_bound_with(
+    name_work *work, name_model *model, const name_parameters *parameters, name_real *bound);
+int name_model_peaks(const name_model *model, name_real *out);
 int name_model_eval(const name_model *model, name_real tau, name_real *out);
 int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out);
 int name_build_tangent(name_tangent *tangent, const name_parameters *parameters);
@@ -52,8 +66,10 @@ int name_tangent_sample(
 #include <float.h>
 
 #include "../real.h"
+#include "../vectors.h"
 
 typedef name_model model_of;
+typedef name_work work_of;
 
 enum { LEAST = 8, LOAD_LANE = -1, SECTIONS = 3, CYCLE = 2, JOINTED = 1 };
 
@@ -73,38 +89,22 @@ typedef struct {
     const real *load;
 } laws;
 
-/* The same of each set in its lane. */
-typedef struct {
-    name_wide rates[5 + 1];
-    name_wide pushed[5 + 1];
-    name_wide shown[5 + 1];
-    name_wide passed[5 + 1];
-    name_wide push[4 + 1];
-    name_wide held[4 + 1];
-    name_wide begun[3 + 1];
-    name_wide weight[3 + 1];
-    name_wide impedance[4 + 1];
-    name_wide strength[1 + 1];
-    name_wide gain[4 + 1];
-} laws_batch;
-
 int good(const name_parameters *p);
 int good_for_slopes(const name_parameters *p);
 void laws_of(const name_parameters *p, laws *law);
 int laws_within_reach(const laws *law);
 void slopes_of(const name_parameters *p, int lane, laws *law);
-void spread(laws_batch *all, int set, const laws *law);
 
 extern const real largest_number;
 extern const real least_number;
 extern const real faint;
-extern const int silent[];
 extern const real roundings;
 extern const real share;
 extern const real unit;
 extern const real window_length;
 extern const real span;
 
+/* where points, states and ends of rods of a joint begin, and its matrices */
 extern const int first_point[];
 extern const int first_state[];
 extern const int first_port[];
@@ -112,16 +112,23 @@ extern const int at_rates[];
 extern const int at_pushed[];
 extern const int at_shown[];
 extern const int at_passed[];
+/* of an end its point, how fast it moves, the track that arrives and the one that it sends */
 extern const int point_of[];
 extern const real ratio[];
 extern const int arrive[];
 extern const int send[];
+/* of a track how many windows it takes, and where its ring begins */
 extern const int steps[];
 extern const int ring[];
+/* whether a state is a velocity */
 extern const int is_mass[];
+/* half the length of a panel; what its start is later than that of another: since_panel[panel*PANELS + other] */
 extern const real half_length[];
 extern const real since_panel[];
+/* which load acts on a point, -1 for none */
 extern const int force_on[];
+/* changes of loads, in order: a weight times an amplitude times a strength is added to a power of the time since, or
+ * where 3 is added to this power stands for all that acted before */
 extern const int event_window[];
 extern const int event_panel[];
 extern const int event_force[];
@@ -129,12 +136,23 @@ extern const int event_power[];
 extern const real event_weight[];
 extern const int event_strength[];
 extern const int event_load[];
+/* sections of the windows of a cycle, from which t on; an output on one is a sum of strands:
+ * first_strand[section*OUTPUTS + output] */
 extern const real from[];
 extern const int first_strand[];
 extern const int strand_at[];
+/* strands of a section that are read together, one behind the other: at the same instants, each of another output
+ * (strand_output), which one before is of where there is `more` */
+extern const int strand_output[];
+extern const int first_reading[];
+extern const int reading_strand[];
+extern const int reading_strands[];
+extern const int reading_more[];
+/* strands: u = (t - start + excess) * scale - 1, start and excess for each window of a cycle */
 extern const real strand_start[];
 extern const real strand_excess[];
 extern const real strand_scale[];
+/* what a strand is the sum of: which track, where it is, and from which u to which its integral goes */
 extern const int first_term[];
 extern const int term_heard[];
 extern const int term_track[];
@@ -143,4 +161,7 @@ extern const int term_panel[];
 extern const int term_summed[];
 extern const real term_low[];
 extern const real term_high[];
+/* of which output each wave is */
 extern const int heard_output[];
+/* whether it is 0 whatever the parameters are */
+extern const int silent[];

@@ -15,16 +15,21 @@ int name_step(stream *state, real dtau, const real *load, real *out);
 
 extern const real spacing, shortest, longest;
 
+/* by mode */
 extern const real p11[];
 extern const real p12[];
 extern const real p21[];
 extern const real p22[];
+/* by load, then by mode */
 extern const real one0[];
 extern const real one1[];
 extern const real speed0[];
 extern const real speed1[];
+/* The outputs that y counts in; LANES of them at a time, by mode, their weights. */
 extern const int moved_row[];
 extern const real moved_weight[];
+/* The same for v. */
 extern const int moving_row[];
 extern const real moving_weight[];
+/* What a load, its integral and the integral of that count in an output: by output, then by load. */
 extern const real load_weight[];

@@ -20,9 +20,11 @@ enum {
 
 extern const real step, span;
 
+/* tracks: how many windows later it arrives, where its ring of windows starts, and what is on its way at tau = 0 */
 extern const int steps[];
 extern const int ring[];
 extern const real held[];
+/* joints: where their points, states and ports start in the next tables; on each panel their matrix, by columns */
 extern const int first_point[];
 extern const int first_state[];
 extern const int first_port[];
@@ -30,23 +32,30 @@ extern const int answer[];
 extern const real matrix[];
 extern const real begun[];
 extern const int force_on[];
+/* ports: the point of the joint, factors, and tracks */
 extern const int point_of[];
 extern const real push[];
 extern const real ratio[];
 extern const int arrive[];
 extern const int send[];
+/* half the length of a panel; what its start is later than that of another: since[panel*PANELS + other] */
 extern const real half_length[];
 extern const real since[];
+/* changes of the loads: from there on three powers of the time since */
 extern const int event_window[];
 extern const int event_panel[];
 extern const int event_force[];
 extern const real event_power[];
+/* Outputs: where their tracks start in the next tables; factors, whether the integral counts, and delays. */
 extern const int first_heard[];
 extern const int track[];
 extern const real gain[];
 extern const int summed[];
 extern const int delay[];
+
 extern const real begin[];
+/* Delays: from t >= `from` on, t counted from the start of the cycle, a wave is that of `panel_of`, `back` windows ago,
+ * with u = (t - start + excess) / half - 1; an integral over all of a window is from low to high. */
 extern const int first_stretch[];
 extern const real from[];
 extern const real start[];

@@ -2,137 +2,82 @@
  * Plain C that stands below the text of a march in lanes in generated files, which have what stands below the first empty
  * line. */
 #ifndef NAME_JOINTED
-#include "batch.c"
+#include "strands.c"
 #endif
 
-/* Add to a strand a term that is summed up: the integral of its wave. */
-static void listen_on(batch_of *b, int t, int window, int degree, const wide *gain, wide *c)
+/* Parts are where sets are, and as large; else this is no type. */
+typedef char as_large[sizeof(part_of) == SETS * sizeof(name_set) ? 1 : -1];
+
+static part_of *parts_of(batch_of *b)
 {
-    wide *const total = &b->total[term_heard[t]];
-    wide *const sum = b->work;
-    wide low, high;
-    integrate_batch(b, sent_batch(b, t, window), degree, half_length[term_panel[t]], sum);
-    end_value_batch(sum, degree + 1, term_low[t], &low);
-    end_value_batch(sum, degree + 1, term_high[t], &high);
-    c[0] += *gain * (*total - low);
-    *total += high - low;
-    for (int k = 1; k <= degree + 1; ++k) {
-        c[k] += *gain * sum[k];
-    }
+    return (part_of *)(void *)b->work;
 }
 
-/* As listen, and as weigh: two waves at once, where they are not summed up. */
-static void listen_batch(batch_of *b, const laws_batch *law, int window, int degree, wide *all, wide *heard)
+/* As press. */
+static int press_batch(batch_of *b, int window, int event)
 {
-    const size_t size = (size_t)(degree + 2);
-    wide weight = none;
-    for (int s = 0; s < NAME_STRANDS; ++s) {
-        wide *const c = all + (size_t)s * size;
-        const int last = first_term[s + 1];
-        int t = first_term[s];
-        wide here = none;
-        c[degree + 1] = none;
-        if (last - t == 2 && !term_summed[t] && !term_summed[t + 1]) {
-            const wide *const w = sent_batch(b, t, window);
-            const wide *const v = sent_batch(b, t + 1, window);
-            const wide gain = law->gain[term_heard[t]], other_gain = law->gain[term_heard[t + 1]];
-            for (int k = 0; k <= degree; ++k) {
-                const wide sum = gain * w[k] + other_gain * v[k];
-                c[k] = sum;
-                here += MAGNITUDE(sum);
-            }
-        } else {
-            for (int k = 0; k <= degree; ++k) {
-                c[k] = none;
-            }
-            for (; t < last; ++t) {
-                const wide *const w = sent_batch(b, t, window);
-                const wide gain = law->gain[term_heard[t]];
-                if (term_summed[t]) {
-                    listen_on(b, t, window, degree, &gain, c);
-                    continue;
+    part_of *const all = parts_of(b);
+    for (int panel = 0; panel < NAME_PANELS; ++panel) {
+        while (event < NAME_EVENTS && event_window[event] == window && event_panel[event] == panel) {
+            const int f = event_force[event];
+            const real gone =
+                (real)(window - b->since[f][0]) * window_length + since_panel[panel * NAME_PANELS + b->since[f][1]];
+            for (int side = 0; side < PARTS; ++side) {
+                wide *const c = all[side].load[f];
+                c[0] += gone * (c[1] + gone * c[2]);
+                c[1] += 2 * gone * c[2];
+                for (int k = 0; k < 3 && event_power[event] >= 3; ++k) {
+                    c[k] = none;
                 }
-                for (int k = 0; k <= degree; ++k) {
-                    c[k] += gain * w[k];
-                }
+                c[event_power[event] % 3] += all[side].change[event];
             }
-            for (int k = 0; k <= degree + 1; ++k) {
-                here += MAGNITUDE(c[k]);
+            b->since[f][0] = window;
+            b->since[f][1] = panel;
+            ++event;
+        }
+        const real half = half_length[panel];
+        for (int f = 0; f < NAME_FORCES; ++f) {
+            const real gone =
+                (real)(window - b->since[f][0]) * window_length + since_panel[panel * NAME_PANELS + b->since[f][1]];
+            const real middle = gone + half;
+            for (int side = 0; side < PARTS; ++side) {
+                const wide *const c = all[side].load[f];
+                wide *const force = all[side].force[panel][f];
+                force[0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2];
+                force[1] = half * (c[1] + 2 * middle * c[2]);
+                force[2] = half * half / 2 * c[2];
             }
         }
-        weight += here;
     }
-    *heard += (real)(4 * (degree + 2)) * weight;
-}
-
-/* As series_at. */
-static void series_at_batch(const wide *c, int degree, real u, wide *value)
-{
-    wide next = none, after = none;
-    for (int k = degree; k > 0; --k) {
-        const wide now = (2 * u * next - after) + c[k];
-        after = next;
-        next = now;
-    }
-    *value = (u * next - after) + c[0];
-}
-
-/* The mean of an output on a section, and in which sets it makes it worth a look. */
-static void mean_batch(const batch_of *b, const wide *all, size_t size, int at, wide *mean, mask *worth)
-{
-    wide sum = none;
-    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-        sum += all[(size_t)strand_at[k] * size];
-    }
-    *mean = sum;
-    *worth |= MAGNITUDE(sum) > b->worth[at % NAME_OUTPUTS];
-}
-
-/* As look; first whether there is anything to be looked at on a window. */
-static void look_batch(batch_of *b, int window, int degree)
-{
-    const wide *const all = b->series + b->place[window];
-    const size_t size = (size_t)(degree + 2);
-    wide mean;
-    mask some = NOWHERE;
-    for (int at = 0; at < SECTIONS * NAME_OUTPUTS; ++at) {
-        mean_batch(b, all, size, at, &mean, &some);
-    }
-    for (int at = 0; in_some(&some) && at < SECTIONS * NAME_OUTPUTS; ++at) {
-        const int output = at % NAME_OUTPUTS;
-        const int here = in_cycle(window, at / NAME_OUTPUTS);
-        const real reach = NAME_TAU_MAX - cycle_begin(window);
-        const real end = from[here + 1] < reach ? from[here + 1] : reach;
-        const real middle = from[here] + (end - from[here]) / 2;
-        mask worth = NOWHERE;
-        wide sum = none;
-        mean_batch(b, all, size, at, &mean, &worth);
-        if (from[here] > end || !in_some(&worth)) {
-            continue;
-        }
-        for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-            const int s = strand_at[k];
-            const int now = window % CYCLE * NAME_STRANDS + s;
-            wide found;
-            series_at_batch(all + (size_t)s * size, degree + 1,
-                            ((middle - strand_start[now]) + strand_excess[now]) * strand_scale[s] - 1, &found);
-            sum += found;
-        }
-        enlarge_batch(&b->mean[output], &mean);
-        enlarge_batch(&b->largest[output], &sum);
-        const wide half_more = (real)1.5 * b->mean[output], much_more = 4 * b->largest[output];
-        const mask less = half_more < much_more;
-        b->worth[output] = CHOSEN(less, half_more, much_more);
-    }
+    return event;
 }
 
 /* A set's laws, and how its loads change, into its lane. */
 static void given_batch(batch_of *b, laws_batch *all, int set, const laws *law)
 {
-    spread(all, set, law);
+    part_of *const p = parts_of(b) + set / SETS;
+    spread(all + set / SETS, set % SETS, law);
     for (int event = 0; event < NAME_EVENTS; ++event) {
-        LANE(b->change[event], set) =
+        AT(p->change[event], set % SETS) =
             event_weight[event] * law->load[event_load[event]] * law->strength[event_strength[event]];
+    }
+}
+
+/* Nothing gathered, nothing looked at, no load. */
+static void clear_part(part_of *p)
+{
+    for (int k = 0; k < NAME_HEARD; ++k) {
+        p->total[k] = none;
+    }
+    for (int f = 0; f <= NAME_FORCES; ++f) {
+        for (int power = 0; power < 3; ++power) {
+            p->load[f][power] = none;
+        }
+    }
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        p->largest[output] = none;
+        p->mean[output] = none;
+        p->worth[output] = none;
     }
 }
 
@@ -142,20 +87,9 @@ static int begun_batch(batch_of *b, laws_batch *all, const name_parameters *para
     laws law, other;
     int good_ones = 0;
     int good_one[NAME_WIDTH];
-    for (int k = 0; k < NAME_HEARD; ++k) {
-        b->total[k] = none;
-    }
     for (int f = 0; f <= NAME_FORCES; ++f) {
-        for (int power = 0; power < 3; ++power) {
-            b->load[f][power] = none;
-        }
         b->since[f][0] = 0;
         b->since[f][1] = 0;
-    }
-    for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        b->largest[output] = none;
-        b->mean[output] = none;
-        b->worth[output] = none;
     }
     for (int set = 0; set < NAME_WIDTH; ++set) {
         good_one[set] = 0;
@@ -176,8 +110,9 @@ static int begun_batch(batch_of *b, laws_batch *all, const name_parameters *para
             given_batch(b, all, set, &other);
         }
     }
-    if (good_ones > 0) {
-        started_batch(b, all);
+    for (int side = 0; good_ones > 0 && side < PARTS; ++side) {
+        clear_part(parts_of(b) + side);
+        started_batch(parts_of(b) + side, all + side);
     }
     return good_ones;
 }
@@ -187,14 +122,21 @@ static int misses(batch_of *b, const wide *leak, const wide *size, int highest)
 {
     int found = 0;
     for (int set = 0; set < NAME_WIDTH; ++set) {
-        if (b->status[set] == 0 && !(LANE(*leak, set) <= share * LANE(*size, set))) {
+        const real missed = OF_SET(leak, set), seen = OF_SET(size, set);
+        if (b->status[set] == 0 && !(missed <= share * seen)) {
             found = 1;
             if (highest) {
-                b->status[set] = finite_number(LANE(*leak, set)) && finite_number(LANE(*size, set)) ? 2 : 1;
+                b->status[set] = finite_number(missed) && finite_number(seen) ? 2 : 1;
             }
         }
     }
     return found;
+}
+
+static void tabulated(batch_of *b, const laws_batch *law, int degree)
+{
+    tell_inverses(b->inverse, degree + 1);
+    tabulate_parts(parts_of(b), law, degree);
 }
 
 /* One window at the lowest degree that is enough; the degree. What a refused set would need is not asked of others. */
@@ -202,75 +144,108 @@ static int window_batch(batch_of *b, const laws_batch *law, int window, int degr
 {
     const int before = degree;
     for (;;) {
-        wide seen = *size, leak = none;
-        march_batch(b, law, window, degree, &seen, &leak);
-        if (!misses(b, &leak, &seen, degree == NAME_DEGREE)) {
-            *missed += leak;
-            *size = seen;
+        wide seen[PARTS], leak[PARTS];
+        for (int side = 0; side < PARTS; ++side) {
+            seen[side] = size[side];
+            leak[side] = none;
+        }
+        march_parts(parts_of(b), law, window, degree, seen, leak);
+        if (!misses(b, leak, seen, degree == NAME_DEGREE)) {
+            for (int side = 0; side < PARTS; ++side) {
+                missed[side] += leak[side];
+                size[side] = seen[side];
+            }
             return degree;
         }
         const int higher = degree + degree / 4;
         const int next = degree == NAME_DEGREE ? before : higher < NAME_DEGREE ? higher : NAME_DEGREE;
-        raise_batch(b, law, degree, next);
+        for (int side = 0; side < PARTS; ++side) {
+            raise_batch(parts_of(b) + side, degree, next);
+        }
+        tabulated(b, law, next);
         degree = next;
     }
 }
 
+/* What outputs are wrong by in the sets of a part, of which velocities are wrong by `missed`. */
+static void weigh_batch(const part_of *p, const laws_batch *law, int degree, const wide *missed, wide *all)
+{
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        wide weight = none;
+        for (int k = 0; k < NAME_HEARD; ++k) {
+            if (heard_output[k] == output) {
+                weight += MAGNITUDES(law->gain[k]);
+            }
+        }
+        all[output] = weight * *missed + read_by(degree) * p->largest[output];
+    }
+}
+
 /* As estimated, of a set. */
-static real estimated_of(const batch_of *b, const wide *missed, const name_parameters *parameters, int set)
+static real estimated_of(const part_of *p, const wide *missed, const name_parameters *parameters, int lane)
 {
     real worst = 0;
     laws law;
     laws_of(parameters, &law);
-    (void)set;
+    (void)lane;
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        worst = larger(worst, relative(&law, &law, OF_VALUES, output, LANE(missed[output], set), LANE(b->largest[output], set)));
+        worst = larger(worst, relative(&law, &law, OF_VALUES, output, AT(missed[output], lane), AT(p->largest[output], lane)));
     }
     return worst;
 }
 
+/* All windows of a batch that has begun. */
+static void marched_batch(batch_of *b, const laws_batch *law, const name_parameters *parameters)
+{
+    wide size[PARTS], missed[PARTS], heard[PARTS];
+    size_t place = 0;
+    int degree = LEAST, event = 0;
+    for (int side = 0; side < PARTS; ++side) {
+        size[side] = missed[side] = heard[side] = none;
+    }
+    tabulated(b, law, degree);
+    for (int window = 0; window < NAME_WINDOWS; ++window) {
+        event = press_batch(b, window, event);
+        degree = window_batch(b, law, window, degree, size, missed);
+        b->degree[window] = degree;
+        b->place[window] = place;
+        listen_batch(parts_of(b), b->inverse, law, window, degree, (wide *)b->series[place], heard);
+        look_batch(parts_of(b), (const wide *)b->series[place], window, degree);
+        for (int side = 0; side < PARTS; ++side) {
+            settle_batch(parts_of(b) + side);
+        }
+        place += (size_t)NAME_STRANDS * (size_t)(degree + 2);
+    }
+    for (int side = 0; side < PARTS; ++side) {
+        const part_of *const p = parts_of(b) + side;
+        wide wrong_there[NAME_OUTPUTS];
+        missed[side] = 6 * missed[side] + rounded_by(degree) * size[side];
+        weigh_batch(p, law + side, degree, missed + side, wrong_there);
+        for (int lane = 0; lane < SETS; ++lane) {
+            const int set = side * SETS + lane;
+            if (b->status[set] == 0 && !(finite_number(AT(size[side], lane)) && finite_number(AT(missed[side], lane)) &&
+                                         finite_number(AT(heard[side], lane)))) {
+                b->status[set] = 1;
+            }
+            if (b->status[set] == 0) {
+                b->estimate[set] = estimated_of(p, wrong_there, parameters + set, lane);
+            }
+        }
+    }
+}
+
 int name_build_batch(name_batch *batch, const name_parameters *parameters, size_t sets)
 {
-    wide size = none, missed = none, heard = none;
-    wide missed_there[NAME_OUTPUTS];
-    laws_batch law;
-    size_t place = 0;
-    int degree = LEAST, event = 0, highest = 0;
-    for (int output = 0; output < NAME_OUTPUTS; ++output) {
-        missed_there[output] = none;
-    }
-    if (begun_batch(batch, &law, parameters, sets) > 0) {
-        for (int window = 0; window < NAME_WINDOWS; ++window) {
-            event = press_batch(batch, window, event);
-            degree = window_batch(batch, &law, window, degree, &size, &missed);
-            settle_batch(batch);
-            batch->degree[window] = degree;
-            batch->place[window] = place;
-            listen_batch(batch, &law, window, degree, batch->series + place, &heard);
-            look_batch(batch, window, degree);
-            place += (size_t)NAME_STRANDS * (size_t)(degree + 2);
-        }
-        missed = 6 * missed + rounded_by(degree) * size;
-        for (int output = 0; output < NAME_OUTPUTS; ++output) {
-            wide weight = none;
-            for (int k = 0; k < NAME_HEARD; ++k) {
-                if (heard_output[k] == output) {
-                    weight += MAGNITUDE(law.gain[k]);
-                }
-            }
-            missed_there[output] = weight * missed + read_by(degree) * batch->largest[output];
-        }
-    }
+    laws_batch law[PARTS];
+    int highest = 0;
     for (int set = 0; set < NAME_WIDTH; ++set) {
-        if (batch->status[set] == 0 && !(finite_number(LANE(size, set)) && finite_number(LANE(missed, set)) &&
-                                         finite_number(LANE(heard, set)))) {
-            batch->status[set] = 1;
-        }
-        LANE(batch->estimate, set) =
-            batch->status[set] == 0 ? estimated_of(batch, missed_there, parameters + set, set) : not_a_number();
-        if ((size_t)set < sets && batch->status[set] > highest) {
-            highest = batch->status[set];
-        }
+        batch->estimate[set] = not_a_number();
+    }
+    if (begun_batch(batch, law, parameters, sets) > 0) {
+        marched_batch(batch, law, parameters);
+    }
+    for (int set = 0; set < NAME_WIDTH && (size_t)set < sets; ++set) {
+        highest = batch->status[set] > highest ? batch->status[set] : highest;
     }
     return highest;
 }
@@ -278,14 +253,14 @@ int name_build_batch(name_batch *batch, const name_parameters *parameters, size_
 int name_batch_model(const name_batch *batch, int set, name_model *model)
 {
     model->built = set >= 0 && set < NAME_WIDTH && batch->status[set] == 0;
-    model->estimate = model->built ? LANE(batch->estimate, set) : not_a_number();
+    model->estimate = model->built ? batch->estimate[set] : not_a_number();
     for (int window = 0; window < NAME_WINDOWS && model->built; ++window) {
         const size_t begin = batch->place[window];
         const size_t size = (size_t)NAME_STRANDS * (size_t)(batch->degree[window] + 2);
         model->degree[window] = batch->degree[window];
         model->place[window] = begin;
         for (size_t k = begin; k < begin + size; ++k) {
-            model->series[k] = LANE(batch->series[k], set);
+            model->series[k] = batch->series[k][set];
         }
     }
     return !model->built;

@@ -21,7 +21,7 @@ typedef struct {
 } wrong;
 
 /* Nothing is wrong but what laws are rounded by. Impedances follow from rod to rod, as alpha to beta. */
-static void begun_wrong(model_of *m, const laws *law, wrong *w)
+static void begun_wrong(work_of *m, const laws *law, wrong *w)
 {
     const real rounded = roundings * unit;
     real impedance = 1;
@@ -87,7 +87,7 @@ static void apart(const laws *law, int node, const real *a, const real *b, const
 
 /* What a node adds to the energy of errors on a panel, and its wave to the right to all that is unequal. What a node
  * without inertia sends is wrong by the number returned. */
-static real defect(const model_of *m, const laws *law, wrong *w, int half, int panel, int node, int degree, slice *energy,
+static real defect(const work_of *m, const laws *law, wrong *w, int half, int panel, int node, int degree, slice *energy,
                    slice *unequal)
 {
     const real *const a = m->waves[!half][RIGHT][panel][node];
@@ -144,7 +144,7 @@ static real defect(const model_of *m, const laws *law, wrong *w, int half, int p
 }
 
 /* What a window adds to the errors, and how large those of its waves are. */
-static void worsen(const model_of *m, const laws *law, wrong *w, int window, int degree)
+static void worsen(const work_of *m, const laws *law, wrong *w, int window, int degree)
 {
     const int half = window % 2;
     real own[NAME_NODES];

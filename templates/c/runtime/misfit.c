@@ -188,42 +188,56 @@ static int longer_by(int group)
     return longer;
 }
 
+/* So many rows and parts at a time, so that what they miss stays in registers. */
+enum { HALF = ROWS / 2, PAIRED = PARTS < 2 ? PARTS : 2 };
+
+/* Add the squares of what half a block misses of series, from a degree on, to the sums of some parts; `cells` are those of
+ * its first row. */
+static void square_up(const wide *series, size_t size, int least, int degree, const real *cells, int group, wide *sum)
+{
+    const int strands = strands_of(group);
+    wide missed[HALF][PAIRED];
+    UNROLLED
+    for (int i = 0; i < HALF; ++i) {
+        UNROLLED
+        for (int j = 0; j < PAIRED; ++j) {
+            missed[i][j] = none - cells[AIM * ROWS + i];
+        }
+    }
+    for (int s = 0; s < strands; ++s) {
+        const wide *const c = series + (size_t)strand_at[first_strand[group] + s] * size * PARTS;
+        const real *r = cells + (COLUMNS + least * strands + s) * ROWS;
+        for (int k = least; k <= degree; ++k) {
+            UNROLLED
+            for (int i = 0; i < HALF; ++i) {
+                UNROLLED
+                for (int j = 0; j < PAIRED; ++j) {
+                    missed[i][j] += r[i] * c[k * PARTS + j];
+                }
+            }
+            r += strands * ROWS;
+        }
+    }
+    UNROLLED
+    for (int i = 0; i < HALF; ++i) {
+        UNROLLED
+        for (int j = 0; j < PAIRED; ++j) {
+            sum[j] += cells[WEIGHT * ROWS + i] * missed[i][j] * missed[i][j];
+        }
+    }
+}
+
 /* What the blocks of a group give of series to `degree`; the first row that is left out. */
 static int blocks(const wide *series, size_t size, int degree, const real *cells, int rows, int group, wide *sum)
 {
-    const int strands = strands_of(group);
     int row = 0;
     while (row < rows && cells[LOWEST * ROWS] <= (real)degree) {
-        const int lowest = (int)cells[LOWEST * ROWS];
-        const real middle = cells[LOWEST * ROWS + ROWS / 2];
-        const int all = middle <= (real)degree ? (int)middle : degree + 1; /* from where on the lower rows count, too */
-        wide missed[ROWS];
-        UNROLLED
-        for (int i = 0; i < ROWS; ++i) {
-            missed[i] = none - cells[AIM * ROWS + i];
-        }
-        for (int s = 0; s < strands; ++s) {
-            const wide *const c = series + (size_t)strand_at[first_strand[group] + s] * size;
-            const real *r = cells + (COLUMNS + lowest * strands + s) * ROWS;
-            int k = lowest;
-            for (; k < all; ++k) {
-                UNROLLED
-                for (int i = 0; i < ROWS / 2; ++i) {
-                    missed[i] += r[i] * c[k];
-                }
-                r += strands * ROWS;
+        for (int first = 0; first < ROWS; first += HALF) {
+            const real lowest = cells[LOWEST * ROWS + first];
+            const int least = lowest <= (real)degree ? (int)lowest : degree + 1; /* the rows before count alone, then */
+            for (int side = 0; side < PARTS; side += PAIRED) {
+                square_up(series + side, size, least, degree, cells + first, group, sum + side);
             }
-            for (; k <= degree; ++k) {
-                UNROLLED
-                for (int i = 0; i < ROWS; ++i) {
-                    missed[i] += r[i] * c[k];
-                }
-                r += strands * ROWS;
-            }
-        }
-        UNROLLED
-        for (int i = 0; i < ROWS; ++i) {
-            *sum += cells[WEIGHT * ROWS + i] * missed[i] * missed[i];
         }
         cells += (COLUMNS + columns_of(group)) * ROWS;
         row += ROWS;
@@ -243,23 +257,28 @@ static void misfit_of(const batch_of *b, const name_data *data, wide *sum)
         const int degree = b->degree[window];
         const real *const cells = data->numbers + data->place[n];
         const size_t kept = ((size_t)data->rows[n] + ROWS - 1) / ROWS * ROWS;
-        const int row = blocks(b->series + b->place[window], (size_t)(degree + 2), degree + longer[group], cells,
+        const int row = blocks((const wide *)b->series[b->place[window]], (size_t)(degree + 2), degree + longer[group], cells,
                                data->rows[n], group, sum);
-        *sum += cells[cell(group, kept, 0) + (size_t)row];
+        for (int side = 0; side < PARTS; ++side) {
+            sum[side] += cells[cell(group, kept, 0) + (size_t)row];
+        }
     }
 }
 
 void name_batch_misfit(const name_batch *batch, const name_data *data, name_real *misfit)
 {
-    wide sum = none;
+    wide sum[PARTS];
     int any = 0;
+    for (int side = 0; side < PARTS; ++side) {
+        sum[side] = none;
+    }
     for (int set = 0; set < NAME_WIDTH; ++set) {
         any |= batch->status[set] == 0;
     }
     if (any) {
-        misfit_of(batch, data, &sum);
+        misfit_of(batch, data, sum);
     }
     for (int set = 0; set < NAME_WIDTH; ++set) {
-        misfit[set] = batch->status[set] == 0 ? LANE(sum, set) : not_a_number();
+        misfit[set] = batch->status[set] == 0 ? OF_SET(sum, set) : not_a_number();
     }
 }

@@ -1,8 +1,7 @@
 /* peaks.c: the least and the greatest value of each output of a model, between samples, too.
- * Plain C that is put below all of NAME.c, for callers that take many sets at once; what stands below the first empty
- * line. */
+ * Plain C that stands below the text of blocks.c in generated files, which have what stands below the first empty line. */
 #ifndef NAME_JOINTED
-#include "misfit.c"
+#include "blocks.c"
 #endif
 
 /* How often an interval is halved at most; into how many parts one is cut where it is looked at closely;
@@ -108,8 +107,8 @@ static void explore(const part *p, summit *top, real left, real at_left, real ri
     for (int i = 0; i < CLOSELY; ++i) {
         real t[BLOCK], found[BLOCK];
         part q = *p;
-        q.begin = left + width * ((real)i / CLOSELY);
-        q.length = width / CLOSELY;
+        q.begin = left + width * ((real)i / (real)CLOSELY);
+        q.length = width / (real)CLOSELY;
         survey(&q, t, found);
         q.bend = bend_seen(&q, found);
         for (int j = 0; j < BLOCK; ++j) {
@@ -180,11 +179,6 @@ static void search(const model_of *m, int output, summit *least, summit *greates
     }
 }
 
-int name_model_peaks(const name_model *model, name_real *out);
-
-/* Of each output the least value, its tau, the greatest value, its tau: out[output*4 ...]; of values that a jump leaves
- * behind, too. They are right to the last bits of what the model has. 0, or 1 with all NaN for a model that could not be
- * built. */
 int name_model_peaks(const name_model *model, name_real *out)
 {
     for (int output = 0; output < NAME_OUTPUTS; ++output) {

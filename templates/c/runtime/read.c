@@ -36,15 +36,6 @@ static int section_at(real tau)
     return found < end ? found : end - 1;
 }
 
-name_real name_tangent_estimate(const name_tangent *tangent, int lane)
-{
-    const model_of *const m = &tangent->value;
-    if (lane < 0 || lane > NAME_LANES || !m->built) {
-        return not_a_number();
-    }
-    return lane == 0 ? m->estimate : estimated_slope(tangent, lane - 1);
-}
-
 int name_model_eval(const name_model *model, name_real tau, name_real *out)
 {
     if (!(model->built && tau == tau && tau >= 0 && tau <= NAME_TAU_MAX)) {
@@ -83,77 +74,145 @@ static const real offset[BLOCK] = {
     0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15,
 };
 
-/* A block of values of a series, added to what is there where `more`. */
-static void block(const real *c, int degree, const real *u, int more, real *out)
+/* So many series are read together, and so many vectors of one that is read alone. */
+#ifndef __OPTIMIZE_SIZE__
+enum { TOGETHER = NAME_OUTPUTS < 4 ? NAME_OUTPUTS : 4, ABREAST = 4 };
+#else
+enum { TOGETHER = 1, ABREAST = 1 };
+#endif
+
+/* `width` vectors of values of series of `size` numbers, one behind the other, all at the same instants u: sums of
+ * c_k T_k(u), which share the T_k. */
+WITHIN void together(int count, int width, const real *series, size_t size, const slice *u, slice *sum)
 {
-    const slice *const at = (const slice *)u;
-    slice *const to = (slice *)out;
-    slice twice[SLICES], next[SLICES], after[SLICES];
+    slice twice[ABREAST], now[ABREAST], before[ABREAST];
+    const real *c = series + 2;
     UNROLLED
-    for (int j = 0; j < SLICES; ++j) {
-        twice[j] = at[j] + at[j];
-        after[j] = at[j] - at[j];
-        next[j] = after[j] + c[degree];
-    }
-    for (int k = degree - 1; k > 0; --k) {
+    for (int j = 0; j < width; ++j) {
+        twice[j] = u[j] + u[j];
+        now[j] = u[j];
+        before[j] = (u[j] - u[j]) + 1;
         UNROLLED
-        for (int j = 0; j < SLICES; ++j) {
-            const slice now = twice[j] * next[j] + (c[k] - after[j]);
-            after[j] = next[j];
-            next[j] = now;
+        for (int i = 0; i < count; ++i) {
+            sum[i * width + j] = u[j] * series[(size_t)i * size + 1] + series[(size_t)i * size];
         }
     }
-    UNROLLED
-    for (int j = 0; j < SLICES; ++j) {
-        const slice sum = at[j] * next[j] + (c[0] - after[j]);
-        if (more) {
-            to[j] += sum;
-        } else {
-            to[j] = sum;
+    for (; c + 1 < series + size; c += 2) {
+        UNROLLED
+        for (int j = 0; j < width; ++j) {
+            before[j] = twice[j] * now[j] - before[j];
+            UNROLLED
+            for (int i = 0; i < count; ++i) {
+                sum[i * width + j] += c[(size_t)i * size] * before[j];
+            }
+        }
+        UNROLLED
+        for (int j = 0; j < width; ++j) {
+            now[j] = twice[j] * before[j] - now[j];
+            UNROLLED
+            for (int i = 0; i < count; ++i) {
+                sum[i * width + j] += c[(size_t)i * size + 1] * now[j];
+            }
+        }
+    }
+    if (c < series + size) {
+        UNROLLED
+        for (int j = 0; j < width; ++j) {
+            before[j] = twice[j] * now[j] - before[j];
+            UNROLLED
+            for (int i = 0; i < count; ++i) {
+                sum[i * width + j] += c[(size_t)i * size] * before[j];
+            }
         }
     }
 }
 
-/* A block of an output at t after the start of a window's cycle. */
-static void output_block(const model_of *m, const real *series, int window, int at, const real *t, real *out)
+/* Strands that are read together on a window: the first and how many; `more` where values are added to what is there. */
+typedef struct {
+    const model_of *m;
+    int window, strand, more;
+} strands_read;
+
+/* `width` vectors of samples of so many strands from k on. What lies behind the last sample is left as it is. */
+WITHIN void read_vectors(int count, int width, const strands_read *r, const samples *s, size_t k)
 {
-    const int degree = m->degree[window];
-    int more = 0;
-    real u[BLOCK];
-    for (int k = first_strand[at]; k < first_strand[at + 1]; ++k) {
-        const int s = strand_at[k];
-        const int now = window % CYCLE * NAME_STRANDS + s;
-        const real begin = strand_start[now], excess = strand_excess[now], scale = strand_scale[s];
-        UNROLLED
-        for (int j = 0; j < BLOCK; ++j) {
-            u[j] = ((t[j] - begin) + excess) * scale - 1;
-        }
-        block(series + m->place[window] + (size_t)s * (size_t)(degree + 2), degree + 1, u, more, out);
-        more = 1;
+    const size_t size = (size_t)r->m->degree[r->window] + 2;
+    const int now = r->window % CYCLE * NAME_STRANDS + r->strand;
+    const real begin = cycle_begin(r->window), start = strand_start[now], excess = strand_excess[now];
+    const real scale = strand_scale[r->strand], first = (real)k;
+    slice u[ABREAST], sum[TOGETHER * ABREAST];
+    UNROLLED
+    for (int j = 0; j < width; ++j) {
+        const slice step = (*slice_at(offset, 0) + (first + (real)(j * (int)LANES))) * s->dtau;
+        const slice t = (step * s->one + s->tau0) - begin;
+        u[j] = ((t - start) + excess) * scale - 1;
     }
-    for (int j = 0; !more && j < BLOCK; ++j) {
-        out[j] = 0;
+    together(count, width, s->series + r->m->place[r->window] + (size_t)r->strand * size, size, u, sum);
+    UNROLLED
+    for (int i = 0; i < count; ++i) {
+        real *const row = s->out + (size_t)strand_output[r->strand + i] * s->count;
+        UNROLLED
+        for (int j = 0; j < width; ++j) {
+            const size_t to = k + (size_t)j * LANES;
+            if (to + LANES <= s->count) {
+                slice now_there = sum[i * width + j];
+                if (r->more) {
+                    now_there += *slice_at(row, to);
+                }
+                *(slice *)(row + to) = now_there;
+                continue;
+            }
+            real rest[LANES];
+            *(slice *)rest = sum[i * width + j];
+            for (size_t lane = 0; to + lane < s->count; ++lane) {
+                row[to + lane] = (r->more ? row[to + lane] : (real)0) + rest[lane];
+            }
+        }
     }
 }
 
-/* Samples k ... end - 1, all of them on one section of a window. Whole blocks are written: what is beyond the end is
+/* Samples k ... end - 1 of so many strands. */
+WITHIN void read_strands(int count, const strands_read *r, const samples *s, size_t k, size_t end)
+{
+    for (; count == 1 && ABREAST == 4 && end > k + 2 * LANES; k += 4 * LANES) {
+        read_vectors(count, ABREAST, r, s, k);
+    }
+    for (; ABREAST > 1 && end > k + LANES; k += 2 * LANES) {
+        read_vectors(count, 2, r, s, k);
+    }
+    for (; end > k; k += LANES) {
+        read_vectors(count, 1, r, s, k);
+    }
+}
+
+/* Samples k ... end - 1, all of them on one section of a window. Whole vectors are written: what is beyond the end is
  * written anew by the runs that follow. */
 static void run(const model_of *m, int window, int section, const samples *s, size_t k, size_t end)
 {
-    const real begin = cycle_begin(window);
-    real t[BLOCK], rest[BLOCK];
-    for (; k < end; k += BLOCK) {
-        const real first = (real)k, tau0 = s->tau0, dtau = s->dtau, one = s->one;
-        UNROLLED
-        for (int j = 0; j < BLOCK; ++j) {
-            t[j] = instant(tau0, dtau, one, first + offset[j]) - begin;
+    strands_read r = {m, window, 0, 0};
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        const int at = section * NAME_OUTPUTS + output;
+        for (size_t j = k; first_strand[at] == first_strand[at + 1] && j < end; ++j) {
+            s->out[(size_t)output * s->count + j] = 0;
         }
-        for (int output = 0; output < NAME_OUTPUTS; ++output) {
-            const int at = section * NAME_OUTPUTS + output;
-            real *const row = s->out + (size_t)output * s->count;
-            output_block(m, s->series, window, at, t, s->count - k < BLOCK ? rest : row + k);
-            for (size_t j = 0, to = k; s->count - k < BLOCK && to < s->count; ++j, ++to) {
-                row[to] = rest[j];
+    }
+    for (int reading = first_reading[section]; reading < first_reading[section + 1]; ++reading) {
+        const int last = reading_strand[reading] + reading_strands[reading];
+        r.more = reading_more[reading];
+        for (r.strand = reading_strand[reading]; r.strand < last; r.strand += TOGETHER) {
+            switch (last - r.strand) {
+            case 1:
+                read_strands(1, &r, s, k, end);
+                break;
+            case 2:
+                read_strands(TOGETHER < 2 ? TOGETHER : 2, &r, s, k, end);
+                break;
+            case 3:
+                read_strands(TOGETHER < 3 ? TOGETHER : 3, &r, s, k, end);
+                break;
+            default:
+                read_strands(TOGETHER, &r, s, k, end);
+                break;
             }
         }
     }
@@ -213,15 +272,4 @@ static int sampled(const model_of *m, const real *series, real tau0, real dtau, 
 int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out)
 {
     return sampled(model, model->series, tau0, dtau, count, out);
-}
-
-int name_tangent_sample(
-    const name_tangent *tangent, name_real tau0, name_real dtau, size_t count, name_real *out)
-{
-    const model_of *const m = &tangent->value;
-    int outside = sampled(m, m->series, tau0, dtau, count, out);
-    for (size_t lane = 0; lane < NAME_LANES; ++lane) {
-        outside |= sampled(m, tangent->series[lane], tau0, dtau, count, out + (lane + 1) * NAME_OUTPUTS * count);
-    }
-    return outside;
 }

@@ -4,6 +4,9 @@
 #define NAME_MARCHED
 #include "series.c"
 
+/* Bytes of vectors of many sets. */
+#define WIDE VECTOR
+
 enum { LEFT = 0, RIGHT = 1, LOAD = 2, RATIO = 0, FIRST = 1, LAST = 2, SLACK = 0, LOSS = 1, LEAK = 2 };
 
 typedef real wave_of[NAME_PANELS][NAME_NODES + 2][NAME_ROW];
@@ -123,11 +126,9 @@ static int refused(const laws *law)
 
 /* The tables of bodies for polynomials of a degree: the elimination of q_k + x_k (q_(k-1) - q_(k+1)) = x_k (p_(k-1) -
  * p_(k+1)) from the highest k down. Bodies of equal rate on panels of equal length share them. */
-static void tabulate(model_of *m, const laws *law, int degree)
+static void tabulate(work_of *m, const laws *law, int degree)
 {
-    for (int k = 1; k <= degree + SPARE; ++k) {
-        m->inverse[k] = 1 / (real)(2 * k);
-    }
+    tell_inverses(m->inverse, degree + SPARE);
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
         for (int node = 0; node < NAME_NODES; ++node) {
             const int here = panel * NAME_NODES + node;
@@ -225,7 +226,7 @@ typedef struct {
 
 /* The velocities of bodies on a panel, and what they send; one alone is moved twice. `velocity` goes from its start to
  * its end. What the polynomials miss. */
-static real moved(const model_of *m, wave_of (*waves)[3], int half, int panel, int degree, moving *bodies, real *velocity,
+static real moved(const work_of *m, wave_of (*waves)[3], int half, int panel, int degree, moving *bodies, real *velocity,
                   real *size)
 {
     const int second = bodies->count - 1;
@@ -280,7 +281,7 @@ static real moved(const model_of *m, wave_of (*waves)[3], int half, int panel, i
 
 /* One window at a degree, from the waves of the window before in the other half. What its polynomials miss; `size`
  * grows to the largest velocity or mean of a wave. */
-static real march(model_of *m, const laws *law, int half, int degree, real *size)
+static real march(work_of *m, const laws *law, int half, int degree, real *size)
 {
     moving bodies;
     real missed = 0;
@@ -327,7 +328,7 @@ static real march(model_of *m, const laws *law, int half, int degree, real *size
 
 /* Add to all strands of a window what is heard of waves: each times its gain, or their integrals from tau = 0 on, of
  * which `total` is what windows before have brought. */
-static void listen(const model_of *m, wave_of (*waves)[3], const real *gains, real *total, int window, int degree,
+static void listen(const work_of *m, wave_of (*waves)[3], const real *gains, real *total, int window, int degree,
                    real *all)
 {
     const int half = window % 2;
@@ -356,93 +357,8 @@ static void listen(const model_of *m, wave_of (*waves)[3], const real *gains, re
     }
 }
 
-/* How much of p - q a body takes up on a window as its rate changes, at most: a slow one no more than its share. */
-static real turned_by(const laws *law, const laws *slope, int node)
-{
-    const real rate = law->rate[node];
-    return magnitude(rate < 1 ? slope->rate[node] : slope->rate[node] / rate);
-}
-
-/* How much of what values are wrong by acts on their derivatives on a window, at most. */
-static real felt(const laws *law, const laws *slope)
-{
-    real most = 0;
-    for (int node = 0; node < NAME_NODES; ++node) {
-        const real rate = law->rate[node];
-        const real arrives = magnitude(slope->alpha[node]) + magnitude(slope->beta[node]);
-        most = larger(most, rate > 0 && rate < 1 ? rate * arrives : arrives);
-        most = larger(most, 2 * turned_by(law, slope, node));
-    }
-    return most;
-}
-
-/* One window of the derivatives by a parameter, of which `slope` is what the laws change by. With q'/rate + q = p,
- *
- *     dq'/rate + dq = dp + drate/rate (p - q).
- *
- * What its polynomials miss. */
-static real follow(name_tangent *tangent, const laws *law, const laws *slope, int lane, int half, int degree)
-{
-    const model_of *const m = &tangent->value;
-    wave_of(*const waves)[3] = tangent->waves[lane];
-    real *const velocity = tangent->velocity[lane][1];
-    real *const size = &tangent->size[lane][1];
-    moving bodies;
-    real missed = 0, acts = tangent->acts[lane];
-    bodies.count = 0;
-    bodies.node[0] = 0;
-    bodies.node[1] = 0;
-    *size = tangent->size[lane][0];
-    for (int node = 0; node < NAME_NODES; ++node) {
-        velocity[node] = tangent->velocity[lane][0][node];
-    }
-    for (int panel = 0; panel < NAME_PANELS; ++panel) {
-        for (int f = 0; f < NAME_FORCES; ++f) {
-            for (int k = 0; k < 3; ++k) {
-                waves[half][LOAD][panel][f][k] = tangent->force[lane][panel][f][k];
-            }
-        }
-        for (int node = 0; node < NAME_NODES; ++node) {
-            const real *const a = m->waves[!half][RIGHT][panel][node];
-            const real *const b = m->waves[!half][LEFT][panel][node + 2];
-            const real *const da = waves[!half][RIGHT][panel][node];
-            const real *const db = waves[!half][LEFT][panel][node + 2];
-            real *const p = bodies.p[bodies.count];
-            const int f = force_on[node];
-            for (int k = 0; k <= degree; ++k) {
-                p[k] = law->alpha[node] * da[k] + law->beta[node] * db[k] + slope->alpha[node] * a[k] +
-                       slope->beta[node] * b[k];
-            }
-            p[degree + 1] = 0;
-            for (int k = 0; f >= 0 && k < 3; ++k) {
-                p[k] += tangent->force[lane][panel][f][k];
-            }
-            if (law->rate[node] > 0) {
-                const real share_of_rate = slope->rate[node] / law->rate[node];
-                const real *const back = m->waves[half][LEFT][panel][node + 1];
-                for (int k = 0; k <= degree; ++k) {
-                    const real load = f >= 0 && k < 3 ? m->force[panel][f][k] : (real)0;
-                    const real pushed = law->alpha[node] * a[k] + law->beta[node] * b[k] + load;
-                    p[k] += share_of_rate * (pushed - (back[k] + a[k]));
-                }
-                const real pushed = law->alpha[node] * a[0] + law->beta[node] * b[0] + (f >= 0 ? m->force[panel][f][0] : (real)0);
-                acts = larger(acts, turned_by(law, slope, node) * pushed);
-                bodies.node[bodies.count] = node;
-                bodies.count += 1;
-            } else {
-                send(waves, half, panel, node, degree, p, size);
-            }
-            if (bodies.count == PAIR || (bodies.count > 0 && node == NAME_NODES - 1)) {
-                missed += moved(m, waves, half, panel, degree, &bodies, velocity, size);
-            }
-        }
-    }
-    tangent->acts[lane] = acts;
-    return missed;
-}
-
 /* What begins a march. */
-static void started(model_of *m, const laws *law)
+static void started(work_of *m, const laws *law)
 {
     start_waves(m->waves, law, LEAST);
     for (int node = 0; node < NAME_NODES; ++node) {
@@ -452,47 +368,22 @@ static void started(model_of *m, const laws *law)
 }
 
 /* The next window begins as this one ends. */
-static void settle(model_of *m)
+static void settle(work_of *m)
 {
     for (int node = 0; node < NAME_NODES; ++node) {
         m->velocity[0][node] = m->velocity[1][node];
     }
 }
 
-/* What begins derivatives by a parameter. */
-static void started_lane(name_tangent *tangent, const laws *slope, int lane)
-{
-    start_waves(tangent->waves[lane], slope, LEAST);
-    for (int node = 0; node < NAME_NODES; ++node) {
-        tangent->velocity[lane][0][node] = slope->motion[node];
-    }
-}
-
-/* As settle. */
-static void settle_lane(name_tangent *tangent, int lane)
-{
-    for (int node = 0; node < NAME_NODES; ++node) {
-        tangent->velocity[lane][0][node] = tangent->velocity[lane][1][node];
-    }
-}
-
-/* Derivatives on the window of now; `before` is the degree of the one before. What their polynomials miss. */
-static real follow_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now,
-                        int before)
-{
-    lengthen(tangent->waves[lane], before, now->degree);
-    return follow(tangent, law, slope, lane, now->window % 2, now->degree);
-}
-
 /* The window of now at the degree of now. */
-static void march_window(model_of *m, const laws *law, progress *now)
+static void march_window(work_of *m, const laws *law, progress *now)
 {
     now->seen = now->size;
     now->leak = march(m, law, now->window % 2, now->degree, &now->seen);
 }
 
 /* The same at a higher degree. */
-static void heighten(model_of *m, const laws *law, progress *now)
+static void heighten(work_of *m, const laws *law, progress *now)
 {
     const int higher = higher_than(now->degree);
     lengthen(m->waves, now->degree, higher);

@@ -11,31 +11,14 @@ static int reached(const laws *law, const laws *slope, int lane, int output)
 }
 #endif
 
-/* Loops over a block of samples are unrolled, so that its values stay in registers. */
-#if defined(__OPTIMIZE_SIZE__)
-#define UNROLLED
-#elif defined(__clang__)
-#define UNROLLED _Pragma("clang loop unroll(full)")
-#elif defined(__GNUC__)
-#define UNROLLED _Pragma("GCC unroll 16")
-#else
-#define UNROLLED
-#endif
+/* So many samples are a block. */
+enum { BLOCK = 16 };
 
-/* A block is a few slices, vectors where there is GNU C and NAME_PLAIN does not ask for plain C. */
-#if defined(__GNUC__) && !defined(__FRAMAC__) && !defined(NAME_PLAIN)
-typedef real full_slice __attribute__((vector_size(64)));
-typedef full_slice slice __attribute__((aligned(sizeof(real)), may_alias));
-#else
-typedef real slice;
-#endif
-enum { BLOCK = 16, SLICES = BLOCK * sizeof(real) / sizeof(slice), LANES = sizeof(slice) / sizeof(real) };
 static const slice nothing = {0};
-#if defined(__GNUC__) && !defined(__FRAMAC__) && !defined(NAME_PLAIN)
-typedef __typeof__(nothing < nothing) bits;
+#if VECTOR
 #define AT(x, lane) ((x)[lane])
-#define MAGNITUDE(x) ((slice)((bits)(x) & (bits)(-(x))))
-#define LARGER(x, y) ((slice)((((x) > (y)) & (bits)(x)) | (~((x) > (y)) & (bits)(y))))
+#define MAGNITUDE(x) ((slice)((choice)(x) & ~(choice)(-nothing)))
+#define LARGER(x, y) ((slice)((((x) > (y)) & (choice)(x)) | (~((x) > (y)) & (choice)(y))))
 #else
 #define AT(x, lane) (x)
 #define MAGNITUDE(x) magnitude(x)
@@ -83,8 +66,16 @@ static real series_at(const real *c, int degree, real u)
     return (u * next - after) + c[0];
 }
 
+/* 1 / (2 k), up to some k */
+static void tell_inverses(real *inverse, int last)
+{
+    for (int k = 1; k <= last; ++k) {
+        inverse[k] = 1 / (real)(2 * k);
+    }
+}
+
 /* The antiderivative of a series, times 1 / half the length of the panel: all c_k but the first, which is 0. */
-static void integrate(const model_of *m, const real *w, int degree, real *c)
+static void integrate(const work_of *m, const real *w, int degree, real *c)
 {
     c[0] = 0;
     c[1] = w[0] - (degree > 1 ? w[2] / 2 : (real)0);
@@ -292,7 +283,7 @@ static real read_by(int degree)
 }
 
 /* Of the largest value of an output, about what `missed`, as a velocity, and reading at a degree make of it, at worst. */
-static real estimated(const model_of *m, const laws *law, real missed, int degree)
+static real estimated(const work_of *m, const laws *law, real missed, int degree)
 {
     real worst = 0;
     for (int output = 0; output < NAME_OUTPUTS; ++output) {
@@ -327,10 +318,10 @@ static real wrong_by(real missed, real size, int degree)
     return 6 * missed + rounded_by(degree) * size;
 }
 
-static int ended(model_of *m, const laws *law, const progress *now)
+static int ended(const work_of *m, model_of *made, const laws *law, const progress *now)
 {
     const real missed = wrong_by(now->missed, now->size, now->degree);
-    m->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);
-    m->estimate = m->built ? estimated(m, law, missed, now->degree) : not_a_number();
-    return !m->built;
+    made->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);
+    made->estimate = made->built ? estimated(m, law, missed, now->degree) : not_a_number();
+    return !made->built;
 }

@@ -1,26 +1,16 @@
 /* sets.c: many sets of parameters in one call, for callers to whom a call costs more than a model.
- * Plain C that is put below peaks.c; what stands below the first empty line. */
-#ifndef NAME_JOINTED
-#include "peaks.c"
-#endif
+ * Plain C that is put below all of NAME.c; what stands below the first empty line. */
+#include "tables.h"
 
 size_t name_model_size(void);
-size_t name_tangent_size(void);
 void name_sets(const name_parameters *parameters, size_t sets, name_batch *batch, name_model *model,
                const name_real *tau, int even, size_t count, int *status, name_real *estimate, name_real *out);
 void name_sets_peaks(const name_parameters *parameters, size_t sets, name_batch *batch, name_model *model,
                      int *status, name_real *estimate, name_real *out);
-void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tangent *tangent, const name_real *tau,
-                        int even, size_t count, int *status, name_real *estimate, name_real *out);
 
 size_t name_model_size(void)
 {
     return sizeof(name_model);
-}
-
-size_t name_tangent_size(void)
-{
-    return sizeof(name_tangent);
 }
 
 /* The model of a set: side by side with its neighbours where there are some, alone where it is refused beside them. */
@@ -66,30 +56,5 @@ void name_sets_peaks(const name_parameters *parameters, size_t sets, name_batch 
         status[set] = one_of(parameters, sets, set, batch, model);
         estimate[set] = name_error_estimate(model);
         (void)name_model_peaks(model, out + set * NAME_OUTPUTS * 4);
-    }
-}
-
-/* As name_sets, with derivatives: out[((set*(LANES + 1) + lane)*OUTPUTS + output)*count + k], estimate[set*(LANES + 1) +
- * lane]. */
-void name_sets_tangents(const name_parameters *parameters, size_t sets, name_tangent *tangent, const name_real *tau,
-                        int even, size_t count, int *status, name_real *estimate, name_real *out)
-{
-    const size_t rows = (NAME_LANES + 1) * (size_t)NAME_OUTPUTS;
-    for (size_t set = 0; set < sets; ++set) {
-        name_real *const all = out + set * rows * count;
-        status[set] = name_build_tangent(tangent, parameters + set);
-        for (size_t lane = 0; lane <= NAME_LANES; ++lane) {
-            estimate[set * (NAME_LANES + 1) + lane] = name_tangent_estimate(tangent, (int)lane);
-        }
-        if (even) {
-            (void)name_tangent_sample(tangent, tau[0], tau[1], count, all);
-        }
-        for (size_t k = 0; !even && k < count; ++k) {
-            name_real now[(NAME_LANES + 1) * NAME_OUTPUTS];
-            (void)name_tangent_sample(tangent, tau[k], 0, 1, now);
-            for (size_t row = 0; row < rows; ++row) {
-                all[row * count + k] = now[row];
-            }
-        }
     }
 }

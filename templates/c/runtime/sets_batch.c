@@ -1,6 +1,6 @@
 /* sets_batch.c: many sets of parameters side by side: misfits.
- * Plain C that is put below sets.c; what stands below the first empty line. */
-#include "sets.c"
+ * Plain C that is put below all of NAME.c; what stands below the first empty line. */
+#include "misfit.c"
 
 void name_sets_sizes(size_t *sizes);
 void name_sets_misfits(const name_parameters *parameters, size_t sets, name_batch *batch, const name_data *data,
@@ -24,14 +24,14 @@ void name_sets_misfits(const name_parameters *parameters, size_t sets, name_batc
         name_batch_misfit(batch, data, misfit);
         for (size_t k = 0; k < NAME_WIDTH && set + k < sets; ++k) {
             status[set + k] = batch->status[k];
-            estimate[set + k] = LANE(batch->estimate, k);
+            estimate[set + k] = batch->estimate[k];
             out[set + k] = misfit[k];
         }
         for (size_t k = 0; k < NAME_WIDTH && set + k < sets; ++k) {
             if (status[set + k]) {
                 status[set + k] = name_build_batch(batch, parameters + set + k, 1);
                 name_batch_misfit(batch, data, misfit);
-                estimate[set + k] = LANE(batch->estimate, 0);
+                estimate[set + k] = batch->estimate[0];
                 out[set + k] = misfit[0];
             }
         }

@@ -1,7 +1,7 @@
 /* wrong.c: what may be wrong of loads and of what is read; what bounds of all models start from.
- * Plain C that stands below the text of read.c in generated files, which have what stands below the first empty
+ * Plain C that stands below the text of blocks.c in generated files, which have what stands below the first empty
  * line. */
-#include "read.c"
+#include "blocks.c"
 
 typedef struct {
     real force[NAME_PANELS][NAME_FORCES + 1]; /* of a load, on this window */

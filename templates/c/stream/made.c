@@ -4,7 +4,7 @@
 #define NAME_RUNTIME
 #include "stream.c"
 
-enum { SQUARE = MOST_MOVED * MOST_MOVED, MOST_PARTS = 100000 };
+enum { SQUARE = MOST_MOVED * MOST_MOVED };
 
 /* A joint on a panel, x' = rates x + f as series: x_k = y_k - down_k x_(k-1), y_k = solve_k r_k + down_k y_(k+1) with
  * r_k = f_(k-1) - f_(k+1), where x_0 and f_0 count twice; and 2 x_0 = start (x at the start - what the rest makes there).
@@ -132,8 +132,35 @@ static void respond(const elimination *by, const real *begun_at, const real *pus
     }
 }
 
+/* How fast anything in a joint is, at most: the norm of its rates, scaled so that energy is |x|^2 / 2; or `turning`, of
+ * what springs make of it alone. No number where that is beyond all bounds. */
+static real speed_of(const stream *state, int joint, int turning)
+{
+    const int first = first_state[joint];
+    const int states = first_state[joint + 1] - first_state[joint];
+    const real *const rates = law + law_of[joint];
+    real rows = 0;
+    real columns = 0;
+    for (int a = 0; a < states; ++a) {
+        real row = 0;
+        real column = 0;
+        for (int b = 0; b < states; ++b) {
+            const real of = weight[first + a] / weight[first + b];
+            const real scaled = of > 0 && is_number(of) ? root(of) : not_a_number();
+            const real to = rates[a * states + b] * scaled;
+            const real back = rates[b * states + a] / scaled;
+            row += absolute(turning ? (to - back) / 2 : to);
+            column += absolute(turning ? (to - back) / 2 : back);
+        }
+        rows = row <= rows ? rows : row;
+        columns = column <= columns ? columns : column;
+    }
+    rows = rows * columns;
+    return rows > 0 && is_number(rows) ? root(rows) : rows;
+}
+
 /* A joint with a state: a column of its matrix, and of what its polynomials miss, for each number that it is given: the
- * coefficients of what acts on its points, then x at the start. */
+ * coefficients of what acts on its points, then x at the start. What is missed is the root of an energy. */
 static void answer_of(stream *state, int joint)
 {
     const int points = first_point[joint + 1] - first_point[joint];
@@ -143,6 +170,8 @@ static void answer_of(stream *state, int joint)
     const real *const pushed = own + states * states;
     const real *const shown = pushed + states * points;
     const real *const passed = shown + points * states;
+    const real turned = speed_of(state, joint, 0) * panel;
+    const real energy = 2 * (root(turned) + (1 + turned) * (real)0.70711) * (panel / (real)(4 * SIZE));
     real rates[SQUARE] = {0};
     elimination by;
     for (int k = 0; k < states * states; ++k) {
@@ -177,16 +206,13 @@ static void answer_of(stream *state, int joint)
             left[a] = point >= 0 && power == DEGREE ? acting[a] : (real)0;
         }
         multiply(left, rates, x[DEGREE], MOST_MOVED, MOST_MOVED);
-        for (int p = 0; p < points; ++p) {
-            real *const missed = slip + first_slip[joint] + p * width + column;
-            *missed = 0;
-            multiply(missed, shown + p * states, left, 1, states);
-            *missed *= (real)CAUTION * (panel / (real)(4 * SIZE));
+        for (int a = 0; a < states; ++a) {
+            slip[first_slip[joint] + a * width + column] = energy * root(weight[first_state[joint] + a]) * left[a];
         }
     }
 }
 
-/* One without: what goes back into each end, from what arrives at each. */
+/* One without: what goes back into each end, from what arrives at each, and from what acts on each point. */
 static void scattering_of(stream *state, int joint)
 {
     const int points = first_point[joint + 1] - first_point[joint];
@@ -198,60 +224,74 @@ static void scattering_of(stream *state, int joint)
             *factor++ = ratio[other] * moved - (other == port ? (real)1 : (real)0);
         }
     }
+    for (int point = 0; point < points; ++point) {
+        for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+            *factor++ = ratio[port] * passed[point_of[port] * points + point];
+        }
+    }
 }
 
-/* What polynomials lose at most where a wave, or a body, that was at rest jumps to 1. */
+/* What part of the energy that comes polynomials lose at most where all waves and bodies, at rest so far, jump to 1: a
+ * root. */
 static real step_lost(const stream *state, int joint)
 {
     const int points = first_point[joint + 1] - first_point[joint];
     const int states = first_state[joint + 1] - first_state[joint];
     const int width = points * SIZE + states;
-    real most = 0;
-    for (int p = 0; p < points; ++p) {
-        const real *const missed = slip + first_slip[joint] + p * width;
-        real sum = 0;
-        for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-            sum += absolute(push[port]) * absolute(missed[point_of[port] * SIZE]);
-        }
-        for (int a = 0; a < states; ++a) {
-            sum += is_mass[first_state[joint] + a] ? absolute(missed[points * SIZE + a]) : (real)0;
-        }
-        most = sum <= most ? most : sum;
+    real energy = 0;
+    real sum = 0;
+    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+        energy += panel * track_impedance[arrive[port]];
     }
-    return most;
+    for (int a = 0; a < states; ++a) {
+        const real *const missed = slip + first_slip[joint] + a * width;
+        energy += is_mass[first_state[joint] + a] ? weight[first_state[joint] + a] / 2 : (real)0;
+        for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+            sum += absolute(push[port] * missed[point_of[port] * SIZE]);
+        }
+        for (int b = 0; b < states; ++b) {
+            sum += is_mass[first_state[joint] + b] ? absolute(missed[points * SIZE + b]) : (real)0;
+        }
+    }
+    return sum > 0 ? sum / root(energy) : sum;
 }
 
-/* How fast anything in a joint is, at most: the norm of its rates, scaled so that energy is |x|^2 / 2; or `turning`, of
- * what springs make of it alone. No number where that is beyond all bounds. */
-static real speed_of(const stream *state, int joint, int turning)
+/* What an error of each track counts for: those of rods times the root of the impedance. The velocity of a point follows
+ * from what a rod there carries; that of one without rods from the state, and from what arrives at other points. */
+static void weigh_tracks(stream *state, int joint)
 {
-    const int first = first_state[joint];
+    const int points = first_point[joint + 1] - first_point[joint];
     const int states = first_state[joint + 1] - first_state[joint];
-    const real *const rates = law + law_of[joint];
-    real rows = 0;
-    real columns = 0;
-    for (int a = 0; a < states; ++a) {
-        real row = 0;
-        real column = 0;
-        for (int b = 0; b < states; ++b) {
-            const real of = weight[first + a] / weight[first + b];
-            const real scaled = of > 0 && is_number(of) ? root(of) : not_a_number();
-            const real to = rates[a * states + b] * scaled;
-            const real back = rates[b * states + a] / scaled;
-            row += absolute(turning ? (to - back) / 2 : to);
-            column += absolute(turning ? (to - back) / 2 : back);
+    const real *const shown = law + law_of[joint] + states * states + states * points;
+    const real *const passed = shown + points * states;
+    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+        const int point = point_of[port];
+        real carried = 0;
+        real moved = 0;
+        real passing = 0;
+        if (slots[send[port]] > 1) {
+            root_impedance[send[port]] = root(track_impedance[send[port]]);
+        } else {
+            for (int a = 0; a < states; ++a) {
+                moved += (real)1.4143 * absolute(shown[point * states + a]) / root(weight[first_state[joint] + a]);
+            }
+            for (int other = first_port[joint]; other < first_port[joint + 1]; ++other) {
+                const real strong = root(track_impedance[send[other]]);
+                const real own = point_of[other] == point ? ratio[other] * strong / 2 : (real)0;
+                carried = carried > own ? carried : own;
+                passing += strong > 0 ? absolute(passed[point * points + point_of[other]] * push[other]) / strong : (real)0;
+            }
+            state_gain[send[port]] = carried > 0 ? (real)0 : moved;
+            root_impedance[send[port]] = carried > 0 ? carried : 1 / (passing + (moved > 0 ? moved : (real)1));
         }
-        rows = row <= rows ? rows : row;
-        columns = column <= columns ? columns : column;
     }
-    rows = rows * columns;
-    return rows > 0 && is_number(rows) ? root(rows) : rows;
 }
 
 /* All tables. 0; 1 for a bad number; 2 where polynomials would lose too much, or springs are too stiff for a panel. */
 static int made_of(stream *state, const name_parameters *parameters)
 {
     int fine = 1;
+    real fastest = 0;
     if (!good(parameters)) {
         return 1;
     }
@@ -259,22 +299,24 @@ static int made_of(stream *state, const name_parameters *parameters)
     if (!laws_within_reach(state)) {
         return 1;
     }
-    fastest = 0;
     for (int joint = 0; joint < JOINTS; ++joint) {
+        const real speed = speed_of(state, joint, 0);
+        fastest = speed <= fastest ? fastest : speed;
         if (first_state[joint] < first_state[joint + 1]) {
             answer_of(state, joint);
             fine &= step_lost(state, joint) <= tolerance && speed_of(state, joint, 1) * panel <= (real)CALM;
         } else {
             scattering_of(state, joint);
         }
+        weigh_tracks(state, joint);
     }
-    for (int n = 0; n < LOADED; ++n) {
-        const real speed = speed_of(state, loaded[n], 0);
-        const real most = (real)MOST_PARTS / panel;
-        fine &= speed <= most;
-        /* of what is refused, too: it counts parts */
-        fastest = speed == speed && speed > fastest && speed <= most ? speed : fastest;
+    for (int k = 0; k < HEARD; ++k) {
+        if (shown_force[k] >= 0) {
+            root_impedance[track[k]] = 0;
+        }
     }
+    growth = fastest * (root(2 * fastest * step_length) + 2);
+    fine &= is_number(growth);
     return fine ? 0 : 2;
 }
 

@@ -4,16 +4,33 @@
 #include "tables.h"
 #include "../series.h"
 
-/* What a track sent so many panels ago: its own ring, which begins where those of the tracks before end. */
-static const real *wave(const stream *state, int number, int panels)
+/* A place for what has no breakpoint of its own: the start of the panel, or none that is left. */
+enum { EDGE = -1, NONE = -2 };
+
+/* Where a track has what it sent so many panels ago: its own ring, which begins where those of the tracks before end. */
+static int slot_of(const stream *state, int number, int panels)
 {
     const int slot = state->at[number] - panels;
-    return state->waves[first_slot[number] + (slot < 0 ? slot + slots[number] : slot)];
+    return first_slot[number] + (slot < 0 ? slot + slots[number] : slot);
 }
 
-static real *wave_sent(stream *state, int number)
+/* The same of a breakpoint, so many windows ago. */
+static int slot_after(const stream *state, int breakpoint, int number, int windows)
 {
-    return state->waves[first_slot[number] + state->at[number]];
+    const int slot = state->turn[number] - windows;
+    return NAME_SLOTS + breakpoint * ENTRIES + first_entry[number] + (slot < 0 ? slot + entries[number] : slot);
+}
+
+/* What is sent on this panel: from its start on, or after a breakpoint; and what arrives then. */
+static real *sent_wave(stream *state, int breakpoint, int number)
+{
+    return state->waves[breakpoint < 0 ? slot_of(state, number, 0) : slot_after(state, breakpoint, number, 0)];
+}
+
+static const real *arriving_wave(const stream *state, int breakpoint, int number)
+{
+    return state->waves[breakpoint < 0 ? slot_of(state, number, slots[number] - 1)
+                                       : slot_after(state, breakpoint, number, entries[number] - 1)];
 }
 
 static real absolute(real x)
@@ -21,11 +38,29 @@ static real absolute(real x)
     return x < 0 ? -x : x;
 }
 
-/* Of a positive number that is finite: the root of a number from 1/4 to 4, by Newton, times a power of 2. */
+static real size_of(const real *c)
+{
+    real sum = 0;
+    for (int k = 0; k < SIZE; ++k) {
+        sum += absolute(c[k]);
+    }
+    return sum;
+}
+
+/* False for what is no number, and for what is infinite. */
+static int is_number(real x)
+{
+    return x - x == 0;
+}
+
+/* Of a number that is 0 or more: the root of a number from 1/4 to 4, by Newton, times a power of 2. */
 static real root(real square)
 {
     real power = 1;
     real near = 1;
+    if (!(square > 0) || !is_number(square)) {
+        return square;
+    }
     while (square > 4) {
         square /= 4;
         power *= 2;
@@ -40,27 +75,6 @@ static real root(real square)
     return power * near;
 }
 
-/* A polynomial will miss so much. What is sent on a panel of a window is felt on that panel of others: all other panels
- * know nothing of it. Squares are those of parts of the largest: they neither vanish nor overflow. */
-static void lose(stream *state, real much)
-{
-    real *const missed = state->missed + state->phase;
-    const real more = absolute(much);
-    if (!(more <= state->most)) {
-        const real part = state->most / more;
-        for (int k = 0; k < NAME_PANELS; ++k) {
-            state->missed[k] *= part * part;
-        }
-        state->lost *= part * part;
-        state->most = more;
-    }
-    if (more > 0) {
-        const real part = more / state->most;
-        *missed += part * part;
-        state->lost = *missed > state->lost ? *missed : state->lost;
-    }
-}
-
 /* y += M a, M by rows */
 static void multiply(real *y, const real *rows, const real *a, int height, int width)
 {
@@ -71,363 +85,508 @@ static void multiply(real *y, const real *rows, const real *a, int height, int w
     }
 }
 
+/* Instants so near to each other are one: the time that is past is not known better. */
+static real nearness(const stream *state)
+{
+    return nearest + rounding * state->age;
+}
+
 /* The integral of a wave from one time in its panel to another. */
-static real gathered(const real *c, real from, real to)
+static real integral(const real *c, real from, real to)
 {
     return (antiderivative(c, to * scale - 1) - antiderivative(c, from * scale - 1)) / scale;
 }
 
-/* What a wave that is heard so late adds up to from the start of the current panel to t. */
-static real integral(const stream *state, int k, real t)
+/* Which panel of a window was the current one so many panels ago; `windows` is how many windows ago. */
+static int phase_before(const stream *state, int panels, int *windows)
 {
-    const real early = t < rest[k] ? t : rest[k];
-    real sum = gathered(wave(state, track[k], late[k]), 0, t - early);
-    if (early > 0) {
-        sum += gathered(wave(state, track[k], late[k] + 1), panel - rest[k], panel - rest[k] + early);
+    int phase = state->phase - panels;
+    *windows = 0;
+    while (phase < 0) {
+        phase += NAME_PANELS;
+        *windows += 1;
+    }
+    return phase;
+}
+
+/* A wave at a time of the panel on which it was sent. */
+static real value(const stream *state, int number, int panels, real t)
+{
+    int windows;
+    int after = state->first_breakpoint[phase_before(state, panels, &windows)];
+    real sum = series(state->waves[slot_of(state, number, panels)], t * scale - 1);
+    for (; after >= 0; after = state->next_breakpoint[after]) {
+        const real since = t - state->place[after];
+        if (since >= -nearness(state)) {
+            const real u = since > 0 ? since * scale - 1 : (real)-1;
+            sum += series(state->waves[slot_after(state, after, number, windows)], u);
+        }
     }
     return sum;
 }
 
-static real value(const stream *state, int k)
+/* What it adds up to from one time in that panel to another. */
+static real gathered(const stream *state, int number, int panels, real from, real to)
 {
-    const real t = state->time - rest[k];
-    const real *const c = t < 0 ? wave(state, track[k], late[k] + 1) : wave(state, track[k], late[k]);
-    return series(c, (t < 0 ? t + panel : t) * scale - 1);
+    int windows;
+    int after = state->first_breakpoint[phase_before(state, panels, &windows)];
+    real sum = integral(state->waves[slot_of(state, number, panels)], from, to);
+    for (; after >= 0; after = state->next_breakpoint[after]) {
+        const real begin = from > state->place[after] ? from - state->place[after] : (real)0;
+        const real end = to - state->place[after];
+        if (end > begin) {
+            sum += integral(state->waves[slot_after(state, after, number, windows)], begin, end);
+        }
+    }
+    return sum;
 }
 
-/* A joint with a state on the panel that begins, without loads: from what arrives, and its state, what it sends. */
-static void move(stream *state, int joint)
+/* What term k of an output adds up to from the start of the current panel to t. */
+static real gathered_since(const stream *state, int k, real t)
+{
+    const real early = t < rest[k] ? t : rest[k];
+    real sum = gathered(state, track[k], late[k], 0, t - early);
+    if (early > 0) {
+        sum += gathered(state, track[k], late[k] + 1, panel - rest[k], panel - rest[k] + early);
+    }
+    return sum;
+}
+
+static real value_now(const stream *state, int k)
+{
+    const real t = state->time - rest[k];
+    const int before = t < -nearness(state);
+    return value(state, track[k], late[k] + before, before ? t + panel : t);
+}
+
+/* More by which polynomials have missed the truth: of the root of an energy, and of a wave at once. */
+static void lose(stream *state, real energy, real wave)
+{
+    state->lost_energy += energy;
+    state->lost_wave += wave;
+}
+
+/* What a joint with a state makes of the first `known` of the numbers that it is given: velocities, and x at the end less
+ * x; and what its polynomials miss. */
+static void answer_to(stream *state, int joint, const real *given, int known, real *found)
+{
+    const int states = first_state[joint + 1] - first_state[joint];
+    const int width = (first_point[joint + 1] - first_point[joint]) * SIZE + states;
+    const real *const columns = matrix + answer[joint];
+    real missed[MOST_STATES] = {0};
+    real sum = 0;
+    for (int k = 0; k < known; ++k) {
+        add(found, given[k], columns + k * width, width);
+    }
+    multiply(missed, slip + first_slip[joint], given, states, width);
+    for (int k = 0; k < states; ++k) {
+        sum += absolute(missed[k]);
+    }
+    lose(state, sum, rough * sum);
+    state->lost_slope += steep * sum;
+}
+
+/* The state at the end of the panel gains what moves for so long since a breakpoint: velocities, and by how much springs
+ * have become longer. */
+static void gain_state(stream *state, int joint, const real *velocities, real span)
+{
+    const int points = first_point[joint + 1] - first_point[joint];
+    for (int a = first_state[joint]; a < first_state[joint + 1]; ++a) {
+        const real *const stretch = lengthening + first_stretch[joint] + (a - first_state[joint]) * points;
+        if (moves_with[a] >= 0) {
+            state->x[a] += series(velocities + moves_with[a] * SIZE, span * scale - 1);
+        } else {
+            for (int point = 0; point < points; ++point) {
+                state->x[a] += stretch[point] * integral(velocities + point * SIZE, 0, span);
+            }
+        }
+    }
+}
+
+/* A joint with a state on the panel that begins, or after a breakpoint of it: what it sends, of what arrives, of its state
+ * and of forces. */
+static void move(stream *state, int joint, int breakpoint, const real *acting)
 {
     const int points = first_point[joint + 1] - first_point[joint];
     const int states = first_state[joint + 1] - first_state[joint];
     const int width = points * SIZE + states;
-    const real *const columns = matrix + answer[joint];
     real *const x = state->x + first_state[joint];
     real given[WIDEST];
     real found[WIDEST];
-    real missed[MOST_JOINED] = {0};
     for (int k = 0; k < width; ++k) {
-        given[k] = k < points * SIZE ? (real)0 : x[k - points * SIZE];
+        given[k] = k < points * SIZE || breakpoint >= 0 ? (real)0 : x[k - points * SIZE];
         found[k] = 0;
     }
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        add(given + point_of[port] * SIZE, push[port], wave(state, arrive[port], slots[arrive[port]] - 1), SIZE);
+        add(given + point_of[port] * SIZE, push[port], arriving_wave(state, breakpoint, arrive[port]), SIZE);
     }
-    for (int k = 0; k < width; ++k) {
-        add(found, given[k], columns + k * width, width);
-    }
-    for (int k = 0; k < states; ++k) {
-        x[k] += found[points * SIZE + k];
+    if (breakpoint >= 0) {
+        answer_to(state, joint, given, points * SIZE, found);
+        gain_state(state, joint, found, panel - state->place[breakpoint]);
+    } else {
+        for (int point = 0; point < points; ++point) {
+            const int force = force_on[first_point[joint] + point];
+            for (int k = 0; force >= 0 && k < POWERS; ++k) {
+                given[point * SIZE + k] += acting[force * POWERS + k];
+            }
+        }
+        answer_to(state, joint, given, width, found);
+        for (int k = 0; k < states; ++k) {
+            x[k] += found[points * SIZE + k];
+        }
     }
     for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        const real *const a = wave(state, arrive[port], slots[arrive[port]] - 1);
+        const real *const a = arriving_wave(state, breakpoint, arrive[port]);
         const real *const q = found + point_of[port] * SIZE;
-        real *const out = wave_sent(state, send[port]);
+        real *const out = sent_wave(state, breakpoint, send[port]);
         for (int k = 0; k < SIZE; ++k) {
             out[k] = ratio[port] * q[k] - a[k];
         }
     }
-    multiply(missed, slip + first_slip[joint], given, points, width);
-    for (int k = 0; k < points; ++k) {
-        lose(state, missed[k]);
-    }
 }
 
-/* One without: what it sends is a sum of what arrives. */
-static void scatter(stream *state, int joint)
+/* One without: what it sends is a sum of what arrives, and of forces. */
+static void scatter(stream *state, int joint, int breakpoint, const real *acting)
 {
     const int first = first_port[joint];
     const int end = first_port[joint + 1];
     const real *factor = matrix + answer[joint];
     for (int port = first; port < end; ++port) {
-        real *const out = wave_sent(state, send[port]);
+        real *const out = sent_wave(state, breakpoint, send[port]);
         for (int k = 0; k < SIZE; ++k) {
             out[k] = 0;
         }
     }
     for (int port = first; port < end; ++port) {
-        const real *const a = wave(state, arrive[port], slots[arrive[port]] - 1);
+        const real *const a = arriving_wave(state, breakpoint, arrive[port]);
         for (int other = first; other < end; ++other) {
-            add(wave_sent(state, send[other]), *factor++, a, SIZE);
+            add(sent_wave(state, breakpoint, send[other]), *factor++, a, SIZE);
+        }
+    }
+    for (int point = first_point[joint]; point < first_point[joint + 1]; ++point) {
+        for (int other = first; other < end; ++other) {
+            if (breakpoint < 0 && force_on[point] >= 0) {
+                add(sent_wave(state, breakpoint, send[other]), *factor, acting + force_on[point] * POWERS, POWERS);
+            }
+            ++factor;
         }
     }
 }
 
-/* A panel begins: all that arrives on it is known, and what joints make of that follows. */
-static void begin(stream *state)
+/* All joints; of a breakpoint only where anything arrives. */
+static void move_all(stream *state, int breakpoint, const real *acting)
 {
-    state->seen = 0;
-    state->phase = state->phase + 1 < NAME_PANELS ? state->phase + 1 : 0;
     for (int joint = 0; joint < JOINTS; ++joint) {
-        if (first_state[joint] < first_state[joint + 1]) {
-            move(state, joint);
-        } else {
-            scatter(state, joint);
+        real arrives = breakpoint < 0 ? (real)1 : (real)0;
+        for (int port = first_port[joint]; breakpoint >= 0 && port < first_port[joint + 1]; ++port) {
+            arrives += size_of(arriving_wave(state, breakpoint, arrive[port]));
         }
-    }
-}
-
-/* It is over: what loads have done is a polynomial now, and is sent as well. */
-static void finish(stream *state)
-{
-    for (int n = 0; n < LOADED; ++n) {
-        const int joint = loaded[n];
-        real *const x = state->x + first_state[joint];
-        real *const own = state->own + first_state[joint];
-        for (int point = first_own[n]; point < first_own[n + 1]; ++point) {
-            real c[SIZE] = {0};
-            multiply(c, transform, state->recorded[point], SIZE, SIZE);
+        if (!(arrives <= 0) && first_state[joint] < first_state[joint + 1]) {
+            move(state, joint, breakpoint, acting);
+        } else if (!(arrives <= 0)) {
+            scatter(state, joint, breakpoint, acting);
+        } else {
             for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-                if (point_of[port] == point - first_own[n]) {
-                    add(wave_sent(state, send[port]), ratio[port], c, SIZE);
+                real *const out = sent_wave(state, breakpoint, send[port]);
+                for (int k = 0; k < SIZE; ++k) {
+                    out[k] = 0;
                 }
             }
-            state->moved[point] = 0;
-        }
-        for (int k = 0; k < first_state[joint + 1] - first_state[joint]; ++k) {
-            x[k] += own[k];
-            own[k] = 0;
         }
     }
+}
+
+/* Waves of a breakpoint that are as small as rounding are left out. Whether there are others. */
+static int are_left(stream *state, int breakpoint)
+{
+    int left = 0;
+    for (int k = 0; k < TRACKS; ++k) {
+        real *const out = sent_wave(state, breakpoint, k);
+        const real much = root_impedance[k] * size_of(out);
+        state->rounded += rounding * much;
+        if (much > least * state->size) {
+            left = 1;
+        } else if (much > 0) {
+            lose(state, root_panel * much, much);
+            for (int j = 0; j < SIZE; ++j) {
+                out[j] = 0;
+            }
+        }
+    }
+    return left;
+}
+
+/* What has gone on from the breakpoints of this panel is at them again; where nothing is left of it, their place is free. */
+static void follow(stream *state)
+{
+    int *place = state->first_breakpoint + state->phase;
+    while (*place >= 0) {
+        const int after = *place;
+        move_all(state, after, NULL);
+        state->quiet[after] = are_left(state, after) ? 0 : state->quiet[after] + 1;
+        if (state->quiet[after] > DEEPEST) {
+            *place = state->next_breakpoint[after];
+            state->next_breakpoint[after] = state->spare;
+            state->spare = after;
+        } else {
+            place = state->next_breakpoint + after;
+        }
+    }
+}
+
+/* Forces as series on a panel, of loads that go straight from `load`; or what they change by where these change. */
+static void forces_of(const stream *state, real *acting, const real *load, const real *slope, int change)
+{
+    const real half = panel / 2;
+    for (int force = 0; force < FORCES; ++force) {
+        real constant = change ? (real)0 : base[force];
+        real linear = 0;
+        real square = 0;
+        for (int j = 0; j < LOADS; ++j) {
+            constant += strength[force * LOADS + j] * load[j];
+            linear += strength[force * LOADS + j] * slope[j];
+        }
+        if (integrated[force]) {
+            square = linear / 2;
+            linear = constant - (change ? (real)0 : base[force]);
+            constant = change ? (real)0 : state->force[force];
+        }
+        linear *= half;
+        square *= half * half / 2;
+        acting[force * POWERS] = constant + linear + 3 * square;
+        acting[force * POWERS + 1] = linear + 4 * square;
+        acting[force * POWERS + 2] = square;
+    }
+}
+
+/* A panel begins: all that arrives on it is known, and what joints make of that and of loads follows. */
+static void begin(stream *state)
+{
+    real acting[(FORCES + 1) * POWERS] = {0};
+    state->phase += 1;
+    if (state->phase >= NAME_PANELS) {
+        state->phase = 0;
+        state->lost_slope += growth * state->lost_energy;
+        for (int k = 0; k < TRACKS; ++k) {
+            state->turn[k] = state->turn[k] + 1 < entries[k] ? state->turn[k] + 1 : 0;
+        }
+    }
+    forces_of(state, acting, state->load, state->slope, 0);
+    move_all(state, EDGE, acting);
+    follow(state);
+}
+
+/* It is over, and what was sent is on its way. */
+static void finish(stream *state)
+{
     for (int output = 0; output < OUTPUTS; ++output) {
         for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
             if (summed[k]) {
-                state->total[output] += gain[k] * integral(state, k, panel);
+                state->total[output] += gain[k] * gathered_since(state, k, panel);
             }
         }
     }
     for (int k = 0; k < TRACKS; ++k) {
-        const real mean = absolute(wave_sent(state, k)[0]);
+        const real of_all = state->first_breakpoint[state->phase] < 0 ? sent_wave(state, EDGE, k)[0]
+                                                                      : gathered(state, k, 0, 0, panel) / panel;
+        const real mean = root_impedance[k] * absolute(of_all);
         state->size = slots[k] > 1 && mean > state->size ? mean : state->size;
         state->at[k] = state->at[k] + 1 < slots[k] ? state->at[k] + 1 : 0;
     }
+    state->rounded += rounding * state->size;
+    state->due = 0;
 }
 
-/* What forces are with these loads; integrals of loads stay. */
-static void press(stream *state, const real *load)
+/* The breakpoint that is now, or the start of the panel, or none. */
+static int breakpoint_now(const stream *state)
 {
-    for (int force = 0; force < FORCES; ++force) {
-        if (!integrated[force]) {
-            state->force[force] = base[force];
-            for (int j = 0; j < LOADS; ++j) {
-                state->force[force] += strength[force * LOADS + j] * load[j];
-            }
-        }
+    const real near = nearness(state);
+    int found = state->time <= near ? EDGE : NONE;
+    for (int after = state->first_breakpoint[state->phase]; found == NONE && after >= 0;
+         after = state->next_breakpoint[after]) {
+        found = absolute(state->time - state->place[after]) <= near ? after : NONE;
     }
+    return found;
 }
 
-/* What loads do to a joint in a time in which forces are s_0 + s_1 v + s_2 v^2, v from 0 to 1: a power series in v. */
-static void drive(stream *state, int n, real from, real length, const real *s)
+/* By how much what happens now is moved, to a breakpoint or an edge that is near; and what rounding makes of instants. */
+static real moved_by(const stream *state, int breakpoint)
 {
-    const int joint = loaded[n];
-    const int states = first_state[joint + 1] - first_state[joint];
-    const int points = first_point[joint + 1] - first_point[joint];
-    const real *const rates = law + first_law[n];
-    const real *const pushed = rates + states * states;
-    const real *const shown = pushed + states * points;
-    const real *const passed = shown + points * states;
-    real *const own = state->own + first_state[joint];
-    real x[MOST_STATES] = {0};
-    real q[MOST_POINTS][TERMS + 1];
-    for (int a = 0; a < states; ++a) {
-        x[a] = own[a];
-    }
-    for (int power = 0; power <= TERMS; ++power) {
-        real next[MOST_STATES];
-        for (int a = 0; a < states; ++a) {
-            next[a] = 0;
-        }
-        for (int point = 0; point < points; ++point) {
-            q[point][power] = 0;
-        }
-        multiply(next, rates, x, states, states);
-        for (int point = 0; point < points; ++point) {
-            const int force = force_on[first_point[joint] + point];
-            const real now = force >= 0 && power < 3 ? s[3 * force + power] : (real)0;
-            for (int a = 0; a < states; ++a) {
-                q[point][power] += shown[point * states + a] * x[a];
-                next[a] += pushed[a * points + point] * now;
-            }
-            for (int other = 0; other < points; ++other) {
-                q[other][power] += passed[other * points + point] * now;
-            }
-        }
-        for (int a = 0; a < states; ++a) {
-            x[a] = next[a] * (length / (real)(power + 1));
-            own[a] += x[a];
-        }
-    }
-    for (int point = 0; point < points; ++point) {
-        real sum = 0;
-        for (int power = TERMS; power >= 0; --power) {
-            sum += q[point][power] / (real)(power + 1);
-        }
-        state->moved[first_own[n] + point] += length * sum;
-        for (int k = state->seen; k < SIZE && instant[k] <= from + length; ++k) {
-            const real v = (instant[k] - from) / length;
-            sum = 0;
-            for (int power = TERMS; power >= 0; --power) {
-                sum = sum * v + q[point][power];
-            }
-            state->recorded[first_own[n] + point][k] = sum;
-        }
-    }
+    const real place = breakpoint >= 0 ? state->place[breakpoint] : breakpoint == EDGE ? (real)0 : state->time;
+    return absolute(state->time - place) + rounding * panel;
 }
 
-/* Go on by `span` within a panel, while loads go straight to `load`: in parts in which nothing changes too much. */
-static void carry(stream *state, real span, const real *load)
+/* One more, at this instant, if there is room. */
+static int new_breakpoint(stream *state)
 {
-    const int parts = 1 + (int)(span * fastest);
-    const real part = span / (real)parts;
-    for (int i = 0; i < parts; ++i) {
-        const real from = state->time + (real)i * part;
-        real s[3 * FORCES + 1];
-        for (int force = 0; force < FORCES; ++force) {
-            real now = 0;
-            real gained = 0;
-            for (int j = 0; j < LOADS; ++j) {
-                const real change = (load[j] - state->load[j]) / (real)(parts - i);
-                now += strength[force * LOADS + j] * state->load[j];
-                gained += strength[force * LOADS + j] * change;
-            }
-            s[3 * force] = state->force[force];
-            s[3 * force + 1] = integrated[force] ? part * now : gained;
-            s[3 * force + 2] = integrated[force] ? part * gained / 2 : (real)0;
-            state->force[force] += s[3 * force + 1] + s[3 * force + 2];
-        }
-        for (int n = 0; n < LOADED; ++n) {
-            drive(state, n, from, part, s);
-        }
-        for (int j = 0; j < LOADS; ++j) {
-            state->load[j] += (load[j] - state->load[j]) / (real)(parts - i);
-        }
-        while (state->seen < SIZE && instant[state->seen] <= from + part) {
-            state->seen += 1;
-        }
-    }
-    for (int j = 0; j < LOADS; ++j) {
-        state->load[j] = load[j];
-    }
-    press(state, load);
-}
-
-/* How wrong a polynomial will be near a change of a load inside of the panel: of a jump, of a kink, of a bend of 1. */
-static void blurs(const stream *state, real *blur)
-{
-    const int n = state->seen;
-    if (n > 0 && n < SIZE) {
-        for (int order = 0; order < 3; ++order) {
-            blur[order] = kink[order * DEGREE + n - 1];
-        }
+    int found = state->spare;
+    if (found >= 0) {
+        state->spare = state->next_breakpoint[found];
+    } else if (state->breakpoints < NAME_BREAKPOINTS) {
+        found = state->breakpoints;
+        state->breakpoints += 1;
     } else {
-        /* between an edge and the instant next to it nothing is seen of it but there */
-        const real away = n == 0 ? state->time : panel - state->time;
-        blur[0] = away / instant[0] < 1 ? away / instant[0] : (real)1;
-        blur[1] = away;
-        blur[2] = away * away / 2;
+        return NONE;
     }
-}
-
-/* Whether a point of a joint sends into a rod, and is not only looked at. */
-static int sends(int joint, int point)
-{
-    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
-        if (point_of[port] == point && slots[send[port]] > 1) {
-            return 1;
+    state->place[found] = state->time;
+    state->quiet[found] = 0;
+    state->next_breakpoint[found] = state->first_breakpoint[state->phase];
+    state->first_breakpoint[state->phase] = found;
+    for (int slot = NAME_SLOTS + found * ENTRIES; slot < NAME_SLOTS + (found + 1) * ENTRIES; ++slot) {
+        for (int k = 0; k < SIZE; ++k) {
+            state->waves[slot][k] = 0;
         }
     }
-    return 0;
+    return found;
 }
 
-/* Loads jump and bend now; what of that polynomials will miss. */
-static void bend(stream *state, real dtau, const real *jump, const real *turn)
+/* The polynomial on the panel through the values, at its instants, of a wave that begins so late. */
+static void interpolate(real *instead, const real *wave, real delay)
 {
-    const real span = dtau > 0 && dtau < panel ? dtau : panel;
-    const real whole[3] = {1, span, span * panel}; /* a load bends for this step, and stays where it is then */
-    real blur[3];
-    blurs(state, blur);
+    real at[SIZE];
+    for (int k = 0; k < SIZE; ++k) {
+        at[k] = instant[k] >= delay ? series(wave, (instant[k] - delay) * scale - 1) : (real)0;
+        instead[k] = 0;
+    }
+    multiply(instead, transform, at, SIZE, SIZE);
+}
+
+/* The jump, kink and bend with which a wave begins, and how much it bends elsewhere at most. */
+static void begin_of(const real *wave, real *known)
+{
+    for (int order = 0; order < 4; ++order) {
+        known[order] = 0;
+    }
+    for (int k = 0; k < SIZE; ++k) {
+        const real square = (real)k * (real)k;
+        const real turned = k % 2 ? -wave[k] : wave[k];
+        known[0] += turned;
+        known[1] -= turned * square * scale;
+        known[2] += turned * square * (square - 1) / 3 * scale * scale;
+        known[3] += absolute(wave[k]) * square * (square - 1) * absolute(square - 4) / 15 * scale * scale * scale;
+    }
+}
+
+/* How wrong a polynomial is then, at most; and the root of the integral of the square. */
+static void miss(const real *known, real delay, real factor, real *wrong, real *square_root)
+{
+    /* between an edge and the instant next to it nothing is wrong but there */
+    const int at_edge = delay <= instant[0] || delay > instant[DEGREE];
+    const real left = panel - delay;
+    const real span = delay <= instant[0] ? delay : left;
+    real edge = 1;
+    for (int order = 0; order < 3; ++order) {
+        const real size = factor * absolute(known[order]);
+        *wrong += size * (at_edge ? edge : kink[2 * order]);
+        *square_root += size * (at_edge ? edge * root(span) : kink[2 * order + 1]);
+        edge *= span / (real)(order + 1);
+    }
+    *wrong += factor * known[3] * left * kink[4];
+    *square_root += factor * known[3] * left * kink[5];
+}
+
+/* Loads jump and bend now, at the start of a step: from here on joints move and send more. */
+static void kick(stream *state, const real *jump, const real *bend, real dtau)
+{
+    const real until_end = panel - state->time;
+    const real span = dtau > 0 && dtau < panel ? dtau : panel; /* a load bends for this step, and stays where it is then */
+    real acting[(FORCES + 1) * POWERS] = {0};
+    real moved[LOADED_POINTS + 1][SIZE];
+    int breakpoint = breakpoint_now(state);
+    const real late_by = moved_by(state, breakpoint);
+    int first = 0;
+    real missed = 0;
+    real energy = 0;
+    forces_of(state, acting, jump, bend, 1);
     for (int n = 0; n < LOADED; ++n) {
         const int joint = loaded[n];
-        const int states = first_state[joint + 1] - first_state[joint];
         const int points = first_point[joint + 1] - first_point[joint];
-        const real *const rates = law + first_law[n];
-        const real *const pushed = rates + states * states;
-        const real *const shown = pushed + states * points;
-        const real *const passed = shown + points * states;
-        real s[3][MOST_POINTS];
-        real q[3][MOST_POINTS];
-        real x[2][MOST_STATES + 1];
+        const int states = first_state[joint + 1] - first_state[joint];
+        const int ports = first_port[joint + 1] - first_port[joint];
+        const real *const passed = matrix + answer[joint] + ports * ports;
+        real given[WIDEST] = {0};
+        real found[WIDEST] = {0};
         for (int point = 0; point < points; ++point) {
             const int force = force_on[first_point[joint] + point];
-            for (int order = 0; order < 3; ++order) {
-                s[order][point] = 0;
-                q[order][point] = 0;
-            }
-            for (int j = 0; force >= 0 && j < LOADS; ++j) {
-                s[integrated[force]][point] += strength[force * LOADS + j] * jump[j];
-                s[integrated[force] + 1][point] += strength[force * LOADS + j] * turn[j];
+            for (int k = 0; force >= 0 && k < POWERS; ++k) {
+                given[point * SIZE + k] += acting[force * POWERS + k];
             }
         }
-        for (int a = 0; a < states; ++a) {
-            x[0][a] = 0;
-            x[1][a] = 0;
-        }
-        multiply(x[0], pushed, s[0], states, points);
-        multiply(x[1], rates, x[0], states, states);
-        multiply(x[1], pushed, s[1], states, points);
-        for (int order = 0; order < 3; ++order) {
-            multiply(q[order], passed, s[order], points, points);
-            if (order > 0) {
-                multiply(q[order], shown, x[order - 1], points, states);
+        if (states > 0) {
+            answer_to(state, joint, given, points * SIZE, found);
+            if (breakpoint != EDGE) {
+                gain_state(state, joint, found, until_end);
+            }
+            for (int k = 0; breakpoint == EDGE && k < states; ++k) {
+                state->x[first_state[joint] + k] += found[points * SIZE + k];
             }
         }
-        for (int point = 0; point < points; ++point) {
-            real sum = 0, due = 0;
-            for (int order = 0; order < 3; ++order) {
-                sum += blur[order] * absolute(q[order][point]);
-                due += whole[order] * absolute(q[order][point]);
+        for (int port = 0; port < ports; ++port) {
+            const int number = first_port[joint] + port;
+            const real factor = root_impedance[send[number]] * absolute(ratio[number]);
+            real known[4];
+            real *const velocity = moved[first + point_of[number]];
+            for (int k = 0; k < SIZE; ++k) {
+                velocity[k] = found[point_of[number] * SIZE + k];
             }
-            if (sends(joint, point)) {
-                lose(state, sum);
-                state->due = due > state->due ? due : state->due;
+            for (int point = 0; states == 0 && point < points; ++point) {
+                add(velocity, passed[point * ports + port] / ratio[number], given + point * SIZE, POWERS);
+            }
+            begin_of(velocity, known);
+            state->rounded += rounding * factor * size_of(velocity);
+            state->rounded += late_by * factor * (absolute(known[0]) / panel + absolute(known[1]) + panel * absolute(known[2]));
+            state->due += factor * (absolute(known[0]) + span * (absolute(known[1]) + panel * absolute(known[2])));
+            if (breakpoint == NONE) {
+                miss(known, state->time, factor, &missed, &energy);
             }
         }
+        first += points;
     }
-}
-
-/* What loads make of a point now. */
-static void own_velocities(const stream *state, real *q)
-{
+    if (breakpoint == NONE && !(missed <= share * dtau * state->size)) {
+        breakpoint = new_breakpoint(state);
+    }
+    first = 0;
     for (int n = 0; n < LOADED; ++n) {
-        const int joint = loaded[n];
-        const int states = first_state[joint + 1] - first_state[joint];
-        const int points = first_point[joint + 1] - first_point[joint];
-        const real *const shown = law + first_law[n] + states * states + states * points;
-        const real *const passed = shown + points * states;
-        real s[MOST_POINTS];
-        for (int point = 0; point < points; ++point) {
-            const int force = force_on[first_point[joint] + point];
-            s[point] = force >= 0 ? state->force[force] : (real)0;
-            q[first_own[n] + point] = 0;
+        for (int port = first_port[loaded[n]]; port < first_port[loaded[n] + 1]; ++port) {
+            const real *const velocity = moved[first + point_of[port]];
+            real *const out = sent_wave(state, breakpoint, send[port]);
+            real instead[SIZE];
+            if (breakpoint == NONE) {
+                interpolate(instead, velocity, state->time);
+            }
+            add(out, ratio[port], breakpoint == NONE ? instead : velocity, SIZE);
         }
-        multiply(q + first_own[n], shown, state->own + first_state[joint], points, states);
-        multiply(q + first_own[n], passed, s, points, points);
+        first += first_point[loaded[n] + 1] - first_point[loaded[n]];
+    }
+    if (breakpoint == NONE) {
+        lose(state, energy, missed);
     }
 }
 
-static void read_now(const stream *state, real *out)
+/* What a load is now where an output shows it. */
+static real force_now(const stream *state, int force)
 {
-    real q[OWN_POINTS + 1] = {0};
-    own_velocities(state, q);
+    real sum = base[force];
+    for (int j = 0; j < LOADS; ++j) {
+        sum += strength[force * LOADS + j] * state->load[j];
+    }
+    return integrated[force] ? state->force[force] : sum;
+}
+
+static void read_now(stream *state, real *out)
+{
     for (int output = 0; output < OUTPUTS; ++output) {
         out[output] = state->total[output];
         for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
-            real now = summed[k] ? integral(state, k, state->time) : value(state, k);
-            if (own_point[k] >= 0) {
-                now += own_ratio[k] * (summed[k] ? state->moved[own_point[k]] : q[own_point[k]]);
+            if (summed[k]) {
+                out[output] += gain[k] * gathered_since(state, k, state->time);
+            } else if (shown_force[k] >= 0) {
+                out[output] += gain[k] * force_now(state, shown_force[k]);
+            } else {
+                out[output] += gain[k] * value_now(state, k);
             }
-            out[output] += gain[k] * now;
         }
+        state->largest[output] = absolute(out[output]) > state->largest[output] ? absolute(out[output]) : state->largest[output];
     }
 }
 
@@ -457,33 +616,35 @@ static pair plus(pair a, real high, real low)
     return exact_sum(sum.high, sum.low + (a.low + low));
 }
 
-/* False for what is no number, and for what is infinite. */
-static int is_number(real x)
-{
-    return x - x == 0;
-}
-
 void name_init(stream *state)
 {
     state->time = 0;
     state->time_low = 0;
-    state->lost = 0;
-    state->most = 0;
+    state->age = 0;
+    state->lost_energy = 0;
+    state->lost_wave = 0;
+    state->lost_slope = 0;
+    state->rounded = 0;
     state->size = 0;
     state->due = 0;
     state->alarm = 0;
-    state->phase = -1;
+    state->phase = NAME_PANELS - 1;
+    state->breakpoints = 0;
+    state->spare = NONE;
     for (int k = 0; k < NAME_PANELS; ++k) {
-        state->missed[k] = 0;
+        state->first_breakpoint[k] = NONE;
     }
     for (int k = 0; k < TRACKS; ++k) {
         state->at[k] = 0;
+        state->turn[k] = 0;
         for (int slot = 0; slot < slots[k]; ++slot) {
             for (int power = 0; power < SIZE; ++power) {
                 state->waves[first_slot[k] + slot][power] = power == 0 ? held[k] : (real)0;
             }
         }
-        state->size = slots[k] > 1 && absolute(held[k]) > state->size ? absolute(held[k]) : state->size;
+        if (slots[k] > 1 && root_impedance[k] * absolute(held[k]) > state->size) {
+            state->size = root_impedance[k] * absolute(held[k]);
+        }
     }
     for (int j = 0; j < LOADS; ++j) {
         state->load[j] = 0;
@@ -494,53 +655,106 @@ void name_init(stream *state)
     }
     for (int k = 0; k < STATES; ++k) {
         state->x[k] = begun[k];
-        state->own[k] = 0;
-        state->size = absolute(begun[k]) > state->size ? absolute(begun[k]) : state->size;
-    }
-    for (int point = 0; point < OWN_POINTS; ++point) {
-        state->moved[point] = 0;
-        for (int k = 0; k < SIZE; ++k) {
-            state->recorded[point][k] = 0;
-        }
     }
     for (int output = 0; output < OUTPUTS; ++output) {
         state->total[output] = 0;
+        state->largest[output] = 0;
     }
     begin(state);
 }
 
-/* To `then` on the way to the end of a step that began at `before`: loads are straight. */
-static void go_on(stream *state, pair then, real done, const real *before, const real *load)
+/* On by `span`, in which loads go straight to what they are when so much of a step is done that began at `before`. */
+static void go_on(stream *state, real span, real done, const real *before, const real *load)
 {
-    const real gone = (then.high - state->time) + (then.low - state->time_low);
-    /* as it is, which no prover sees of sums in two numbers */
-    const real span = gone == gone && gone < panel ? gone : panel;
-    real now[LOADS + 1];
     for (int j = 0; j < LOADS; ++j) {
-        now[j] = done < 1 ? before[j] + done * (load[j] - before[j]) : load[j];
+        const real now = done < 1 ? before[j] + done * (load[j] - before[j]) : load[j];
+        for (int force = 0; force < FORCES; ++force) {
+            if (integrated[force]) {
+                state->force[force] += strength[force * LOADS + j] * (state->load[j] + now) / 2 * span;
+            }
+        }
+        state->load[j] = now;
     }
-    if (span > 0) {
-        carry(state, span, now);
+}
+
+/* A step in which loads go straight. */
+static void advance(stream *state, real dtau, const real *load)
+{
+    pair then = {state->time, state->time_low};
+    real before[LOADS + 1];
+    real past = 0;
+    for (int j = 0; j < LOADS; ++j) {
+        before[j] = state->load[j];
     }
+    then = plus(then, dtau, 0);
+    state->age += dtau;
+    while ((then.high - panel) + (then.low - panel_low) >= -nearness(state)) {
+        past += panel - state->time;
+        go_on(state, panel - state->time, past / dtau, before, load);
+        finish(state);
+        state->time = 0;
+        state->time_low = 0;
+        begin(state);
+        then = plus(then, -panel, -panel_low);
+    }
+    go_on(state, then.high - state->time, 1, before, load);
     state->time = then.high;
     state->time_low = then.low;
 }
 
-/* What is lost has to be small against that. */
+/* A step, loads and time of which are numbers. */
+static void make_step(stream *state, real dtau, const real *load)
+{
+    real jump[LOADS + 1];
+    real bend[LOADS + 1];
+    real middle[LOADS + 1];
+    int jumps = 0;
+    int bends = 0;
+    const int brief = dtau < shortest_ramp;
+    for (int j = 0; j < LOADS; ++j) {
+        const real straight = state->load[j] + state->slope[j] * dtau;
+        const real slope = brief ? state->slope[j] : (load[j] - state->load[j]) / dtau;
+        middle[j] = state->load[j] + state->slope[j] * (dtau / 2);
+        jump[j] = brief ? load[j] - straight : (real)0;
+        bend[j] = slope - state->slope[j];
+        state->slope[j] = slope;
+        jumps |= jump[j] < 0 || jump[j] > 0;
+        bends |= bend[j] < 0 || bend[j] > 0;
+    }
+    if (brief && dtau > 0) {
+        advance(state, dtau / 2, middle);
+    }
+    if (jumps || bends) {
+        kick(state, jump, bend, dtau);
+    }
+    for (int j = 0; brief && j < LOADS; ++j) {
+        state->load[j] += jump[j];
+    }
+    if (dtau > 0) {
+        advance(state, brief ? dtau / 2 : dtau, load);
+    } else {
+        for (int j = 0; j < LOADS; ++j) {
+            state->load[j] = load[j];
+        }
+    }
+}
+
+/* The largest wave so far, or, before there is one, what the loads of this panel make within one. */
 static real against(const stream *state)
 {
-    return state->size > 0 ? state->size : state->due;
+    return state->size > state->due ? state->size : state->due;
 }
 
 /* More than the tolerance is lost, or numbers are beyond all bounds: for good, even where larger waves follow. */
 static void raise_alarm(stream *state, const real *out)
 {
     const real all = against(state);
-    const real most = tolerance * (all / state->most);
-    int fine = is_number(all) && (!(state->most > 0) || state->lost <= most * most);
-    for (int k = 0; k < NAME_PANELS; ++k) {
-        fine &= is_number(state->missed[k]);
-    }
+    const real energy = (state->lost_energy + root_panel * (real)1.5 * state->lost_wave) / all;
+    const real slope = (state->lost_slope + growth * state->lost_energy) / all;
+    const real left = tolerance - state->lost_wave / all;
+    const int lossless = !(state->lost_energy > 0) && is_number(state->lost_energy);
+    int fine = lossless || (left >= 0 && energy * (energy / step_length + 2 * slope) <= left * left);
+    fine &= is_number(all) && is_number(state->lost_energy) && is_number(state->lost_wave);
     for (int output = 0; output < OUTPUTS; ++output) {
         fine &= is_number(out[output]);
     }
@@ -559,39 +773,7 @@ int name_step(stream *state, real dtau, const real *load, real *out)
     if (wrong) {
         return 1;
     }
-    {
-        const pair edge = {panel, panel_low};
-        pair then = {state->time, state->time_low};
-        real before[LOADS + 1];
-        real jump[LOADS + 1];
-        real turn[LOADS + 1];
-        real past = 0;
-        for (int j = 0; j < LOADS; ++j) {
-            const real slope = dtau > 0 ? (load[j] - state->load[j]) / dtau : (real)0;
-            before[j] = state->load[j];
-            jump[j] = dtau > 0 ? (real)0 : load[j] - state->load[j];
-            turn[j] = dtau > 0 ? slope - state->slope[j] : (real)0;
-            state->slope[j] += turn[j];
-        }
-        bend(state, dtau, jump, turn);
-        if (!(dtau > 0)) {
-            for (int j = 0; j < LOADS; ++j) {
-                state->load[j] = load[j];
-            }
-            press(state, load);
-        }
-        then = plus(then, dtau, 0);
-        while (then.high > panel || (!(then.high < panel) && then.low >= panel_low)) {
-            past += panel - state->time;
-            go_on(state, edge, past / dtau, before, load);
-            finish(state);
-            state->time = 0;
-            state->time_low = 0;
-            begin(state);
-            then = plus(then, -panel, -panel_low);
-        }
-        go_on(state, then, 1, before, load);
-    }
+    make_step(state, dtau, load);
     read_now(state, out);
     raise_alarm(state, out);
     return state->alarm ? 2 : 0;
@@ -599,5 +781,22 @@ int name_step(stream *state, real dtau, const real *load, real *out)
 
 real name_lost(const stream *state)
 {
-    return state->lost > 0 && is_number(state->lost) ? root(state->lost) * (state->most / against(state)) : state->lost;
+    const real energy = state->lost_energy + root_panel * (real)1.5 * state->lost_wave;
+    const real slope = state->lost_slope + growth * state->lost_energy;
+    const real wave = state->lost_wave + root(energy) * root(energy / step_length + 2 * slope) + state->rounded;
+    const real gathering = (state->lost_energy * root(step_length) + state->rounded) * (state->age / step_length + 1);
+    real most = energy + wave;
+    most = is_number(most) ? (real)0 : most;
+    for (int output = 0; output < OUTPUTS; ++output) {
+        real sum = 0;
+        for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
+            const real size = root_impedance[track[k]];
+            const real of_state = state_gain[track[k]] * state->lost_energy * (summed[k] ? state->age : (real)1);
+            sum += absolute(gain[k]) * (of_state + (size > 0 ? (summed[k] ? gathering : wave) / size : (real)0));
+        }
+        if (state->largest[output] > 0 && !(sum / state->largest[output] <= most)) {
+            most = sum / state->largest[output];
+        }
+    }
+    return most;
 }

@@ -11,7 +11,8 @@ enum {
     NAME_SLOTS = 37,
     NAME_STATES = 2,
     NAME_FORCES = 1,
-    NAME_OWN_POINTS = 1
+    NAME_BREAKPOINTS = 4,
+    NAME_ENTRIES = 9
 };
 
 #ifdef NAME_RUNTIME
@@ -27,12 +28,15 @@ typedef struct {
     name_real begun[NAME_STATES + 1];
     name_real push[NAME_PORTS + 1];
     name_real held[NAME_TRACKS + 1];
+    name_real track_impedance[NAME_TRACKS + 1];
     name_real base[NAME_FORCES + 1];
     name_real strength[NAME_FORCES * NAME_LOADS + 1];
     name_real gain[NAME_HEARD + 1];
     name_real matrix[NAME_ANSWERS + 1];
     name_real slip[NAME_SLIPS + 1];
-    name_real fastest;
+    name_real root_impedance[NAME_TRACKS + 1];
+    name_real state_gain[NAME_TRACKS + 1];
+    name_real growth;
 } name_made;
 #endif
 
@@ -55,21 +59,77 @@ enum {
     STATES = NAME_STATES,
     JOINTS = 3,
     LOADED = 1,
-    OWN_POINTS = NAME_OWN_POINTS,
+    LOADED_POINTS = 1,
     MOST_STATES = 1,
-    MOST_POINTS = 1,
-    MOST_JOINED = 2,
-    TERMS = 18,
+    ENTRIES = NAME_ENTRIES,
+    DEEPEST = 2,
+    POWERS = 3,
     WIDEST = SIZE + 1
 };
 
+/* tracks: what is sent into one end of a rod; how many panels it keeps, and windows of each breakpoint, where they begin,
+ * what is on its way at tau = 0 */
+extern const int slots[];
+extern const int first_slot[];
+extern const int entries[];
+extern const int first_entry[];
+extern const real held[];
+/* what an error of a track counts for: in its rod, or at its point, where states may count besides */
+extern const real root_impedance[];
+extern const real state_gain[];
+/* joints: where their points, states and ports start in the next tables; their matrix, by columns, which answers to
+ * (coefficients of what acts on its points, x at the start) by (those of the velocities, x at the end less x), or, without
+ * states, to (what arrives at its ports, what acts on its points) by what is sent */
+extern const int first_point[];
+extern const int first_state[];
+extern const int first_port[];
+extern const int answer[];
+extern const real matrix[];
+extern const real begun[];
+extern const int force_on[];
+/* the point with which a state moves; where there is none, what it gains by how far points have moved, by rows */
+extern const int moves_with[];
+extern const int first_stretch[];
+extern const real lengthening[];
+/* what the polynomials of a joint miss, of its states, as the root of an energy, by rows */
+extern const int first_slip[];
+extern const real slip[];
+/* ports: the point of the joint, factors, and tracks */
+extern const int point_of[];
+extern const real push[];
+extern const real ratio[];
+extern const int arrive[];
+extern const int send[];
+/* joints on which loads act */
+extern const int loaded[];
+/* forces: what they are without loads, how much of each load they are, and whether of its integral */
+extern const real base[];
+extern const real strength[];
+extern const int integrated[];
+/* the instants of a panel; from values there to coefficients, by rows; and how wrong these are at most where a jump, a kink
+ * or a bend is between two instants */
+extern const real instant[];
+extern const real transform[];
+extern const real kink[];
+/* Outputs: where their tracks start in the next tables; factors, whether the integral counts, delays in panels and what
+ * is left; and the force that is shown in place of a track, -1 for none. */
+extern const int first_heard[];
+extern const int track[];
+extern const real gain[];
+extern const int summed[];
+extern const int late[];
+extern const real rest[];
+extern const int shown_force[];
+
+/* where the laws of a joint begin; whether a state is a velocity */
+extern const int law_of[];
+extern const int is_mass[];
+
 #ifdef NAME_RUNTIME
-enum { MOST_MOVED = 2, HEARD = NAME_HEARD, CAUTION = 4, CALM = 4 };
+enum { MOST_MOVED = 2, HEARD = NAME_HEARD, CALM = 4 };
 
 extern const name_parameters name_defaults;
 extern const real largest_number;
-extern const int law_of[];
-extern const int is_mass[];
 
 int good(const name_parameters *p);
 void laws_of(const name_parameters *p, stream *state);
@@ -78,7 +138,10 @@ int name_build(stream *state, const name_parameters *parameters);
 
 #define matrix state->made.matrix
 #define slip state->made.slip
-#define fastest state->made.fastest
+#define growth state->made.growth
+#define track_impedance state->made.track_impedance
+#define root_impedance state->made.root_impedance
+#define state_gain state->made.state_gain
 #define law state->made.law
 #define weight state->made.weight
 #define begun state->made.begun
@@ -88,47 +151,12 @@ int name_build(stream *state, const name_parameters *parameters);
 #define strength state->made.strength
 #define gain state->made.gain
 #else
-extern const real fastest;
-extern const real held[];
-extern const real matrix[];
-extern const real begun[];
-extern const real push[];
-extern const real slip[];
-extern const real law[];
-extern const real base[];
-extern const real strength[];
-extern const real gain[];
+extern const real growth;
 #endif
 
 void name_init(stream *state);
 int name_step(stream *state, real dtau, const real *load, real *out);
 real name_lost(const stream *state);
 
-extern const real panel, panel_low, scale, tolerance, shortest, longest;
-
-extern const int slots[];
-extern const int first_slot[];
-extern const int first_point[];
-extern const int first_state[];
-extern const int first_port[];
-extern const int answer[];
-extern const int force_on[];
-extern const int point_of[];
-extern const real ratio[];
-extern const int arrive[];
-extern const int send[];
-extern const int first_slip[];
-extern const int loaded[];
-extern const int first_own[];
-extern const int first_law[];
-extern const int integrated[];
-extern const real instant[];
-extern const real transform[];
-extern const real kink[];
-extern const int first_heard[];
-extern const int track[];
-extern const int summed[];
-extern const int late[];
-extern const real rest[];
-extern const int own_point[];
-extern const real own_ratio[];
+extern const real panel, panel_low, scale, step_length, tolerance, share, shortest, shortest_ramp, longest;
+extern const real nearest, rounding, least, root_panel, rough, steep;

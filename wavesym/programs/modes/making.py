@@ -22,7 +22,7 @@ def modes(model: Model, real: Real) -> ModesEvaluator:
     UnservedError for what has no modes, or loads that jump; ToleranceError where too many would be needed.
     OverflowError where numbers would be beyond those of the format.
     """
-    made = modal_system(model)
+    made = modal_system(model.to_horizon(real))
     sources = tuple(step.removesuffix(":step") or ramp.removesuffix(":ramp") for step, ramp in made.sources)
     spacing = made.loads.spacing(model.until, model.spacing)
     evaluator = ModesEvaluator(

@@ -48,8 +48,13 @@ class Panels(ModesScheme):
                 chosen = panels[kind[panels] == k]
                 if not len(chosen):
                     continue
-                known = np.hstack([states[chosen - first], loads[chosen - first]])
                 count = counts[chosen[0]]
+                if len(chosen) == 1:  # shares its matrices with none: the rest, long after the last load
+                    at = edges[chosen[0]] + np.arange(count)
+                    taus[at] = starts[chosen[0]] + length * np.arange(count) / count
+                    out[:, at] = self.evaluate(taus[at])
+                    continue
+                known = np.hstack([states[chosen - first], loads[chosen - first]])
                 for part in range(count):
                     s = length * part / count
                     at = edges[chosen] + part

@@ -62,7 +62,8 @@ def modal_system(model: Model) -> ModalModes:
 
 
 def modal_chain(model: Model) -> ModalChain[Any]:
-    """A model as modes: with dashpots they die away."""
+    """A model as modes, until its last double or later: with dashpots they die away."""
+    model = model.to_horizon()
     return SlowedChain(model) if model.network.loses else SwingingChain(model)
 
 

@@ -88,6 +88,38 @@ class JointSpace:
         return np.array(rows).reshape(self.states, self.states)
 
     @cached_property
+    def moves_with(self) -> tuple[int, ...]:
+        """Of each state the point whose velocity it is; -1 where it is how much longer a spring has become."""
+        points = [
+            [k for k in range(self.points) if [self._motion[k, c] for c in range(self._motion.ncols())] == unit]
+            for unit in ([fmpq(b == a) for b in range(self.states + self.points)] for a in range(self.states))
+        ]
+        return tuple(of[0] if of else -1 for of in points)
+
+    @cached_property
+    def lengthening(self) -> fmpq_mat:
+        """By how much each state changes as points move, x' = lengthening q; 0 where it is the velocity of one.
+
+        The rows of [shown passed] are independent, so that those of [rates pushed] give it.
+        """
+        motion, own = self._motion, [point < 0 for point in self.moves_with]
+        rows = fmpq_mat(self.states, self.states + self.points)
+        for a in range(self.states):
+            for c in range(rows.ncols()):
+                value = self.rates[a, c] if c < self.states else self.pushed[a, c - self.states]
+                rows[a, c] = value if own[a] else _ZERO
+        return rows * motion.transpose() * (motion * motion.transpose()).inv()
+
+    @cached_property
+    def _motion(self) -> fmpq_mat:
+        """What the velocities of points are made of: [shown passed]."""
+        rows = fmpq_mat(self.points, self.states + self.points)
+        for k in range(self.points):
+            for c in range(rows.ncols()):
+                rows[k, c] = self.shown[k, c] if c < self.states else self.passed[k, c - self.states]
+        return rows
+
+    @cached_property
     def scattering(self) -> fmpq_mat:
         """Of a joint without state: what goes back into each end, from what arrives at each and acts on each point."""
         ends, points = len(self.ports), self.points

@@ -1,11 +1,12 @@
-"""The largest degree of a program: enough for the scene's own parameters, and for kappa up to `STIFF` where kappa, or
-what else makes bodies light, is given at run time.
+"""The largest degree of a program: enough for the scene's own parameters, and, where kappa, or what else makes bodies
+light, is given at run time, for any kappa up to a largest one.
 
 Found as the program finds it, by marching: a degree is raised by a quarter until no window misses more than its share.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,8 +19,12 @@ from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import LOAD, Plan, plan
 from wavesym.programs.march.run import Run, Since
 from wavesym.programs.runtime.plan import RuntimePlan
+from wavesym.programs.runtime.request import RuntimeField
 
-STIFF = fmpq(100)
+LIGHTER = 10
+"""Unless it is said how light bodies may be, they may be so many times as light as those of the scene."""
+LIGHTEST = fmpq(100)
+"""The largest kappa where memory does not matter."""
 LEAST = 8
 MARGIN = 24  # outputs are often smaller than waves, and errors a few times what is missed
 _HIGHEST = 1000
@@ -38,32 +43,51 @@ def share(given: RuntimePlan, tolerance: fmpq, real: Real) -> float:
     return max(nearest(tolerance / (MARGIN * given.plan.windows)), 2 * nearest(real.roundoff))
 
 
-def degrees(given: RuntimePlan, tolerance: fmpq, real: Real) -> tuple[int, int]:
-    """The degree to begin with, about that of the scene's own parameters, and the one that is enough.
+def lightest(fields: Sequence[RuntimeField], asked: fmpq | None, own: fmpq) -> fmpq | None:
+    """The largest kappa that a program is made for: what was asked for, else `LIGHTER` times the scene's `own`.
+
+    None where no field makes bodies lighter.
+    """
+    if not any(field.positive for field in fields):
+        return None
+    return LIGHTER * own if asked is None else asked
+
+
+def degrees(given: RuntimePlan, tolerance: fmpq, real: Real, kappa_max: fmpq | None) -> tuple[int, int]:
+    """The degree to begin with, about that of the scene's own parameters, and the one that is enough for any kappa up
+    to `kappa_max`, too.
 
     CostError where that would be beyond reason.
     """
     allowed = share(given, tolerance, real)
-    degree = _enough(_numbers(given, fmpq(0)), LEAST, allowed)
+    own = given.model.named.parameters.kappa
+    degree = _enough(_numbers(given, own), LEAST, allowed)
     first = max(LEAST, 4 * degree // 5)
-    if any(field.positive for field in given.fields):
-        degree = _enough(_numbers(given, STIFF), degree, allowed, f" for kappa up to {STIFF}")
-    size = real.bytes * given.plan.windows * len(given.strands) * (degree + 2)
-    if size > LARGEST_MODEL:
-        raise CostError(
-            f"output.until: a model of {size:.1e} bytes would be kept to tau = {given.plan.tau_max:g}, at most "
-            f"{LARGEST_MODEL:.1e} expected (a shorter horizon, or fewer outputs, helps)"
-        )
+    if kappa_max is not None:
+        light = {i: max(value, kappa_max) for i, value in own.items()}
+        uneven = {i: value * (1 - fmpq(place % 3, 10)) for place, (i, value) in enumerate(light.items())}
+        for kappa in (light, uneven):  # waves between equal bodies may cancel
+            degree = _enough(_numbers(given, kappa), degree, allowed, f" for kappa up to {nearest(kappa_max):g}")
+    refuse_huge(given.plan.windows, given.plan.tau_max, len(given.strands), degree, real)
     return first, degree
 
 
-def _numbers(given: RuntimePlan, least: fmpq) -> Plan:
-    """The plan of the scene's own numbers, no kappa below `least`; what loads have no amplitude has 1, and bodies whose
+def refuse_huge(windows: int, tau_max: float, strands: int, degree: int, real: Real) -> None:
+    """CostError for a model that would be beyond reason."""
+    size = real.bytes * windows * strands * (degree + 2)
+    if size > LARGEST_MODEL:
+        raise CostError(
+            f"output.until: a model of {size:.1e} bytes would be kept to tau = {tau_max:g}, at most "
+            f"{LARGEST_MODEL:.1e} expected (a shorter horizon, fewer outputs, or a smaller --kappa-max helps)"
+        )
+
+
+def _numbers(given: RuntimePlan, kappa: dict[int, fmpq]) -> Plan:
+    """The plan of the scene's own numbers but for kappa; what loads have no amplitude has 1, and bodies whose
     velocities are given at run time do not move together.
     """
     model = given.model
     chain = model.named
-    kappa = {i: max(value, least) for i, value in chain.parameters.kappa.items()}
     velocity = chain.parameters.velocity
     if velocity and len(set(velocity.values())) < len(velocity) and any(of.name == "velocity" for of in given.fields):
         velocity = {i: fmpq(-i) for i in velocity}
@@ -97,7 +121,7 @@ def _refuse_high(prepared: Plan, degree: int, told: str) -> None:
         raise CostError(
             f"output.until: rates to {nearest(prepared.rate):g}{told} need polynomials of degree {degree} to tau = "
             f"{prepared.tau_max:g}, at most {_HIGHEST} and {_MOST_WORK:.1e} operations expected "
-            "(a shorter horizon helps)"
+            f"(a shorter horizon{', or a smaller --kappa-max,' if told else ''} helps)"
         )
 
 

@@ -17,11 +17,12 @@ from wavesym.programs.march.plan import LOAD, Plan
 from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
-from wavesym.programs.runtime.degree import STIFF, degrees, share
+from wavesym.programs.runtime.degree import LIGHTEST, degrees, lightest, share
 from wavesym.programs.runtime.joints.making import joints_program
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.plan import RuntimePlan, runtime_plan
 from wavesym.programs.runtime.pushes import Push, as_one
+from wavesym.programs.runtime.readings import reading_tables
 from wavesym.programs.runtime.request import fields
 from wavesym.programs.runtime.roundings import most_roundings
 from wavesym.programs.runtime.units import Function
@@ -54,8 +55,9 @@ def runtime_program(
     chosen = any(field.name == "load" for field in given)
     loads = [load for _, load in amplitudes] if chosen else as_one(model)
     made = runtime_plan(model, given, loads, real)
-    least, degree = degrees(made, tolerance, real)
-    light = f" and for kappa up to {STIFF}" if any(field.positive for field in given) else ""
+    kappa_max = lightest(given, request.kappa_max, max(model.named.parameters.kappa.values()))
+    least, degree = degrees(made, tolerance, real, kappa_max)
+    light = "" if kappa_max is None else f" and for kappa up to {nearest(kappa_max):g}"
     reason = (
         f"march with {', '.join(request.runtime)} at run time, degrees from {least} to {degree}, enough for the "
         f"scene's own parameters{light}; errors are estimated"
@@ -69,6 +71,7 @@ def runtime_program(
         "roundings": rounded,
         "degree": degree,
         "least": least,
+        **({} if kappa_max is None else {"kappa_max": real.nearest(kappa_max)}),
         "share": share(made, tolerance, real),
     }
     program = Program(
@@ -82,8 +85,17 @@ def runtime_program(
         Provenance(model, reason, request.options),
         proved=False,
         laws=laws,
+        parts=request.every_part,
     )
     return _with_reference(program) if tested else program
+
+
+def sets_program(
+    model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]] = (), precision: str = "double"
+) -> Program:
+    """The same for sets that are computed here, where there is memory for bodies as light as `LIGHTEST`."""
+    request = Request(precision=precision, runtime=tuple(names), kappa_max=LIGHTEST)
+    return runtime_program(model, request, amplitudes)
 
 
 def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:
@@ -129,7 +141,8 @@ def _tables(made: RuntimePlan, real: Real) -> dict[str, tuple[float, ...]]:
     strengths = _strengths(pushes)
     terms = [term for strand in made.strands for term in strand.terms]
     sections, outputs = len(made.sections) - 1, len(plan.outputs)
-    listening = [made.listening(section, output) for section in range(sections) for output in range(outputs)]
+    heard = [[made.listening(section, output) for output in range(outputs)] for section in range(sections)]
+    listening = [strands for section in heard for strands in section]
     forces = {column: force for force, column in enumerate(plan.loaded)}
     places = {strength: place for place, strength in enumerate(strengths)}
 
@@ -152,6 +165,7 @@ def _tables(made: RuntimePlan, real: Real) -> dict[str, tuple[float, ...]]:
         "from": tuple(real.not_below(begin) for begin in made.sections),
         "first_strand": firsts(map(len, listening)),
         "strand_at": tuple(strand for group in listening for strand in group),
+        **reading_tables(made.strands, heard),
         "strand_start": reals(strand.start for strand in made.strands),
         "strand_excess": reals(rational(real.nearest(strand.start)) - strand.start for strand in made.strands),
         "strand_scale": reals(1 / strand.half for strand in made.strands),

@@ -186,13 +186,13 @@ def _unit_loads(own: Node, node: Node) -> tuple[dict[str, fmpq_poly], Function]:
 
 
 def _strands(made: Plan, heard: Sequence[tuple[int, HeardWave]]) -> Iterator[Strand]:
-    groups: dict[tuple[int, fmpq, fmpq], list[StrandTerm]] = {}
+    groups: dict[tuple[fmpq, fmpq, int], list[StrandTerm]] = {}
     for number, (output, wave) in enumerate(heard):
         for stretch in made.stretches(wave.delay):
             half = made.panels[stretch.panel].length / 2
             low, high = max(-stretch.start / half - 1, fmpq(-1)), min((1 - stretch.start) / half - 1, fmpq(1))
             term = StrandTerm(number, wave, stretch, low, high)
-            groups.setdefault((output, stretch.start, half), []).append(term)
-    # in the order of time, so that integrals go on from stretch to stretch
-    for (output, start, half), terms in sorted(groups.items(), key=lambda group: group[0]):
+            groups.setdefault((stretch.start, half, output), []).append(term)
+    # in the order of time, so that integrals go on from stretch to stretch; what is read at the same instants together
+    for (start, half, output), terms in sorted(groups.items(), key=lambda group: group[0]):
         yield Strand(output, start, half, tuple(terms))

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
-from wavesym.errors import WavesymError, did_you_mean
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
+from wavesym.programs.request import refuse_others
 from wavesym.programs.runtime.units import ParameterUnit, unit_of, unit_of_load
 
 NAMES = ("kappa", "inertia", "velocity", "load")
@@ -47,7 +47,7 @@ def fields(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, A
         name: tuple(sorted(numbers.items())) for name in NAMES if (numbers := getattr(chain.parameters, name, None))
     }
     known = [*there, *(["load"] if amplitudes or any(load.source != "impact" for load in model.loads) else [])]
-    refuse_others(names, known)
+    refuse_others("--runtime", names, known)
     found = []
     for name, of in there.items():
         if name in names:
@@ -63,18 +63,3 @@ def field_of(name: str, numbers: Sequence[tuple[str, fmpq, ParameterUnit]], told
     labels, values, units = zip(*numbers, strict=True)
     sized = tuple(value * unit.size for value, unit in zip(values, units, strict=True))
     return RuntimeField(name, labels, sized, units, tuple(told) or labels)
-
-
-def refuse_others(names: Sequence[str], known: Sequence[str]) -> None:
-    """WavesymError for a name that a scene does not have, and for one that is given twice."""
-    for place, name in enumerate(names):
-        if name not in known:
-            expected = f"{_one_of(known)} expected. {did_you_mean(name, known)}".rstrip(". ")
-            raise WavesymError(f"--runtime: {name or 'nothing'} given, {expected}")
-        if name in names[:place]:
-            raise WavesymError(f"--runtime: {name} given twice, once expected")
-
-
-def _one_of(names: Sequence[str]) -> str:
-    *others, last = names
-    return f"{', '.join(others)} or {last}" if others else last

@@ -24,7 +24,7 @@ from wavesym.programs.runtime.joints.network import free_network
 from wavesym.programs.runtime.plan import free_chain
 from wavesym.programs.runtime.request import NAMES, RuntimeField, fields
 from wavesym.programs.runtime.units import Function, force_kept, load_kept
-from wavesym.programs.stream.plan import Input, InputForce, StreamPlan, acting_inputs, paneled, steps_of
+from wavesym.programs.stream.plan import Input, InputForce, StreamPlan, acting_inputs, breakpoints, paneled, steps_of
 
 QUICKER = fmpq(10)
 """Panels and the degree are enough for joints that parameters make so many times as fast as the scene's own are."""
@@ -47,8 +47,8 @@ class FreeStream:
         """How many times as fast as those of the scene joints may be."""
         return QUICKER if any(field.positive for field in self.fields) else _ONE
 
-    def plan(self, spacing: fmpq | None) -> StreamPlan:
-        """With the numbers of the scene, as any other stream; CostError where panels would be too short."""
+    def plan(self, spacing: fmpq | None, *, simulated: bool = False) -> StreamPlan:
+        """With the numbers of the scene, as any other stream."""
         rings = replace(
             self.rings,
             model=replace(self.model, loads=steps_of(self.inputs)),
@@ -66,7 +66,9 @@ class FreeStream:
             InputForce(self._number(force.base), tuple(map(self._number, force.gains)), force.summed)
             for force in self.acting
         )
-        return StreamPlan(paneled(rings, spacing, self.quicker), self.inputs, tuple(acting))
+        panels = paneled(rings, spacing, self.quicker)
+        room = breakpoints(self.model, panels, spacing, simulated=simulated)
+        return StreamPlan(panels, self.inputs, tuple(acting), room)
 
     @cached_property
     def _values(self) -> Mapping[str, fmpq]:

@@ -15,9 +15,8 @@ from wavesym.programs.runtime.units import Function
 from wavesym.programs.stream.free import FreeStream
 from wavesym.programs.stream.plan import StreamPlan
 from wavesym.programs.stream.quick import CALM, rows_of
-from wavesym.programs.stream.tables import CAUTION
 
-MADE = ("held", "matrix", "begun", "push", "slip", "law", "base", "strength", "gain")
+MADE = ("held", "root_impedance", "state_gain", "matrix", "begun", "push", "slip", "base", "strength", "gain")
 """The tables that are computed."""
 
 
@@ -31,6 +30,7 @@ def laws_of(free: FreeStream) -> RuntimeLaws:
         "begun": (value for space in spaces for value in space.begun),
         "push": (port.push for space in spaces for port in space.ports),
         "held": (track.held for track in rings.tracks),
+        "track_impedance": (track.impedance for track in rings.tracks),
         "base": (force.base for force in free.acting),
         "strength": (gain for force in free.acting for gain in force.gains),
         "gain": (one.gain for output in rings.outputs for one in output.heard),
@@ -46,7 +46,6 @@ def places(free: FreeStream, plan: StreamPlan, degree: int) -> dict[str, tuple[f
         "answer": firsts(_answer_size(joint, degree) for joint in joints),
         "first_slip": firsts(_slip_size(joint, degree) for joint in joints),
         "law_of": law,
-        "first_law": tuple(law[n] for n in plan.loaded),
         "is_mass": tuple(
             int(n < rows.masses) for rows in map(rows_of, free.rings.joints) if rows for n in range(len(rows.weights))
         ),
@@ -59,8 +58,8 @@ def sizes(plan: StreamPlan, degree: int) -> dict[str, float]:
     return {
         "answers": sum(_answer_size(joint, degree) for joint in joints),
         "slips": sum(_slip_size(joint, degree) for joint in joints),
-        "caution": CAUTION,
         "calm": CALM,
+        "tracks": len(plan.rings.tracks),
         "most_moved": max(1, *(joint.space.states for joint in joints)),
     }
 
@@ -73,9 +72,9 @@ def _law(space: Any) -> Iterator[Function]:
 def _answer_size(joint: MarchedJoint, degree: int) -> int:
     space = joint.space
     wide = space.points * (degree + 1) + space.states
-    return wide**2 if space.states else len(space.ports) ** 2
+    return wide**2 if space.states else len(space.ports) * (len(space.ports) + space.points)
 
 
 def _slip_size(joint: MarchedJoint, degree: int) -> int:
     space = joint.space
-    return space.points * (space.points * (degree + 1) + space.states) if space.states else 0
+    return space.states * (space.points * (degree + 1) + space.states)

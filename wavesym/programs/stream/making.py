@@ -66,7 +66,12 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
     real = REALS[request.precision]
     names = request.runtime or (usual_parameters(model) if request.target else ())
     free = free_stream(model, names, inputs, real) if names else None
-    plan = free.plan(request.step) if free else stream_plan(model, inputs, real, request.step)
+    simulated = bool(request.target)
+    plan = (
+        free.plan(request.step, simulated=simulated)
+        if free
+        else stream_plan(model, inputs, real, request.step, simulated=simulated)
+    )
     tolerance = max(model.tolerance, _ROUNDINGS * real.roundoff)
     degree, verdict = _enough(plan, model, real)
     for output, error in zip(plan.rings.outputs, verdict.bounds, strict=True):
@@ -124,7 +129,8 @@ def _reason(plan: StreamPlan, degree: int, made: StreamTables) -> str:
     step = "" if plan.rings.step == 1 else f" of {plan.rings.step} tau"
     return (
         f"march as a stream, {count} panels a window{step}, degree {degree}, a state of about "
-        f"{-(-made.state_bytes // 1024)} KiB, {made.panel_operations} multiplications a panel"
+        f"{-(-made.state_bytes // 1024)} KiB with room for {plan.breakpoints} instants inside of panels, "
+        f"{made.panel_operations} multiplications a panel"
     )
 
 
@@ -167,14 +173,16 @@ class _Driven:
 
 _CHECKED = 8  # longest steps of the march, at most
 _PLACES = (fmpq(3, 16), fmpq(9, 16), fmpq(15, 16))  # of a panel, where values are looked at
+_INSIDE = fmpq(1, 4)  # of a panel, where loads jump
 
 
 def _reference(model: Model, plan: StreamPlan, program: Program) -> SteppedValues:
-    """Loads that jump at edges of panels and are held, and the exact values in between."""
+    """Loads that jump inside of panels, at edges where there is no room for that, and are held; the exact values."""
     panel, last = plan.panel, min(model.until, _CHECKED * max(plan.rings.step, _ONE))
     count = int((last / panel).floor())
+    late = _INSIDE * panel if plan.breakpoints >= len(plan.rings.panels) else fmpq(0)
     jumps = [(k, j, _leap(k, j)) for k in range(count) for j in range(len(plan.inputs)) if k % 5 == (2 * j) % 5]
-    applied = [Applied(plan.inputs[j].source, k * panel, rise / plan.inputs[j].size) for k, j, rise in jumps]
+    applied = [Applied(plan.inputs[j].source, k * panel + late, rise / plan.inputs[j].size) for k, j, rise in jumps]
     looked = [(k + _PLACES[k % len(_PLACES)]) * panel for k in range(count)]
     taus = [nearest(tau) for tau in looked]
     own = merged(applied) if plan.inputs else model.loads
@@ -185,12 +193,14 @@ def _reference(model: Model, plan: StreamPlan, program: Program) -> SteppedValue
     columns = dict(zip(found.taus, zip(*found.values, strict=True), strict=True))
     rows, now, time = [], [fmpq(0)] * len(plan.inputs), fmpq(0)
     for k, (instant, tau) in enumerate(zip(looked, taus, strict=True)):
-        rows.append(_row(program.real, k * panel - time, now))
-        for _, j, rise in (jump for jump in jumps if jump[0] == k):
-            now[j] += rise
-        rows.append(_row(program.real, fmpq(0), now))
-        rows.append(replace(_row(program.real, instant - k * panel, now), values=columns.get(tau, ())))
-        time = instant
+        for then, values in sorted([(k * panel + late, None), (instant, columns.get(tau, ()))], key=lambda row: row[0]):
+            row = _row(program.real, then - time, now)
+            rows.append(row if values is None else replace(row, values=values))
+            time = then
+            if values is None:
+                for _, j, rise in (jump for jump in jumps if jump[0] == k):
+                    now[j] += rise
+                rows.append(_row(program.real, fmpq(0), now))
     return SteppedValues(tuple(rows))
 
 

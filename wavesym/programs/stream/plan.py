@@ -3,10 +3,11 @@
 Every joint that a wave can ever come from is part of it, as a stream has no end. A panel is a part of the march's step
 such that
 
-- loads may change at its edges: where the time between two calls is fixed, it is a number of panels;
-- an output hears a joint that is loaded at once, or a panel later at the earliest: what loads have done is known as a
-  polynomial once a panel is over, and as a number now;
+- loads may change at its edges: where the time between two calls is fixed, it is a number of panels, if these are not
+  too short;
 - it is no longer than `LONGEST`, and where joints are fast shorter, down to `SHORTEST`.
+
+Instants inside of panels at which loads change, the same ones in every window, are its breakpoints.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from typing import Any
 
 from flint import fmpq
 
-from wavesym.errors import CostError, UnservedError
+from wavesym.errors import UnservedError
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
@@ -30,7 +31,13 @@ from wavesym.programs.rings.plan import Heard, MarchedJoint, RingPlan, moved_by,
 LONGEST = fmpq(1, 8)
 SHORTEST = fmpq(1, 64)
 FINEST = fmpq(1, 1024)
-"""No panel is shorter, unless the step of the march is nearly so."""
+"""No panel is shorter for the sake of calls that are some time apart, unless the step of the march is nearly so."""
+ROOM = 256
+"""For so many breakpoints there is room where nothing is known of calls."""
+SIMULATED_ROOM = 1024
+"""The same where memory is that of a simulator; there is room for one on every panel up to the horizon, too."""
+MOST_BREAKPOINTS = 1 << 14
+_LOOKED = 1 << 17  # multiples of a spacing
 _CALM = 4.0  # rate times panel
 
 _ZERO, _ONE = fmpq(0), fmpq(1)
@@ -63,11 +70,15 @@ class InputForce:
 
 @dataclass(frozen=True)
 class StreamPlan:
-    """`rings` is the march of all joints, under a step of every input at tau = 0, on the panels of the stream."""
+    """`rings` is the march of all joints, under a step of every input at tau = 0, on the panels of the stream.
+
+    There is room for so many `breakpoints`.
+    """
 
     rings: RingPlan
     inputs: tuple[Input, ...]
     acting: tuple[InputForce, ...]
+    breakpoints: int
 
     @property
     def panel(self) -> fmpq:
@@ -135,14 +146,25 @@ def steps_of(inputs: Sequence[Input]) -> tuple[Applied, ...]:
     return tuple(Applied(given.source, _ZERO, _ONE) for given in sorted(inputs, key=lambda given: given.source))
 
 
-def stream_plan(model: Model, inputs: Sequence[Input], real: Real, spacing: fmpq | None = None) -> StreamPlan:
+def stream_plan(
+    model: Model, inputs: Sequence[Input], real: Real, spacing: fmpq | None = None, *, simulated: bool = False
+) -> StreamPlan:
     """The plan of a model in `real` numbers, for calls at any time or `spacing` apart.
 
-    UnservedError for contacts and damped modes; CostError where panels would be too short.
+    Args:
+        model: What is streamed. Its own loads say at which instants loads are likely to change.
+        inputs: Its loads.
+        real: The numbers of the program.
+        spacing: The time between two calls in tau, None where it may be any.
+        simulated: Whether memory is that of a simulator.
+
+    Raises:
+        UnservedError: The model has contacts or damped modes.
     """
     rings = ring_plan(replace(model, loads=steps_of(inputs)), real)
     acting = acting_inputs(model.network, rings.pushed, inputs)
-    return StreamPlan(paneled(rings, spacing), tuple(inputs), tuple(acting))
+    panels = paneled(rings, spacing)
+    return StreamPlan(panels, tuple(inputs), tuple(acting), breakpoints(model, panels, spacing, simulated=simulated))
 
 
 def paneled(rings: RingPlan, spacing: fmpq | None, quicker: fmpq = _ONE) -> RingPlan:
@@ -150,6 +172,24 @@ def paneled(rings: RingPlan, spacing: fmpq | None, quicker: fmpq = _ONE) -> Ring
     count = _panels(rings, spacing, quicker)
     length = rings.step / count
     return replace(rings, panels=tuple(MarchPanel(k * length, length) for k in range(count)))
+
+
+def breakpoints(model: Model, rings: RingPlan, spacing: fmpq | None, *, simulated: bool) -> int:
+    """For how many instants inside of panels there is to be room, up to `MOST_BREAKPOINTS`.
+
+    Those at which multiples of the `spacing` lie, or the times of the model's own loads, up to the horizon; where
+    nothing is known of the time between calls no fewer than `ROOM`, or if they are `simulated` `SIMULATED_ROOM`.
+    """
+    until, panel = model.until, rings.panels[0].length
+    if spacing is None:
+        times = {load.time for load in model.loads if load.time <= until}
+        room = max(SIMULATED_ROOM, int((until / panel).ceil())) if simulated else ROOM
+    else:
+        count = min(int((until / spacing).floor()), _LOOKED)
+        times = {k * spacing for k in range(count + 1)}
+        room = 0
+    inside = {time - (time / rings.step).floor() * rings.step for time in times if (time / panel).q != 1}
+    return min(max(len(inside), room), MOST_BREAKPOINTS)
 
 
 def acting_inputs(
@@ -179,23 +219,12 @@ def _loaded(joints: Sequence[MarchedJoint]) -> tuple[int, ...]:
 def _panels(rings: RingPlan, spacing: fmpq | None, quicker: fmpq) -> int:
     """How many are a step of the march."""
     step, joints = rings.step, rings.joints
-    sent = {track for n in _loaded(joints) for track in joints[n].sends}
-    near = {heard.delay: output for output in reversed(rings.outputs) for heard in output.heard if heard.track in sent}
-    shortest = min((delay for delay in near if delay != 0), default=step)
     fastest = nearest(quicker) * max(joint.space.norm for joint in joints)
     few = 1 if spacing is None else int((step / spacing).p)
-    longest, most = min(LONGEST, shortest), max(int((step / FINEST).floor()), 8)
-    count = few * int((step / (few * longest)).ceil())
-    if count > most and few > most:
-        raise CostError(
-            f"load: steps of {spacing} are edges of {few} panels in a window of {step}, at most {most} expected "
-            "(a --step in a simpler proportion to it helps)"
-        )
-    if count > most:
-        raise CostError(
-            f"output: {near[shortest].name} hears a loaded node after {shortest}, which takes {count} panels in a "
-            f"window of {step}, at most {most} expected (a place at that node, or farther away, helps)"
-        )
+    most = max(int((step / FINEST).floor()), 8)
+    if few > most:
+        few = 1  # breakpoints are for these
+    count = few * int((step / (few * LONGEST)).ceil())
     # by halves, so that edges stay edges
     while nearest(step / count) * fastest > _CALM and step / count > SHORTEST:
         count *= 2

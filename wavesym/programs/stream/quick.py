@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import sqrt
 from typing import Any, cast
 
 import numpy as np
@@ -50,7 +51,9 @@ def quick_enough(free: FreeStream, plan: StreamPlan, degree: int, tolerance: flo
 
 
 def step_lost(free: FreeStream, number: int, plan: StreamPlan, slips: Sequence[float], degree: int) -> float:
-    """What polynomials lose at most where a wave, or a body, that was at rest jumps to 1; as stream_made.c has it."""
+    """What part of the energy that comes polynomials lose at most where all waves and bodies, at rest so far, jump to
+    1; a root; as templates/c/stream/made.c has it.
+    """
     space, rows = plan.rings.joints[number].space, rows_of(free.rings.joints[number])
     if rows is None or not space.states:
         return 0.0
@@ -59,7 +62,12 @@ def step_lost(free: FreeStream, number: int, plan: StreamPlan, slips: Sequence[f
     for port in space.ports:
         jumps[port.point * size] += abs(nearest(port.push))
     jumps[space.points * size :][: rows.masses] = 1
-    return float(np.max(np.abs(np.reshape(slips, (space.points, -1))) @ jumps))
+    energy = (
+        plan.panel * sum((port.impedance for port in space.ports), fmpq(0))
+        + sum(space.weights[: rows.masses], fmpq(0)) / 2
+    )
+    lost = float(np.sum(np.abs(np.reshape(slips, (space.states, -1))) @ jumps))
+    return lost / sqrt(nearest(energy)) if lost else 0.0
 
 
 def rows_of(joint: MarchedJoint) -> JointRows | None:

@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cached_property
-from math import factorial, sqrt
+from math import sqrt
 
 import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.numbers.reals import Real
+from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.flat import firsts
 from wavesym.programs.rings.plan import MarchedJoint
+from wavesym.programs.rings.space import SHOWN
 from wavesym.programs.rings.tables import RingTables
-from wavesym.programs.stream.kinks import kinks, points, transform
+from wavesym.programs.stream.interpolation import kinks, points, transform
 from wavesym.programs.stream.plan import StreamPlan
 
 Array = NDArray[np.float64]
 
-# of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
-CAUTION = 4
 _LONGEST = 10**6  # panels of a step, each of which takes its time
-_SHORTEST = fmpq(1, 10**30)  # of steps but 0: no slope of a load is larger than the load times 1e30
+_SHORTEST = fmpq(1, 10**30)  # of steps but 0
+_SPARE = 4  # breakpoints that are given up take so much less than the tolerance
+_ABOVE = 1 + 1e-6  # a margin for rounding
 
 
 class StreamTables:
@@ -36,36 +37,40 @@ class StreamTables:
 
     def tables(self) -> dict[str, tuple[float, ...]]:
         """All tables, by name."""
-        plan, rings, half = self._plan, self._plan.rings, self._plan.panel / 2
+        plan, rings, panel = self._plan, self._plan.rings, self._plan.panel
+        half = nearest(panel / 2)
         heard = [one for output in rings.outputs for one in output.heard]
         late = [plan.late(one.delay) for one in heard]
         joints = self._rings.joints()
-        spaces = [self._joints[n].space for n in plan.loaded]
         slips = [self.slips(joint) for joint in self._joints]
-        laws = [
-            [value for matrix in (s.rates, s.pushed, s.shown, s.passed) for value in matrix.entries()] for s in spaces
-        ]
-        own = self._own()
-        instants = [half * (1 + rational(u)) for u in points(self._degree)]
+        spaces = [joint.space for joint in self._joints]
+        shown = {joint.sends[0]: joint.forces[0] for joint in self._joints if joint.space is SHOWN}
+        weights = [self._weight(track) for track in range(len(rings.tracks))]
         return {
             "slots": self._slots,
             "first_slot": firsts(self._slots),
+            "entries": self._entries,
+            "first_entry": firsts(self._entries),
             "held": self._real.table(track.held for track in rings.tracks),
+            "root_impedance": self._rounded(root for root, _ in weights),
+            "state_gain": self._rounded(gain for _, gain in weights),
             **joints,
             "answer": joints["answer"][: len(self._joints)],
+            "moves_with": tuple(point for space in spaces for point in space.moves_with),
+            "first_stretch": firsts(space.states * space.points for space in spaces),
+            "lengthening": self._real.table(value for space in spaces for value in space.lengthening.entries()),
             "first_slip": firsts(map(len, slips)),
             "slip": self._rounded(value for slip in slips for value in slip),
             "loaded": plan.loaded,
-            "first_own": firsts(space.points for space in spaces),
-            "first_law": firsts(map(len, laws)),
-            "law": self._real.table(value for law in laws for value in law),
             "base": self._real.table(force.base for force in plan.acting),
             "strength": self._real.table(gain for force in plan.acting for gain in force.gains),
             "integrated": tuple(int(force.summed) for force in plan.acting),
-            "instant": self._real.table(instants),
+            "instant": self._real.table(panel / 2 * (1 + rational(u)) for u in points(self._degree)),
             "transform": self._rounded(value for row in transform(self._degree) for value in row),
-            "kink": self._rounded(
-                value * nearest(half) ** order for order, row in enumerate(kinks(self._degree)) for value in row
+            "kink": tuple(
+                self._above(value * half ** (order + power))
+                for order, errors in enumerate(kinks(self._degree))
+                for value, power in zip(errors, (0.0, 0.5), strict=True)
             ),
             "first_heard": firsts(len(output.heard) for output in rings.outputs),
             "track": tuple(one.track for one in heard),
@@ -73,15 +78,14 @@ class StreamTables:
             "summed": tuple(int(one.summed) for one in heard),
             "late": tuple(whole for whole, _ in late),
             "rest": self._real.table(rest for _, rest in late),
-            "own_point": tuple(own[one.track][0] if one.track in own and one.delay == 0 else -1 for one in heard),
-            "own_ratio": self._real.table(own[one.track][1] if one.track in own else fmpq(0) for one in heard),
+            "shown_force": tuple(shown.get(one.track, -1) for one in heard),
         }
 
     def constants(self, tolerance: float) -> dict[str, float]:
         """Single numbers."""
         plan, real = self._plan, self._real
-        long = real.nearest(plan.panel)
-        spaces = [self._joints[n].space for n in plan.loaded]
+        long, length = real.nearest(plan.panel), nearest(plan.panel)
+        exponent = 20 if real is DOUBLE else 10
         return {
             "degree": self._degree,
             "panels": len(plan.rings.panels),
@@ -89,21 +93,30 @@ class StreamTables:
             "states": sum(joint.space.states for joint in self._joints),
             "tracks": len(plan.rings.tracks),
             "slot_count": sum(self._slots),
+            "entry_count": sum(self._entries),
+            "breakpoints": plan.breakpoints,
+            "deepest": max(track.steps for track in plan.rings.tracks),
             "loads": len(plan.inputs),
             "forces": len(plan.acting),
             "loaded_count": len(plan.loaded),
-            "own_points": sum(space.points for space in spaces),
-            "most_states": max(1, *(space.states for space in spaces), 1),
-            "most_points": max(1, *(space.points for space in spaces), 1),
-            "most_joined": max(joint.space.points for joint in self._joints),
-            "terms": self._terms,
+            "loaded_points": sum(self._joints[n].space.points for n in plan.loaded),
+            "most_states": max(1, *(joint.space.states for joint in self._joints), 1),
             "widest": self._widest,
             "panel": long,
             "panel_low": real.nearest(plan.panel - rational(long)),
             "scale": real.nearest(2 / plan.panel),
-            "fastest": real.nearest(rational(self._fastest)),
+            "step_length": real.nearest(plan.rings.step),
             "tolerance": real.nearest(rational(tolerance)),
+            "share": self._above(tolerance * self._share),
+            "rough": self._above((sqrt(2) - 1) / sqrt(length)),
+            "steep": self._above((sqrt(2) - 1) / length),
+            "growth": self._above(self._growth),
+            "root_panel": self._above(sqrt(length)),
+            "least": real.nearest(real.roundoff / 8),
+            "nearest": real.nearest(plan.panel / 2 ** (2 * exponent if real is DOUBLE else 20)),
+            "rounding": real.nearest(2 * real.roundoff),
             "shortest": real.nearest(_SHORTEST),
+            "shortest_ramp": real.nearest(plan.panel / 2**exponent),
             "longest": real.nearest(_LONGEST * plan.panel),
             "operations": self.panel_operations,
             "step_operations": self.step_operations,
@@ -116,30 +129,30 @@ class StreamTables:
 
     @property
     def state_bytes(self) -> int:
-        """About the size of what a stream remembers: the rings of waves."""
-        return self._real.bytes * sum(self._slots) * (self._degree + 1)
+        """About the size of what a stream remembers: the waves on their way."""
+        waves = sum(self._slots) + self._plan.breakpoints * sum(self._entries)
+        return self._real.bytes * waves * (self._degree + 1)
 
     @property
     def panel_operations(self) -> int:
-        """Multiplications with addition when a panel begins and ends: all joints, and what loads did."""
-        size, total = self._degree + 1, 0
-        for n, joint in enumerate(self._joints):
+        """Multiplications with addition when a panel begins and ends; without integrals as many for each breakpoint."""
+        size = self._degree + 1
+        summed = sum(one.summed for output in self._plan.rings.outputs for one in output.heard)
+        total = 2 * 3 * 4 * size * summed
+        for joint in self._joints:
             space = joint.space
             wide = space.points * size + space.states
-            total += wide * (wide + space.points) if space.states else size * len(space.ports) ** 2
-            total += size * (size * space.points + len(space.ports)) * (n in self._plan.loaded)
-        summed = sum(one.summed for output in self._plan.rings.outputs for one in output.heard)
-        return total + 2 * 3 * 4 * size * summed
+            total += wide * (wide + space.states) if space.states else size * len(space.ports) ** 2
+        return total
 
     @property
     def step_operations(self) -> int:
-        """About the same for a step within a panel, in as many parts as it may have; all outputs are read once."""
+        """About the same for a step that begins at the edge of a panel: loads change, and all outputs are read."""
         size, total = self._degree + 1, 0
-        parts = 1 + int(nearest(self._plan.panel) * self._fastest)
         for n in self._plan.loaded:
             space = self._joints[n].space
-            total += parts * (self._terms + 1) * (space.states + space.points) ** 2
-            total += space.points * size * (self._terms + 1)
+            wide = space.points * size + space.states
+            total += (3 * space.points + space.states) * wide + size * len(space.ports)
         for output in self._plan.rings.outputs:
             total += sum((2 * 4 * 3 if one.summed else 3) * size for one in output.heard)
         return total
@@ -151,41 +164,79 @@ class StreamTables:
         return tuple(track.steps * count + 1 for track in self._plan.rings.tracks)
 
     @cached_property
-    def _terms(self) -> int:
-        """Powers of a time in which nothing changes by more than exp(1): the rest is below rounding."""
-        terms = 4
-        while 1 / factorial(terms + 1) > nearest(self._real.roundoff) / 2:
-            terms += 1
-        return terms
+    def _entries(self) -> tuple[int, ...]:
+        """Of each track: the windows that are on their way, and the current one."""
+        return tuple(track.steps + 1 for track in self._plan.rings.tracks)
 
     @property
-    def _fastest(self) -> float:
-        return max((self._joints[n].space.norm for n in self._plan.loaded), default=0.0)
+    def _growth(self) -> float:
+        """How steep errors that are smooth can become in a window, where the root of their energy is 1."""
+        rate = max(joint.space.norm for joint in self._joints)
+        return rate * (sqrt(2 * rate * nearest(self._plan.rings.step)) + 2)
+
+    @property
+    def _share(self) -> float:
+        """What may be lost at once in a tau so that the bound stays at a part of 1 to the horizon (docs/march.md)."""
+        panel, step, until = (nearest(each) for each in (self._plan.panel, self._plan.rings.step, self._until))
+        later = 1.5 * sqrt(panel / step) + sqrt(3 * panel * self._growth * (until / step + 1))
+        return 1 / (_SPARE * (1 + later) * until)
+
+    @property
+    def _until(self) -> fmpq:
+        return self._plan.rings.model.until
 
     @property
     def _widest(self) -> int:
         size = self._degree + 1
         return max(joint.space.points * size + joint.space.states for joint in self._joints)
 
-    def _own(self) -> dict[int, tuple[int, fmpq]]:
-        """The tracks that loaded joints send: number of the point among all loaded ones, and ratio."""
-        found, first = {}, 0
-        for n in self._plan.loaded:
-            joint = self._joints[n]
-            for port, track in zip(joint.space.ports, joint.sends, strict=True):
-                found[track] = first + port.point, port.ratio
-            first += joint.space.points
-        return found
+    def _weight(self, track: int) -> tuple[float, float]:
+        """What an error counts for on a track: as a wave, and (one over) what the state of the joint adds."""
+        rings = self._plan.rings
+        if impedance := rings.tracks[track].impedance:
+            return sqrt(nearest(impedance)), 0.0
+        for joint in self._joints:
+            for port, send in zip(joint.space.ports, joint.sends, strict=True):
+                if send == track and joint.space is not SHOWN:
+                    return _weight_at(joint, port.point)
+        return 0.0, 0.0
 
     def slips(self, joint: MarchedJoint) -> list[float]:
-        """What the polynomials of a joint miss, as velocities of its points, from what its matrix takes."""
+        """What the polynomials of a joint miss, as roots of energies, from what its matrix takes."""
         if not joint.space.states:
             return []
-        missed = self._rings.missed(joint, self._plan.panel)
-        weights = np.array([[sqrt(nearest(weight))] for weight in joint.space.weights])
-        shown = np.array([[nearest(v) for v in row] for row in joint.space.shown.tolist()])
-        rows = CAUTION * shown @ (missed / weights)
-        return [float(f"{value:.3g}") for value in rows.ravel().tolist()]
+        turned = nearest(self._plan.panel) * joint.space.norm
+        rows = 2 * (sqrt(turned) + (1 + turned) / sqrt(2)) * self._rings.missed(joint, self._plan.panel)
+        return [float(f"{value * 1.01:.3g}") for value in rows.ravel().tolist()]
 
     def _rounded(self, values: Iterable[float]) -> tuple[float, ...]:
         return tuple(self._real.nearest(rational(value)) for value in values)
+
+    def _above(self, value: float) -> float:
+        """A number that is a little larger, the same one on every machine."""
+        return self._real.nearest(rational(float(f"{value * (1 + 1e-4):.5g}")))
+
+
+def _weight_at(joint: MarchedJoint, point: int) -> tuple[float, float]:
+    """Of the velocity of a point: a rod there says it, as half of the sum of its waves; else it follows from the state
+    and from what arrives at other points.
+    """
+    space = joint.space
+    roots = [sqrt(nearest(port.impedance)) for port in space.ports]
+    at_hand = [
+        nearest(port.ratio) * root / 2 for port, root in zip(space.ports, roots, strict=True) if port.point == point
+    ]
+    if carried := max(at_hand, default=0.0):
+        return carried, 0.0
+    moved = 1.4143 * sum(_moved(joint, point))
+    passing = sum(
+        abs(nearest(space.passed[point, port.point] * port.push)) / root
+        for port, root in zip(space.ports, roots, strict=True)
+        if root
+    )
+    return 1 / (passing + (moved or 1.0)), moved
+
+
+def _moved(joint: MarchedJoint, point: int) -> Iterator[float]:
+    for a, weight in enumerate(joint.space.weights):
+        yield abs(nearest(joint.space.shown[point, a])) / sqrt(nearest(weight))

@@ -7,17 +7,18 @@ from dataclasses import dataclass
 from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description
-from wavesym.targets.literals import Lines, c_tables
+from wavesym.targets.literals import c_tables
 from wavesym.targets.number_format import number_format
 
 
 @dataclass(frozen=True)
 class CClosed:
-    """templates/c/closed/closed.c.j2; every table as the lines between its braces."""
+    """templates/c/closed/closed.c.j2."""
 
     scene: Description
-    tables: dict[str, Lines]
+    tables: list[str]
     exponential: str
     numbers: str
     kernel: str
@@ -27,7 +28,7 @@ def source(scene: Description, program: Program) -> str:
     """NAME.c."""
     context = CClosed(
         scene=scene,
-        tables=c_tables(program.tables, program.real),
+        tables=tables_text("closed/tables.h", c_tables(program.tables, program.real)),
         exponential=number_format(program.real).c_exponential,
         numbers=kernel("real.h", scene),
         kernel=kernel("closed/closed.c", scene),

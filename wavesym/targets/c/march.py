@@ -7,18 +7,20 @@ from dataclasses import dataclass
 from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description
-from wavesym.targets.literals import Lines, c_constants, c_tables
+from wavesym.targets.literals import Lines, c_constants, c_literals, c_tables
 
 _MOST_WINDOWS = 2**31 - 2  # that a common int can count; C names its own largest
 
 
 @dataclass(frozen=True)
 class CMarch:
-    """templates/c/march/march.c.j2; every table as the lines between its braces."""
+    """templates/c/march/march.c.j2; the numbers of `points` as lines."""
 
     scene: Description
-    tables: dict[str, Lines]
+    tables: list[str]
+    points: Lines
     constants: dict[str, str]
     last_window: str
     numbers: str
@@ -46,7 +48,8 @@ def source(scene: Description, program: Program) -> str:
     """NAME.c."""
     context = CMarch(
         scene=scene,
-        tables=c_tables(program.tables, program.real),
+        tables=tables_text("march/tables.h", c_tables(program.tables, program.real)),
+        points=c_literals(program.tables["point"], program.real),
         constants=c_constants(program.constants, program.real),
         last_window=_last_window(program),
         numbers=kernel("real.h", scene),

@@ -12,21 +12,17 @@ from wavesym.programs.modes.tables import LANES
 from wavesym.programs.program import Program, StreamedValues
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description, constants
 from wavesym.targets.literals import Lines, c_constants, c_literals, c_tables
-
-_OWN = (
-    *("p11", "p12", "p21", "p22", "one0", "one1", "speed0", "speed1"),
-    *("moved_row", "moved_weight", "moving_row", "moving_weight", "load_weight"),
-)
 
 
 @dataclass(frozen=True)
 class CModes:
-    """templates/c/modes/modes.c.j2; every table as the lines between its braces."""
+    """templates/c/modes/modes.c.j2."""
 
     scene: Description
-    tables: dict[str, Lines]
+    tables: list[str]
     constants: dict[str, str]
     moved: str
     moving: str
@@ -58,7 +54,7 @@ def source(scene: Description, program: Program) -> str:
     """NAME.c."""
     context = CModes(
         scene=scene,
-        tables=c_tables({name: program.tables[name] for name in _OWN}, program.real),
+        tables=tables_text("modes/tables.h", c_tables(program.tables, program.real), {"LANES": str(LANES)}),
         constants=c_constants(program.constants, program.real),
         moved=str(len(program.tables["moved_row"])),
         moving=str(len(program.tables["moving_row"])),

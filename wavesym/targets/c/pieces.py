@@ -6,19 +6,19 @@ from dataclasses import dataclass
 
 from wavesym.programs.program import Program
 from wavesym.rendering import render
-from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.kernel import kernel, kernels
+from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description
-from wavesym.targets.literals import Lines, c_literal, c_tables
+from wavesym.targets.literals import c_literal, c_tables
 
 
 @dataclass(frozen=True)
 class CPieces:
-    """templates/c/pieces/pieces.c.j2; every table as the lines between its braces."""
+    """templates/c/pieces/pieces.c.j2."""
 
     scene: Description
-    tables: dict[str, Lines]
+    tables: list[str]
     grids: str
-    steps: str
     exact: str
     numbers: str
     kernel: str
@@ -26,13 +26,13 @@ class CPieces:
 
 def source(scene: Description, program: Program) -> str:
     """NAME.c."""
+    steps = str(program.constants["steps"])
     context = CPieces(
         scene=scene,
-        tables=c_tables(program.tables, program.real),
+        tables=tables_text("pieces/tables.h", c_tables(program.tables, program.real), {"STEPS": steps}),
         grids=str(len(program.tables["scale"])),
-        steps=str(program.constants["steps"]),
         exact=c_literal(program.real.nearest(1 / program.real.roundoff), program.real),
-        numbers=kernel("real.h", scene),
+        numbers=kernels(scene, "real.h", "vectors.h"),
         kernel=kernel("pieces/pieces.c", scene),
     )
     return render("c/pieces/pieces.c.j2", context)

@@ -7,16 +7,17 @@ from dataclasses import dataclass
 from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
+from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description
-from wavesym.targets.literals import Lines, c_constants, c_tables
+from wavesym.targets.literals import c_constants, c_tables
 
 
 @dataclass(frozen=True)
 class CRings:
-    """templates/c/rings/rings.c.j2; every table as the lines between its braces."""
+    """templates/c/rings/rings.c.j2."""
 
     scene: Description
-    tables: dict[str, Lines]
+    tables: list[str]
     constants: dict[str, str]
     numbers: str
     series: str
@@ -27,7 +28,7 @@ def source(scene: Description, program: Program) -> str:
     """NAME.c."""
     context = CRings(
         scene=scene,
-        tables=c_tables(program.tables, program.real),
+        tables=tables_text("rings/tables.h", c_tables(program.tables, program.real)),
         constants=c_constants(program.constants, program.real),
         numbers=kernel("real.h", scene),
         series=kernel("series.h", scene),

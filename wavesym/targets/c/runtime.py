@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
+from typing import Any
 
 from flint import fmpq, fmpq_mpoly
 
@@ -16,10 +17,15 @@ from wavesym.programs.runtime.products import products
 from wavesym.programs.runtime.units import Function, ParameterUnit
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel, kernels
+from wavesym.targets.c.memory import Memory
+from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_constants, c_literal, c_literals, c_tables
 
 _SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard", "events", "lanes", "groups")
+_SETS = {"peaks": "sets.c", "gradients": "sets_tangents.c", "misfit": "sets_batch.c", "bound": "sets_bounds.c"}
+_MOST_ON_STACK = 1 << 16
+"""Bytes of work that `build` puts there: more is kept in the model."""
 LIMITS = {"double": "DBL", "single": "FLT"}
 
 
@@ -36,44 +42,71 @@ class CRuntimeField:
 
 
 @dataclass(frozen=True)
-class CRuntimeHeader:
-    """templates/c/runtime/runtime.h.j2."""
+class RuntimeTexts:
+    """The plain C of a program, part by part; `kernel` is its march and what builds models of it."""
+
+    series: str
+    kernel: str
+    read: str
+    blocks: str
+    peaks: str
+    gradients: str
+    bound: str
+    lanes: str
+    batch: str
+    misfit: str
+
+
+@dataclass(frozen=True)
+class CRuntimeStructs:
+    """templates/c/runtime/structs.h.j2: `work` is in a model, `inside`, where it is too much for a stack."""
 
     scene: Description
-    fields: tuple[CRuntimeField, ...]
     sizes: tuple[tuple[str, str], ...]
+    fields: tuple[CRuntimeField, ...]
+    work: str
     model: str
-    batch: str
+    inside: bool
+    others: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class CRuntimeHeader:
+    """templates/c/runtime/runtime.h.j2: what there is besides values, and what takes how many bytes."""
+
+    scene: Description
+    parts: tuple[str, ...]
+    memory: tuple[tuple[str, str], ...]
+    stack: tuple[tuple[str, str], ...]
+    structs: str
 
 
 @dataclass(frozen=True)
 class CRuntime:
-    """templates/c/runtime/runtime.c.j2; `laws` are what is assigned, with the expression; every table as its lines.
+    """templates/c/runtime/runtime.c.j2; `laws` are what is assigned, with the expression.
 
     `products` are what is multiplied and added up on the way to them, `slope_products` to their derivatives. `slopes`
-    are these, by the number of a parameter; `load_lane` is that of the first load, -1 for none.
+    are these, by the number of a parameter; `load_lane` is that of the first load, -1 for none. Work is `inside` of
+    models where it is too much for a stack.
     """
 
     scene: Description
+    parts: tuple[str, ...]
+    inside: bool
     fields: tuple[CRuntimeField, ...]
     products: Lines
     laws: tuple[tuple[str, str], ...]
     slope_products: Lines
     slopes: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]
     load_lane: str
-    tables: dict[str, Lines]
+    tables: list[str]
     constants: dict[str, str]
     amplitudes: Lines
     largest: str
     least: str
     loads: str
-    series: str
     numbers: str
-    kernel: str
-    read: str
-    bound: str
-    batch: str
-    misfit: str
+    texts: RuntimeTexts
 
 
 @dataclass(frozen=True)
@@ -87,55 +120,134 @@ class CRuntimeSelfTest:
 
 def files(scene: Description, program: Program) -> dict[str, str]:
     """The files of a program, by name."""
-    laws = program.laws
-    assert laws is not None
-    fields = tuple(parameter_fields(laws, program.real))
-    constants = c_constants(program.constants, program.real)
-    own = not any(field.name == "load" for field in fields)
-    header = CRuntimeHeader(
-        scene=scene,
-        fields=fields,
-        sizes=tuple((name.upper(), constants[name]) for name in _SIZES),
-        model=kernel("runtime/model.h", scene),
-        batch=kernels(scene, "runtime/wide.h", "runtime/batch.h", "runtime/data.h"),
-    )
-    context = CRuntime(
-        scene=scene,
-        fields=fields,
-        products=multiplied(laws, laws.every, program.real),
-        laws=tuple(assigned(laws, laws.functions, program.real)),
-        slope_products=multiplied(laws, laws.every_slope, program.real),
-        slopes=tuple(slopes(laws, program.real)),
-        largest=f"{LIMITS[program.real.name]}_MAX",
-        least=f"{LIMITS[program.real.name]}_MIN",
-        load_lane=load_lane(laws),
-        tables=c_tables(program.tables, program.real),
-        constants=constants,
-        amplitudes=c_literals(laws.amplitudes, program.real) if own else (),
-        loads="amplitude" if own else "p->load",
+    texts = RuntimeTexts(
         series=kernel("runtime/series.c", scene),
-        numbers=kernel("real.h", scene),
         kernel=kernels(scene, "runtime/runtime.c", "runtime/builds.c"),
         read=kernel("runtime/read.c", scene),
+        blocks=kernel("runtime/blocks.c", scene),
+        peaks=kernel("runtime/peaks.c", scene),
+        gradients=kernels(scene, "runtime/slopes.c", "runtime/tangents.c"),
         bound=kernels(scene, "runtime/wrong.c", "runtime/bound.c", "runtime/bounds.c"),
-        batch=kernels(scene, "runtime/lanes.c", "runtime/batch.c", "runtime/batches.c"),
+        lanes=kernel("runtime/lanes.c", scene),
+        batch=kernels(scene, "runtime/batch.c", "runtime/strands.c", "runtime/batches.c"),
         misfit=kernel("runtime/misfit.c", scene),
     )
-    made = {
-        f"{scene.name}.h": render("c/runtime/runtime.h.j2", header),
-        f"{scene.name}.c": render("c/runtime/runtime.c.j2", context),
+    return written("runtime", program, _SIZES, CRuntime(**of_program(scene, program), texts=texts))
+
+
+def of_program(scene: Description, program: Program, march: str = "runtime") -> dict[str, Any]:
+    """The fields of `CRuntime` that are the same whatever marches."""
+    laws, real = program.laws, program.real
+    assert laws is not None
+    own = not any(field.name == "load" for field in laws.fields)
+    derived = "gradients" in program.parts
+    return {
+        "scene": scene,
+        "parts": program.parts,
+        "inside": False,
+        "fields": tuple(parameter_fields(laws, real)),
+        "products": multiplied(laws, laws.every, real),
+        "laws": tuple(assigned(laws, laws.functions, real)),
+        "slope_products": multiplied(laws, laws.every_slope, real) if derived else (),
+        "slopes": tuple(slopes(laws, real)) if derived else (),
+        "load_lane": load_lane(laws),
+        "tables": tables_text(f"{march}/tables.h", c_tables(program.tables, real)),
+        "constants": c_constants(program.constants, real),
+        "amplitudes": c_literals(laws.amplitudes, real) if own else (),
+        "largest": f"{LIMITS[real.name]}_MAX",
+        "least": f"{LIMITS[real.name]}_MIN",
+        "loads": "amplitude" if own else "p->load",
+        "numbers": kernels(scene, "real.h", "vectors.h"),
     }
+
+
+def written(march: str, program: Program, sizes: Sequence[str], context: CRuntime) -> dict[str, str]:
+    """NAME.h, NAME.c and NAME_selftest.c of a program; templates/c/`march` has what is its own."""
+    scene = context.scene
+    structs = CRuntimeStructs(
+        scene=scene,
+        sizes=tuple((name.upper(), context.constants[name]) for name in sizes),
+        fields=context.fields,
+        work=kernel(f"{march}/work.h", scene),
+        model=kernel("runtime/model.h", scene),
+        inside=False,
+        others=tuple(
+            kernels(scene, *files)
+            for part, files in (
+                ("gradients", (f"{march}/tangent.h",)),
+                ("batch", ("runtime/wide.h", f"{march}/batch.h")),
+                ("misfit", ("runtime/data.h",)),
+            )
+            if part in program.parts
+        ),
+    )
+    memory = Memory(scene.name, program.real.bytes, len(program.outputs))
+    memory.read(render("c/runtime/structs.h.j2", structs))
+    inside = memory.size(f"{scene.name}_work") > _MOST_ON_STACK
+    declared = render("c/runtime/structs.h.j2", replace(structs, inside=inside))
+    memory.read(declared)
+    source = render(f"c/{march}/{march}.c.j2", replace(context, inside=inside))
+    memory.read(source)
+    header = CRuntimeHeader(
+        scene=scene,
+        parts=program.parts,
+        memory=tuple(_kept(scene, program.parts, memory, inside)),
+        stack=tuple(_stacked(scene, program.parts, memory, inside, context.texts)),
+        structs=declared,
+    )
+    made = {f"{scene.name}.h": render("c/runtime/runtime.h.j2", header), f"{scene.name}.c": source}
     if isinstance(program.reference, ReferenceValues):
         made[f"{scene.name}_selftest.c"] = runtime_selftest(scene, program, program.reference)
     return made
 
 
+def _kept(scene: Description, parts: Sequence[str], memory: Memory, inside: bool) -> Iterator[tuple[str, str]]:
+    """The size of each struct, and what it is."""
+    where = "kept in a model: it is too much for a stack" if inside else "`build` has it on its stack"
+    for struct, part, told in (
+        ("model", "", "of each set of parameters that is kept"),
+        ("work", "", f"while one is built; {where}"),
+        ("tangent", "gradients", "with all that it needs while it is built"),
+        ("batch", "batch", "with all that it needs while it is built"),
+        ("data", "misfit", "and besides as many numbers as data_size says"),
+    ):
+        if not part or part in parts:
+            yield str(memory.size(f"{scene.name}_{struct}")), f"{scene.name}_{struct}, {told}"
+
+
+def _stacked(
+    scene: Description, parts: Sequence[str], memory: Memory, inside: bool, texts: RuntimeTexts
+) -> Iterator[tuple[str, str]]:
+    """What functions need of a stack, at most."""
+    building = memory.stack(texts.series, texts.kernel)
+    work = 0 if inside else memory.size(f"{scene.name}_work")
+    yield str(building + work), "build"
+    yield str(building), "build_with"
+    yield str(memory.stack(texts.read)), "error_estimate, model_eval, model_sample"
+    if "peaks" in parts:
+        yield str(memory.stack(texts.read, texts.blocks, texts.peaks)), "model_peaks"
+    if "gradients" in parts:
+        yield str(building + memory.stack(texts.read, texts.gradients)), "functions of a tangent"
+    if "batch" in parts:
+        misfit = (texts.misfit,) if "misfit" in parts else ()
+        told = "functions of a batch and of data" if misfit else "functions of a batch"
+        yield str(building + memory.stack(texts.lanes, texts.batch, *misfit, num="wide")), told
+    if "bound" in parts:
+        bounded = building + memory.stack(texts.read, texts.blocks, texts.bound)
+        yield str(bounded + work), "error_bound"
+        yield str(bounded), "error_bound_with"
+
+
 def sets(scene: Description, program: Program) -> dict[str, str]:
     """The files, with what runs many sets of parameters in NAME.c."""
-    made = files(scene, program)
+    return with_sets(scene, program, files(scene, program))
+
+
+def with_sets(scene: Description, program: Program, made: Mapping[str, str]) -> dict[str, str]:
+    """The files of a program, and what of each part runs many sets of parameters; peaks are those of batches, too."""
     name = f"{scene.name}.c"
-    more = kernels(scene, "runtime/peaks.c", "runtime/sets.c", "runtime/sets_batch.c", "runtime/sets_bounds.c")
-    return made | {name: f"{made[name]}\n{more}\n"}
+    more = kernels(scene, *(f"runtime/{file}" for part, file in _SETS.items() if part in program.parts))
+    return {**made, name: f"{made[name]}\n{more}\n"}
 
 
 def runtime_selftest(scene: Description, program: Program, reference: ReferenceValues) -> str:

@@ -10,6 +10,7 @@ from wavesym.programs.program import Program, SteppedValues
 from wavesym.rendering import render
 from wavesym.targets.c.kernel import kernel
 from wavesym.targets.c.runtime import LIMITS, CRuntimeField, assigned, multiplied, parameter_fields
+from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description, constants
 from wavesym.targets.literals import Lines, c_constants, c_literals, c_tables
 
@@ -18,14 +19,14 @@ _ALLOWED = 10  # times the error bound
 
 @dataclass(frozen=True)
 class CStream:
-    """templates/c/stream/stream.c.j2; every table as the lines between its braces.
+    """templates/c/stream/stream.c.j2.
 
     Of parameters that come at run time `fields` are told, `laws` are what is assigned, with the expression, to `arrays`
     of so many numbers each; else these are empty.
     """
 
     scene: Description
-    tables: dict[str, Lines]
+    tables: list[str]
     constants: dict[str, str]
     numbers: str
     series: str
@@ -71,7 +72,7 @@ def source(scene: Description, program: Program) -> str:
     laws = program.laws
     context = CStream(
         scene=scene,
-        tables=c_tables(program.tables, program.real),
+        tables=tables_text("stream/tables.h", c_tables(program.tables, program.real)),
         constants=c_constants(program.constants, program.real),
         numbers=kernel("real.h", scene),
         series=kernel("series.h", scene),
@@ -117,7 +118,9 @@ def _arrays(program: Program) -> tuple[tuple[str, str], ...]:
     if not program.laws:
         return ()
     made = {name: len(functions) for name, functions in program.laws.functions.items()}
+    tracks = program.constants["tracks"]
     more = {"matrix": program.constants["answers"], "slip": program.constants["slips"]}
+    more |= {"root_impedance": tracks, "state_gain": tracks}
     return tuple((name, str(count)) for name, count in (made | more).items())
 
 

@@ -18,16 +18,15 @@ from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.request import Request
 from wavesym.programs.rings.plan import RingPlan
 from wavesym.programs.rings.space import JointRows
-from wavesym.programs.runtime.degree import LARGEST_MODEL, LEAST, MARGIN
+from wavesym.programs.runtime.degree import LEAST, MARGIN, lightest, refuse_huge
 from wavesym.programs.runtime.joints.network import free_network
 from wavesym.programs.runtime.joints.plan import JointsPlan, joints_plan
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.pushes import as_one
+from wavesym.programs.runtime.readings import reading_tables
 from wavesym.programs.runtime.roundings import most_roundings
 from wavesym.programs.runtime.units import Function
 
-_LIGHT = 100.0
-"""Bodies whose rates are so large are followed, too."""
 _MOST_STATES = 8
 _MOST_WINDOWS = 20_000
 
@@ -41,13 +40,10 @@ def joints_program(
     loads = [load for _, load in amplitudes] if chosen else as_one(model)
     made = joints_plan(model, free, loads, real)
     _refuse_large(made)
-    least, degree = _degrees(made.own)
-    size = real.bytes * made.plan.windows * len(made.strands) * (degree + 2)
-    if size > LARGEST_MODEL:
-        raise CostError(
-            f"output.until: a model of {size:.1e} bytes would be kept to tau = {made.plan.tau_max:g}, at most "
-            f"{LARGEST_MODEL:.1e} expected (a shorter horizon, or fewer outputs, helps)"
-        )
+    fastest = _fastest(made.own)
+    kappa_max = lightest(free.fields, request.kappa_max, fastest)
+    least, degree = _degrees(made.own, fastest, kappa_max)
+    refuse_huge(made.plan.windows, made.plan.tau_max, len(made.strands), degree, real)
     share = max(nearest(tolerance / (MARGIN * made.plan.windows)), 2 * nearest(real.roundoff))
     laws = _laws(made, () if chosen else (1.0,) * len(loads))
     tables = _tables(made, laws, real)
@@ -57,11 +53,13 @@ def joints_program(
         "roundings": most_roundings(laws.functions, positive),
         "degree": degree,
         "least": least,
+        **({} if kappa_max is None else {"kappa_max": real.nearest(kappa_max)}),
         "share": share,
     }
+    light = "" if kappa_max is None else f", for rates up to {nearest(max(fastest, kappa_max)):g}"
     reason = (
         f"march with {', '.join(request.runtime)} at run time, degrees from {least} to {degree} on steps of "
-        f"{made.plan.step}; errors are estimated"
+        f"{made.plan.step}{light}; errors are estimated"
     )
     return Program(
         "joints",
@@ -74,6 +72,7 @@ def joints_program(
         Provenance(model, reason, request.options),
         proved=False,
         laws=laws,
+        parts=request.every_part,
     )
 
 
@@ -91,22 +90,26 @@ def _refuse_large(made: JointsPlan) -> None:
         )
 
 
-def _degrees(own: RingPlan) -> tuple[int, int]:
-    """About the degree to begin with, and one that is enough for light bodies, too.
+def _fastest(own: RingPlan) -> fmpq:
+    """The largest rate at which a joint answers a wave: of a mass, impedances and dashpots beside it over it."""
+    return max((-j.space.rates[n, n] for j in own.joints for n in range(j.space.states)), default=fmpq(0))
+
+
+def _degrees(own: RingPlan, fastest: fmpq, kappa_max: fmpq | None) -> tuple[int, int]:
+    """About the degree to begin with, and one that is enough for rates up to `kappa_max`, too.
 
     A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved. A
     stiff spring adds those of a body on it.
     """
     longest = max(nearest(panel.length) for panel in own.panels)
-    rates = [-nearest(j.space.rates[n, n]) for j in own.joints for n in range(j.space.states)]
-    fastest = max((rate for rate in rates if rate > 0), default=0.0)
     turning = max(joint.space.turning for joint in own.joints)
 
-    def detail(rate: float) -> float:
-        return sqrt(2 * rate * longest * own.crossings) + rate * longest / 8 + 2 * turning * longest
+    def detail(rate: fmpq) -> float:
+        along = nearest(rate) * longest
+        return sqrt(2 * along * own.crossings) + along / 8 + 2 * turning * longest
 
     first = max(LEAST, ceil(detail(fastest) / 2))
-    return first, max(ceil(1.5 * detail(max(fastest, _LIGHT))) + 24, first)
+    return first, max(ceil(1.5 * detail(max(fastest, kappa_max or fastest))) + 24, first)
 
 
 def _laws(made: JointsPlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:
@@ -174,7 +177,8 @@ def _tables(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[
     strengths = _strengths(made)
     terms = [term for strand in made.strands for term in strand.terms]
     sections, outputs = len(made.sections) - 1, len(plan.outputs)
-    listening = [made.listening(section, output) for section in range(sections) for output in range(outputs)]
+    heard = [[made.listening(section, output) for output in range(outputs)] for section in range(sections)]
+    listening = [strands for section in heard for strands in section]
     windows = [plan.step * phase for phase in range(plan.cycle[0])]
     starts = [begin + strand.start for begin in windows for strand in made.strands]
 
@@ -212,6 +216,7 @@ def _tables(made: JointsPlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[
         ),
         "first_strand": firsts(map(len, listening)),
         "strand_at": tuple(strand for group in listening for strand in group),
+        **reading_tables(made.strands, heard),
         "strand_start": reals(starts),
         "strand_excess": reals(rational(real.nearest(start)) - start for start in starts),
         "strand_scale": reals(1 / strand.half for strand in made.strands),

@@ -13,8 +13,9 @@ from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.ratio import Ring
+from wavesym.programs.request import refuse_others
 from wavesym.programs.runtime.quiet import drawn
-from wavesym.programs.runtime.request import RuntimeField, field_of, refuse_others
+from wavesym.programs.runtime.request import RuntimeField, field_of
 from wavesym.programs.runtime.units import unit_of, unit_of_load
 
 Numbers = dict[tuple[str, int], fmpq]
@@ -44,7 +45,7 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
             raise UnservedError(f"--runtime: the end at {point.place} moves at tau = 0, one at rest expected")
     there = {name: numbers for name, of in _KINDS.items() if (numbers := dict(of(network)))}
     known = [*there, *(["load"] if amplitudes or model.loads else [])]
-    refuse_others(names, known)
+    refuse_others("--runtime", names, known)
     fields: list[RuntimeField] = []
     symbols: dict[tuple[str, str, int], tuple[str, fmpq]] = {}
     for name in there:

@@ -101,13 +101,13 @@ def _pushes(plan: RingPlan, model: Model, acting: Sequence[Sequence[Applied]], s
 
 
 def _strands(plan: RingPlan, heard: Sequence[tuple[int, Heard]]) -> Iterator[JointStrand]:
-    groups: dict[tuple[int, fmpq, fmpq], list[JointTerm]] = {}
+    groups: dict[tuple[fmpq, fmpq, int], list[JointTerm]] = {}
     for number, (output, wave) in enumerate(heard):
         for stretch in plan.stretches(wave.delay):
             half = plan.panels[stretch.panel].length / 2
             low = max(-stretch.start / half - 1, fmpq(-1))
             high = min((plan.step - stretch.start) / half - 1, fmpq(1))
-            groups.setdefault((output, stretch.start, half), []).append(JointTerm(number, wave, stretch, low, high))
-    # in the order of time, so that integrals go on from stretch to stretch
-    for (output, start, half), terms in sorted(groups.items(), key=lambda group: group[0]):
+            groups.setdefault((stretch.start, half, output), []).append(JointTerm(number, wave, stretch, low, high))
+    # in the order of time, so that integrals go on from stretch to stretch; what is read at the same instants together
+    for (start, half, output), terms in sorted(groups.items(), key=lambda group: group[0]):
         yield JointStrand(output, start, half, tuple(terms))
