@@ -68,7 +68,7 @@ test: .venv/.test
 lint: .venv/.lint
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/mypy --strict wavesym
+	$(BIN)/mypy --strict wavesym tools
 
 # what is kept in generated/, written anew; the tests compare it with what would be made now
 generated: install
@@ -91,25 +91,25 @@ check-all: lint .venv/.test .venv/.check
 # speed, as ratios within one run, and the charts of the same scenes
 bench: export OMP_NUM_THREADS := 1
 bench: install
-	$(BIN)/python -m wavesym.lab.bench bench
+	$(BIN)/python -m tools.bench bench
 	@set -e; for scene in b d c l r; do \
 		$(BIN)/wavesym chart bench/$$scene.toml -o bench/$$scene.svg --csv bench/$$scene.csv; \
 	done
 
 # what a prover, a checker of rules and other machines say of generated C, into its tables; skipped where they are not
 prove: install
-	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
+	@$(TOLD) $(BIN)/python -m tools.portable $@ docs/portability.md
 
 misra: install
-	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
+	@$(TOLD) $(BIN)/python -m tools.portable $@ docs/portability.md
 
 targets: .venv/.check
-	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md
+	@$(TOLD) $(BIN)/python -m tools.portable $@ docs/portability.md
 
 # generated C under a fuzzer and sanitizers, so many seconds each program, two at a time; skipped where there is none
 SECONDS ?= 10
 fuzz: install
-	@$(TOLD) $(BIN)/python -m wavesym.lab.portable $@ docs/portability.md $(abspath tests/fuzz) $(SECONDS)
+	@$(TOLD) $(BIN)/python -m tools.portable $@ docs/portability.md $(SECONDS)
 
 # which mistakes in the proofs of the bounds the tests would miss: 300 of them, within 45 minutes on 2 cores
 mutants: .venv/.test

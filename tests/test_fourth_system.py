@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
+from itertools import chain
 
 import numpy as np
 import pytest
@@ -14,10 +16,14 @@ from tests.support.generated import files
 from wavesym import compiler
 from wavesym.errors import WavesymError
 from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.network import Bar, Point
+from wavesym.numbers.doubles import rational
 from wavesym.running.compiled import compiled, imported
 from wavesym.scene import Scene, lower
 from wavesym.systems import SYSTEMS
 from wavesym.verification.characteristics import integrate
+from wavesym.verification.graph import graph
+from wavesym.verification.independent import READERS, Sketch
 
 FIELDS = {
     "name": "tower",
@@ -27,9 +33,20 @@ FIELDS = {
 }
 
 
+def braced(system: Braced) -> Sketch:
+    """What integrators read of it: a building on moving ground whose last floor has a dashpot."""
+    points = [Point(1 / rational(kappa)) for kappa in system.kappa[1:]]
+    points[-1] = replace(points[-1], damping=rational(system.dashpot[0]) / rational(system.kappa[-1]))
+    rods = [(Bar(0, 0, fmpq(1), fmpq(1), fmpq(1)),)] * len(points)
+    sketch = Sketch()
+    sketch.line("", [Point(fmpq(0), motion="acceleration"), *chain.from_iterable(zip(rods, points, strict=True))])
+    return sketch
+
+
 @pytest.fixture(autouse=True)
 def fourth(monkeypatch):
     monkeypatch.setitem(SYSTEMS, "braced", Braced)
+    monkeypatch.setitem(READERS, "braced", braced)
 
 
 def scene() -> Scene:
@@ -53,7 +70,7 @@ def test_its_programs_are_those_of_an_integrator_that_is_not_derived(kind):
     made = files(model, "all", kind)
     taus = [0.0, 0.3, 1.1, 2.0, 2.6, 3.7, 5.2, 6.9, 7.0]
     found = imported(made["tower.py"], "tower").evaluate(np.array(taus))
-    motion = integrate(model.chain, model.loads, 7.0, 128)
+    motion = integrate(graph(model), 7.0, 128)
     for probe, values in zip(model.probes, found, strict=True):
         truth = motion.at(probe, taus)
         assert np.max(np.abs(values - truth)) < 1e-6 * np.max(np.abs(truth))
@@ -65,14 +82,17 @@ def test_without_its_dashpot_the_integrator_sees_it():
     model = lower(scene())
     free = lower(scene().with_({"system.dashpot[0]": "1e-9"}))
     values = [wavesym.evaluator(each)(6.9)[2] for each in (scene(), scene().with_({"system.dashpot[0]": "1e-9"}))]
-    truth = [integrate(each.chain, each.loads, 7.0, 64).at(each.probes[2], [6.9])[0] for each in (model, free)]
+    truth = [integrate(graph(each), 7.0, 64).at(each.probes[2], [6.9])[0] for each in (model, free)]
     assert abs(values[0] - values[1]) > 0.05
     assert np.allclose(values, truth, rtol=1e-5)
 
 
-def test_it_is_verified():
-    text, passed = compiler.verify([scene()])
+def test_it_is_verified(monkeypatch):
+    text, passed = compiler.verify([scene()], "pieces")
     assert passed, text
+    monkeypatch.setitem(READERS, "braced", lambda system: braced(system.model_copy(update={"dashpot": [1]})))
+    text, passed = compiler.verify([scene()], "pieces")
+    assert not passed
 
 
 def test_it_is_derived_with_its_dashpot():

@@ -8,7 +8,8 @@
     model       its outputs for many sets of parameters: values, gradients, extremes
     generate    its C and NumPy programs, written to files
 
-A request that cannot be carried out raises a WavesymError: SceneError, ToleranceError, CostError or RangeError.
+A request that cannot be carried out raises a WavesymError: SceneError, ToleranceError, CostError, UnservedError or
+RangeError.
 
     >>> import wavesym
     >>> scene = wavesym.Scene.from_toml("building_m2")  # built in; or a path, or wavesym.Scene(...)
@@ -24,7 +25,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from wavesym.compiler import evaluator, generate, model, peaks, summary, sweep, tables
-    from wavesym.errors import CostError, RangeError, SceneError, ToleranceError, WavesymError
+    from wavesym.errors import CostError, RangeError, SceneError, ToleranceError, UnservedError, WavesymError
     from wavesym.scene import Scene
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "ToleranceError",
+    "UnservedError",
     "WavesymError",
     "__version__",
     "evaluator",
@@ -52,6 +54,7 @@ _HOMES = {
     "RangeError": "wavesym.errors",
     "SceneError": "wavesym.errors",
     "ToleranceError": "wavesym.errors",
+    "UnservedError": "wavesym.errors",
     "WavesymError": "wavesym.errors",
     "evaluator": "wavesym.compiler",
     "generate": "wavesym.compiler",

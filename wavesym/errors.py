@@ -14,6 +14,11 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f'Did you mean "{near[0]}"?' if near else ""
 
 
+def printable(text: str) -> str:
+    """A text on one line, its line breaks, escape sequences and bytes that are no text written out."""
+    return "".join(each if each.isprintable() else ascii(each)[1:-1] for each in text)
+
+
 class WavesymError(ValueError):
     """A request that cannot be carried out; `str()` is one line that says why. All errors of wavesym are of this kind.
 
@@ -51,8 +56,7 @@ class SceneError(WavesymError):
 
     def __str__(self) -> str:
         # a file's name may hold line breaks, and bytes that are no text
-        file = self.file if self.file.isprintable() else ascii(self.file)
-        return ": ".join(part for part in (file, self.path, self.what) if part)
+        return ": ".join(part for part in (printable(self.file), self.path, self.what) if part)
 
 
 class CostError(WavesymError):
@@ -69,8 +73,17 @@ shorter horizon helps)
     """
 
 
-class UnservedError(CostError):
-    """What one method does not do for a kind of scene, whatever the cost; others may. The message says which do."""
+class UnservedError(WavesymError):
+    """What one method does not do for a kind of scene, whatever the cost; others may. The message says which do.
+
+    >>> import wavesym
+    >>> try:
+    ...     wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "out", evaluator="modes")
+    ... except wavesym.UnservedError as error:
+    ...     print(error)
+    load: M1 jumps by 1 at tau = 0, no jump expected in modes (a steep ramp in place of a step helps, or `start`, one \
+spacing, of a record)
+    """
 
 
 class SpacingError(CostError):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import sys
 from os import PathLike
 
@@ -42,8 +43,14 @@ def read_text(path: str | PathLike[str], expected: str) -> tuple[str, str]:
 
 
 def _limited(path: str) -> bytes:
-    """The file's bytes, or one more than the limit: a device or a pipe need not end."""
+    """The file's bytes, or one more than the limit: a device or a pipe need not end.
+
+    What a kernel makes while it is read (/proc/kmsg) may never come, and says that it holds nothing: so it is not read.
+    """
     if path != "-":
+        held = os.stat(path)
+        if stat.S_ISREG(held.st_mode) and held.st_size == 0:
+            return b""
         with open(path, "rb") as stream:
             return stream.read(LARGEST_FILE + 1)
     if sys.stdin is None:

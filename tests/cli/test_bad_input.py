@@ -34,7 +34,8 @@ Request = Callable[[random.Random], list[str]]
 # what names a key, an option, or says that there is no scene at all
 NAMED = re.compile(
     r'bad\.toml: (?:(?:[\w.-]|\[\d+\]|"[^\n]*(?:"|\.\.\.))+: '
-    r"|no TOML, |empty, |byte \d+ is not UTF-8, |larger than |tables or lists too deep|an integer of more than )"
+    r"|no TOML, |empty, |byte \d+ is not UTF-8, |larger than |tables or lists too deep"
+    r"|an integer of more than |more than |line \d+: )"
 )
 
 
@@ -390,7 +391,7 @@ def test_verify_names_the_file_of_the_scene_it_refuses(tmp_path: Path, monkeypat
     Path("good.toml").write_text(drive(until="1"))
     Path("bad.toml").write_text(drive(until="1").replace("bad", "other"))
 
-    def checked(scenes: Iterator[Scene]) -> None:
+    def checked(scenes: Iterator[Scene], *_: object, **__: object) -> None:
         for scene in scenes:
             if scene.name == "other":
                 raise CostError("output.until: too far")

@@ -50,7 +50,7 @@ class Compiler(SimpleNamespace):
     def warnings(self, scene: object) -> list[str]:
         return ["a contact opens"]
 
-    def no_load(self, scene: object) -> list[str]:
+    def notes(self, scene: object) -> list[str]:
         return []
 
     def run(self, scene: object, samples: int, at: list[float] | None, tell: Callable[[str], object]) -> list[str]:
@@ -98,8 +98,10 @@ class Compiler(SimpleNamespace):
         self.asked.append(path)
         return ["1 of 2 outputs is drawn"]
 
-    def verify(self, scenes: list[wavesym.Scene]) -> tuple[str, bool]:
+    def verify(self, scenes: list[wavesym.Scene], *options: object, stream: bool) -> tuple[str, bool]:
         self.asked.append([scene.name for scene in scenes])
+        if any(options) or stream:
+            self.asked.append((*options, stream))
         return "errors", self.allowed
 
 
@@ -243,6 +245,9 @@ def test_verify(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", "mine.toml"]) == 1
     assert compiler.asked == [list(builtin_names()), ["mine", "drive_m1"], ["mine"]]
     assert capsys.readouterr() == ("errors\n" * 3, "")
+    order = ["verify", "mine.toml", "--evaluator", "march", "--precision", "single", "--runtime", "kappa", "--stream"]
+    assert main(order) == 1
+    assert compiler.asked[-2:] == [["mine"], ("march", "single", "kappa", True)]
 
 
 def test_run_puts_values_out_and_warnings_aside(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> None:

@@ -25,7 +25,7 @@ from wavesym.documents.inspection.document import inspection
 from wavesym.documents.inspection.section import Facts, Listing, Told
 from wavesym.documents.inspection.text import MOST_ROWS, section_lines
 from wavesym.errors import CostError, ToleranceError, WavesymError
-from wavesym.exact.contacts.collision import contact_ends
+from wavesym.exact.contacts.opening import contact_ends
 from wavesym.exact.motion import Motion
 from wavesym.programs import choice
 from wavesym.programs.choice import choose
@@ -431,7 +431,7 @@ def test_a_stream_is_told_as_it_would_be_made(name: str, tmp_path: Path) -> None
     manifest = json.loads((tmp_path / f"{name}.json").read_text())
     assert f"_DEGREE = {said['degree']}," in header
     assert f"costs at most {said['panel_work']} multiplications" in header
-    assert f"within a panel about {said['step_work']}," in header
+    assert f"a step about {said['step_work']}," in header
     slots = int(re.findall(r"_SLOTS = (\d+)", header)[0])
     assert said["state_bytes"] == 8 * slots * (said["degree"] + 1)
     assert (said["panel"], said["inputs"], said["direct"]) == tuple(

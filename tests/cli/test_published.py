@@ -115,7 +115,7 @@ def test_only_what_could_not_be_tested_fails(
 def test_scenes_are_verified_as_ever(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     asked: list[str] = []
 
-    def verify(scenes: list[Scene]) -> tuple[str, bool]:
+    def verify(scenes: list[Scene], *_: object, **__: object) -> tuple[str, bool]:
         asked.extend(scene.name for scene in scenes)
         return "errors", True
 

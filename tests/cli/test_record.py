@@ -64,7 +64,7 @@ def test_it_is_drawn_with_its_peak(tmp_path, capsys, suffix):
         (["a.txt", "--unit", "m/s^2"], "a.txt: --unit m/s^2 given, g expected, as in the file, or none"),
         (["a.txt", "--column", "x"], "a.txt: column given, none expected"),
         (["none.at2"], "none.at2: No such file or directory, a file of AT2 or CSV expected"),
-        (["bad.csv"], "bad.csv: line 4: NaN given, a decimal expected (accel_g)"),
+        (["bad.csv"], "bad.csv: line 4: column 2 (accel_g) is no decimal"),
         (["a.txt", "-o", "a.doc"], "a.doc: no picture"),
         (["a.txt", "-o", "a.txt"], "wavesym record: -o: a.txt is the record itself, another file expected"),
         (["uneven.csv"], "uneven.csv: line 5: the time 0.05 given, 0.04 expected"),

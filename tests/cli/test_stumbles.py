@@ -213,3 +213,15 @@ def test_a_package_is_checked_with_all_its_files(tmp_path: Path, capsys: pytest.
     cmake.unlink()
     assert main([*asked, "--check"]) == 1
     assert capsys.readouterr().out.startswith(f"missing: {cmake}\n")
+
+
+def test_names_of_files_are_no_commands_to_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    """In what is refused, and in what is said of a record."""
+    name = "a\x1b[2J\x07.csv"
+    Path(name).write_text("t,a\n0,0\n1,2\n2,0\n")
+    for command in (["run", name], ["record", name], ["record", "none-" + name], ["sweep", name, "--status"]):
+        main(command)
+        told = capsys.readouterr()
+        lines = (told.out + told.err).splitlines()
+        assert all(line.isprintable() for line in lines), command
+        assert "a\\x1b[2J\\x07.csv" in lines[0]

@@ -13,7 +13,7 @@ from wavesym.errors import RangeError
 from wavesym.exact import reference
 from wavesym.exact.reference import Reference
 from wavesym.exact.tables import ball as room
-from wavesym.exact.tables.ball import Balls, Segment, largest, segments, values
+from wavesym.exact.tables.ball import Balls, Segment, largest, segments, shifted, values
 from wavesym.exact.tables.signal import Arrival, Signal
 from wavesym.numbers.balls import precise
 from wavesym.scene import lower
@@ -38,7 +38,8 @@ def test_a_segment_is_the_sum_of_its_families():
         exact = 1 + 2 * x + 3 * x * (-2 * x).exp() - 5 * (-x / 2).exp()
         assert segment.at(u).overlaps(exact)
         assert segment.at(u).rad() < fmpq(1, 2**110)
-        later = Segment(fmpq(4), segment.shifted(fmpq(1)))
+        families = shifted(segment.families, segment.families.values(), fmpq(1))
+        later = Segment(fmpq(4), dict(zip(segment.families, families, strict=True)))
         assert later.at(u).overlaps(segment.at(u + 1))
         assert later.at(u).rad() < fmpq(1, 2**110)
 

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
@@ -14,8 +15,8 @@ import wavesym
 from tests.support.drawn import systems
 from tests.support.truth import Truth
 from wavesym.errors import CostError
-from wavesym.exact.contacts import collision as room
-from wavesym.exact.contacts.collision import contact_ends
+from wavesym.exact.contacts import schedule
+from wavesym.exact.contacts.opening import contact_ends
 from wavesym.numbers.doubles import fraction, middle, rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 from wavesym.scene import lower
@@ -66,18 +67,24 @@ def test_rates_that_nearly_meet_move_the_end_no_further_than_they_differ():
     assert 0 < abs(near.double - equal.double) < 1e-7
 
 
-def test_a_search_that_does_not_end_is_refused(monkeypatch):
+def undecided(search):
+    raise schedule._Undecided(0, True, fmpq(1))
+
+
+def test_a_contact_of_which_no_number_of_bits_tells_is_refused(monkeypatch):
     model = lower(wavesym.Scene.from_toml("collision_m4"))
-    assert room.contact_ends(model)
-    monkeypatch.setattr(room, "_first_return", lambda strain, until, bits: None)  # no precision tells
-    with pytest.raises(CostError, match=r"output.until: to know when the contact at x = 2 opens, more than"):
-        room.contact_ends(model)
+    assert contact_ends(model)
+    schedule.first_opening.cache_clear()
+    monkeypatch.setattr(schedule._Search, "opening", undecided)
+    with pytest.raises(schedule.GrazingError, match=r"contact at 2: its force is 0 at tau = 1 and 896 bits do not"):
+        contact_ends(model)
 
 
-def test_a_contact_whose_table_would_be_large_is_refused(monkeypatch):
-    monkeypatch.setattr(room, "_MOST_COEFFICIENTS", 10)
-    with pytest.raises(CostError, match="coefficients"):
-        room.contact_ends(lower(wavesym.Scene.from_toml("collision_m4")))
+def test_a_search_that_would_take_long_is_refused(monkeypatch):
+    schedule.first_opening.cache_clear()
+    monkeypatch.setattr(schedule, "MOST_MOVES", 10)
+    with pytest.raises(CostError, match=r"contacts are looked for 4.4e.01 times, at most 10 expected"):
+        contact_ends(lower(wavesym.Scene.from_toml("collision_m4")))
 
 
 def seen(scene, x, tau, reach):
@@ -132,9 +139,7 @@ def test_balls_that_tell_nothing_are_no_ends():
 
 @pytest.mark.parametrize("until", [50, 17])
 def test_heavy_bodies_part_late(until):
-    """What is looked at first is shorter than that."""
     scene = collision(["1/60", "1/40"], [1, 0], until)
-    assert room._FIRST < 17
     assert seen(scene, 2, ends(scene).get(2, math.inf), Fraction(until))
     assert bool(ends(scene)) == (until == 50)
 

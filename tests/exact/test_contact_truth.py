@@ -67,6 +67,30 @@ def test_contacts_open_and_close_as_they_should(seed: int) -> None:
     assert wrong(seeded(seed)) == []
 
 
+# a cushion without mass lifts off: from the ground, a ram, a rod, what is moved, with loads on it, and on the right
+CUSHION = {"spring": 4, "dashpot": "1/4"}
+ROD, BAR = {"rod": 1, "velocity": -1}, {"rod": 1, "impedance": 2}
+CAP = {"joint": True, "name": "cap", **CUSHION}
+LIFTED = {
+    "ground": [CAP, "contact", ROD, BAR],
+    "ram": [{"mass": 1, "velocity": 1}, CUSHION, "contact", {**ROD, "velocity": 0}, BAR, "fixed"],
+    "rod": [{"rod": 1, "velocity": 1}, {"spring": 4, "dashpot": "1/20"}, {"contact": "1e-9"}, BAR, "fixed"],
+    "motion": [{"motion": "velocity", "velocity": "1/3", "name": "cap"}, CUSHION, {"contact": "1/4"}, ROD, BAR],
+    "right": ["fixed", BAR, {"rod": 1, "velocity": 1}, "contact", CUSHION, {"mass": 2, "name": "cap", "velocity": 0}],
+}
+
+
+@pytest.mark.parametrize("where", LIFTED)
+def test_a_cushion_without_mass_lifts_off_as_it_should(where: str) -> None:
+    parts = LIFTED[where]
+    named = [part["name"] for part in parts if isinstance(part, dict) and "name" in part]
+    load = [{"at": "cap", "times": [0, "1.1"], "steps": ["1/2", "-1/5"]}] if where in ("ground", "right") else []
+    output = {"until": 5, "strain": ["1/2", "3/2"], "velocity": ["1/3", *named], "displacement": ["4/3", *named]}
+    table = {"name": where, "system": {"type": "chain", "parts": parts}, "load": load, "output": output}
+    assert wrong(table) == []
+    assert any(event.kind == "opens" for event in events(lower(Scene(**table))))
+
+
 def judged(table: Mapping[str, Any]) -> list[str]:
     """The same, where it can be decided and costs little."""
     try:

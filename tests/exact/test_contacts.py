@@ -273,9 +273,38 @@ def test_energy_is_lost_where_a_body_strikes_only_at_fronts_and_never_grows():
 
 def test_bouncing_ever_faster_ends_with_the_count(monkeypatch):
     """A body that is pressed on a bar comes back sooner each time, and fronts of all bounces go on for ever."""
-    monkeypatch.setattr(room, "MOST_SERIES", 100)
-    with pytest.raises(CostError, match=r"openings and closings of contacts make more than 100 stretches by tau = "):
+    monkeypatch.setattr(room, "MOST_SERIES", 90)
+    with pytest.raises(CostError, match=r"openings and closings of contacts make more than 90 stretches by tau = "):
         events(line([body(1, velocity=1, force=3), contact("1/10"), rod(), FIXED], 400))
+
+
+def test_what_swings_too_fast_is_foretold(monkeypatch):
+    """A cap with hardly any mass on a spring: each stretch bears exp(12) of its rate, which is impedance over mass."""
+    monkeypatch.setattr(room, "_FORETOLD", 32)
+    parts = [body("1e-6", stiffness=4, damping="1/4"), contact(), rod(velocity=-1), rod(1, 2)]
+    with pytest.raises(CostError, match=r"at a rate of 1.25e\+06, .* make 32 stretches .* would be 8.* by tau = 8, at"):
+        events(line(parts, 8))
+    # without mass there is no such rate, and a heavier one is served
+    assert events(line([body(0, stiffness=4, damping="1/4"), *parts[1:]], 3))
+    assert events(line([body("1e-2", stiffness=4, damping="1/4"), *parts[1:]], 3))
+
+
+def test_waves_that_contacts_were_found_with_are_those_of_the_chain_moved_anew():
+    model = line([body(1, velocity=1, force="1/2"), contact("1/10"), rod(), rod("1/2", 2), FIXED], 6)
+    last = tuple(model.reached(model.until).items())
+    known = room.schedule(model.network, model.loads, last)
+    assert known.found
+    with ctx.workprec(2 * known.bits):
+        anew = room.replayed(model.network, known.stages, known.ends, model.loads)
+    for bits in (64, 256):
+        kept = room.waves(model.network, model.loads, known, bits)
+        for end, wave in kept.sent.items():
+            until = known.ends[model.network.joint_of[model.network.point_at(end)]]
+            for tau in (until * k / 60 for k in range(60)):
+                (one, since), (other, after) = wave.at(tau), anew.sent[end].at(tau)
+                with ctx.workprec(bits):
+                    assert one.at(since).overlaps(other.at(after))
+                    assert one.at(since).rad() < arb(2) ** (20 - bits)
 
 
 def test_light_cones_take_a_contact_for_closed():

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from contextlib import suppress
 from fractions import Fraction
+from itertools import pairwise
 from math import atan2, cos, exp, inf, nextafter, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from flint import arb, fmpq
+from flint import arb, ctx, fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -17,7 +18,10 @@ from tests.support.chains import chains
 from tests.support.scenes import scenes
 from wavesym.errors import CostError, WavesymError
 from wavesym.exact import extremes as module
+from wavesym.exact.contacts.events import events
 from wavesym.exact.extremes import NOTHING, TrueExtreme, extremes
+from wavesym.exact.motion import Motion
+from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 
 GUN = [{"motion": "velocity", "name": "gun"}, {"rod": 4}, "absorbing"]
@@ -201,6 +205,23 @@ def test_what_ends_where_a_contact_opens():
     assert least == near(-2 - exp(-2), 2)
 
 
+def test_only_what_is_vague_is_left_out(monkeypatch):
+    """A hammer that rebounds and strikes again, at instants that are no rationals: on short stretches."""
+    model = lower(chain([{"mass": "7/2", "velocity": 1}, "contact", {"rod": 1}, "fixed"], 8, strain=["0+"]))
+    motion = Motion(model, rational(model.horizon()))
+    segments = motion.segments(model.probes[0], motion.first_bits)
+    vague = [(low, high) for low, high in pairwise(segments) if low.vague]
+    assert vague
+    assert float(vague[0][0].start) == pytest.approx(events(model)[0].double, rel=1e-15)
+    assert all(high.start - low.start < fmpq(1, 2**230) for low, high in vague)
+    assert not segments[-1].vague
+    right = extremes(model)
+    monkeypatch.setattr(Motion, "_vague", lambda self, starts: [False] * len(starts))
+    with pytest.raises(CostError, match="bits would be needed"):
+        extremes(model)
+    assert right[0][1] == near(0, events(model)[0].double)
+
+
 # values anywhere
 
 
@@ -246,6 +267,48 @@ def test_tops_of_polynomials(powers, sign):
     inside = roots[np.abs(roots) < 1 + 1e-9]
     candidates = np.concatenate([[-1.0, 1.0], np.clip(inside.real, -1, 1)])
     assert max(float(value.mid()) for value, _ in tops) == pytest.approx(polynomial(candidates).max(), abs=1e-12)
+
+
+@pytest.mark.parametrize("points", module._POINTS)
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("bend", [1, 300])
+def test_a_top_that_no_sample_is_near_is_kept(points, sign, bend):
+    """The top of a parabola, 1, lies in the middle between two samples, which are m d^2 / 8 lower; another piece is
+    higher than these, and lower than the top."""
+    d = fmpq(2, points - 1)
+    middle = 7 * d + d / 2
+    lower = bend * d**2 / 8
+    parabola = [1 - bend * middle**2 / 2, bend * middle, -fmpq(bend) / 2]
+    pieces = [
+        module._Piece(fmpq(k), fmpq(k + 1), tuple(arb(sign * c) for c in powers), arb(0), False, k == 1)
+        for k, powers in enumerate((parabola, [1 - lower / 2]))
+    ]
+    with ctx.workprec(128):
+        found = module._found(pieces, max(piece.largest for piece in pieces))
+    highest = found[1 if sign > 0 else 0]
+    assert highest == near(sign, float((1 + middle) / 2))
+
+
+def test_a_short_stiff_rod_beside_a_light_mass_costs_no_bits(monkeypatch):
+    """As a drill string with collars: what comes after the horizon was moved, too, where series bear it no more."""
+    parts = [{"mass": 7, "name": "top"}, {"rod": 1}, {"rod": "1/15", "impedance": 7}, {"mass": "1/28", "name": "bit"}]
+    load = [{"at": at, "times": [when], "steps": [1]} for at, when in (("top", 0), ("bit", "1.06"))]
+    output = {"until": "3.18", "velocity": ["top", "bit"]}
+    model = lower(Scene(name="string", system={"type": "chain", "parts": parts}, load=load, output=output))
+    asked, segments = [], Motion.segments
+
+    def spied(self, probe, bits, taus=None):
+        asked.append(bits)
+        return segments(self, probe, bits, taus)
+
+    monkeypatch.setattr(Motion, "segments", spied)
+    extremes(model)
+    motion = Motion(model, rational(model.horizon()))
+    assert asked == [motion.first_bits] * 2
+    assert motion.first_bits <= 1024
+    assert all(
+        motion._knots.joints[number][-1] <= until + fmpq(1, 15) for number, until in model.reached(motion.until).items()
+    )
 
 
 def test_too_long_a_horizon_is_refused_in_one_line():

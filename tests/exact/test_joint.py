@@ -96,6 +96,20 @@ def test_a_point_without_mass_follows_at_once():
     assert moved.error < fmpq(7, 32) + fmpq(1, 2**200)
 
 
+@pytest.mark.parametrize(("damping", "stiffness"), [(1, 3), (2, 1), (fmpq(1, 2), 8)])
+def test_a_spring_pulls_a_point_without_mass_back_from_where_it_may_be(damping, stiffness):
+    """c q + k u = s: what s may be off by is in u when it ends, and then in q, though nothing acts any more."""
+    c, k, off, length = fmpq(damping), fmpq(stiffness), fmpq(1, 5), fmpq(1)
+    joint = moving(law([0], [[c]], [[k]]))
+    joint.moved([wave([2], off)], [fmpq_poly()], length, 60)
+    (later,) = joint.moved([STILL], [fmpq_poly()], length, 60)
+    for sign in (-1, 0, 1):
+        displaced = (2 + sign * off) / k * (1 - (-arb(k / c) * arb(length)).exp())
+        for u in (fmpq(0), fmpq(1, 3), length):
+            assert later.at(u).contains(-arb(k / c) * displaced * (-arb(k / c) * arb(u)).exp())
+    assert later.error < 8 * off * k / c  # and no more than some times that
+
+
 def test_what_does_not_move_is_exactly_still():
     (moved,) = moving(law([1], [[1]])).moved([STILL], [fmpq_poly()], fmpq(1), 9)
     assert moved.polynomial.length() == 0

@@ -13,7 +13,7 @@ from tests.support.truth import Truth
 from wavesym.errors import CostError
 from wavesym.exact import motion as room
 from wavesym.exact.joints.joint import Enclosed
-from wavesym.exact.joints.network_waves import SentWave
+from wavesym.exact.joints.network_waves import SentWave, weighted
 from wavesym.exact.motion import Motion, is_zero
 from wavesym.exact.tables.ball import Balls
 from wavesym.mechanics.loads import Applied
@@ -109,6 +109,16 @@ def test_both_waves_errors_are_in_the_value(output, one, other):
     (ball,) = enclosures(motion, motion.probes[0], [fmpq(3, 2)])
     assert ball.rad() >= one + other
     assert ball.rad() < one + other + fmpq(1, 2**20)
+
+
+def test_errors_of_all_that_is_summed_are_in_a_value():
+    """Of a drift, which reads both ends of its rod, and of any sum: none takes the place of another."""
+    parts = [(fmpq(2), Enclosed(arb_poly([1]), arb(1))), (fmpq(-3), Enclosed(arb_poly([1]), arb(fmpq(1, 4))))]
+    for terms in (parts, parts[::-1], [*parts, (fmpq(1), Enclosed(arb_poly(), arb(0)))]):
+        for total in (room._sum(terms), weighted(terms)):
+            assert total.at(fmpq(0)).contains(-1 + fmpq(11, 4))
+            assert total.at(fmpq(0)).contains(-1 - fmpq(11, 4))
+            assert total.error < fmpq(12, 4)
 
 
 def test_errors_of_velocity_pile_up_in_displacement():

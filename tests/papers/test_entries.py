@@ -54,11 +54,13 @@ def test_a_changed_line_is_seen():
 
 
 def test_a_changed_translation_is_seen():
-    said = PaperEntry(id="text.1", kind="sentence", scan="a_i rośnie", printed="a rises", translated=True)
+    words = "a_i rośnie"
+    said = PaperEntry(id="text.1", kind="sentence", scan=words, printed=words, english="a rises")
     hashes = {"3": digest("a_i rośnie"), "text.1": digest("a rises"), "5": HASHES["5"]}
     assert not list(problems(_paper(said, "a_i rośnie", hashes)))
-    falls = said.model_copy(update={"printed": "a falls"})
-    assert [id for id, _ in problems(_paper(falls, "a_i rośnie", hashes))] == ["text.1"]
+    for change in ({"english": "a falls"}, {"printed": "a_i maleje"}, {"edits": (("a_i", "a_j", "an index"),)}):
+        changed = said.model_copy(update=change)
+        assert "text.1" in [id for id, _ in problems(_paper(changed, "a_i rośnie", hashes))]
 
 
 def test_nothing_is_left_out():
@@ -73,5 +75,6 @@ def test_nothing_is_left_out():
 
 
 def test_layout_is_no_difference():
-    assert plain(r"\left( a & = \left\{ b \right. \right) \times c \quad \text{dla} d,") == plain(r"(a = \{ b ) c, d")
+    assert plain(r"\left( a & = \left\{ b \right. \right) c \quad \text{dla} d,") == plain(r"(a = \{ b ) c, d")
     assert plain("a + b") != plain("a - b")
+    assert plain(r"a \times b") != plain("a b")

@@ -41,9 +41,9 @@ def test_as_printed(id, verdict):
         ("T1.I.tau_0", {"printed": r"\begin{cases} 1 & i=1, m \\ 0 & i=2, 3, \dots, m-2 \end{cases}"}),
         ("T1.II.S", {"slip": {"ranges": (r"i = 1, 2, \dots, m+2",)}}),
         ("(4.2)", {"printed": ENTRIES["(4.2)"].printed.replace(r"- \bar{x} +", r"+ \bar{x} -")}),
-        ("text.t_0", {"printed": ENTRIES["text.t_0"].printed.replace("first", "last")}),
-        ("text.III.masses", {"printed": ENTRIES["text.III.masses"].printed.replace("m-1,", "m,")}),
-        ("text.F", {"printed": "the functions F_i run"}),
+        ("text.t_0", {"english": ENTRIES["text.t_0"].english.replace("first", "last")}),
+        ("text.III.masses", {"english": ENTRIES["text.III.masses"].english.replace("m-1,", "m,")}),
+        ("text.F", {"english": "the functions F_i run"}),
     ],
 )
 def test_a_wrong_string_is_a_verdict(id, changes):

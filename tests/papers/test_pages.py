@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -60,6 +61,43 @@ def test_every_page_has_every_record_every_reason_and_every_survivor(format: str
     if format != "json":
         assert all(why in words for why in ("names <a> & b", "a title"))
     assert {"holds", "misprint", "unreadable"} <= set(re.findall(r"\w+", words))
+
+
+@pytest.mark.parametrize("format", PAGES)
+def test_every_page_has_the_same_facts(format: str) -> None:
+    left = "(2) M"
+    judged = tuple(replace(record, difference=left if record.verdict != "holds" else "0") for record in records())
+    own = replace(
+        judged[-1], entry=entry("T1.b", "n + 1 = 1 + n", "Table 1, row b", note="By itself.", inferred=("n = 1, 2",))
+    )
+    found = Findings(findings().about, (*judged[:-1], own), () if format == "text" else PASSAGES)
+    page = {"html": lambda page: Elements(page).words, "latex": read_back}.get(format, str)(PAGES[format](found))
+    plain = " ".join(page.split())
+    assert plain.count(left) == sum(record.verdict != "holds" for record in judged)
+    assert "By itself." in plain
+    if format != "json":
+        assert plain.count("line") >= len(judged)
+        assert "not printed" in plain.casefold()
+    for record in found.records:
+        assert " ".join(record.evidence) in plain
+        assert f"{record.mutations.turned} of" in plain or format == "json"
+
+
+@pytest.mark.parametrize("format", PAGES)
+def test_every_page_shows_the_words_that_are_printed_and_what_is_read_otherwise(format: str) -> None:
+    edits = (("n++n", "n+n", "the sign stands twice"), ("=2n,", "", "a comma"))
+    judged = records(
+        entry("(1.3)", "n + n = 2n", "section 1, (1.3)", scan="n + + n = 2n,", edits=edits),
+        entry("text.2", "Suma jest dwa razy dana.", "section 1", english="n + n = 2n"),
+        entry("text.3", "Suma jest trzy razy dana.", "section 1", ENTRIES[1].slip, english="n + n = 3n"),
+    )
+    whole = Findings(findings().about, judged, PASSAGES)
+    page = PAGES[format](Findings(findings().about, judged) if format == "text" else whole)  # by name, in full
+    words = {"html": lambda: Elements(page).words, "latex": lambda: read_back(page)}.get(format, lambda: page)()
+    edited = ("n++n", "n+n", "the sign stands twice", "a comma")
+    assert all(said in words for said in ("Suma jest dwa razy dana.", "Suma jest trzy razy dana.", *edited))
+    assert "nothing" in words or format == "json"
+    assert all(said in text.page(whole) for said in edited)
 
 
 def read_back(page: str) -> str:
@@ -247,7 +285,8 @@ def test_latex_has_no_command_that_nobody_defines() -> None:
         ("Piełorz, żółć", r"Pie\l{}orz, \.{z}\'{o}\l{}\'{c}"),
         ("wavesym --x", "wavesym -{}-x"),
         ("\N{GREEK SMALL LETTER ALPHA} ≤ 1", r"\ensuremath{\alpha} \ensuremath{\leq} 1"),
-        ("Ш", "[cyrillic capital letter sha]"),
+        ("Шум объёма", "Shum ob''ema".replace("'", r"\textquotesingle{}")),
+        ("א", "[hebrew letter alef]"),
     ],
 )
 def test_text_is_escaped_in_latex(plain: str, written: str) -> None:
@@ -290,7 +329,7 @@ def test_letters_within_a_sentence_are_written_out(said: str, read: str) -> None
 def test_sentences_are_compared_word_by_word_and_their_formulas_are_read() -> None:
     said = "There are $m + 1$ bars, four in all."
     slip = ENTRIES[1].slip.model_copy(update={"corrected": "There are $m - 1$ bars, in all."})
-    wrong = entry("text.2", said, "section 1", slip, translated=True)
+    wrong = entry("text.2", "Cztery pręty.", "section 1", slip, english=said)
     one, other = compared(records(wrong)[0]) or (None, None)
     assert one is not None
     assert other is not None

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from wavesym.papers.entries import digest, problems
+from wavesym.papers.entries import digest, plain, problems
 from wavesym.papers.pages import markdown
 from wavesym.papers.pages.findings import Findings
 from wavesym.papers.pielorz1979 import particulars
@@ -82,6 +82,29 @@ def test_the_hashes_are_those_of_the_source():
     assert hashes == {name: known for name, known in paper().hashes.items() if name.isdigit()}
 
 
+@pytest.mark.skipif(not SOURCE.exists(), reason="the paper's text is not here")
+def test_every_scan_stands_in_the_source():
+    lines = SOURCE.read_text(encoding="utf-8").split("\n")
+    for passage in paper().passages:
+        source = "\n".join(lines[passage.lines[0] - 1 : passage.lines[1]])
+        assert passage.text.strip("\n") in source
+        assert all(entry.scan in source for entry in passage.entries())
+        assert all(aside.scan in source for aside in passage.aside if not passage.table)
+
+
+def test_what_is_printed_is_the_scan_but_for_its_edits():
+    for passage in paper().passages:
+        for entry in passage.entries():
+            text, printed = plain(entry.scan), plain(",".join((entry.printed, *entry.ranges)))
+            for before, after, why in entry.edits:
+                assert plain(before) in text
+                assert why
+                if not entry.english:
+                    text = text.replace(plain(before), plain(after))
+            assert text == (plain(entry.printed) if entry.english or entry.heads else printed), entry.id
+            assert "\n" not in entry.printed
+
+
 def test_what_is_wrong_shows_where_and_what_is_right(judged):
     for record in judged:
         wrong = record.verdict != "holds"
@@ -108,14 +131,17 @@ def test_survivors_are_explained(judged):
         ("(4.11).1", "misprint"),
         ("(4.5).1", "model"),
         ("(4.4).1", "unreadable"),
-        ("(2.4).5", "incomplete"),
+        ("(2.4).5", "convention"),
+        ("(4.4).4", "holds"),
         ("(4.6).m", "incomplete"),
         ("T3.even.g.alpha1.K_1", "misprint"),
         ("T3.even.f.alpha1.s_1", "unreadable"),
         ("T4.m3.g_i.K_1", "convention"),
         ("III.14", "misprint"),
         ("III.21", "holds"),
-        ("text.8", "unreadable"),
+        ("text.8", "misprint"),
+        ("(4.12).F", "misprint"),
+        ("T1.II.S", "convention"),
         ("text.22", "depends"),
     ],
 )
@@ -123,12 +149,41 @@ def test_known_verdicts(by_id, id, verdict):
     assert by_id[id].verdict == verdict
 
 
+@pytest.mark.parametrize(
+    ("id", "called"),
+    [
+        pytest.param("(2.3)", "unreadable", marks=pytest.mark.slow),
+        pytest.param("(2.4).5", "incomplete", marks=pytest.mark.slow),
+        ("def.f", "unreadable"),
+        ("T1.II.S", "incomplete"),
+        ("(4.4).1", "misprint"),
+        pytest.param("(4.5).1", "convention", marks=pytest.mark.slow),
+        pytest.param("(4.5).2", "misprint", marks=pytest.mark.slow),
+        ("(4.6).m", "misprint"),
+        ("(4.8).5", "convention"),
+        ("T3.odd.g.alpha1.s_1", "misprint"),
+        ("T4.m3.g_m.K_1", "misprint"),
+        ("text.5", "misprint"),
+        ("text.7", "misprint"),
+        ("text.8", "unreadable"),
+        pytest.param("text.9", "misprint", marks=pytest.mark.slow),
+        ("text.28", "misprint"),
+        ("summary.en.4", "unreadable"),
+    ],
+)
+def test_a_false_kind_of_slip_is_seen(id, called):
+    (entry,) = (entry for entry in paper().entries() if entry.id == id)
+    record = _judged(entry, slip=entry.slip.model_copy(update={"verdict": called}))
+    assert record.verdict == "untested"
+    assert any(problem.startswith(f"called {called}, yet it is ") for problem in record.problems)
+
+
 def _judged(entry, **changes):
     changed = entry.model_copy(update=changes)
     return judge(changed, ADAPTERS[changed.kind](changed))
 
 
-FORMULAS = [entry for entry in paper().entries() if not entry.translated]
+FORMULAS = [entry for entry in paper().entries() if not entry.english]
 DRAWN = random.Random(7).sample(FORMULAS, 24)
 
 

@@ -16,8 +16,9 @@ def verdict(id: str, before: str = "", after: str = "") -> str:
         slip = told.slip.model_copy(update={"corrected": told.slip.corrected.replace(before, after)})
         told = told.model_copy(update={"slip": slip})
     else:
-        assert before in told.printed
-        told = told.model_copy(update={"printed": told.printed.replace(before, after)})
+        assert before in told.statement
+        place = "english" if told.english else "printed"
+        told = told.model_copy(update={place: told.statement.replace(before, after)})
     return judge(told, ADAPTERS[told.kind](told)).verdict
 
 
@@ -30,7 +31,10 @@ def test_every_saying_has_cases() -> None:
     [
         ("text.2", "even", "whole"),
         ("text.4", "give the derivatives of m", "give the derivatives of 2m"),
-        ("text.T4", ", if all rates are different", ""),
+        ("text.T4", r", if 2 \kappa_1 and \kappa_m are different", ""),
+        ("text.T4", r"2 \kappa_1 and \kappa_m", "all rates"),
+        ("text.T2", " and all rates are different", ""),
+        ("text.T3", ", if all rates are different", ""),
         ("(4.9).F", "times power k", "times power l"),
         ("(4.10).F", "moment number s", "moment number i"),
         ("(4.12).F", "part number k", "part number i"),
@@ -68,7 +72,7 @@ def test_ranges_of_powers_are_judged() -> None:
 
 
 def test_a_sentence_or_a_range_that_means_nothing_is_a_verdict() -> None:
-    told = entry("text.11").model_copy(update={"printed": "In example III nothing changes."})
+    told = entry("text.11").model_copy(update={"english": "In example III nothing changes."})
     assert judge(told, ADAPTERS[told.kind](told)).verdict == "untested"
     told = entry("text.13.K_2").model_copy(update={"ranges": (r"k=2r-r_0+1, \dots, i",)})
     assert judge(told, ADAPTERS[told.kind](told)).verdict == "untested"

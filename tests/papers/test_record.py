@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from wavesym.papers.entries import PaperEntry, Slip
-from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
-from wavesym.papers.record import Case, Nothing, Test, case, judge
+from wavesym.papers.evaluation import MeaninglessError, Scope, holds, sides, span
+from wavesym.papers.reader import read_range
+from wavesym.papers.record import Case, Nothing, Reading, Test, case, judge
+from wavesym.papers.record import reading as read_reading
 from wavesym.papers.sentences import SentencePattern, sentence_reader
 
 
@@ -70,12 +72,67 @@ def test_what_fails_without_a_correction_is_untested(changes):
 def test_what_is_wrong_needs_a_correction_that_holds():
     slip = Slip(verdict="misprint", corrected="a = n + 1", note="")
     assert _judged(printed="a = n + 2", slip=slip).verdict == "misprint"
-    assert _judged(printed="a = n +", slip=slip).verdict == "misprint"
+    assert _judged(printed="a = n +", slip=slip.model_copy(update={"verdict": "unreadable"})).verdict == "unreadable"
     assert _judged(printed="a = n + 2", slip=slip).counterexample == Case({"n": 0}, 2, 1)
     assert _judged(printed="a = n + 2", slip=slip.model_copy(update={"corrected": "a = n + 3"})).verdict == "untested"
     assert "no case shows it" in _judged(slip=slip).problems[0]
     shorter = slip.model_copy(update={"ranges": ENTRY.ranges})
     assert _judged(ranges=(r"n = 0, 1, \dots, 3",), slip=shorter).verdict == "misprint"
+
+
+def _kinds(reading, shift=0):
+    """a is n + 1 for n = 0, 1, 2, and 0 beyond."""
+    for n in range(4):
+        scope = Scope({"n": n})
+        if all(holds(range_, scope) for range_ in reading.ranges):
+            with scope.binding({"n": n + shift}):
+                yield case({"n": n}, lambda scope=scope: scope.value(sides(reading.formula)[1]), n + 1 if n < 3 else 0)
+
+
+UP_TO_2 = (r"n = 0, 1, \dots, 2",)
+SMALL = {"corrected": "a = n + 1", "ranges": UP_TO_2}
+FROM_1 = {"conventions": {"n counts from 1": lambda reading: _kinds(Reading(reading.formula, _UP_TO_2), shift=1)}}
+_UP_TO_2 = tuple(map(read_range, UP_TO_2))
+KINDS = {
+    "misprint": ({"printed": "a = n + 2"}, {}),
+    "unreadable": ({"printed": "a = n + b"}, {}),
+    "incomplete": ({"printed": "a = n + 1"}, {}),
+    "convention": ({"printed": "a = n"}, FROM_1),
+    "model": ({"printed": "a = n"}, {"mathematics": FROM_1["conventions"]["n counts from 1"]}),
+    "depends": ({"printed": "a = n + 1"}, {"varied": "loads"}),
+}
+
+
+@pytest.mark.parametrize("called", KINDS)
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_kind_of_a_slip_is_that_which_the_cases_show(kind, called):
+    changes, more = KINDS[kind]
+    slip = Slip(verdict=called, note="", **SMALL)
+    entry = PaperEntry(id="x", kind="test", slip=slip, **changes)
+    wrong = ("b for 1", read_reading("a = n + b", ()))
+    record = judge(entry, Test("what comes next", _kinds, faults=lambda right: [wrong], **more))
+    assert record.verdict == (kind if called == kind else "untested")
+    assert called == kind or record.problems[0].startswith(f"called {called}, yet it is {kind}: ")
+
+
+@pytest.mark.parametrize(
+    ("printed", "corrected", "kind"),
+    [
+        ("It rises.", "It rises, in summer.", "incomplete"),
+        ("It rises and falls.", "It rises in summer and falls.", "incomplete"),
+        ("It rises.", "It falls.", "misprint"),
+        ("It rises and falls.", "It now rises and then falls.", "misprint"),
+    ],
+)
+def test_a_sentence_that_lacks_words_is_incomplete(printed, corrected, kind):
+    test = Test(
+        "what rises",
+        lambda read: [Case({}, read.formula == corrected, True)],
+        lambda said, ranges: Reading(said),
+        lambda right: [("another", Reading("It stays."))],
+    )
+    entry = PaperEntry(id="x", kind="test", english=printed, slip=Slip(verdict=kind, corrected=corrected, note=""))
+    assert judge(entry, test).verdict == kind
 
 
 def test_a_transcription_that_does_not_fit_is_untested():

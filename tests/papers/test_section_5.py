@@ -42,9 +42,10 @@ def test_verdicts(id: str, verdict: str) -> None:
     ],
 )
 def test_a_false_sentence_is_seen(id: str, word: str, other: str) -> None:
-    printed = ENTRIES[id].printed
-    assert word in printed
-    assert judged(id, printed=printed.replace(word, other)).verdict == "untested"
+    said = ENTRIES[id].statement
+    assert word in said
+    place = "english" if ENTRIES[id].english else "printed"
+    assert judged(id, **{place: said.replace(word, other)}).verdict == "untested"
 
 
 @pytest.mark.parametrize(
@@ -53,11 +54,12 @@ def test_a_false_sentence_is_seen(id: str, word: str, other: str) -> None:
         ("text.29", r"\tau \approx 8.91"),
         ("text.29", r"\tau \approx 8.9018"),
         ("text.29", r"t \approx 8.90"),
-        ("text.25", "the larger strains occur at x = 0.5, not at x = 1.5, under these loads only: step"),
-        ("text.25", "the larger strains occur at x = 0.5, not at x = 1.5, under these loads only: storm"),
+        ("text.25", "the larger strains occur at x = 0.5, not at x = 1.5, of the loads tried under these: step"),
+        ("text.25", "the larger strains occur at x = 0.5, not at x = 1.5, of the loads tried under these: storm"),
         (
             "text.25",
-            "the smaller strains occur at x = 0.5, not at x = 1.5, under these loads only: one slow swing; step",
+            "the smaller strains occur at x = 0.5, not at x = 1.5, "
+            "of the loads tried under these: one slow swing; step",
         ),
     ],
 )
@@ -78,7 +80,7 @@ def test_every_load_is_told_with_its_outcome(id: str) -> None:
     true, _, false = told.partition("; false under ")
     slip = ENTRIES[id].slip
     assert slip is not None
-    named = slip.corrected.partition("only: ")[2].split("; ")
+    named = slip.corrected.partition("under these: ")[2].split("; ")
     for load in loads(ENTRIES[id].about["figure"]):
         assert f"{load.name} (" in (true if load.name in named else false)
 

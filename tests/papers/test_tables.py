@@ -70,13 +70,6 @@ def test_a_wrong_correction_is_seen(id):
     assert verdict(id, slip=None) == "untested"
 
 
-@pytest.mark.parametrize("id", ["T2.F", "T3.F", "T4.F"])
-def test_rates_must_differ(id):
-    entry = entries()[id]
-    assert verdict(id) == "incomplete"
-    assert verdict(id, slip=entry.slip.model_copy(update={"ranges": ()})) == "untested"
-
-
 def test_a_range_that_corrects_is_tried():
     entry = entries()["T4.m3.g_i.K_1"]
     ranges = tuple(range_.replace("n = 1, 2", "n = 2, 3") for range_ in entry.slip.ranges)

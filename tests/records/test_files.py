@@ -3,6 +3,7 @@
 import csv
 import os
 import re
+import time
 import tracemalloc
 from contextlib import suppress
 from decimal import Decimal
@@ -146,26 +147,26 @@ DAMAGED = [
     # wrong counts
     (AT2.replace("5,", "6,"), "line 6: the file ends after 5 numbers, the 6 of NPTS on line 4 expected"),
     (AT2.replace("5,", "4,"), "line 6: more numbers than the 4 of NPTS on line 4 given"),
-    (AT2.replace("5,", "999999999,"), "line 6: the file ends after 5 numbers, the 999999999 of NPTS"),
-    (AT2.replace("5,", "1000000000,"), "line 4: NPTS = 1000000000 given, at most 1000000000 expected"),
+    (AT2.replace("5,", "999999,"), "line 6: the file ends after 5 numbers, the 999999 of NPTS"),
+    (AT2.replace("5,", "1000000000,"), "line 4: NPTS = 1000000000 given, at most 1000000 expected"),
     (AT2.replace("5,", "0,"), "line 4: NPTS = 0 given, at least 1 expected"),
     (AT2.replace(".0200", "0"), "line 4: DT = 0 given, more than 0 expected"),
     (AT2.replace(".0200", "-.02"), "line 4: DT = -.02 given, more than 0 expected"),
-    (AT2.replace(".0200", "+-e"), "line 4: NPTS=   5, DT=   +-e SEC given, NPTS and DT expected"),
-    (AT2.replace("NPTS=   5, DT=", "NPTS=   5, TD="), "line 4: NPTS=   5, TD=   .0200 SEC given, NPTS and DT expected"),
+    (AT2.replace(".0200", "+-e"), "line 4: NPTS and DT expected, such as"),
+    (AT2.replace("NPTS=   5, DT=", "NPTS=   5, TD="), "line 4: NPTS and DT expected, such as"),
     (HEAD + "NPTS=   5, DT=   .0200 SEC\n", "line 4: the file ends after 0 numbers"),
     # no numbers
-    (AT2.replace("3.", "nan"), "line 5: nan given, a decimal expected"),
-    (AT2.replace("3.", "-Infinity"), "line 5: -Infinity given, a decimal expected"),
-    (AT2.replace("3.", "."), "line 5: . given, a decimal expected"),
-    (AT2.replace("3.", "1e999"), "line 5: 1e999 given, a decimal expected"),
-    (AT2.replace("3.", "1" + "0" * 400), "line 5: 1000000000000000000000000000000000000... given, a decimal"),
-    (AT2.replace("3.", "\u0663"), "line 5: \\u0663 given, a decimal expected"),
-    (AT2.replace("3.", "3\x00"), "line 5: 3\\x00 given, a decimal expected"),
-    (AT2.replace("3.", "**.**"), "line 5: **.** given, a decimal expected"),
-    (CSV.replace("-0.5", "NaN"), "line 4: NaN given, a decimal expected (accel_g)"),
-    (CSV.replace("-0.5", ""), "line 4:  given, a decimal expected (accel_g)"),
-    (CSV.replace("0.02", "1/50"), "line 4: 1/50 given, a decimal expected (time_s)"),
+    (AT2.replace("3.", "nan"), "line 5: word 3 is no decimal"),
+    (AT2.replace("3.", "-Infinity"), "line 5: word 3 is no decimal"),
+    (AT2.replace("3.", "."), "line 5: word 3 is no decimal"),
+    (AT2.replace("3.", "1e999"), "line 5: word 3 is no decimal"),
+    (AT2.replace("3.", "1" + "0" * 400), "line 5: word 3 is no decimal"),
+    (AT2.replace("3.", "\u0663"), "line 5: word 3 is no decimal"),
+    (AT2.replace("3.", "3\x00"), "line 5: word 3 is no decimal"),
+    (AT2.replace("3.", "**.**"), "line 5: word 3 is no decimal"),
+    (CSV.replace("-0.5", "NaN"), "line 4: column 2 (accel_g) is no decimal"),
+    (CSV.replace("-0.5", ""), "line 4: column 2 (accel_g) is no decimal"),
+    (CSV.replace("0.02", "1/50"), "line 4: column 1 (time_s) is no decimal"),
     (CSV.replace("-0.5", "-0,5"), "line 4: 3 columns given, the 2 of the header expected"),
     (CSV.replace("0.04,3", "0.04"), "line 5: 1 columns given, the 2 of the header expected"),
     # uneven times
@@ -174,8 +175,8 @@ DAMAGED = [
     (CSV.replace("0.06", "0.04"), "line 6: the time 0.04 given, more than the 0.04 before it expected"),
     (CSV.replace("0.02", "0"), "line 4: the time 0 given, more than the 0 before it expected"),
     # headers
-    (CSV.replace("time_s,accel_g\n", ""), "line 2: 0.00,0.1 given, a header line expected, such as time,acceleration"),
-    ("time\n0\n1\n", "line 1: only time given, a column of samples expected"),
+    (CSV.replace("time_s,accel_g\n", ""), "line 2: a header line expected, such as time,acceleration"),
+    ("time\n0\n1\n", "line 1: one column of times given, a column of samples expected"),
     ("time,x\n# nothing\n", "line 1: the file ends after its header, a row of numbers expected"),
     # no text
     (b"\x89PNG\r\n\x1a\n\x00\x00", "line 1: byte 0x89 is not UTF-8, a file of AT2 or CSV expected"),
@@ -220,8 +221,64 @@ def test_what_is_no_file_on_a_disk_is_refused_at_once(tmp_path):
         read_record("a\0b")
 
 
-def test_a_count_of_a_milliard_takes_no_memory(tmp_path):
-    path = made(tmp_path, AT2.replace("5,", "999999999,"))
+@pytest.mark.parametrize(
+    ("written", "step"),
+    [("20 MSEC", "1/50"), ("20.0 ms", "1/50"), (".02 seconds", "1/50"), (".02", "1/50"), (".02 s, PEER", "1/50")],
+)
+def test_the_unit_behind_dt_counts(tmp_path, written, step):
+    """20 MSEC were once 20 s."""
+    for line in (f"NPTS=   5, DT=   {written}", f"  5   {written}   NPTS, DT"):
+        path = made(tmp_path, AT2.replace("NPTS=   5, DT=   .0200 SEC", line))
+        assert read_record(path).even() == Fraction(step)
+
+
+@pytest.mark.parametrize("unit", ["MIN", "USEC", "Hz", "SECRET"])
+def test_another_word_behind_dt_is_refused(tmp_path, unit):
+    with pytest.raises(SceneError, match="line 4: the unit behind DT is not known, SEC or MSEC expected"):
+        read_record(made(tmp_path, AT2.replace("SEC", unit)))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "root:SECRET:19000:0\nuser:SECRET:19001:0\n",
+        "SECRET\nSECRET\n",
+        'a,b\n"SECRET\n',
+        "key = SECRET\n[SECRET]\nx = 1\n",
+        "SECRET;SECRET\nSECRET\n",
+        "1\n2\n3\nNPTS SECRET\n",
+        f"{HEAD}NPTS= 2, DT= .02 SECRET\n1 2\n",
+        AT2.replace("3.", "SECRET"),
+        CSV.replace("-0.5", "SECRET"),
+        CSV.replace("0.02", "SECRET"),
+        "time\nSECRET\n",
+    ],
+)
+def test_what_a_file_holds_is_not_quoted(tmp_path, text):
+    """A path may point to any file: what is wrong with it names the place alone."""
+    for column in (None, "x"):
+        with pytest.raises(SceneError) as error:
+            read_record(made(tmp_path, text), column)
+        assert "SECRET" not in str(error.value)
+
+
+def test_what_a_kernel_makes_while_it_is_read_is_not_waited_for():
+    """/proc/kmsg is a file, of no bytes, that blocks who reads it."""
+    if not Path("/proc/kmsg").exists():
+        pytest.skip("no /proc")
+    with pytest.raises(SceneError, match="empty"):
+        read_record("/proc/kmsg")
+
+
+def test_more_samples_than_a_record_has_are_refused_before_they_are_read(tmp_path):
+    start = time.monotonic()
+    with pytest.raises(SceneError, match="more lines than 1000000 samples take; thin the record, or cut it"):
+        read_record(made(tmp_path, "x\n" + "0\n" * 4_000_000))
+    assert time.monotonic() - start < 5
+
+
+def test_a_count_of_a_million_takes_no_memory(tmp_path):
+    path = made(tmp_path, AT2.replace("5,", "999999,"))
     tracemalloc.start()
     try:
         with pytest.raises(SceneError, match="the file ends"):
@@ -328,16 +385,16 @@ def test_cells_are_read_as_spreadsheets_write_them(tmp_path, text):
         # what may mean two things: a comma that parts thousands, or columns
         (
             "time_s;accel_g\n0.00;0.1\n0.02;1,234\n",
-            'line 3: 1,234 given, a decimal with "." as before expected (accel_g)',
+            'line 3: 1,234 given, a decimal with "." as before expected',
         ),
-        ("time_s;accel_g\n0.00;0,1\n", 'line 2: 0,1 given, a decimal with "." as before expected (accel_g)'),
-        ("time_s;accel_g\n0,0;1.234,5\n", "line 2: 1.234,5 given, a decimal expected (accel_g)"),
-        ("time_s;accel_g\n0,0;1,234,5\n", "line 2: 1,234,5 given, a decimal expected (accel_g)"),
-        ('time_s,accel_g\n"0,0","1,5"\n', "line 2: 0,0 given, a decimal expected (time_s)"),
-        ("accel_g\n1,5\n", "line 2: 1,5 given, a decimal expected (accel_g)"),
-        ("0,0;1,5\n0,1;2,5\n", "line 1: 0,0;1,5 given, a header line expected"),
-        ('time_s,accel_g\n0,"1\n', 'line 2: 0,"1 given, quotes around whole cells expected'),
-        ('time_s,accel_g\n0,1"2"\n', 'line 2: 1"2" given, a decimal expected (accel_g)'),
+        ("time_s;accel_g\n0.00;0,1\n", 'line 2: 0,1 given, a decimal with "." as before expected'),
+        ("time_s;accel_g\n0,0;1.234,5\n", "line 2: column 2 (accel_g) is no decimal"),
+        ("time_s;accel_g\n0,0;1,234,5\n", "line 2: column 2 (accel_g) is no decimal"),
+        ('time_s,accel_g\n"0,0","1,5"\n', "line 2: column 1 (time_s) is no decimal"),
+        ("accel_g\n1,5\n", "line 2: column 1 (accel_g) is no decimal"),
+        ("0,0;1,5\n0,1;2,5\n", "line 1: a header line expected"),
+        ('time_s,accel_g\n0,"1\n', "line 2: quotes around whole cells expected"),
+        ('time_s,accel_g\n0,1"2"\n', "line 2: column 2 (accel_g) is no decimal"),
     ],
 )
 def test_a_comma_that_may_mean_two_things_is_refused(tmp_path, text, said):

@@ -13,9 +13,11 @@ from hypothesis import strategies as st
 
 import wavesym
 from tests.records.test_files import AT2, CSV, EL_CENTRO, made
+from wavesym.cli import main
 from wavesym.errors import SceneError
 from wavesym.scene import Scene, lower
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 TAU = "tau,a\n0,1/2\n".replace("1/2", "0.5") + "0.4,-1\n0.8,0.25\n"
 BUILDING = {"type": "building", "m": 2, "kappa": ["1/4", "3/5", "1/5"], "base": "ground"}
 DRIVE = {"type": "drive", "m": 2, "kappa": ["1/2", 1], "inertia": [1, 2, 1]}
@@ -85,6 +87,55 @@ def test_a_record_is_its_samples_joined_and_0_before_and_after(samples, spacing,
     made = scene(load)
     for at in (tau, *(time for time, _ in points), after[0]):
         assert value(made, at) == drawn_through([*before, *points, after], at)
+
+
+@pytest.mark.parametrize("damping", [0.05, "5 %", {"modes": [1, 2], "ratio": 0.05}])
+@pytest.mark.parametrize("given", [{}, {"start": 0}])
+def test_a_damped_record_rises_to_its_first_sample(damping, given):
+    """Modes take no jump: the record begins one spacing later, which a line says."""
+    load = {"record": {"samples": [1, -1, "1/2"]}, "spacing": "2/5", "scale": 3, **given}
+    made = scene(load, BUILDING | {"damping": damping})
+    points = [(Fraction(2 * k, 5), Fraction(y)) for k, y in enumerate([0, 3, -3, "3/2", 0])]
+    for at in [*(time for time, _ in points), Fraction(1, 7), Fraction(11, 7), Fraction(3)]:
+        assert value(made, at) == drawn_through(points, at)
+    assert lower(made).labels.notes == (
+        "load[0].record: the first sample is not 0, and modes take no jump: the load rises to it from 0 over one "
+        "spacing, so that the record begins 2/5 later",
+    )
+    again = Scene(**json.loads(json.dumps(made.model_dump(mode="json"))))
+    assert lower(again) == lower(made)
+    assert np.isfinite(wavesym.evaluator(made)([1.0, 4.0])).all()
+
+
+@pytest.mark.parametrize(
+    ("load", "damping"),
+    [
+        ({"record": {"samples": [0, -1]}}, 0.05),  # no jump
+        ({"record": {"samples": [1, -1]}, "start": "2/5"}, 0.05),  # begins later
+        ({"record": {"samples": [1, -1]}, "scale": 0}, 0.05),
+        ({"record": {"samples": [1, -1]}}, 0),  # not damped
+    ],
+)
+def test_other_records_begin_when_they_say(load, damping):
+    made = scene({"spacing": "2/5", **load}, BUILDING | {"damping": damping})
+    undamped = scene({"spacing": "2/5", **load})
+    assert lower(made).loads == lower(undamped).loads
+    assert lower(made).labels.notes == ()
+
+
+def test_el_centro_shakes_a_damped_frame_without_a_start(tmp_path, capsys):
+    """Our own example, whose first sample is not 0: what `start` says is done, and said."""
+    frame = (EXAMPLES / "frames" / "steel.toml").read_text().replace("../records", str(EXAMPLES / "records"))
+    assert 'start = "0.02 s"' in frame
+    found = []
+    for name, text in (("told", frame), ("untold", frame.replace('start = "0.02 s"', ""))):
+        path = tmp_path / f"{name}.toml"
+        path.write_text(text.replace("31.18 s", "0.2 s"))
+        assert main(["run", str(path), "--samples", "5"]) == 0
+        found.append(capsys.readouterr())
+    assert found[0].out == found[1].out
+    assert "so that the record begins 0.02 s later" in found[1].err
+    assert "later" not in found[0].err
 
 
 def test_a_drawn_line_is_seen_to_be_broken():
@@ -245,7 +296,7 @@ def test_a_physical_record_has_the_units_of_its_file_or_of_the_scene(tmp_path):
             r'record: .*quake.txt: line 2: "parsec" given \(a length\), a time such as',
         ),
         (AT2, "start = 1", "start: 1 given, a time such as"),
-        (AT2.replace("-.25", "nan"), "", r"record: .*quake.txt: line 5: nan"),
+        (AT2.replace("-.25", "nan"), "", r"record: .*quake.txt: line 5: word 2"),
     ],
 )
 def test_units_that_do_not_fit_are_refused_in_a_line(tmp_path, text, more, said):

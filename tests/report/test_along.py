@@ -85,9 +85,9 @@ def test_sides_that_are_one_place_are_asked_for_once() -> None:
 
 
 def fabricated(values: np.ndarray) -> tuple[Along, Band]:
-    spots = tuple(Spot(str(k), k, k - 0.5, k + 0.5) for k in range(len(values)))
+    spots = tuple(Spot(str(k), str(k), k, k - 0.5, k + 0.5) for k in range(len(values)))
     band = Band("", spots, values)
-    return Along("strain", "", np.linspace(0, 1, values.shape[1]), (band,)), band
+    return Along("strain", "", np.linspace(0, 1, values.shape[1]), (band,), None), band
 
 
 @settings(max_examples=40, deadline=None)

@@ -101,7 +101,7 @@ def test_each_statement_is_listed_with_its_verdict_and_its_numbers(
     for number in figures.FIGURES:
         text = listing(drawn, number)
         for id, statement in section_5.statements(number).items():
-            assert f"{records[id].entry.printed}: {records[id].verdict}" in text
+            assert f"{records[id].entry.statement}: {records[id].verdict}" in text
             value = measured(number, statement).value
             assert f"{section_5.meaning(statement)}; measured: {value:.4g}" in text
 
@@ -113,7 +113,7 @@ def test_each_load_is_said_to_bear_a_statement_out_or_not(
     for number in (7, 8):
         text = listing(drawn, number)
         for id, statement in section_5.statements(number).items():
-            own = text.partition(records[id].entry.printed)[2].partition("false for ")
+            own = text.partition(records[id].entry.statement)[2].partition("false for ")
             false = own[2].partition("  ")[0]
             corrected = records[id].corrected
             named = corrected.partition(section_5.ONLY)[2].split("; ") if corrected else None

@@ -14,7 +14,7 @@ from flint import fmpq
 
 from tests.report.clear import texts_keep_clear
 from wavesym.compiler import evaluator
-from wavesym.exact.contacts.collision import contact_ends
+from wavesym.exact.contacts.opening import contact_ends
 from wavesym.exact.reference import Reference
 from wavesym.exact.tables.increments import start
 from wavesym.mechanics.clock import Clock

@@ -6,6 +6,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from html.parser import HTMLParser
 from io import BytesIO, TextIOWrapper
 from pathlib import Path
@@ -16,9 +17,11 @@ import pytest
 import wavesym
 from tests.report.browser import axe, reported
 from wavesym.cli import main
+from wavesym.numbers.doubles import rational
+from wavesym.programs.making import make
 from wavesym.report.page import small
 from wavesym.report.page.curves import HEIGHT, Grid
-from wavesym.report.page.document import page
+from wavesym.report.page.document import _bound, page
 from wavesym.report.page.said import SaidTable
 from wavesym.report.page.small import LARGEST, first_rows, first_text, fitting
 from wavesym.report.page.structure import structure
@@ -132,6 +135,45 @@ def test_a_page_of_many_outputs_and_fronts_stays_small(monkeypatch: pytest.Monke
     assert re.search("The first 7 of [0-9]+ outputs", less)
     assert "characters more, left out" in less
     assert faults(less) == []
+
+
+def facts(text: str, word: str) -> list[str]:
+    """What a page says under a word at its top."""
+    return re.findall(f"<dt>{word}</dt><dd>(.*?)</dd>", text)
+
+
+def test_page_and_summary_say_the_same(tmp_path: Path) -> None:
+    """Of the frame of README.md: curves are of the program whose extremes are found, and meet the tolerance."""
+    readme = (Path(wavesym.__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    (written,) = re.findall(r"```toml frame.toml\n(.*?)```", readme, re.DOTALL)
+    (tmp_path / "frame.toml").write_text(written, encoding="utf-8")
+    scene = Scene.from_toml(tmp_path / "frame.toml")
+    text, found = page(scene), wavesym.summary(scene)
+    assert found.bound <= float(scene.output.tolerance) == 1e-6
+    (bound,) = facts(text, "Bound")
+    assert bound.startswith(f"{found.bound:g}, proved")
+    (program,) = facts(text, "Computed by")
+    assert program.endswith(f"bound {found.bound:g}")
+    assert f"values are right to {found.bound:g} of" in text
+    for each in facts(text, "Bound.*?"):
+        assert float(each.split(",")[0]) <= 1e-6 or "more than the tolerance asked for, 1e-06," in each
+    table = wavesym.compiler.values.summary_text(scene, False, "text")[0].splitlines()
+    cells = re.findall('<td class="number">(.*?)</td>', text[text.index('id="extremes"') :])[:5]
+    assert cells == table[1].split()[-5:]
+    assert f"{found.largest_drift.largest.value:.7g} mm at t = {found.largest_drift.largest.at.time:.7g} s" in text
+
+
+def test_what_does_not_meet_the_tolerance_says_so() -> None:
+    model = lower(Scene.from_toml("drive_m1"))
+    program = make(model)
+    assert "tolerance" not in _bound("a curve", program, model)
+    tighter = model.tolerating(rational(program.error_bound) * 9 / 10)
+    assert re.search(
+        r"proved: .*more than the tolerance asked for, [0-9.e-]+, but", _bound("a curve", program, tighter)
+    )
+    estimated = _bound("a curve", replace(program, proved=False), tighter)
+    assert "an estimate that is not proved" in estimated
+    assert "more than the tolerance asked for" in estimated
 
 
 def test_what_is_missing_is_seen(building: str) -> None:

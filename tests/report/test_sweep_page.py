@@ -26,7 +26,6 @@ from wavesym.report.page.sweep_pictures import SweepOutput, output_picture
 from wavesym.scene import Scene
 from wavesym.sweeps import running
 from wavesym.sweeps.results import StoredAxis, StoredColumn, SweepResults, results
-from wavesym.sweeps.status import SweepStatus
 
 SWEEP: dict[str, Any] = {
     "scene": "drive_m1",
@@ -111,8 +110,29 @@ def test_a_map_has_the_colours_of_its_values() -> None:
     assert "the largest where system.a = 2, system.b = 1" in made.drawn
 
 
+@pytest.mark.parametrize("numbers", [True, False])
+def test_a_hundred_thousand_cases_are_a_small_picture_with_their_extremes(numbers: bool) -> None:
+    """Against pictures of the highest and the lowest case with some others, which leave nothing out."""
+    n = 100_000
+    draw = np.random.default_rng(3)
+    coordinate = tuple((np.arange(n) / n).tolist()) if numbers else tuple(f"r{k}" for k in range(n))
+    values = draw.standard_normal(n)
+    told = {}
+    few = np.unique([0, int(values.argmin()), int(values.argmax()), n - 1])
+    for kept in (np.arange(n), few):
+        column = StoredColumn("system.a", tuple(map(str, kept)), tuple(coordinate[k] for k in kept), "")
+        axes = (StoredAxis("system.a", (column,)),)
+        made = output_picture("p", SweepOutput("strain@1", "", values[kept] - 1, values[kept] + 1), results_of(axes))
+        assert made is not None
+        paths = dict(re.findall(r'class="(least|greatest)" d="([^"]*)"', made.drawn))
+        heights = {class_: [float(y) for y in re.findall(r"[ V]([\d.]+)", path)] for class_, path in paths.items()}
+        told[len(kept)] = max(heights["least"]), min(heights["greatest"])
+        assert len(made.drawn) < 40_000
+    assert told[n] == told[len(few)]
+
+
 def results_of(axes: tuple[StoredAxis, ...]) -> SweepResults:
-    return SweepResults({}, SweepStatus(4, 3, 1, 0, ()), axes, {"strain@1": ""}, {})
+    return SweepResults({}, {}, axes, {})
 
 
 def pixels(image: bytes) -> list[list[int]]:

@@ -6,16 +6,13 @@ from functools import cache
 
 import numpy as np
 import pytest
-from flint import fmpq
 
 from wavesym.compiler import evaluator
 from wavesym.exact.reference import Reference
-from wavesym.mechanics.loads import Applied
 from wavesym.rivals import characteristics, delays, differences, elements, laplace, modes, steps
 from wavesym.rivals.every import RIVALS
 from wavesym.rivals.line import stated
 from wavesym.rivals.network import NetworkProblem
-from wavesym.rivals.problem import problem
 from wavesym.scene import Scene, lower
 
 
@@ -152,15 +149,11 @@ def test_jitcdde_follows_its_tolerance_where_nothing_jumps():
 
 def test_exact_modes():
     """Of a free bar k pi; with equal discs at its ends, whose middle rests or stretches nothing, two equations."""
-    drive = replace(stated(lower(SCENES["drive"])), alpha=np.array([0.0, 6.0]), beta=np.array([6.0, 0.0]))
+    sides = {"alpha": np.array([0.0, 6.0]), "beta": np.array([6.0, 0.0])}
+    drive = replace(stated(lower(SCENES["drive"])), inertia=np.ones(2), **sides)
     w = modes.modes(drive, 7).w
     assert w[0] == 0
     np.testing.assert_allclose(w[1::2] * np.tan(w[1::2] / 2), 3, rtol=1e-9)
     np.testing.assert_allclose(w[2::2] / np.tan(w[2::2] / 2), -3, rtol=1e-9)
     bar = replace(drive, inertia=np.zeros(2))
     np.testing.assert_allclose(modes.modes(bar, 5).w, np.arange(5) * math.pi, atol=1e-12)
-
-
-def test_a_source_that_the_chain_does_not_have():
-    with pytest.raises(ValueError, match="M9"):
-        problem(SCENES["drive"].system.chain, [Applied("M9", fmpq(0), fmpq(1))], [], 6.0)

@@ -249,7 +249,7 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
         Scene.from_toml("a\0b")
     with pytest.raises(SceneError) as refused:
         Scene.from_toml("two\nlines")
-    assert str(refused.value).startswith("'two\\nlines': ")
+    assert str(refused.value).startswith("two\\nlines: ")
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="no such device here")
@@ -288,3 +288,40 @@ def test_a_large_wrong_scene_is_refused_quickly() -> None:
     with pytest.raises(SceneError, match=r"^scene: load\[0\]\.samples\[0\]: "):
         Scene(name="s", system=system, load=[{"spacing": 1, "samples": ["x"] * 10**6}], output={"until": 1})
     assert time.perf_counter() - began < 2
+
+
+LARGE = {
+    "dotted keys": (".".join("a" * 40_000) + " = 1", "line 1: a key of more than 10 parts"),
+    "quoted keys": ("x = 1\n" + " . ".join(['"a"'] * 20_000) + " = 1", "line 2: a key of more than 10 parts"),
+    "dotted headers": ("[" + ".".join("a" * 40_000) + "]", "line 1: a key of more than 10 parts"),
+    "loads": ("[[load]]\nbody = 1\n" * 300_000, "more than 20000 tables"),
+    "loads in a line": ("load = [" + "{body = 1}," * 300_000 + "]", "more than 20000 tables"),
+    "values": ("[output]\nstrain = [" + "0," * 4_000_000 + "]", "more than 300000 values"),
+    "keys": ("".join(f"k{k} = 1\n" for k in range(400_000)), "more than 300000 values"),
+    "quotes": ('"\\' * 2_000_000, "no TOML, "),
+    "a long word": ("a" * 4_000_000, "no TOML, "),
+}
+
+
+@pytest.mark.parametrize(("text", "message"), LARGE.values(), ids=LARGE)
+def test_what_would_take_long_to_parse_is_refused_before(tmp_path, text, message):
+    path = tmp_path / "large.toml"
+    path.write_text(text)
+    start = time.monotonic()
+    with pytest.raises(SceneError) as error:
+        Scene.from_toml(path)
+    assert time.monotonic() - start < 10  # 24 s and more, once
+    assert str(error.value).startswith(f"{path}: {message}")
+    assert "\n" not in str(error.value)
+
+
+def test_strings_and_comments_are_not_counted(tmp_path):
+    """What looks like deep keys, tables and values there."""
+    noise = "a.b.c.d.e.f.g.h.i.j.k.l [[{," * 40_000
+    path = tmp_path / "noise.toml"
+    path.write_text(DRIVE.replace('name = "good"', f"name = 'good' # {noise}"))
+    assert Scene.from_toml(path).name == "good"
+    for quoted in (f'"{noise}"', f"'{noise}'", f'"""\n{noise}"""', f"'''\n{noise}'''", f'"\\"{noise}"'):
+        path.write_text(DRIVE.replace('"good"', quoted))
+        with pytest.raises(SceneError, match=r"^[^ ]*: name: "):
+            Scene.from_toml(path)

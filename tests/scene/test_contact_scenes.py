@@ -47,6 +47,34 @@ def test_a_contact_parts_two_points() -> None:
     assert [len(joint.points) for joint in model.network.joints] == [2, 2, 2]
 
 
+CUSHION: dict[str, Any] = {"spring": 4, "dashpot": "1/4"}
+
+
+def test_between_a_cushion_and_a_contact_is_a_joint() -> None:
+    output: dict[str, Any] = {"until": 3, "velocity": ["hammer", "1/2"]}
+    for parts in ([MASS, CUSHION, "joint", "contact", ROD], [ROD, "contact", "joint", CUSHION, MASS]):
+        said = {"type": "chain", "parts": parts}
+        unsaid = {"type": "chain", "parts": [part for part in parts if part != "joint"]}
+        one, other = (lower(Scene(name="s", system=each, output=output)) for each in (said, unsaid))
+        assert one.network == other.network
+        assert [link.contact for link in one.network.links].count(True) == 1
+
+
+@pytest.mark.parametrize(
+    ("parts", "at"),
+    [
+        ([MASS, {"spring": 4}, "contact", ROD], r"parts\[2\]"),
+        ([ROD, "contact", {"spring": 4}, MASS], r"parts\[2\]"),
+        (["fixed", {"spring": 4}, {"joint": True, "name": "cap"}, "contact", ROD], r"parts\[2\]"),
+        ([{"joint": True, "spring": 4}, "contact", ROD], r"parts\[0\]"),
+        ([ROD, "contact", CUSHION, "contact", ROD], r"parts\[2\]"),
+    ],
+)
+def test_what_lifts_off_has_a_motion_of_its_own(parts: list[Any], at: str) -> None:
+    with pytest.raises(SceneError, match=at + ": a side of a contact given .* dashpot beside its spring, or a mass"):
+        chain(parts)
+
+
 def test_two_contacts_at_one_place_are_called_by_its_sides() -> None:
     assert [row[2] for row in touching(chain([ROD, "contact", MASS, "contact", ROD]).network)] == ["1-", "1+"]
 

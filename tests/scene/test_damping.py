@@ -34,7 +34,12 @@ def scene(damping, kind="building"):
     [
         ("0.05", ["1/20"], None),
         (0.05, ["1/20"], None),
-        ("3/2", ["3/2"], None),
+        ("5 %", ["1/20"], None),
+        ("5%", ["1/20"], None),
+        (1, ["1"], None),
+        ("150 %", ["3/2"], None),
+        (["1/3 %", 0.5], ["1/300", "1/2"], None),
+        ({"modes": [3, 1], "ratio": "5 %"}, ["1/20"], (1, 3)),
         ([0, "0.05", 1], ["0", "1/20", "1"], None),
         ({"modes": [3, 1], "ratio": "0.05"}, ["1/20"], (1, 3)),
     ],
@@ -49,6 +54,15 @@ def test_damping_is_a_ratio_a_list_or_that_of_rayleigh(kind, damping, ratios, mo
     assert lower(made).labels.system["damping"]
 
 
+@pytest.mark.parametrize(
+    ("damping", "percent"), [(0.2, None), ("20 %", None), (0.25, "25"), ("500 %", "500"), ([0.01, 0.3], "30")]
+)
+def test_more_damping_than_structures_have_is_said(damping, percent):
+    notes = lower(scene(damping)).labels.notes
+    line = f"system.damping: {percent} % of critical; structures have some percent"
+    assert notes == (() if percent is None else (line,))
+
+
 def test_no_damping_is_no_key_and_damping_of_0_is_none():
     assert "damping" not in scene(None).model_dump()["system"]
     assert lower(scene(0)).damping is None
@@ -60,9 +74,18 @@ def test_no_damping_is_no_key_and_damping_of_0_is_none():
     [
         (-0.05, "system.damping: -0.05 given, a ratio of at least 0 expected"),
         ("1e160", 'system.damping: "1e160" given, a ratio of at most 1000000000 expected'),
+        (5, 'system.damping: 5 is above critical damping; write "5 %" or "500 %", whichever is meant'),
+        ("3/2", 'system.damping: "3/2" is above critical damping; write "1.5 %" or "150 %", whichever is meant'),
+        ([0.1, 2], 'system.damping[1]: 2 is above critical damping; write "2 %" or "200 %", whichever is meant'),
+        (
+            {"modes": [1, 2], "ratio": 5},
+            'system.damping.ratio: 5 is above critical damping; write "5 %" or "500 %", whichever is meant',
+        ),
+        ("-5 %", 'system.damping: "-5 %" given, a ratio of at least 0 expected'),
+        ("%", 'system.damping: "%" given, a number expected (an integer, a decimal or "p/q")'),
+        ("5 %%", 'system.damping: "5 %%" given, a number expected (an integer, a decimal or "p/q")'),
         ([0.1, -1], "system.damping[1]: -1 given, a ratio of at least 0 expected"),
         ([], "system.damping: 0 ratios given, 1 to 1000 expected"),
-        ("5 %", 'system.damping: "5 %" given, a number expected (an integer, a decimal or "p/q")'),
         (True, 'system.damping: true given, a number expected (an integer, a decimal or "p/q")'),
         ({"modes": [1, 3]}, "system.damping.ratio: missing, a ratio expected"),
         ({"ratio": 0.1}, "system.damping.modes: missing, the numbers of two modes expected"),

@@ -9,7 +9,7 @@ from flint import fmpq
 import wavesym
 from tests.support.scenes import NAMED
 from wavesym.cli import main
-from wavesym.errors import CostError
+from wavesym.errors import UnservedError
 from wavesym.mechanics.network import Network, Point
 from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text
@@ -76,7 +76,7 @@ def test_what_is_written_out_already_stays() -> None:
         system={"type": "chain", "parts": [{"mass": 1, "velocity": Fraction(1)}, {"rod": 1}]},
         output={"until": 1, "velocity": [0]},
     )
-    with pytest.raises(CostError, match="chain given"):
+    with pytest.raises(UnservedError, match="chain given"):
         explicit_text(scene)
     assert lower(scene).network.bars[0].delay == fmpq(1)
 

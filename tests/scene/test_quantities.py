@@ -54,6 +54,21 @@ def test_what_quantities_are(text: str, dimension: str, expected: Fraction) -> N
     assert quantity(text, dimension) == expected
 
 
+@pytest.mark.parametrize("text", ["350 ton", "3 tons", "2 kton", "3 ton/m^3", "4 ton*m/s^2", "4 ton_force"])
+def test_a_ton_is_two_units(text: str) -> None:
+    """pint takes it for 2000 lb, an engineer most often for 1000 kg."""
+    with pytest.raises(PydanticCustomError, match=r"is two units; write (t .* or short_ton|tf .* or kip)"):
+        quantity(text, "mass")
+    assert quantity("1 short_ton", "mass") == 2000 * POUND
+    assert quantity("1 tf", "force") == 1000 * GRAVITY == quantity("1 kip", "force") / POUND
+
+
+@pytest.mark.parametrize(("text", "meant"), [("3 gal", "Gal"), ("3 gals", "Gal"), ("3 mgal", "mGal")])
+def test_a_gallon_is_no_acceleration(text: str, meant: str) -> None:
+    with pytest.raises(PydanticCustomError, match=rf'Did you mean "{meant}"\?'):
+        quantity(text, "acceleration")
+
+
 def test_angles_have_pi_in_them() -> None:
     assert float(quantity("90 deg", "angle")) == pytest.approx(90 * DEGREE, rel=1e-15)
     assert float(quantity("60 rpm", "angular velocity")) == pytest.approx(360 * DEGREE, rel=1e-15)

@@ -10,13 +10,16 @@ import numpy as np
 
 from tests.support.builds import LANGUAGES, STRICT
 from wavesym import compiler as ways
+from wavesym.programs.request import PARTS
+from wavesym.programs.runtime.request import POSITIVE
 from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene
 
 
-def written(scene, runtime, folder, changes=(), precision="double"):
-    """The files of a scene, with `changes` (old, new) in NAME.c."""
-    made = dict(_generated(scene.model_dump_json(), tuple(runtime), precision))
+def written(scene, runtime, folder, changes=(), precision="double", parts=PARTS, kappa_max=100):
+    """The files of a scene, with `changes` (old, new) in NAME.c; for bodies as light as tests have them."""
+    largest = None if POSITIVE.isdisjoint(runtime) else kappa_max
+    made = dict(_generated(scene.model_dump_json(), tuple(runtime), precision, tuple(parts), largest))
     for old, new in changes:
         assert old in made[f"{scene.name}.c"], old
         made[f"{scene.name}.c"] = made[f"{scene.name}.c"].replace(old, new)
@@ -25,34 +28,24 @@ def written(scene, runtime, folder, changes=(), precision="double"):
 
 
 @cache
-def _generated(scene, runtime, precision):
+def _generated(scene, runtime, precision, parts, kappa_max):
+    asked = {"runtime": runtime, "precision": precision, "parts": parts, "kappa_max": kappa_max}
     with TemporaryDirectory() as folder:
-        paths = ways.generate(Scene(**json.loads(scene)), folder, runtime=runtime, precision=precision)
+        paths = ways.generate(Scene(**json.loads(scene)), folder, **asked)
         return tuple((path.name, path.read_text()) for path in paths)
 
 
 class BuiltModel:
     """One model; parameters are given one after the other, in the order of the struct."""
 
-    def __init__(self, scene, runtime, folder, changes=(), flags=("-O1",)):
-        written(scene, runtime, folder, changes)
+    def __init__(self, scene, runtime, folder, changes=(), flags=("-O1",), kappa_max=100):
+        # batches are compiled where they are tested: half a second each time
+        written(scene, runtime, folder, changes, parts=["gradients", "bound"], kappa_max=kappa_max)
         name = scene.name
         sizes = f"{{sizeof({name}_model), sizeof({name}_tangent)}}"
         size = f'#include "{name}.h"\nextern const size_t size[2];\nconst size_t size[2] = {sizes};\n'
         (folder / "size.c").write_text(size)
-        # batches are compiled where they are tested: half a second each time
-        command = [
-            *LANGUAGES["c99"],
-            *STRICT,
-            *flags,
-            f"-D{name.upper()}_ONE_SET",
-            "-fPIC",
-            "-shared",
-            f"{name}.c",
-            "size.c",
-            "-o",
-            "made.so",
-        ]
+        command = [*LANGUAGES["c99"], *STRICT, *flags, "-fPIC", "-shared", f"{name}.c", "size.c", "-o", "made.so"]
         compiler().run(command, folder)
         self.library = ctypes.CDLL(str(folder / "made.so"))
         self.outputs = len(scene.outputs)

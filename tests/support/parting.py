@@ -6,8 +6,10 @@ between one arrival of a front, or one closing of a gap, and the next. Fractions
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass, field
 from fractions import Fraction
+from operator import itemgetter
 
 
 @dataclass
@@ -22,15 +24,27 @@ class Rod:
     )
     arrived: list[Fraction] = field(default_factory=list)
     sent: list[Fraction] = field(default_factory=list)
+    history: tuple[list[tuple[Fraction, Fraction]], list[tuple[Fraction, Fraction]]] = field(
+        default_factory=lambda: ([], [])
+    )
+    """What was sent from the left and from the right end, and from when on."""
 
     def __post_init__(self) -> None:
         self.arrived = [self.velocity / 2, self.velocity / 2]
         self.sent = [self.velocity / 2, self.velocity / 2]
 
+    def waves(self, place: Fraction, tau: Fraction) -> tuple[Fraction, Fraction]:
+        """What goes to the right and to the left, as velocities, at a part of its length."""
+        found = []
+        for history, way in zip(self.history, (place, 1 - place), strict=True):
+            before = bisect_right(history, tau - way * self.delay, key=itemgetter(0))
+            found.append(history[before - 1][1] if before else self.velocity / 2)
+        return found[0], found[1]
+
 
 @dataclass
 class Struck:
-    """`between[k]` is left of rod k: "joint", "free", "fixed" (at the ends), or the gap of a contact.
+    """`between[k]` is left of rod k: "joint", "free", "fixed", "absorbing" (at the ends), or the gap of a contact.
 
     At the ends of the line a gap is that to a wall.
     """
@@ -61,6 +75,8 @@ class Struck:
                         rates[k] = right - left
                 elif self.between[k] == "fixed":
                     free = [Fraction(0)]
+                elif self.between[k] == "absorbing":
+                    free = [self.rods[rod].arrived[side] for rod, side in ends]
                 elif self.between[k] == "joint":
                     free = [self._common(ends, walls=False)] * 2
                 for (rod, side), velocity in zip(ends, free, strict=True):
@@ -96,4 +112,5 @@ class Struck:
     def _send(self, rod: int, side: int, wave: Fraction, now: Fraction) -> None:
         if wave != self.rods[rod].sent[side]:
             self.rods[rod].sent[side] = wave
+            self.rods[rod].history[side].append((now, wave))
             self.rods[rod].coming[1 - side].append((now + self.rods[rod].delay, wave))

@@ -1,7 +1,8 @@
 """Loaded by a worker of Dask when it starts: says which batches it computes, and does what a test asks for in one.
 
-SPIED_LOG is a file that gets a line for each batch; SPIED_SECONDS is how long each takes at least; the batch
-SPIED_CRASH kills the worker, and the batch SPIED_EAT fills its memory. SPIED_VERSION is that of its wavesym.
+SPIED_LOG is a file that gets a line for each task, with its batch; SPIED_SECONDS is how long each takes at least. The
+batch SPIED_CRASH, and more than SPIED_MOST cases, kill the worker; the batch SPIED_EAT fills its memory. SPIED_VERSION
+is that of its wavesym.
 """
 
 from __future__ import annotations
@@ -13,14 +14,14 @@ from typing import Any
 
 from wavesym.sweeps import worker
 
-_COMPUTE, _COMPUTE_CASE = worker.compute, worker.compute_case
+_COMPUTE = worker.compute
 
 
-def _spied(batch: int, place: object) -> None:
+def _spied(batch: int, places: list[tuple[int, ...]]) -> None:
     with open(os.environ["SPIED_LOG"], "a", encoding="ascii") as log:
-        log.write(f"{batch} {place}\n")
+        log.write(f"{batch} {places}\n")
     time.sleep(float(os.environ.get("SPIED_SECONDS", "0")))
-    if os.environ.get("SPIED_CRASH") == str(batch):
+    if os.environ.get("SPIED_CRASH") == str(batch) or len(places) > float(os.environ.get("SPIED_MOST", "inf")):
         os.kill(os.getpid(), signal.SIGKILL)
     if os.environ.get("SPIED_EAT") == str(batch):
         eaten = []
@@ -29,16 +30,11 @@ def _spied(batch: int, place: object) -> None:
             time.sleep(0.02)
 
 
-def compute(plan: Any, batches: Any, batch: int) -> Any:
-    _spied(batch, None)
-    return _COMPUTE(plan, batches, batch)
-
-
-def compute_case(plan: Any, batches: Any, batch: int, place: tuple[int, ...]) -> Any:
-    _spied(batch, place)
-    return _COMPUTE_CASE(plan, batches, batch, place)
+def compute(plan: Any, batches: Any, batch: int, places: list[tuple[int, ...]] | None = None) -> Any:
+    _spied(batch, batches.places(batch) if places is None else places)
+    return _COMPUTE(plan, batches, batch, places)
 
 
 def dask_setup(_: object) -> None:
-    worker.compute, worker.compute_case = compute, compute_case
+    worker.compute = compute
     worker.__version__ = os.environ.get("SPIED_VERSION", worker.__version__)

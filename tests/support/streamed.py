@@ -77,9 +77,16 @@ def missed(ran: Ran, scene: wavesym.Scene) -> NDArray[np.float64]:
 
 
 def built(
-    scene: wavesym.Scene, precision: str = "double", step: Fraction | None = None, runtime: Sequence[str] = ()
+    scene: wavesym.Scene,
+    precision: str = "double",
+    step: Fraction | None = None,
+    runtime: Sequence[str] = (),
+    room: int | None = None,
 ) -> StreamModel:
-    """The compiled stream of a scene; not as fast as it can be, which takes long to compile."""
+    """The compiled stream of a scene, with `room` for so many breakpoints, or as many as it has by itself; not as fast
+    as it can be, which takes long to compile.
+    """
     every = None if step is None else rational(step)
     request = Request(precision=precision, stream=True, step=every, runtime=tuple(runtime))
-    return StreamModel(stream_program(scene, request), ("-O1",))
+    defined = () if room is None else (f"-D{scene.name.upper()}_BREAKPOINTS={room}",)
+    return StreamModel(stream_program(scene, request), ("-O1", *defined))

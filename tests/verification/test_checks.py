@@ -5,14 +5,22 @@ import inspect
 import re
 import sys
 from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from types import SimpleNamespace
 
 import pytest
 from flint import fmpq
 
 from wavesym.errors import ToleranceError
 from wavesym.exact import reference
+from wavesym.exact.extremes import extremes
+from wavesym.exact.motion import Motion
 from wavesym.exact.tables import table as tables
+from wavesym.exact.tables.increments import combined
+from wavesym.exact.tables.network_response import RuledNetwork
 from wavesym.exact.tables.table import Function, full_table
+from wavesym.numbers.doubles import not_below
 from wavesym.programs.making import make
 from wavesym.programs.request import Request
 from wavesym.programs.schemes import SCHEMES
@@ -20,8 +28,10 @@ from wavesym.rendering import text_of
 from wavesym.scene import Scene, lower
 from wavesym.targets import files as written
 from wavesym.targets.c import kernel
-from wavesym.verification import checks
+from wavesym.verification import checks, peaks, programs
+from wavesym.verification.independent import independent_model
 from wavesym.verification.node_law import differences
+from wavesym.verification.programs import compare_programs
 from wavesym.verification.reference import known
 from wavesym.verification.substitution import jumps, residuals
 
@@ -48,33 +58,61 @@ def verdicts(check, truth):
     return [outcome.passed for outcome in check(truth)]
 
 
+def compared(scene, truth, evaluator="auto"):
+    """The verdicts on C and NumPy of an evaluator, against exact values alone."""
+    outcomes = compare_programs(scene, truth, [None] * len(truth.outputs), [Request(evaluator)])
+    assert {outcome.subject.partition(", ")[2] for outcome in outcomes} == {"C", "NumPy"}
+    return [outcome.passed for outcome in outcomes]
+
+
 @pytest.mark.parametrize("scene", [DRIVE, BUILDING, COLLISION], ids=["drive", "building", "collision"])
 def test_all_is_well(scene):
     truth = known(lower(scene))
     for check in checks.CHECKS:
         assert all(verdicts(check.run, truth)), check.title
+    assert all(compared(scene, truth))
 
 
 def test_of_a_long_horizon_the_beginning_is_compared(monkeypatch):
     """The code is that of the whole horizon; and the displacement goes on to grow, so that its bound is large here."""
     monkeypatch.setattr(reference, "_QUICK", 200_000)
     monkeypatch.setattr(reference, "_SHORTEST", fmpq(1))
-    whole = lower(
-        Scene(name="far", system=DRIVE.system, load=DRIVE.load, output=DRIVE.output.model_copy(update={"until": 40}))
+    scene = Scene(
+        name="far", system=DRIVE.system, load=DRIVE.load, output=DRIVE.output.model_copy(update={"until": 40})
     )
+    whole = lower(scene)
     truth = known(whole)
     assert 1 < truth.until == float(truth.model.until) < float(truth.whole.until)
     assert truth.whole is whole
     assert truth.notes == [f"far: compared to tau = {truth.until:g}; exact values of all of it would take too long"]
-    assert all(verdicts(checks.generated, truth))
+    assert all(compared(scene, truth))
     halved = replace(truth.outputs[0], values=truth.outputs[0].values / 2)
-    assert not all(verdicts(checks.generated, replace(truth, outputs=(halved, *truth.outputs[1:]))))
+    assert not all(compared(scene, replace(truth, outputs=(halved, *truth.outputs[1:]))))
 
 
-def made_with(monkeypatch, evaluator, change=lambda made: made):
-    """Let the checks see code of one evaluator, its files changed."""
-    monkeypatch.setattr(checks, "files", lambda program, language: change(written.files(program, language)))
-    monkeypatch.setattr(checks, "make", lambda model, **asked: make(model, Request(evaluator), **asked))
+def test_beyond_that_an_integration_looks(monkeypatch):
+    """A program that is wrong after the beginning only."""
+    monkeypatch.setattr(reference, "_QUICK", 200_000)
+    monkeypatch.setattr(reference, "_SHORTEST", fmpq(1))
+    scene = DRIVE.with_({"output.until": 40, "output.tolerance": "1e-6"})
+    truth = known(lower(scene), independent_model(scene, lower(scene)))
+    integrals = [outcome.integral for outcome in checks.beyond(truth)]
+    assert all(outcome.passed for outcome in compare_programs(scene, truth, integrals, [Request("march")]))
+    right_module = programs.imported
+
+    def late(text, name):
+        module = right_module(text, name)
+        return SimpleNamespace(evaluate=lambda tau: module.evaluate(tau) * (1 + 1e-4 * (tau > truth.until + 1)))
+
+    monkeypatch.setattr(programs, "imported", late)
+    wrong = compare_programs(scene, truth, integrals, [Request("march")])
+    assert [(outcome.subject, outcome.passed) for outcome in wrong] == [("march, NumPy", False), ("march, C", True)]
+    assert all(compared(scene, truth, "march"))  # without an integration it is not seen
+
+
+def changed_files(monkeypatch, change):
+    """Let programs be written with changed files."""
+    monkeypatch.setattr(programs, "files", lambda program, language: change(written.files(program, language)))
 
 
 @pytest.mark.parametrize(
@@ -91,14 +129,14 @@ def made_with(monkeypatch, evaluator, change=lambda made: made):
 def test_a_sign_in_the_arithmetic_is_seen(file, right, wrong, monkeypatch, tmp_path):
     truth = known(lower(DRIVE))
     evaluator, language = file.split(".")
-    made_with(monkeypatch, evaluator)
-    assert all(verdicts(checks.generated, truth) + verdicts(checks.invariants, truth))
+    monkeypatch.setattr(checks, "make", lambda model: make(model, Request(evaluator)))
+    assert all(compared(DRIVE, truth, evaluator) + verdicts(checks.invariants, truth))
     if language == "c":
         assert right in text_of(f"c/{evaluator}/{file}")
         monkeypatch.setattr(kernel, "text_of", lambda other: text_of(other).replace(right, wrong))
     else:
         monkeypatch.setitem(SCHEMES, evaluator, changed(SCHEMES[evaluator], right, wrong, monkeypatch, tmp_path))
-    assert not all(verdicts(checks.generated, truth))
+    assert compared(DRIVE, truth, evaluator) == [language == "c", language != "c"]  # NumPy, C
     assert all(verdicts(checks.invariants, truth)) == (language == "c")  # which look at NumPy
 
 
@@ -124,8 +162,10 @@ def a_digit_changed(text, file):
 @pytest.mark.parametrize("evaluator", ["closed", "pieces", pytest.param("march", marks=pytest.mark.slow)])
 def test_a_digit_in_a_generated_table_is_seen(evaluator, file, monkeypatch):
     truth = known(lower(BUILDING))
-    made_with(monkeypatch, evaluator, lambda made: {**made, file: a_digit_changed(made[file], file)})
-    assert not all(verdicts(checks.generated, truth))
+    changed_files(
+        monkeypatch, lambda made: made | {name: a_digit_changed(made[name], name) for name in made if name == file}
+    )
+    assert compared(BUILDING, truth, evaluator) == [file == "small.c", file != "small.c"]  # NumPy, C
 
 
 def test_a_digit_in_a_program_breaks_the_balances(monkeypatch):
@@ -134,8 +174,8 @@ def test_a_digit_in_a_program_breaks_the_balances(monkeypatch):
 
     def changed(model):
         program = right(model)
-        *_, last = (number for number in program.tables["coefficient"] if abs(number) > 0.1)
-        wrong = tuple(1.0001 * number if number == last else number for number in program.tables["coefficient"])
+        largest = max(program.tables["coefficient"], key=abs)
+        wrong = tuple(1.0001 * number if number == largest else number for number in program.tables["coefficient"])
         return replace(program, tables={**program.tables, "coefficient": wrong})
 
     monkeypatch.setattr(checks, "make", changed)
@@ -143,18 +183,31 @@ def test_a_digit_in_a_program_breaks_the_balances(monkeypatch):
 
 
 @pytest.mark.parametrize("scene", [DRIVE, COLLISION], ids=["drive", "collision"])
-def test_a_wrong_rule_is_seen_by_all_that_is_not_derived(scene, monkeypatch):
+def test_a_wrong_rule_is_seen_in_tables(scene, monkeypatch):
     """Tables of which every start is a little wrong, and all that follows from it."""
     right = tables.solve
 
     def wrong(own, right_side, jump):
         return right(own, right_side, jump + fmpq(1, 100000))
 
-    monkeypatch.setattr(tables, "solve", wrong)
-    system = scene.system.chain
-    table = full_table(system, 4, fmpq(0))
-    assert list(differences(system, table))
-    assert list(jumps(system, table))
+    with monkeypatch.context() as broken:
+        broken.setattr(tables, "solve", wrong)
+        system = scene.system.chain
+        table = full_table(system, 4, fmpq(0))
+        assert list(differences(system, table))
+        assert list(jumps(system, table))
+
+
+@pytest.mark.parametrize("scene", [DRIVE, COLLISION], ids=["drive", "collision"])
+def test_a_wrong_law_of_joints_is_seen_by_all_that_is_not_derived(scene, monkeypatch):
+    """Values of which every motion of a joint is a little wrong, and all that follows from it."""
+    right = RuledNetwork._velocities
+
+    def wrong(self, *arrived):
+        moved = right(self, *arrived)
+        return {point: combined([(1 + fmpq(1, 100000), velocity)]) for point, velocity in moved.items()}
+
+    monkeypatch.setattr(RuledNetwork, "_velocities", wrong)
     truth = known(lower(scene))
     assert not all(verdicts(checks.integration, truth))
     assert not all(verdicts(checks.spacetime, truth))
@@ -172,14 +225,54 @@ def test_a_coefficient_of_a_table_is_seen(power):
     assert [*residuals(system, table), *jumps(system, table)]
 
 
+@pytest.mark.parametrize("first", [0, "1/1000"])
+def test_what_only_the_last_number_sees_is_not_left_out(first, monkeypatch):
+    """Where contacts are, the last stretch was left out where it has one double, and extremes were proved without."""
+    parts = [{"joint": True, "name": "a"}, {"rod": 1}, "contact", {"rod": 1}, "fixed"]
+    load = {"at": "a", "times": [0, "2.3"], "steps": [first, 1]}
+    output = {"until": "2.3", "force": ["0"]}
+    scene = Scene(name="pressed", system={"type": "chain", "parts": parts}, load=[load], output=output)
+    truth = known(lower(scene))
+    assert truth.until in truth.taus
+    assert verdicts(checks.peaks, truth) == [True]
+    assert all(compared(scene, truth))
+
+    def without(self, starts):
+        return [not_below(low) == not_below(high) for low, high in pairwise([*starts, self.until])]
+
+    monkeypatch.setattr(Motion, "_vague", without)
+    assert verdicts(checks.peaks, truth) == [False]
+    assert all(compared(scene, truth)) == (first != 0)  # else all of it is taken for 0
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_an_extreme_that_is_none_is_seen(side, monkeypatch):
+    truth = known(lower(COLLISION))
+    right = checks.peaks(truth)
+    assert all(outcome.passed for outcome in right)
+
+    def wrong(model, by):
+        pairs = [list(pair) for pair in extremes(model)]
+        pairs[0][side] = replace(pairs[0][side], value=pairs[0][side].value * by)
+        return pairs
+
+    for by in (1 + 1e-12, 1 - 1e-12):
+        monkeypatch.setattr(peaks, "extremes", partial(wrong, by=by))
+        assert verdicts(peaks.peaks, truth) == [False] + [True] * (len(right) - 1)
+
+
 def test_a_refusal_is_no_failure(monkeypatch):
     truth = known(lower(DRIVE))
 
-    def refuse(model, **_):
-        raise ToleranceError("small: cannot be met")
+    def refuse(model, *_, **__):
+        raise ToleranceError("cannot be met")
 
     monkeypatch.setattr(checks, "make", refuse)
-    for outcome in (*checks.generated(truth), *checks.invariants(truth)):
+    monkeypatch.setattr(programs, "make", refuse)
+    (program,) = compare_programs(DRIVE, truth, [None] * 3, [Request()])
+    assert (program.passed, program.cells["error"]) == (True, "refused")
+    assert program.note == "small: not auto: cannot be met"
+    for outcome in checks.invariants(truth):
         assert outcome.passed
         assert outcome.cells["NumPy"] == "refused"
-        assert outcome.note == "small: cannot be met"
+        assert outcome.note == "cannot be met"

@@ -2,14 +2,19 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from flint import fmpq
 
 from wavesym.errors import ToleranceError
 from wavesym.mechanics.damping import Damping
+from wavesym.programs.request import Request
 from wavesym.scene import Scene, lower
 from wavesym.verification import damped as module
+from wavesym.verification import programs
 from wavesym.verification.report import verify
+
+MODES = [Request("modes")]
 
 
 @pytest.fixture(autouse=True)
@@ -25,29 +30,58 @@ def frame(**changes):
     return Scene(name="frame", system=system, load=load, output=output)
 
 
+def verified(*scenes, requests=MODES):
+    return verify([(scene, lower(scene)) for scene in scenes], requests)
+
+
 def test_damped_scenes_are_verified():
-    text, passed = verify([lower(frame()), lower(frame(damping={"modes": [1, 2], "ratio": "1/10"}))])
+    text, passed = verified(frame(), frame(damping={"modes": [1, 2], "ratio": "1/10"}))
     assert passed
-    assert text.count("PASS") == 6
-    assert text.count("\nscene ") == 1
+    assert text.count("modes, NumPy") == text.count("modes, C") == 2  # C is fed sample by sample
+    assert text.count("PASS") == 4 + 6
     assert "finite elements" in text
 
 
-def test_other_damping_is_seen(monkeypatch):
-    make = module.make
-    monkeypatch.setattr(
-        module, "make", lambda model, **tested: make(replace(model, damping=Damping((fmpq(51, 1000),))), **tested)
-    )
-    text, passed = verify([lower(frame())])
+@pytest.mark.parametrize("language", ["py", "c"])
+def test_other_damping_is_seen(language, monkeypatch):
+    """In C and in NumPy, each alone."""
+    right, make = programs.files, programs.make
+
+    def files(program, of):
+        if of != {"py": "numpy", "c": "c"}[language]:
+            return right(program, of)
+        model = replace(program.provenance.model, damping=Damping((fmpq(51, 1000),)))
+        return right(make(model, Request("modes"), tested=True), of)
+
+    monkeypatch.setattr(programs, "files", files)
+    text, passed = verified(frame())
     assert not passed
-    assert text.count("FAIL") == 3
+    assert [line.split()[1:3] for line in text.splitlines() if line.endswith("FAIL")] == [
+        ["modes,", "NumPy" if language == "py" else "C"]
+    ]
 
 
 def test_what_has_no_program_is_not_verified(monkeypatch):
     def refusing(*_, **__):
         raise ToleranceError("output.tolerance: 1e-06 cannot be met")
 
-    monkeypatch.setattr(module, "make", refusing)
-    text, passed = verify([lower(frame())])
+    monkeypatch.setattr(programs, "make", refusing)
+    text, passed = verified(frame())
     assert not passed
-    assert (text.count("refused  FAIL"), text.count("cannot be met")) == (3, 1)
+    assert "frame: no program is verified" in text
+    assert text.count("cannot be met") == 1
+
+
+def test_an_output_that_elements_do_not_judge_is_not_verified(monkeypatch):
+    """Elements that do not agree with each other."""
+    right = module.solution
+
+    def noisy(model, count):
+        taus, values = right(model, count)
+        return taus, values + np.array([[0.1], [0], [0]]) * np.max(np.abs(values)) * (-1.0) ** (count // 2 % 3)
+
+    monkeypatch.setattr(module, "solution", noisy)
+    text, passed = verified(frame())
+    assert not passed
+    assert "frame: strain@1/3 is not verified, as no integration is exact enough to judge it" in text
+    assert "acceleration@2 is not verified" not in text

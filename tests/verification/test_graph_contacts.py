@@ -19,8 +19,8 @@ from wavesym.verification.checks import integration, invariants, spacetime
 from wavesym.verification.contacts import _compared, _Method, fronts, happening
 from wavesym.verification.graph import Change, alike, graph
 from wavesym.verification.graph_fronts import Undecided, integrate_fronts
-from wavesym.verification.graph_grid import graph_grid
 from wavesym.verification.reference import known
+from wavesym.verification.spacetime import grid
 
 MANY = 2e8
 
@@ -56,12 +56,12 @@ def test_collocation_finds_when_a_bar_bounces() -> None:
 
 
 def test_central_differences_find_when_a_bar_bounces() -> None:
-    made = graph_grid(bouncing()).struck(5.0, MANY)
+    made = grid(bouncing()).struck(5.0, MANY)
     assert made is not None
-    grid, found = made
+    stepped, found = made
     assert [change.kind for change, _ in found] == ["closes", "opens"] * 2
     assert all(abs(change.tau - tau) <= slack < 0.1 for (change, slack), tau in zip(found, BOUNCES, strict=True))
-    assert float(grid.step) < 0.1
+    assert float(stepped.step) < 0.1
 
 
 @pytest.mark.parametrize(("velocity", "impedance", "length"), [("1e-9", "1e6", 1), ("1e6", "1e-6", 1000)])
@@ -70,7 +70,7 @@ def test_units_do_not_matter(velocity: str, impedance: str, length: int) -> None
     small = model([body, "contact", {"rod": length, "impedance": impedance}, "fixed"], 4 * length, velocity=["0-"])
     (change,) = integrate_fronts(graph(small), 4.0 * length, 12, 200).changes
     assert change.tau / length == pytest.approx(3.06766764161830635, rel=1e-12)
-    stepped = graph_grid(small).struck(4.0 * length, MANY)
+    stepped = grid(small).struck(4.0 * length, MANY)
     assert stepped is not None
     ((late, slack),) = stepped[1]
     assert abs(late.tau - change.tau) <= slack

@@ -11,12 +11,12 @@ from hypothesis import given, settings
 import wavesym
 from tests.support.drawn import scenes
 from tests.support.generated import assemble
-from wavesym.numbers.doubles import fraction, nearest
+from wavesym.numbers.doubles import fraction
 from wavesym.programs.march.evaluator import marched
 from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks
-from wavesym.verification.invariants import balances, watched, weights
+from wavesym.verification.invariants import Balancing
 from wavesym.verification.reference import known
 
 COLLISION = Scene(
@@ -52,34 +52,29 @@ def again(scene, system=None, **output):
     )
 
 
+# of bodies at x = 0, 1, ... and of rods, in units of the first rod's: kappa is a rod's mass in terms of a body's
+MASSES = {
+    id(COLLISION): ([0, 10, 0, 1 / 2, 0, 7 / 3, 0], [1] * 6),
+    id(DRIVE): ([1, 2, 3], [1, 1]),
+    id(FORCE): ([0, 5 / 3, 5], [1, 1]),
+}
 FOUR = pytest.mark.parametrize("scene", [COLLISION, DRIVE, FORCE, GROUND], ids=["impact", "drive", "force", "ground"])
 
 
-def exactly(scene, windows):
-    """A scene as it is watched, its values in balls, rounded once, and what that costs."""
-    seen = watched(lower(scene), windows)
-    response = Response(seen)
-    return seen, response, [2.0**-53 * np.abs(row).max() for row in response(np.linspace(0, windows, 401))]
+MOST = 30_000
 
 
-def test_weights_are_masses():
-    """kappa is a rod's mass in terms of a body's; in units of the mass of a rod, bodies weigh 1/kappa."""
-    bodies, rods = weights(COLLISION.system.chain)
-    assert rods == (1,) * 6
-    assert [bodies[x] for x in (1, 3, 5)] == [10, fmpq(1, 2), fmpq(7, 3)]
-    bodies, rods = weights(FORCE.system.chain)
-    assert rods == (1, 1)
-    assert bodies[1:] == (fmpq(5, 3), 5)
+def exactly(scene, until):
+    """A scene's books, its values in balls, rounded once, and what that costs."""
+    books = Balancing(lower(scene).shortened(fmpq(until)), MOST)
+    assert books.struck
+    response = Response(books.model)
+    last = float(books.struck[-1])
+    return books, response, [2.0**-53 * np.abs(row).max() for row in response(np.linspace(0, last, 401))]
 
 
-def test_weights_of_a_drive_are_moments_of_inertia():
-    """In units of the first shaft's: discs as inertia, J_0i = kappa_i J_i."""
-    bodies, rods = weights(DRIVE.system.chain)
-    assert bodies == (1, 2, 3)
-    assert rods == (1, 1)
-    bodies, rods = weights(again(DRIVE, {"kappa": [2, 3]}).system.chain)
-    assert bodies == (fmpq(1, 2), 1, fmpq(3, 2))
-    assert rods == (1, 3)
+def balances(books, evaluate, errors):
+    return books.balances(evaluate, errors)
 
 
 @FOUR
@@ -97,7 +92,8 @@ def test_balances_hold_in_any_system(scene):
 
 def in_rods(scene, tau):
     """Momentum and energy at tau, not inside a load's window, by Gauss's rule along the rods."""
-    system, m = scene.system.chain, scene.system.m
+    m = scene.system.m
+    bodies, rods = MASSES[id(scene)]
     nodes, rule = np.polynomial.legendre.leggauss(24)
     # fronts are where a load's time says, seen from either end
     parts = {Fraction(tau) - fraction(load.time) for load in lower(scene).loads}
@@ -110,9 +106,7 @@ def in_rods(scene, tau):
     wide = again(scene, until=tau + 1, strain=along, velocity=[*along, *range(m + 1)])
     values = wavesym.evaluator(wide)(np.array([float(tau)]))[:, 0]
     strain, velocity, q = np.split(values, [len(along), 2 * len(along)])
-    bodies, rods = weights(system)
-    heavy = np.array([nearest(w * node.inertia) for w, node in zip(bodies, system.nodes, strict=True)])
-    shares = np.outer([float(Fraction(str(w))) for w in rods], shares).ravel()
+    heavy, shares = np.array(bodies), np.outer(rods, shares).ravel()
     return heavy @ q + shares @ velocity, heavy @ q**2 / 2 + shares @ (strain**2 + velocity**2) / 2
 
 
@@ -159,8 +153,11 @@ def test_a_leak_is_seen(scene):
 
 
 def test_one_wrong_output_is_seen():
+    """Displacements matter to springs alone, which a drive has none of."""
     seen, evaluate, errors = exactly(DRIVE, 4)
-    for wrong in range(len(seen.probes)):
+    for wrong, probe in enumerate(seen.model.probes):
+        if probe.quantity == "displacement":
+            continue
 
         def changed(taus, wrong=wrong):
             values = evaluate(taus)
@@ -171,24 +168,21 @@ def test_one_wrong_output_is_seen():
 
 
 def test_what_is_not_looked_at_is_said(monkeypatch):
-    (outcome,) = checks.invariants(known(lower(again(COLLISION, until="1/2", strain=[2]))))
-    assert outcome.passed
-    assert "horizon is shorter than 1" in outcome.note
     truth = known(lower(DRIVE))
-    monkeypatch.setattr(checks, "_MOST_WINDOWS", 20)
-    assert {outcome.cells["to"] for outcome in checks.invariants(truth)} == {"2"}
+    monkeypatch.setattr(checks, "_MOST_VALUES", 2000)
+    assert {float(outcome.cells["to"]) < 6 for outcome in checks.invariants(truth)} == {True}
     monkeypatch.setattr(checks, "_MOST_VALUES", 20)
     (outcome,) = checks.invariants(truth)
     assert outcome.passed
-    assert "too many rods" in outcome.note
+    assert "fronts come too often" in outcome.note
 
 
 @pytest.mark.slow
 @FOUR
 def test_the_march_keeps_them_for_long(scene):
-    seen = watched(lower(scene), 100).tolerating(fmpq(1, 10**4))
-    made = marched(seen)
+    books = Balancing(lower(scene).shortened(fmpq(100)), 10 * MOST)
+    made = marched(books.model.tolerating(fmpq(1, 10**4)))
     evaluate = assemble(made).evaluate
-    for balance in balances(seen, evaluate, [output.bound * output.largest for output in made.outputs]):
+    for balance in balances(books, evaluate, [output.bound * output.largest for output in made.outputs]):
         assert balance.error <= balance.allowed
         assert balance.error < 1e-9

@@ -6,7 +6,8 @@ import pytest
 
 import wavesym
 from wavesym.scene import lower
-from wavesym.verification import checks, graph_balance
+from wavesym.verification import checks
+from wavesym.verification import invariants as balances
 from wavesym.verification.checks import invariants, spacetime
 from wavesym.verification.reference import Known, known
 
@@ -27,7 +28,7 @@ def test_balances_of_a_stiff_spring_are_sharp() -> None:
 
 
 def test_panels_on_which_springs_swing_far_tell_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(graph_balance, "_SWING", 1e9)
+    monkeypatch.setattr(balances, "_SWING", 1e9)
     assert any(float(outcome.cells["allowed"]) > 1e-7 for outcome in invariants(made(10**5)))
 
 

@@ -16,7 +16,7 @@ from io import TextIOWrapper
 import click
 
 from wavesym import __version__
-from wavesym.errors import WavesymError, did_you_mean
+from wavesym.errors import WavesymError, did_you_mean, printable
 
 COMMANDS = (
     "scenes",
@@ -122,7 +122,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _refused(line: str, status: int) -> int:
-    click.echo(" ".join(line.split()), err=True)
+    click.echo(printable(" ".join(line.split())), err=True)  # names of files may be commands to a terminal
     return status
 
 

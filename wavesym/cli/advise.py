@@ -9,7 +9,7 @@ import click
 
 from wavesym.cli.parameters import SCENE, put
 from wavesym.cli.progress import progress
-from wavesym.errors import CostError
+from wavesym.errors import WavesymError
 
 if TYPE_CHECKING:
     from wavesym.scene import Scene
@@ -41,7 +41,7 @@ def advise(scene: Scene, tolerance: float, format: str) -> None:
 
     with progress(f"advise {scene.name}"):
         text = compiler.advise(scene, tolerance, format)
-    with suppress(CostError):  # when contacts open may be dear to know
+    with suppress(WavesymError):  # when contacts open may be dear to know, or not be known
         for warning in compiler.warnings(scene):
             click.echo(f"{scene.name}: {warning}", err=True)
     put(text)

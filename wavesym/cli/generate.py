@@ -23,25 +23,29 @@ MOST_WINDOWS = 2**31 - 2
 FINEST = {"double": Fraction(1, 10**13), "single": Fraction(1, 10**5)}  # of tolerances at run time
 
 
-class StepParameter(click.ParamType[Fraction]):
-    """A positive number of tau, exact: a decimal, or p/q."""
+class PositiveParameter(click.ParamType[Fraction]):
+    """A positive number, exact: a decimal, or p/q; `expected` says so, with an example."""
 
-    name = "step"
+    name = "number"
+
+    def __init__(self, expected: str) -> None:
+        self.expected = expected
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Fraction:
         """The number."""
         from wavesym.fields.numbers import exact
 
         try:
-            step = exact(value)
+            number = exact(value)
         except ValueError:
-            step = Fraction(0)
-        if step <= 0:
-            self.fail(f"{value} given, a positive number of tau such as 0.1 or 1/8 expected", param, ctx)
-        return step
+            number = Fraction(0)
+        if number <= 0:
+            self.fail(f"{value} given, {self.expected} expected", param, ctx)
+        return number
 
 
-STEP = StepParameter()
+STEP = PositiveParameter("a positive number of tau such as 0.1 or 1/8")
+KAPPA = PositiveParameter("a positive number such as 5 or 1/2")
 
 
 @click.command()
@@ -74,6 +78,20 @@ STEP = StepParameter()
     "is written out mass, dashpot, spring, impedance, velocity and load. A stream takes them when it starts, all but "
     "load.",
 )
+@click.option(
+    "--with",
+    "parts",
+    metavar="LIST",
+    help="What that C has besides values and the estimate of their errors, with commas between: of peaks, gradients, "
+    "batch, misfit (which brings batch) and bound.",
+)
+@click.option(
+    "--kappa-max",
+    type=KAPPA,
+    metavar="X",
+    help="The largest kappa that it is made for, of a chain the largest rate of a joint: memory grows with its root.  "
+    "[default: ten times the scene's]",
+)
 @click.option("--stream", is_flag=True, help="Take the loads sample by sample, from a controller, without end.")
 @click.option(
     "--step",
@@ -94,6 +112,8 @@ def generate(
     windows: int | None,
     optimize: str | None,
     runtime: str | None,
+    parts: str | None,
+    kappa_max: Fraction | None,
     stream: bool,
     step: Fraction | None,
     package: bool,
@@ -110,19 +130,18 @@ def generate(
     from wavesym import compiler
 
     asked = (scene, directory, language, evaluator, precision, windows, optimize)
-    given = () if runtime is None else tuple(name.strip() for name in runtime.split(","))
+    given, named = map(_names, (runtime, parts))
+    more: dict[str, Any] = {"parts": named, "kappa_max": kappa_max, "stream": stream, "step": step, "package": package}
     if only_check and target:
         raise click.UsageError(f"--check given with --target {target}, nothing expected: binaries differ by compiler")
     if only_check:
         with progress(f"check {scene.name}"):
-            difference = compiler.check(*asked, scene_argument(), given, stream=stream, step=step, package=package)
+            difference = compiler.check(*asked, scene_argument(), given, **more)
         if difference:
             put(difference)
         return 1 if difference else 0
     with progress(f"generate {scene.name}"):
-        written = compiler.generate(
-            *asked, given, stream=stream, step=step, package=package, target=target or "", force=force
-        )
+        written = compiler.generate(*asked, given, **more, target=target or "", force=force)
     for path in written:
         click.echo(path)
     for line in compiler.fmu_told(written[0]) if target else ():
@@ -130,8 +149,13 @@ def generate(
     if given and scene.output.tolerance < (finest := FINEST[precision]):
         told = f"tolerance {float(scene.output.tolerance):g} taken as {float(finest):.0e} at run time"
         click.echo(f"{scene.name}: {told}", err=True)
-    for line in () if stream or target else compiler.no_load(scene):
+    for line in () if stream or target else compiler.notes(scene):
         click.echo(f"{scene.name}: {line}", err=True)
     for manifest in (path for path in written if path.suffix == ".json"):
         click.echo(f"{scene.name}: {json.loads(manifest.read_text(encoding='utf-8'))['reason']}", err=True)
     return 0
+
+
+def _names(told: str | None) -> tuple[str, ...]:
+    """What a list has, with commas between."""
+    return () if told is None else tuple(name.strip() for name in told.split(","))

@@ -103,7 +103,27 @@ def each_blamed(scenes: Iterable[Scene], stack: ExitStack) -> Iterator[Scene]:
         yield scene
 
 
+class RatioParameter(click.ParamType[Any]):
+    """A ratio from 0 to below 1, as a number or in percent: 0.05 or "5 %"."""
+
+    name = "ratio"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """The ratio as a double."""
+        if isinstance(value, float):
+            return value
+        text, percent = value.removesuffix("%").rstrip(), value.endswith("%")
+        try:
+            ratio = float(text) / (100 if percent else 1)
+        except ValueError:
+            ratio = float("nan")
+        if not 0 <= ratio < 1:
+            self.fail(f'{value!r} is no ratio from 0 to below 1; write 0.05 or "5 %"', param, ctx)
+        return ratio
+
+
 SCENE = SceneParameter()
+RATIO = RatioParameter()
 PATH = click.Path(path_type=Path)
 
 

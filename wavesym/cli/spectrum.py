@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wavesym.cli.parameters import PATH, SCENE, put, refuse_scene, refuse_unwritable
+from wavesym.cli.parameters import PATH, RATIO, SCENE, put, refuse_scene, refuse_unwritable
 from wavesym.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 @click.argument("scene", type=SCENE)
 @click.option(
     "--damping",
-    type=click.FloatRange(0, 1, max_open=True),
+    type=RATIO,
     default=0.05,
     show_default=True,
-    help="Ratio of the oscillators' damping, below 1.",
+    help="Ratio of the oscillators' damping, below 1; 5% is 0.05.",
 )
 @click.option("-o", "out", type=PATH, metavar="FILE", help="A picture, too: .svg, .png or .pdf.")
 def spectrum(scene: Scene, damping: float, out: Path | None) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from wavesym.cli.generate import EVALUATORS, PRECISIONS
 from wavesym.cli.parameters import SceneParameter, each_blamed, put
 from wavesym.cli.progress import progress
 
@@ -34,23 +35,38 @@ class _SceneOrId(SceneParameter):
 @click.option("--derived", is_flag=True, help="The derivation proved, and its tables by other routes, instead.")
 @click.option("--format", type=click.Choice(FORMATS), help="With --published.  [default: text]")
 @click.option("--reproduce", is_flag=True, help="With --published: a scene that shows each counterexample.")
+@click.option("--evaluator", type=click.Choice(EVALUATORS), help="This program alone.  [default: all programs]")
+@click.option("--precision", type=click.Choice(PRECISIONS), help="Programs of this precision alone.")
+@click.option("--runtime", metavar="LIST", help="The program that takes these parameters when it runs, alone.")
+@click.option("--stream", is_flag=True, help="The program that takes loads sample by sample, alone.")
 def verify(
-    asked: tuple[Scene, ...] | tuple[str, ...], published: bool, derived: bool, format: str | None, reproduce: bool
+    asked: tuple[Scene, ...] | tuple[str, ...],
+    published: bool,
+    derived: bool,
+    format: str | None,
+    reproduce: bool,
+    evaluator: str | None,
+    precision: str | None,
+    runtime: str | None,
+    stream: bool,
 ) -> int:
-    """Check evaluators against integration and invariants; exit 1 where one is out of tolerance.
+    """Check programs against integration and invariants; exit 1 where one is wrong, or an output is not seen.
 
-    Without SCENE, all built-in scenes. With --published, exit 1 only where a formula could not be tested. ID is a
-    formula, a table or a section: 4.12, T3, III.14, text.22, "section 2".
+    Without SCENE, all built-in scenes; without options every program that serves a scene. With --published, exit 1 only
+    where a formula could not be tested. ID is a formula, a table or a section: 4.12, T3, III.14, text.22, "section 2".
 
     \b
     Example:
-      wavesym verify collision_m4 drive_m1
+      wavesym verify collision_m4 drive_m1 --evaluator march
     """
     if published + derived + (bool(asked) and not published) > 1:
         raise click.UsageError("more than one of SCENE, --published and --derived given, at most one expected")
     for option in ("--format" if format else "", "--reproduce" if reproduce else ""):
         if option and not published:
             raise click.UsageError(f"{option} given without --published; it is for --published only")
+    options = {"evaluator": evaluator, "precision": precision, "runtime": runtime, "stream": stream or None}
+    for option in (name for name, value in options.items() if value is not None and (published or derived)):
+        raise click.UsageError(f"--{option} given with --{'published' if published else 'derived'}; it is for scenes")
     with progress("verify") as line:
         from wavesym import compiler
         from wavesym.scene import Scene, builtin_names
@@ -66,6 +82,7 @@ def verify(
             scenes = [scene for scene in asked if isinstance(scene, Scene)]
             told = line.each(scenes or [Scene.from_toml(name) for name in builtin_names()], attrgetter("name"))
             with ExitStack() as blame:
-                text, passed = compiler.verify(each_blamed(told, blame) if scenes else told)
+                seen = each_blamed(told, blame) if scenes else told
+                text, passed = compiler.verify(seen, evaluator, precision, runtime, stream=stream)
     put(text)
     return 0 if passed else 1

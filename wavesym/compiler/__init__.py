@@ -26,7 +26,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from wavesym.compiler.generation import check, fmu_told, generate, no_load, stream_program
+    from wavesym.compiler.generation import check, fmu_told, generate, notes, stream_program
     from wavesym.compiler.pictures import plot, record, report
     from wavesym.compiler.sweeps import run_sweep, sweep, sweep_report, sweep_status, sweep_table
     from wavesym.compiler.texts import derive, inspect, symbolic_tables_text, table, tables, tables_text, walks
@@ -43,7 +43,7 @@ __all__ = [
     "generate",
     "inspect",
     "model",
-    "no_load",
+    "notes",
     "peaks",
     "plot",
     "published",
@@ -69,7 +69,7 @@ __all__ = [
 ]
 
 _WAYS = {
-    "generation": ("check", "fmu_told", "generate", "no_load", "stream_program"),
+    "generation": ("check", "fmu_told", "generate", "notes", "stream_program"),
     "pictures": ("plot", "record", "report"),
     "sweeps": ("run_sweep", "sweep", "sweep_report", "sweep_status", "sweep_table"),
     "texts": ("derive", "inspect", "symbolic_tables_text", "table", "tables", "tables_text", "walks"),

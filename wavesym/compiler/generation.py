@@ -34,6 +34,8 @@ def generate(
     optimize: str | None = None,
     runtime: Sequence[str] = (),
     *,
+    parts: Sequence[str] = (),
+    kappa_max: Fraction | None = None,
     stream: bool = False,
     step: Fraction | None = None,
     package: bool = False,
@@ -44,11 +46,14 @@ def generate(
 
     `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
     "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters that C takes when it
-    runs: "kappa", "inertia", "velocity", "load". A `stream` takes the loads sample by sample, at any time, or best at
-    multiples of `step`, in tau, and `runtime` when it starts. `package` adds what CMake builds, tests and installs C
-    with. `target` "fmu2" or "fmu3" makes one file, NAME.fmu, a stream for simulators, whose parameters are `runtime`,
-    or all of a named system; CompilerError without a C compiler. Files that wavesym did not write are replaced only by
-    `force`; WavesymError else, and for a language, evaluator, precision or aim that there is not.
+    runs: "kappa", "inertia", "velocity", "load"; `parts` are what it has then besides values and the estimate of their
+    errors: "peaks", "gradients", "batch", "misfit", "bound". `kappa_max` is the largest kappa that it is made for (ten
+    times the scene's own), of a chain that is written out the largest rate of a joint. A `stream` takes the loads
+    sample by sample, at any time, or best at multiples of `step`, in tau, and `runtime` when it starts. `package` adds
+    what CMake builds, tests and installs C with. `target` "fmu2" or "fmu3" makes one file, NAME.fmu, a stream for
+    simulators, whose parameters are `runtime`, or all of a named system; CompilerError without a C compiler. Files that
+    wavesym did not write are replaced only by `force`; WavesymError else, and for a language, evaluator, precision, aim
+    or part that there is not.
 
     >>> import wavesym
     >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):
@@ -56,7 +61,8 @@ def generate(
     drive/drive_m1.json
     drive/drive_m1.py
     """
-    request = _request(evaluator, precision, windows, optimize, runtime, stream, step, target)
+    runtime_options = tuple(runtime), tuple(parts), kappa_max
+    request = _request(evaluator, precision, windows, optimize, *runtime_options, stream, step, target)
     made: Mapping[Path, str | bytes]
     if target:
         made = {Path(directory or scene.name) / f"{scene.name}.fmu": _fmu(scene, language, request, package)}
@@ -80,6 +86,8 @@ def check(
     source: str = "SCENE",
     runtime: Sequence[str] = (),
     *,
+    parts: Sequence[str] = (),
+    kappa_max: Fraction | None = None,
     stream: bool = False,
     step: Fraction | None = None,
     package: bool = False,
@@ -89,7 +97,8 @@ def check(
     Each file that is changed, missing or orphaned is named, with a diff; so is what a process that was killed left. The
     last line is the command that mends them, with the scene as it is given by `source`.
     """
-    request = _request(evaluator, precision, windows, optimize, runtime, stream, step)
+    runtime_options = tuple(runtime), tuple(parts), kappa_max
+    request = _request(evaluator, precision, windows, optimize, *runtime_options, stream, step)
     made = _written(scene, directory, language, request, package)
     folder = Path(directory or scene.name)
     found = [path for path in {*folder.glob(f"{scene.name}*"), *made} if path.is_file()]
@@ -104,19 +113,23 @@ def _request(
     precision: str,
     windows: int | None,
     optimize: str | None,
-    runtime: Sequence[str],
+    runtime: tuple[str, ...],
+    parts: tuple[str, ...],
+    kappa_max: Fraction | None,
     stream: bool,
     step: Fraction | None,
     target: str = "",
 ) -> Request:
-    """The options of `generate` as one value. WavesymError for a step without a stream."""
+    """The options of `generate` as one value. WavesymError for a step without a stream, and a kappa that is none."""
     stream = stream or bool(target)
     if step is not None and not stream:
         raise WavesymError(f"--step: {step} given without --stream, nothing expected")
     if step is not None and evaluator == "modes":
         raise WavesymError(f"--step: {step} given with --evaluator modes, nothing expected (loads say what it is)")
-    every = None if step is None else rational(step)
-    return Request(evaluator, precision, windows, optimize, tuple(runtime), stream, every, target)
+    if kappa_max is not None and kappa_max <= 0:
+        raise WavesymError(f"--kappa-max: {kappa_max} given, a positive number expected")
+    every, largest = (None if number is None else rational(number) for number in (step, kappa_max))
+    return Request(evaluator, precision, windows, optimize, runtime, stream, every, target, parts, largest)
 
 
 def _written(
@@ -135,9 +148,13 @@ def _written(
         program = stream_program(scene, request, tested=True)
     elif request.runtime:
         from wavesym.programs.runtime.making import runtime_program
+        from wavesym.programs.runtime.request import POSITIVE
 
         if language != "c":
             raise WavesymError(f"language: {language} given with --runtime, c expected")
+        if request.kappa_max is not None and POSITIVE.isdisjoint(request.runtime):
+            told = f"--kappa-max: {request.kappa_max} given with --runtime {','.join(request.runtime)}"
+            raise WavesymError(f"{told}, nothing expected (bodies stay as heavy as they are)")
         given = amplitudes(scene) if "load" in request.runtime else ()
         program = runtime_program(model, request, given, tested=True)
     else:
@@ -150,6 +167,7 @@ def _fmu(scene: Scene, language: str, request: Request, package: bool) -> bytes:
     from wavesym.running.fmu import fmu
 
     refuse_unknown("target", request.target, SIMULATORS)
+    request.refuse_unknown()
     for option, given, usual in (
         ("language", language, "c"),
         ("precision", request.precision, "double"),
@@ -176,9 +194,10 @@ def fmu_told(path: Path) -> list[str]:
     return told(path)
 
 
-def no_load(scene: Scene) -> list[str]:
-    """A line for a scene in which nothing happens."""
-    return without_load(lower(scene))
+def notes(scene: Scene) -> list[str]:
+    """How the scene was read where that may surprise, and a line for a scene in which nothing happens."""
+    model = lower(scene)
+    return [*model.labels.notes, *without_load(model)]
 
 
 def stream_program(scene: Scene, request: Request, *, tested: bool = False) -> Program:

@@ -13,7 +13,6 @@ from wavesym.documents.summary import summary_text as told
 from wavesym.errors import WavesymError
 from wavesym.fields.loads import SampledLoad
 from wavesym.numbers.doubles import nearest, rational
-from wavesym.programs.request import Request
 from wavesym.records.load import RecordedLoad
 from wavesym.results.peaks import table_of_peaks
 from wavesym.results.response import Response
@@ -51,9 +50,10 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     """A scene whose parameters are given when it runs, for one set of them or for a million.
 
     `runtime` names them: "kappa", "inertia", "velocity", "load", or of a chain that is written out "mass", "dashpot",
-    "spring", "impedance", "velocity", "load", those that the scene has. It is compiled once, where there is a C
-    compiler; elsewhere NumPy computes the same, more slowly, but not for such chains (CompilerError). WavesymError for
-    a scene that has not got these parameters, UnservedError and CostError for one that no such program serves.
+    "spring", "impedance", "velocity", "load", those that the scene has. Where there is a C compiler it is compiled:
+    values, peaks and misfits together, gradients, and bounds, each when they are first asked for. Elsewhere NumPy
+    computes the same, more slowly, but not for such chains (CompilerError). WavesymError for a scene that has not got
+    these parameters, UnservedError and CostError for one that no such program serves.
 
     >>> import wavesym
     >>> model = wavesym.model(wavesym.Scene.from_toml("drive_m1"), runtime=["kappa"])
@@ -62,13 +62,13 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     >>> model.peaks(kappa=[[0.5], [1], [2]]).max.shape
     (3, 5)
     """
-    from wavesym.programs.runtime.making import runtime_program
+    from wavesym.programs.runtime.making import sets_program
 
     if isinstance(runtime, str):
         raise WavesymError(f'runtime: "{runtime}" given, a list of names expected')
     model = lower(scene)
     given = amplitudes(scene) if "load" in runtime else ()
-    return RuntimeModel(runtime_program(model, Request(runtime=tuple(runtime)), given))
+    return RuntimeModel(sets_program(model, runtime, given))
 
 
 def summary(scene: Scene, *, at_samples: bool = False) -> Summary:

@@ -13,11 +13,40 @@ if TYPE_CHECKING:
     from wavesym.papers.entries import PaperEntry
 
 
-def verify(scenes: Iterable[Scene]) -> tuple[str, bool]:
-    """Evaluators against direct integration: a table of errors, and whether all of them are allowed."""
+def verify(
+    scenes: Iterable[Scene],
+    evaluator: str | None = None,
+    precision: str | None = None,
+    runtime: str | None = None,
+    *,
+    stream: bool = False,
+) -> tuple[str, bool]:
+    """Compare programs of scenes with direct integration of what the scenes state, and with exact values.
+
+    Args:
+        scenes: each is verified by itself.
+        evaluator: "auto", "closed", "pieces", "march" or "modes".
+        precision: "double" or "single".
+        runtime: names of parameters that come at run time, with commas between.
+        stream: whether loads come sample by sample.
+            Without any of these four every program that serves a scene is compared, else those that are meant.
+
+    Returns:
+        Tables of errors, and whether all of them are allowed and every output of every scene was seen.
+
+    Raises:
+        WavesymError: for a word that there is not, or options that exclude each other.
+    """
+    from wavesym.programs.request import KINDS, Request
     from wavesym.verification.report import verify as report
 
-    return report(map(lower, scenes))
+    names = tuple(name.strip() for name in runtime.split(",")) if runtime is not None else ()
+    kinds = [evaluator] if evaluator else ["auto"] if names or stream else KINDS
+    requests = [Request(kind, precision or "double", runtime=names, stream=stream) for kind in kinds]
+    for request in requests:
+        request.refuse_unknown()
+    some = any((evaluator, precision, names, stream))
+    return report(((scene, lower(scene)) for scene in scenes), requests if some else None)
 
 
 def derived(watch: Callable[[list[System]], Iterable[System]] = iter) -> tuple[str, bool]:

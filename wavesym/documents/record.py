@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
+from wavesym.errors import printable
 from wavesym.fields.numbers import decimal_text
 from wavesym.records.record_file import RecordFile
 
@@ -61,7 +62,7 @@ def facts(said: RecordFile, unit: str) -> list[str]:
     """The lines of `wavesym record`. SceneError where times are uneven."""
     rows = list(_rows(RecordFacts(said, unit)))
     width = max(len(name) for name, _ in rows)
-    return [f"{said.file}: {said.kind}", *(f"  {name.ljust(width)}  {value}" for name, value in rows)]
+    return [printable(f"{said.file}: {said.kind}"), *(f"  {name.ljust(width)}  {value}" for name, value in rows)]
 
 
 def _rows(told: RecordFacts) -> Iterator[tuple[str, str]]:

@@ -22,7 +22,7 @@ def _json(summary: Summary) -> str:
             "unit": output.unit,
             "min": _peak(output.min),
             "max": _peak(output.max),
-            "arrival": None if output.arrival is None else _spoken(output.arrival),
+            "arrival": None if output.arrival is None else instant(output.arrival),
         }
         for output in summary.outputs
     ]
@@ -33,7 +33,7 @@ def _peak(peak: Peak) -> dict[str, float | None]:
     return {"value": peak.value, "tau": peak.at.tau, "time": peak.at.time}
 
 
-def _spoken(at: When) -> float:
+def instant(at: When) -> float:
     """The time of a scene that has units, else tau."""
     return at.tau if at.time is None else at.time
 
@@ -49,21 +49,22 @@ def _lines(summary: Summary) -> Iterable[str]:
         yield "-  it comes up to this value, and jumps then"
     if (drift := summary.largest_drift) is not None:
         peak, unit = drift.largest, f" {drift.unit}" * bool(drift.unit)
-        yield f"largest drift: {drift.name}, {_number(peak.value)}{unit} at {_number(_spoken(peak.at))}"
+        yield f"largest drift: {drift.name}, {number(peak.value)}{unit} at {number(instant(peak.at))}"
     yield f"{summary.how}: {summary.certain}"
 
 
 def _row(output: OutputSummary) -> tuple[str, ...]:
     name = f"{output.name} [{output.unit}]" if output.unit else output.name
-    arrival = "never" if output.arrival is None else _number(_spoken(output.arrival))
+    arrival = "never" if output.arrival is None else number(instant(output.arrival))
     return (name, *_told(output.min), *_told(output.max), arrival)
 
 
 def _told(peak: Peak) -> tuple[str, str]:
-    return _number(peak.value), _number(_spoken(peak.at)) + "-" * (not peak.reached)
+    return number(peak.value), number(instant(peak.at)) + "-" * (not peak.reached)
 
 
-def _number(value: float) -> str:
+def number(value: float) -> str:
+    """As it is shown to people."""
     return f"{value:.7g}"
 
 

@@ -11,13 +11,15 @@ such a piece or inside it, and is found in two steps:
   leads to t, and no value is more than 2 |f'(t)| above f(t)), or it is halved.
 
 An output may come up to a value, jump, and never take it: its greatest value is that limit then, at the instant of the
-jump. Values that differ by less than 2^-60 of the largest count as equal, and the first instant is told.
+jump. Values that differ by less than 2^-60 of the largest count as equal, and the first instant is told. An extreme
+that is 0 to within `BOUND` of the largest value is 0: at the start where the output is that near to 0 there, too.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import nextafter
 
 import numpy as np
 from flint import arb, arb_poly, ctx, fmpq
@@ -33,6 +35,9 @@ from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import middle, midpoint, nearest, not_below, rational
 
 Numbers = NDArray[np.float64]
+
+BOUND = 1.2e-16
+"""Of an extreme, relative to the output's largest value: two roundings to double, and what counts as equal."""
 
 # of the largest value: what counts as equal, as constant, how well it must be known, and what is left out of series
 _EQUAL, _FLAT, _KNOWN, _NEGLIGIBLE = arb(2) ** -60, arb(2) ** -64, arb(2) ** -70, arb(2) ** -90
@@ -51,7 +56,7 @@ _ZERO, _ONE = fmpq(0), fmpq(1)
 class TrueExtreme:
     """A `value`, right to 2^-52 of the output's largest, and the first `tau` at which it is taken.
 
-    Where it is not `reached` the output comes up to it from the left, and jumps at tau.
+    Where it is not `reached` the output comes up to it, or takes it between two doubles, and jumps at tau.
     """
 
     value: float
@@ -73,22 +78,17 @@ def extremes(model: Model) -> list[Range]:
         raise UnservedError("system.damping: given, none expected (modes serve it)")
     motion = Motion(model, rational(model.horizon()))
     pieces = motion.stretches + sum(len(motion.starts(probe)) for probe in motion.probes)
-    if (seconds := pieces * (motion.first_bits // 4) ** 1.5 * _COMPOSED) > _MOST_SECONDS:
+    if (seconds := pieces * motion.terms(motion.first_bits) ** 1.5 * _COMPOSED) > _MOST_SECONDS:
         raise CostError(
             f"output.until: true extremes of {len(motion.probes)} outputs, with their waves {pieces} polynomials in "
             f"{motion.first_bits} bits, would take about {seconds:.0f} s, at most {_MOST_SECONDS} expected (a shorter "
             "horizon or fewer outputs help)"
         )
     zero = silent(model, motion.until)
-    return [
-        NOTHING if nothing else _range(motion, probe, bool(model.network.contacts))
-        for probe, nothing in zip(motion.probes, zero, strict=True)
-    ]
+    return [NOTHING if nothing else _range(motion, probe) for probe, nothing in zip(motion.probes, zero, strict=True)]
 
 
-def _range(motion: Motion, probe: Probe, vague: bool) -> Range:
-    """Where it is `vague` when contacts open and close, no more is known of what lies between two doubles."""
-
+def _range(motion: Motion, probe: Probe) -> Range:
     def attempt(bits: int) -> Range | None:
         segments = motion.segments(probe, bits)
         if is_zero(segments):
@@ -100,7 +100,7 @@ def _range(motion: Motion, probe: Probe, vague: bool) -> Range:
         pieces = [
             _Piece.of(segment, end, segment is segments[-1], negligible)
             for segment, end in stretches
-            if not vague or segment.start == end or not_below(segment.start) < not_below(end)
+            if not segment.vague
         ]
         sizes = [piece.largest for piece in pieces]
         if motion.vanishes(sizes):
@@ -139,14 +139,21 @@ class _Piece:
         """An upper bound of its absolute values."""
         return (sum(map(abs, self.coefficients), arb(0)) + self.radius).upper()
 
+    @property
+    def begin(self) -> arb:
+        """The value at its start."""
+        return arb(0) if self.from_zero else arb_poly(list(self.coefficients))(arb(-1)) + arb(0, self.radius)
+
     def at(self, t: fmpq, value: arb) -> _Candidate:
-        """A value at t, where it is certain that it is one."""
+        """A value at t, at a double in the piece; where none is, or it is the limit at its end, at the jump behind."""
         tau = self.start + (self.end - self.start) * (1 + t) / 2
-        exact = arb(0) if self.from_zero and t == -1 else value
-        # as a double that lies in the piece, or at the jump after it
-        return _Candidate(
-            exact, tau, max(nearest(tau), not_below(self.start)) if t < 1 else not_below(tau), t < 1 or self.last
-        )
+        exact = self.begin if self.from_zero and t == -1 else value
+        first, after = not_below(self.start), not_below(self.end)
+        if self.last:
+            return _Candidate(exact, tau, max(nearest(tau), first), True)
+        if t < 1 and first < after:
+            return _Candidate(exact, tau, min(max(nearest(tau), first), nextafter(after, 0.0)), True)
+        return _Candidate(exact, tau, after, False)
 
 
 def _shortened(polynomial: arb_poly, length: arb, negligible: arb) -> arb_poly:
@@ -186,10 +193,14 @@ def _found(pieces: Sequence[_Piece], size: arb) -> Range | None:
         return None
     greatest = _first(screen.left(1), 1, screen.greatest, scale)
     least = _first(screen.left(-1), -1, -screen.least, scale)
-    return _told(least, -1), _told(greatest, 1)
+    rests = abs(pieces[0].begin) <= scale * BOUND
+    return _told(least, -1, scale, rests), _told(greatest, 1, scale, rests)
 
 
-def _told(found: _Candidate, sign: int) -> TrueExtreme:
+def _told(found: _Candidate, sign: int, scale: arb, rests: bool) -> TrueExtreme:
+    """An extreme; of an output that is 0 at the start, and of `scale`, where it `rests`."""
+    if abs(found.value) <= scale * BOUND:
+        return NOTHING[0] if rests else TrueExtreme(0.0, found.double, found.reached)
     return TrueExtreme(midpoint(sign * found.value) + 0.0, found.double, found.reached)  # no -0.0
 
 

@@ -11,10 +11,10 @@ common measure of all delays, so that most of those that come back meet others.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial, reduce
 from heapq import heapify, heappop, heappush
-from itertools import pairwise
+from itertools import chain, pairwise, zip_longest
 from typing import TYPE_CHECKING
 
 from flint import fmpq
@@ -46,6 +46,11 @@ class Knots:
         self._delays = {bar.delay for bar in self._network.bars}
         self._windowed = len(self._delays) == 1 and not self._network.contacts
         self._scheduled = partial(scheduled, model, until)
+
+    @property
+    def reached(self) -> Collection[int]:
+        """The joints that can be felt."""
+        return self._last.keys()
 
     @cached_property
     def stretches(self) -> int:
@@ -103,21 +108,29 @@ class Knots:
         )
 
     def longest(self, number: int) -> fmpq:
-        """The longest stretch of a joint."""
-        return max((high - low for low, high in pairwise(self.joints[number])), default=fmpq(0))
+        """The longest stretch of a joint on which it moves."""
+        times = self.joints[number]
+        if self._still(number):
+            times = times[1:]
+        return max((high - low for low, high in pairwise(times)), default=fmpq(0))
+
+    def _still(self, number: int) -> bool:
+        """Whether nothing moves on the first stretch of a joint."""
+        joint = self._network.joints[number]
+        return self._network.at_rest(joint) and all(load.time > 0 for at, load in self._loaded() if at == number)
 
     def breakpoints(self, terms: Sum) -> Sequence[fmpq]:
         """Where a sum of readings may jump or bend, and 0; in order."""
         found = [self._read(reading) for _, reading in terms]
-        return found[0] if len(found) == 1 else sorted({fmpq(0)}.union(*found))
+        return found[0] if len(found) == 1 else _in_order(fmpq(0), *found)
 
     def _read(self, reading: Gauge) -> Sequence[fmpq]:
         if reading.quantity == "load":
             sources = {unit.source for unit in self._network.points[reading.point or 0].loads}
-            return sorted({fmpq(0), *(load.time for load in self._acting if load.source in sources)})
+            return _in_order(fmpq(0), [load.time for load in self._acting if load.source in sources])
         if reading.point is not None:
             times = self.joints[self._network.joint_of[reading.point]]
-            return sorted({fmpq(0), *(time for time in times if time <= self._until)})
+            return _in_order(fmpq(0), [time for time in times if time <= self._until])
         return self._breakpoints(reading.rod - 1, reading.place)
 
     @cache  # noqa: B019 - as long as this object
@@ -125,11 +138,11 @@ class Knots:
         bar = self._network.bars[number]
         if self._windowed:
             return list(self._in_windows(place))
-        ways = ((bar.left, place), (bar.right, 1 - place))
-        found = {
-            knot + way * bar.delay for point, way in ways for knot in self.joints[self._network.joint_of[point]][:-1]
-        }
-        return sorted({fmpq(0), *(time for time in found if 0 <= time <= self._until)})
+        found = []
+        for point, way in ((bar.left, place * bar.delay), (bar.right, (1 - place) * bar.delay)):
+            times = (knot + way for knot in self.joints[self._network.joint_of[point]][:-1])
+            found.append([time for time in times if 0 <= time <= self._until])
+        return _in_order(fmpq(0), *found)
 
     # stiff springs
 
@@ -207,7 +220,10 @@ class Knots:
 
     @cached_property
     def _natural(self) -> Mapping[int, Sequence[fmpq]]:
-        return {number: sorted({fmpq(0), *times, self._last[number] + 1}) for number, times in self._met(False).items()}
+        later = min(self._delays)
+        return {
+            number: sorted({fmpq(0), *times, self._last[number] + later}) for number, times in self._met(False).items()
+        }
 
     def _end(self, number: int, times: set[fmpq]) -> fmpq:
         """Later than anything that is asked of a joint, but no later than the stretches before it let it be known."""
@@ -261,3 +277,9 @@ class Knots:
     def _reach(self, number: int) -> fmpq:
         """How long a stretch may be until it is cut."""
         return (self._bearable[number] / self._apart).floor() * self._apart
+
+
+def _in_order(first: fmpq, *times: Sequence[fmpq]) -> Sequence[fmpq]:
+    """All of these, each once. (Not as a set: exact numbers are hashed slowly.)"""
+    every = sorted([first, *chain.from_iterable(times)])
+    return [one for one, after in zip_longest(every, every[1:]) if one != after]

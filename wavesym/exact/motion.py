@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property
-from math import inf
+from itertools import pairwise
+from math import e, inf, log2
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly
 
-from wavesym.errors import CostError
+from wavesym.errors import CostError, UnservedError
 from wavesym.exact.joints.joint import STILL, Enclosed, JointLaw
 from wavesym.exact.joints.network_waves import Acting, NetworkWaves, Waves, later
 from wavesym.exact.knots import Knots
@@ -19,6 +21,7 @@ from wavesym.mechanics.gauge import Weighted
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import End
 from wavesym.mechanics.probe import Probe
+from wavesym.numbers.doubles import not_below, rational
 
 MOST_STRETCHES = 20_000
 # with those that loads begin: a quarter of a minute, and as long again for the values of a self-test
@@ -28,8 +31,10 @@ MOST_SECONDS = 60
 _COMPOSED, _EVALUATED = 2.5e-7, 6e-7
 # bits that a crossing of a bar takes from what is known of its wave
 _CROSSING = 2
-# bits for each unit that a series swings: what cancels, and what leaves 60 bits at the end of its terms
+# bits for each unit that a series swings: what cancels, and about what its terms need
 _CANCELLED, _BORNE = 3, 16
+# bits that are left at the end of its terms, and the power of 2 of more bits than are had
+_LEFT, _MOST_FIRST = 60, 20
 # of the largest wave: what is smaller may be 0, where contacts open and close
 NEGLIGIBLE_WAVE = arb(2) ** -200
 _LARGEST = 5 << 27  # bytes
@@ -63,17 +68,62 @@ class Motion:
     @cached_property
     def first_bits(self) -> int:
         """With fewer bits nothing would be left at the end of the horizon; a power of 2, up to more than is had."""
-        shortest = min(bar.delay for bar in self._network.bars)
-        swing = max(map(self._swing, self._knots.joints))
-        lost = 64 + int(_CROSSING * self.until / shortest + _CANCELLED * swing)
-        if self._knots.cut:  # the terms that so many bits have must bear the swing, too
-            lost = max(lost, int(_BORNE * swing))
-        return 1 << min(max(lost.bit_length(), 7), 20)
+        _, swing = self._hardest
+        bits = 1 << min(max((64 + int(self._crossed + _CANCELLED * swing)).bit_length(), 7), _MOST_FIRST)
+        while bits < 1 << _MOST_FIRST and not self._borne(bits):
+            bits *= 2
+        return bits
 
-    def _swing(self, number: int) -> fmpq:
-        """What the series of a joint has to bear on its longest stretch: exp(this)."""
-        law = JointLaw.of(self._network, self._network.joints[number])
-        return law.fastest * self._knots.longest(number)
+    def _borne(self, bits: int) -> bool:
+        """Whether a series of so many bits bears the swing: what x^n / n! leaves out is less than crossings leave.
+
+        Of what is left out crossings mostly take less than of what is rounded: half of it is reckoned with.
+        """
+        swing, n = float(self._hardest[1]), self.terms(bits)
+        return swing == 0 or n * log2(n / (e * swing)) >= _LEFT + float(self._crossed) / 2
+
+    @property
+    def helps(self) -> str:
+        """What would make `first_bits` less."""
+        law, swing = self._hardest
+        if self._crossed >= _BORNE * swing:
+            return "a shorter horizon or longer rods"
+        ways = ["heavier bodies"] * bool(law.heavy) + ["softer springs"] * law.springs
+        return " or ".join(ways)
+
+    def terms(self, bits: int) -> int:
+        """How many powers waves have that are known in so many bits; those of loads where they are no series."""
+        return bits // 4 if self._series else self._powers
+
+    @cached_property
+    def _series(self) -> bool:
+        """Whether joints have a state, which makes series of what arrives: mass, or springs."""
+        points = {point for number in self._knots.reached for point in self._network.joints[number].points}
+        return any(
+            self._network.points[point].stiffness != 0
+            or (self._network.points[point].mass != 0 and self._network.points[point].motion is None)
+            for point in points
+        ) or any(link.stiffness != 0 and link.left in points for link in self._network.links)
+
+    @cached_property
+    def _powers(self) -> int:
+        """How many powers loads have, at most, as what acts or as a velocity."""
+        sources = {load.source for load in self._acting}
+        units = [unit for point in self._network.points for unit in point.loads if unit.source in sources]
+        return 1 + max((len(unit.coefficients) for unit in units), default=0)
+
+    @cached_property
+    def _crossed(self) -> fmpq:
+        """The bits that crossings of bars take; none where contacts open and close and all is exact (`ExactJoint`)."""
+        if self._network.contacts and not self._series:
+            return fmpq(0)
+        return _CROSSING * self.until / min(bar.delay for bar in self._network.bars)
+
+    @cached_property
+    def _hardest(self) -> tuple[JointLaw, fmpq]:
+        """The joint whose series has to bear most on its longest stretch: its law, and exp(what)."""
+        laws = ((JointLaw.of(self._network, self._network.joints[n]), n) for n in self._knots.joints)
+        return max(((law, law.fastest * self._knots.longest(n)) for law, n in laws), key=lambda each: each[1])
 
     @cached_property
     def size(self) -> arb:
@@ -97,7 +147,7 @@ class Motion:
 
     def refuse_long(self, taus: int) -> None:
         """CostError where values of all outputs at so many tau would take minutes."""
-        terms = self.first_bits // 4
+        terms = self.terms(self.first_bits)
         sums = any(map(self._integrates, self.probes))
         segments = sum(min(len(self.starts(probe)), inf if sums else taus) for probe in self.probes)
         seconds = segments * terms**1.5 * _COMPOSED + taus * len(self.probes) * terms * _EVALUATED
@@ -132,7 +182,19 @@ class Motion:
         waves = self.waves(bits)
         with ctx.workprec(bits):
             begins = self._smooth_starts[self.probes.index(probe)]
-            return list(_segments(waves, self._model, probe, [(starts[k], ends[k]) for k in wanted], begins))
+            made = _segments(waves, self._model, probe, [(starts[k], ends[k]) for k in wanted], begins)
+            vague = self._vague(starts)
+            return [replace(segment, vague=vague[k]) for k, segment in zip(wanted, made, strict=True)]
+
+    def _vague(self, starts: Sequence[fmpq]) -> list[bool]:
+        """Whether what contacts do may be left open from each of these to the next, and no double lies there.
+
+        One lies on the last stretch: it ends with that of the horizon.
+        """
+        if (known := self._knots.schedule) is None:
+            return [False] * len(starts)
+        short = (high - low <= known.vague and not_below(low) == not_below(high) for low, high in pairwise(starts))
+        return [*short, False]
 
     @cached_property
     def _smooth_starts(self) -> Sequence[fmpq | None]:
@@ -141,23 +203,25 @@ class Motion:
     def waves(self, bits: int) -> Waves:
         """What needs more bits, and so more terms, costs the others nothing."""
         if bits not in self._solved:
-            terms = bits // 4
-            if (size := self._knots.size(terms, bits)) > _LARGEST:
+            if (size := self.size_in(bits)) > _LARGEST:
                 raise CostError(
                     f"output.until: the waves of {self._knots.told} with {bits} bits would take {size:.1e} bytes, at "
                     f"most {_LARGEST:.1e} expected (a shorter horizon or fewer load times help)"
                 )
-            with ctx.workprec(bits):
-                self._solved[bits] = self._waves(terms)
+            self._solved[bits] = self._waves(bits)
         return self._solved[bits]
 
-    def _waves(self, terms: int) -> Waves:
-        known = self._knots.schedule
-        if known is None:
-            return NetworkWaves(self._network, self._knots.joints, self._acting, terms)
-        from wavesym.exact.contacts.touching_waves import replayed  # of contacts, which few scenes have
+    def size_in(self, bits: int) -> int:
+        """About how many bytes the waves take with so many bits."""
+        return self._knots.size(self.terms(bits), bits)
 
-        return replayed(self._network, known.stages, known.ends, self._acting)
+    def _waves(self, bits: int) -> Waves:
+        if (known := self._knots.schedule) is not None:
+            from wavesym.exact.contacts.schedule import waves  # of contacts, which few scenes have
+
+            return waves(self._network, self._acting, known, bits)
+        with ctx.workprec(bits):
+            return NetworkWaves(self._network, self._knots.joints, self._acting, self.terms(bits))
 
 
 def _segments(
@@ -193,13 +257,14 @@ def _within(known: Enclosed) -> arb_poly:
 
 def _sum(parts: Iterable[tuple[fmpq, Enclosed]]) -> Enclosed:
     """A sum with factors; of what cancels nothing is left, where all of it is known exactly."""
-    exact: fmpq_poly | None = fmpq_poly()
+    terms = list(parts)
     polynomial, error = arb_poly(), arb(0)
-    for factor, known in parts:
-        exact = None if exact is None or known.exact is None else exact + factor * known.exact
+    for factor, known in terms:
         polynomial += known.polynomial if factor == 1 else arb(factor) * known.polynomial
         error += abs(arb(factor)) * known.error
-    if exact is not None and exact.length() == 0:
+    exact = [(factor, known.exact) for factor, known in terms if known.exact is not None]
+    nothing = error == 0 and all(c.contains(0) for c in polynomial.coeffs()) and len(exact) == len(terms)
+    if nothing and sum((factor * p for factor, p in exact), fmpq_poly()).length() == 0:
         return STILL
     return Enclosed(polynomial, error.upper())
 
@@ -234,15 +299,13 @@ def _velocity(waves: Waves, point: int, start: fmpq) -> Enclosed:
     return Enclosed(known.polynomial(arb_poly([arb(offset), 1])) if offset != 0 else known.polynomial, known.error)
 
 
-def waves_size(model: Model, until: fmpq) -> int:
-    """About how many bytes the waves take until then."""
-    knots = Knots(model, until)
+def waves_size(model: Model) -> int:
+    """About how many bytes the waves take."""
     try:
-        motion = Motion(model, until)
-    except CostError:
+        motion = Motion(model, rational(model.horizon()))
+    except (CostError, UnservedError):
         return _LARGEST
-    bits = max(motion.first_bits, 128)
-    return knots.size(bits // 4, bits)
+    return motion.size_in(motion.first_bits)
 
 
 def is_zero(segments: Sequence[Segment]) -> bool:

@@ -11,7 +11,7 @@ from functools import cached_property, partial
 
 from flint import arb, fmpq
 
-from wavesym.errors import CostError, RangeError
+from wavesym.errors import CostError, RangeError, UnservedError
 from wavesym.exact.contacts.events import what_helps
 from wavesym.exact.motion import NEGLIGIBLE_WAVE, Motion, waves_size
 from wavesym.exact.tables.ball import Balls, Source, largest, segments, values
@@ -33,7 +33,7 @@ _MOST_KNOWN = 2048
 def beginning(model: Model) -> Model:
     """The model, or as much of its horizon as takes little time to know exactly."""
     until = model.until
-    while until > _SHORTEST and waves_size(model, until) > _QUICK:
+    while until > _SHORTEST and waves_size(model.shortened(until)) > _QUICK:
         until = max(_SHORTEST, fmpq((3 * until / 4).floor()))
     return model.shortened(until)
 
@@ -52,7 +52,7 @@ class Reference:
         try:
             refuse_many(self.model, _MODERATE)
             return signals(self.model, _MODERATE, self.real)
-        except CostError:
+        except (CostError, UnservedError):
             return None
 
     @cached_property

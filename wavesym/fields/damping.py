@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from pydantic import PlainSerializer, PlainValidator
 
 from wavesym.errors import did_you_mean
-from wavesym.fields.numbers import exact
+from wavesym.fields.numbers import decimal_text, exact, percentage
 from wavesym.fields.table import shown, wrong
 from wavesym.mechanics.damping import Damping
 from wavesym.numbers.doubles import fraction, rational
@@ -19,13 +19,36 @@ _LARGEST = 10**9  # in whose squares doubles keep their digits
 _KEYS = ("modes", "ratio")
 
 
-def _ratio(value: object, *at: str | int) -> Fraction:
-    number = exact(value)
+def damping_ratio(value: object, *at: str | int) -> Fraction:
+    """A ratio to critical damping: a number from 0 to 1, or text in percent ("5 %"), which may be above 100 %.
+
+    A number above 1 is a percentage whose sign was forgotten more often than it is a ratio, so it needs the sign.
+
+    Args:
+        value: what the user wrote, dimensionless.
+        at: keys and indices that lead to it, for the message.
+
+    Returns:
+        The ratio, exact.
+
+    Raises:
+        PydanticCustomError: that of `table.wrong`, for what is no ratio, negative, or above 1 without a percent sign.
+    """
+    percent = percentage(value)
+    number = exact(value) if percent is None else percent
     if number < 0:
         raise wrong(f"{shown(value)} given, a ratio of at least 0 expected", *at)
     if number > _LARGEST:
         raise wrong(f"{shown(value)} given, a ratio of at most {_LARGEST} expected", *at)
+    if number > 1 and percent is None:
+        written = _percent_text(number / 100), _percent_text(number)
+        what = f'{shown(value)} is above critical damping; write "{written[0]}" or "{written[1]}", whichever is meant'
+        raise wrong(what, *at)
     return number
+
+
+def _percent_text(ratio: Fraction) -> str:
+    return f"{decimal_text(100 * ratio)} %"
 
 
 def _damping(value: object) -> Damping | None:
@@ -36,8 +59,8 @@ def _damping(value: object) -> Damping | None:
     if isinstance(value, Sequence) and not isinstance(value, str):
         if not 0 < len(value) <= _MOST:
             raise wrong(f"{len(value)} ratios given, 1 to {_MOST} expected")
-        return Damping(tuple(rational(_ratio(each, k)) for k, each in enumerate(value)))
-    return Damping((rational(_ratio(value)),))
+        return Damping(tuple(rational(damping_ratio(each, k)) for k, each in enumerate(value)))
+    return Damping((rational(damping_ratio(value)),))
 
 
 def _rayleigh(table: Mapping[Any, object]) -> Damping:
@@ -58,16 +81,20 @@ def _rayleigh(table: Mapping[Any, object]) -> Damping:
     first, second = sorted(modes)
     if first == second:
         raise wrong(f"{first} given twice, two modes expected", "modes")
-    return Damping((rational(_ratio(table["ratio"], "ratio")),), (first, second))
+    return Damping((rational(damping_ratio(table["ratio"], "ratio")),), (first, second))
 
 
 def _written(damping: Damping | None) -> object:
     if damping is None:
         return None
-    ratios = [str(fraction(ratio)) for ratio in damping.ratios]
+    ratios = [_written_ratio(fraction(ratio)) for ratio in damping.ratios]
     if damping.modes:
         return {"modes": list(damping.modes), "ratio": ratios[0]}
     return ratios if len(ratios) > 1 else ratios[0]
+
+
+def _written_ratio(ratio: Fraction) -> str:
+    return _percent_text(ratio) if ratio > 1 else str(ratio)
 
 
 ModalDamping = Annotated[Damping | None, PlainValidator(_damping), PlainSerializer(_written)]

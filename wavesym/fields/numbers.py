@@ -62,6 +62,13 @@ def exact(value: object) -> Fraction:
     return number
 
 
+def percentage(value: object) -> Fraction | None:
+    """The ratio that text such as "5 %" writes, 1/20 here; None of anything else. Raises as `exact` does."""
+    if not isinstance(value, str) or isinstance(value, Written) or not value.endswith("%"):
+        return None
+    return _parsed(value[:-1].removesuffix(" "), value) / 100
+
+
 def _fraction(value: Rational) -> Fraction:
     number = Fraction(int(value.numerator), int(value.denominator))  # of NumPy's integers too
     if max(number.numerator.bit_length(), number.denominator.bit_length()) > _MOST_BITS:

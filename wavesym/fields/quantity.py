@@ -24,7 +24,14 @@ _QUANTITY = re.compile(r"([+-]?[0-9]+(?:/[0-9]+|(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)
 _NAME = r"[A-Za-z\u00b5\u03bc%][A-Za-z_0-9]*"  # with either mu, for micro
 _UNIT = re.compile(rf"{_NAME}(?:\^-?[1-9])?(?:[*/]{_NAME}(?:\^-?[1-9])?)*")
 _FACTOR = re.compile(rf"([*/]?)({_NAME})(?:\^(-?[1-9]))?")
-_RUN_TOGETHER = re.compile(r"N([ms])(?![A-Za-z_0-9])")  # Nm is a unit of its own, of yarn
+_SLIPS = (
+    (re.compile(r"N([ms])(?![A-Za-z_0-9])"), r"N*\1"),  # Nm is a unit of its own, of yarn
+    (re.compile(r"(?<![A-Za-z_0-9])([mk]?)gals?(?![A-Za-z_0-9])"), r"\1Gal"),  # a gallon
+)
+_AMBIGUOUS = {
+    **dict.fromkeys(("ton", "tons", "kton", "Mton"), "t (1000 kg) or short_ton (2000 lb)"),
+    **dict.fromkeys(("ton_force", "force_ton"), "tf (1000 kgf) or kip (1000 lbf)"),
+}
 _MOST_FACTORS = 12
 _LARGEST = Fraction(10) ** LARGEST_EXPONENT
 
@@ -85,9 +92,13 @@ def _fitting(text: str, dimension: str, value: str) -> _Meaning:
     meaning = _meaning(text, value, gravity=dimension in ("acceleration", "jerk"))
     if not fits(meaning.powers, DIMENSIONS[dimension]):
         expected = f'{with_article(dimension)} such as "{DIMENSIONS[dimension].example}" expected'
-        parted = _RUN_TOGETHER.sub(r"N*\1", text)
-        meant = parted != text and fits(_meaning(parted, value, gravity=False).powers, DIMENSIONS[dimension])
-        hint = f'. Did you mean "{parted}"?' if meant else ""
+        others = (slip.sub(right, text) for slip, right in _SLIPS)
+        meant = (
+            other
+            for other in others
+            if other != text and fits(_meaning(other, value, gravity=False).powers, DIMENSIONS[dimension])
+        )
+        hint = next((f'. Did you mean "{other}"?' for other in meant), "")
         raise wrong(f"{shown(value)} given ({called(meaning.powers)}), {expected}{hint}")
     return meaning
 
@@ -102,6 +113,8 @@ def _meaning(text: str, value: str, *, gravity: bool) -> _Meaning:
     factor, powers = Fraction(1), dict[str, int]()
     for sign, name, written in factors:
         power = int(written or 1) * (-1 if sign == "/" else 1)
+        if name in _AMBIGUOUS:
+            raise wrong(f"{shown(value)} given, {shown(name)} in it is two units; write {_AMBIGUOUS[name]}")
         one = _named("standard_gravity" if gravity and name == "g" else name)
         if one is None:
             meant = did_you_mean(name, _names())

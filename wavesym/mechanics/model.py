@@ -13,11 +13,12 @@ from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.gauge import Gauge, Sum, readings
+from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.light_cone import felt, light_cone
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import nearest
+from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 
 
@@ -25,12 +26,14 @@ from wavesym.numbers.reals import DOUBLE, Real
 class Labels:
     """What to call a model's parts: `system` its type and what was chosen of it, `loads` a line for each load.
 
-    `sha256` is that of the scene, whatever way it was written.
+    `sha256` is that of the scene, whatever way it was written. `notes` say how the scene was read where that may
+    surprise.
     """
 
     system: Mapping[str, str]
     loads: tuple[str, ...]
     sha256: str
+    notes: tuple[str, ...] = ()
 
     @property
     def type(self) -> str:
@@ -45,9 +48,9 @@ class Model:
 
     `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
     `tolerance` is relative to an output's largest value. Loads are sorted by time; where they have samples, the closest
-    are `spacing` apart. The `clock` is that of a physical scene, the `damping` that of its modes; `inputs` says of the
-    sources of its loads, and of the numbers of its parts by name, what 1 is in a unit, and that unit. An `endless` one
-    goes on after that tau.
+    are `spacing` apart. The `clock` is that of a physical scene, `length` the unit of its places where they are
+    lengths. `damping` is that of its modes; `inputs` says of the sources of its loads, and of the numbers of its parts
+    by name, what 1 is in a unit, and that unit. An `endless` one goes on after that tau.
     """
 
     name: str
@@ -59,6 +62,7 @@ class Model:
     tolerance: fmpq
     labels: Labels
     clock: Clock | None = None
+    length: LengthUnit | None = None
     damping: Damping | None = None
     spacing: fmpq | None = None
     inputs: Mapping[str, tuple[fmpq, str]] = field(default_factory=dict)
@@ -80,8 +84,10 @@ class Model:
         factor, unit = self.inputs.get(load.source, (fmpq(1), ""))
         when = self.clock.told(load.time) if self.clock else f"tau = {nearest(load.time):g}"
         node, parts, _ = load.source.partition(":")  # of a chain, NODE:step
-        name = f"what acts at {node}" if parts else node
-        return f"{name} jumps by {nearest(load.weight * factor):g}{unit and ' '}{unit} at {when}"
+        if parts:
+            point = next(p for p in self.network.points if any(unit.source == load.source for unit in p.loads))
+            node = f"what acts at {point.name or point.place}"
+        return f"{node} jumps by {nearest(load.weight * factor):g}{unit and ' '}{unit} at {when}"
 
     @cached_property
     def sums(self) -> Mapping[Probe, Sum]:
@@ -115,6 +121,10 @@ class Model:
     def horizon(self, real: Real = DOUBLE) -> float:
         """The last tau in `real` numbers: the smallest of them that is not below `until`."""
         return real.not_below(self.until)
+
+    def to_horizon(self, real: Real = DOUBLE) -> Model:
+        """The same until the last tau in `real` numbers, for what compares times with `until`: it has been reached."""
+        return self.shortened(rational(self.horizon(real)))
 
     def acting(self, until: fmpq) -> tuple[Applied, ...]:
         """The loads that begin by then."""

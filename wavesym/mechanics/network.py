@@ -6,7 +6,7 @@ impedance) and a force 2 Z a. A bar's end may move `ratio` times as fast as its 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from heapq import heapify, heappop, heappush
@@ -26,7 +26,8 @@ class Point:
     """What moves as one: a rigid mass, or none; a dashpot and a spring to the ground; its velocity at tau = 0.
 
     A `motion` is prescribed by the loads on the point: its velocity, or its acceleration. What is fixed has no loads.
-    `place` is where a scene would say that it is. What is `absorbing` has the dashpot that its rod asks for.
+    `place` is where a scene would say that it is. What is `absorbing` has the dashpot that its rod asks for. What is
+    `glued` is a contact that is taken to stay closed.
     """
 
     mass: fmpq
@@ -38,6 +39,7 @@ class Point:
     name: str = ""
     place: str = field(default="", compare=False)
     absorbing: bool = field(default=False, compare=False)
+    glued: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,7 @@ class Bar:
     strain: fmpq = _ZERO
     name: str = ""
 
-    @property
+    @cached_property
     def delay(self) -> fmpq:
         """How long a wave takes from end to end."""
         return self.length / self.speed
@@ -235,6 +237,25 @@ class Network:
         return bar.right if end.side else bar.left
 
 
+def parted(network: Network, contacts: Collection[int]) -> Network:
+    """A line of rods whose points in `contacts` are two, a contact between them; points stay in their order."""
+    points = [
+        replace(point, glued=point.glued and x not in contacts)
+        for x, point in enumerate(network.points)
+        for _ in range(1 + (x in contacts))
+    ]
+
+    def right(x: int) -> int:
+        """The point at x from which the rod on the right starts."""
+        return x + sum(1 for contact in contacts if contact <= x)
+
+    bars = [
+        replace(bar, left=right(bar.left), right=right(bar.right) - (bar.right in contacts)) for bar in network.bars
+    ]
+    links = [Link(right(x) - 1, right(x), contact=True, place=network.points[x].place) for x in contacts]
+    return Network(tuple(points), tuple(bars), tuple(links))
+
+
 def network_of(chain: Chain) -> Network:
     """A named chain as a network: rod i is bar i - 1, node x is point x.
 
@@ -246,7 +267,7 @@ def network_of(chain: Chain) -> Network:
     for x, node in enumerate(chain.nodes):
         if node.left and node.alpha != 0:
             scale = bars[-1].impedance / (node.alpha / 2)
-        points.append(replace(_point(node, scale), place=str(x)))
+        points.append(replace(_point(node, scale), place=str(x), glued=node.contact))
         if node.right:
             impedance = scale * node.beta / 2 or fmpq(1)  # a prescribed motion does not feel its rod
             bars.append(Bar(x, x + 1, fmpq(1), fmpq(1), impedance, velocity=_ZERO + node.right.velocity))

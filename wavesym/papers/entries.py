@@ -44,15 +44,17 @@ class Slip(_Data):
 class PaperEntry(_Data):
     """One printed formula, cell or sentence.
 
-    `scan` is the text of the source, verbatim; `printed` what it says, on one line, without words: it differs by
-    `edits` alone (from, to, why). `ranges` are printed too, `inferred` ones are not. `equivalent` are the faults that
-    no case can turn (name, why). `about` is what the adapter of this `kind` needs to know. The ranges of a cell of a
-    table are those of its `heads`, whose records bind them to the source.
+    `scan` is the text of the source, verbatim; `printed` is the same on one line, a formula without words: it differs
+    by `edits` alone (from, to, why). `english` is a sentence in the words that are judged; then `edits` are of what it
+    says. `ranges` are printed too, `inferred` ones are not. `equivalent` are the faults that no case can turn (name,
+    why). `about` is what the adapter of this `kind` needs to know. The ranges of a cell of a table are those of its
+    `heads`, whose records bind them to the source.
     """
 
     id: str
     kind: str
-    printed: str
+    printed: str = ""
+    english: str = ""
     scan: str = ""
     ranges: tuple[str, ...] = ()
     inferred: tuple[str, ...] = ()
@@ -63,14 +65,18 @@ class PaperEntry(_Data):
     about: Mapping[str, Any] = {}
     where: str = ""
     lines: tuple[int, int] = (0, 0)
-    translated: bool = False
     heads: tuple[str, ...] = ()
+
+    @property
+    def statement(self) -> str:
+        """What is judged: the formula, or the sentence in English."""
+        return self.english or self.printed
 
     @property
     def settled(self) -> tuple[str, tuple[str, ...]]:
         """What is right, as printed or as corrected: the formula, and its ranges."""
         if self.slip is None:
-            return self.printed, (*self.ranges, *self.inferred)
+            return self.statement, (*self.ranges, *self.inferred)
         ranges = self.ranges if self.slip.ranges is None else self.slip.ranges
         return self.slip.corrected, (*ranges, *self.inferred)
 
@@ -100,9 +106,11 @@ class Passage(_Data):
     def entries(self) -> Iterator[PaperEntry]:
         """The records, each with its place and its scan."""
         for entry in self.record:
+            scan = entry.scan or self.text.strip("\n")
             yield entry.model_copy(
                 update={
-                    "scan": entry.scan or self.text.strip("\n"),
+                    "scan": scan,
+                    "printed": entry.printed or " ".join(scan.split()),
                     "where": entry.where or self.where,
                     "lines": self.lines,
                 }
@@ -234,18 +242,18 @@ _TAGS = re.compile(r"\(\d\.\d+\)(_\d)?|\[cd\.\]")
 def _unlike(entry: PaperEntry, passage: Passage, hashes: Mapping[str, str]) -> Iterator[str]:
     if entry.scan not in passage.text:
         yield "its scan is not in the text of its passage"
-    if entry.translated:
-        if hashes.get(entry.id) != digest(entry.printed):
-            yield "is not the translation that was checked"
-        return
+    if entry.english and hashes.get(entry.id) != digest(entry.english):
+        yield "is not the translation that was checked"
     if entry.edits and hashes.get(f"{entry.id}:edits") != digest(edited(entry)):
         yield "its edits are not those that were checked"
     text = plain(entry.scan)
     for before, after, _ in entry.edits:
         if plain(before) not in text:
             yield f"nothing to edit: {before}"
-        text = text.replace(plain(before), plain(after))
-    said = plain(entry.printed if entry.heads else ",".join((entry.printed, *entry.ranges)))
+        if entry.english and plain(after) not in plain(entry.english):
+            yield f"is not in the English: {after}"
+        text = text if entry.english else text.replace(plain(before), plain(after))
+    said = plain(entry.printed if entry.heads or entry.english else ",".join((entry.printed, *entry.ranges)))
     if text != said:
         yield f"is not what its edits make of the scan: {text} there, {said} printed"
 
@@ -270,7 +278,7 @@ _LAYOUT: Sequence[tuple[re.Pattern[str], str]] = tuple(
     for pattern, instead in (
         (r"(?s)&(?=(?:(?!\\begin\{).)*\\end\{cases\})", " , "),
         (r"\\(?:begin|end)\{cases\}", " "),
-        (r"\\begin\{aligned\}|\\end\{aligned\}|\\left\.|\\right\.|\$|&|\\\\|\\quad|\\times", " "),
+        (r"\\begin\{aligned\}|\\end\{aligned\}|\\left\.|\\right\.|\$|&|\\\\|\\quad", " "),
         (r"\\left(?=[\W_])|\\right(?=[\W_])", " "),
         (r"\\text\{([^}]*)\}", r"\1"),
         (r"(^|\s)dla(\s|$)", " , "),

@@ -6,7 +6,7 @@ What is printed is what is judged: a reading is made from the strings of the rec
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Literal
 
@@ -24,7 +24,7 @@ Verdict = Literal["holds", "misprint", "unreadable", "convention", "model", "dep
 VERDICTS: dict[Verdict, str] = {
     "holds": "right as printed",
     "misprint": "has a meaning as printed, which is wrong; the correction holds in every case tried",
-    "unreadable": "has no meaning as printed, or not the one meant: the reading given holds in every case tried",
+    "unreadable": "has no value as printed wherever it fails: the reading given holds in every case tried",
     "convention": "holds under the convention given, and only under that",
     "model": "holds as mathematics, but does not say what the text says it does",
     "depends": "depends on data that the text does not give: true for some of what was tried, false for others",
@@ -138,7 +138,9 @@ class Test:
 
     `against` is what they are compared with. `read` makes a reading of strings, `faults` puts faults into one.
     `difference`, where it can be written, is printed less derived. `mathematics` are the cases in which a `model` holds
-    nevertheless; `observed` is what was measured, in a sentence.
+    nevertheless; `conventions` are those of what is printed under something that the text may mean, by what that is.
+    `varied` is what the cases differ by, where the text does not give it. `observed` is what was measured, in a
+    sentence.
     """
 
     __test__ = False  # not pytest's
@@ -149,6 +151,8 @@ class Test:
     faults: Callable[[Reading], Iterable[tuple[str, Reading]]] = faults
     difference: Callable[[Reading], str] | None = None
     mathematics: Callable[[Reading], Iterable[Case]] | None = None
+    conventions: Mapping[str, Callable[[Reading], Iterable[Case]]] = field(default_factory=dict)
+    varied: str = ""
     observed: Callable[[], str] | None = None
 
 
@@ -166,7 +170,10 @@ class Mutations:
 
 @dataclass(frozen=True)
 class Record:
-    """An entry with its verdict; `cases` counts those that told something, `problems` is empty where all is well."""
+    """An entry with its verdict; `cases` counts those that told something, `problems` is empty where all is well.
+
+    `evidence` is computed.
+    """
 
     entry: PaperEntry
     against: str
@@ -183,6 +190,11 @@ class Record:
         return self.entry.id
 
     @property
+    def note(self) -> str:
+        """What is said of it beside the evidence: our reading, which nothing computes."""
+        return " ".join(note for note in (self.entry.slip and self.entry.slip.note, self.entry.note) if note)
+
+    @property
     def corrected(self) -> str | None:
         """The whole formula or sentence as it should be, where what is printed does not hold."""
         return self.entry.slip.corrected if self.entry.slip else None
@@ -192,8 +204,9 @@ def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record
     """The verdict on an entry, with its evidence. `problems` are those of its transcription."""
     found = list(problems)
     slip = entry.slip
-    printed = _Trial.of(test, entry.printed, (*entry.ranges, *entry.inferred), stop=entry.slip is not None)
-    settled, text, ranges = printed, entry.printed, (*entry.ranges, *entry.inferred)
+    stop_at: Literal["", "value"] = "value" if slip and not test.varied else ""
+    printed = _Trial.of(test, entry.statement, (*entry.ranges, *entry.inferred), stop_at)
+    settled, text, ranges = printed, entry.statement, (*entry.ranges, *entry.inferred)
     evidence: list[str] = []
     if slip:
         text = slip.corrected
@@ -205,12 +218,11 @@ def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record
             evidence.append(f"{printed.wrong}.")
         if settled.wrong:
             found.append(f"the correction fails: {settled.wrong}")
-        evidence += [f"As corrected it holds in {_all(settled.telling)}.", *([slip.note] if slip.note else [])]
-        if test.mathematics:
-            proved = _Trial(test.mathematics(test.read(entry.printed, (*entry.ranges, *entry.inferred))))
-            if proved.wrong or not proved.telling:
-                found.append(f"does not hold as mathematics either: {proved.wrong}")
-            evidence.append(f"As mathematics it holds in {_all(proved.telling)}.")
+        evidence.append(f"As corrected it holds in {_all(settled.telling)}.")
+        shown_kind, why = _kind(entry, test, printed)
+        if slip.verdict != shown_kind:
+            found.append(f"called {slip.verdict}, yet it is {shown_kind}: {why}")
+        evidence.append(why)
     elif printed.wrong:
         found.append(f"fails, and no correction is known: {printed.wrong}")
     else:
@@ -221,18 +233,47 @@ def judge(entry: PaperEntry, test: Test, problems: Iterable[str] = ()) -> Record
     found += unturned
     difference = None
     if test.difference and not settled.wrong:
-        difference = _less_derived(test, entry.printed, (*entry.ranges, *entry.inferred))
+        difference = _less_derived(test, entry.statement, (*entry.ranges, *entry.inferred))
         left = _less_derived(test, text, ranges)
         if left != "0":
             found.append(f"printed less derived is {left} where it is said to hold")
     if test.observed:
         evidence.append(test.observed())
-    if entry.note:
-        evidence.append(entry.note)
     verdict: Verdict = "untested" if found else slip.verdict if slip else "holds"
     return Record(
         entry, test.against, verdict, tuple(evidence), settled.telling, turned, printed.wrong, difference, tuple(found)
     )
+
+
+def _kind(entry: PaperEntry, test: Test, printed: _Trial) -> tuple[Verdict, str]:
+    """What kind of slip the cases show, and by what."""
+    under: list[tuple[Verdict, str, Callable[[Reading], Iterable[Case]]]] = []
+    if test.mathematics:
+        under.append(("model", "As mathematics", test.mathematics))
+    under += [("convention", f"Where {meaning},", cases) for meaning, cases in test.conventions.items()]
+    text, ranges = entry.statement, (*entry.ranges, *entry.inferred)
+    for verdict, words, cases in under:
+        held = _Trial.of(replace(test, cases=cases), text, ranges, stop_at="failure")
+        if held.telling and held.wrong is None:
+            return verdict, f"{words} it holds as printed in {_all(held.telling)}."
+    if printed.false is None:
+        return "unreadable", "Wherever it fails it has no value."
+    if test.varied and printed.agreed:
+        return "depends", f"It is so under some of the {test.varied} that were tried, and not under others."
+    if _adds(entry):
+        return "incomplete", "The correction adds a hypothesis and changes nothing else."
+    return "misprint", "Where it fails it has a value, which is wrong."
+
+
+def _adds(entry: PaperEntry) -> bool:
+    """Whether what is right is what is printed and something more: ranges, or words in one place."""
+    slip, before = entry.slip, entry.statement
+    assert slip
+    if slip.corrected == before:
+        return slip.ranges is not None and {*entry.ranges} < {*slip.ranges}
+    cuts = ((before[:at], before[at:]) for at in range(len(before) + 1))
+    right = slip.corrected if entry.english else ""
+    return any(right.startswith(start) and right.endswith(end) for start, end in cuts)
 
 
 def _less_derived(test: Test, text: str, ranges: Iterable[str]) -> str | None:
@@ -265,34 +306,41 @@ def _faulty(entry: PaperEntry, test: Test, text: str, ranges: Iterable[str]) -> 
 
 
 class _Trial:
-    """Cases gone through: how many told something, and the first that failed."""
+    """Cases gone through: how many told something and how many of these agreed, and the first that failed.
 
-    def __init__(self, cases: Iterable[Case], stop: bool = False) -> None:
-        self.telling = 0
+    `false` is the first that failed with a value. What to `stop_at` is a failure, or one with a value.
+    """
+
+    def __init__(self, cases: Iterable[Case], stop_at: Literal["", "failure", "value"] = "") -> None:
+        self.telling = self.agreed = 0
         self.wrong: Case | None = None
+        self.false: Case | None = None
         try:
             for tried in cases:
                 self.telling += tried.telling
-                if not tried.agrees and self.wrong is None:
-                    self.wrong = tried
-                    if stop:
+                self.agreed += tried.telling and tried.agrees
+                if not tried.agrees:
+                    self.wrong = self.wrong or tried
+                    if not isinstance(tried.printed, Nothing):
+                        self.false = self.false or tried
+                    if stop_at == "failure" or (stop_at == "value" and self.false):
                         break
         except MeaninglessError as error:
             self.wrong = self.wrong or Case({}, Nothing(str(error)), "a value")
 
     @classmethod
-    def of(cls, test: Test, text: str, ranges: Iterable[str], stop: bool = False) -> _Trial:
+    def of(cls, test: Test, text: str, ranges: Iterable[str], stop_at: Literal["", "failure", "value"] = "") -> _Trial:
         """A string tried, to its end or to the first case that fails; one that cannot be read fails."""
         try:
             read = test.read(text, ranges)
         except UnreadableError as error:
             return cls(iter([Case({}, Nothing(str(error)), "a formula")]))
-        return cls(test.cases(read), stop)
+        return cls(test.cases(read), stop_at)
 
     @classmethod
     def turned(cls, test: Test, read: Reading) -> bool:
         """Whether a faulty reading is seen."""
-        return cls(test.cases(read), stop=True).wrong is not None
+        return cls(test.cases(read), stop_at="failure").wrong is not None
 
 
 def shown(value: object) -> str:

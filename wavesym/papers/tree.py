@@ -7,7 +7,7 @@ A tree says what stands there, not what it means: an index is an expression, a b
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 
@@ -263,6 +263,17 @@ def symbols(tree: Any) -> Iterator[Symbol]:
     elif is_dataclass(tree):
         for field in fields(tree):
             yield from symbols(getattr(tree, field.name))
+
+
+def replaced(tree: Any, part: Tree, instead: Tree) -> Any:
+    """A tree with another part wherever it has one."""
+    if tree == part:
+        return instead
+    if isinstance(tree, tuple):
+        return tuple(replaced(each, part, instead) for each in tree)
+    if not is_dataclass(tree) or isinstance(tree, type):
+        return tree
+    return replace(tree, **{field.name: replaced(getattr(tree, field.name), part, instead) for field in fields(tree)})
 
 
 def _symbol(symbol: Symbol) -> str:

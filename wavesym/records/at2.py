@@ -1,6 +1,7 @@
 """AT2, the format of the PEER ground motion database: three lines of text, one that counts, then the samples.
 
-The fourth line is `NPTS=  1559, DT=   .0200 SEC`, or bare numbers, `1559   .0200   NPTS, DT`. Times are in seconds.
+The fourth line is `NPTS=  1559, DT=   .0200 SEC`, or bare numbers, `1559   .0200   NPTS, DT`. DT is in seconds where
+no unit stands behind it; MSEC and the like are read, any other word is refused.
 """
 
 from __future__ import annotations
@@ -9,11 +10,16 @@ import re
 from collections.abc import Sequence
 from fractions import Fraction
 
-from wavesym.records.record_file import RecordFile, bare, damaged, decimal
+from wavesym.records.record_file import MOST_SAMPLES, RecordFile, bare, damaged, decimal
 
 _HEADER = 4
-_NAMED = re.compile(r"NPTS *= *([0-9]+)[ ,]+DT *= *([0-9.eEdD+-]+).*", re.IGNORECASE)
-_BARE = re.compile(r"([0-9]+)[ ,]+([0-9.eEdD+-]+)( .*)?")
+_NAMED = re.compile(r"NPTS *= *([0-9]+)[ ,]+DT *= *([+-]?[0-9.]+(?:[eEdD][+-]?[0-9]+)?)(.*)", re.IGNORECASE)
+_BARE = re.compile(r"([0-9]+)[ ,]+([+-]?[0-9.]+(?:[eEdD][+-]?[0-9]+)?)((?:[ ,].*)?)")
+_NAMES = re.compile(r"[ ,]*NPTS *, *DT\b", re.IGNORECASE)  # what bare numbers are
+_CLOCKS = {
+    **dict.fromkeys(("", "S", "SEC", "SECS", "SECOND", "SECONDS"), Fraction(1)),
+    **dict.fromkeys(("MS", "MSEC", "MSECS", "MILLISECOND", "MILLISECONDS"), Fraction(1, 1000)),
+}
 _UNITS = re.compile(r"UNITS? +OF +([A-Z/^*0-9]+)", re.IGNORECASE)
 _KNOWN = {"G": "g", "CM/S": "cm/s", "CM": "cm", "CM/S/S": "cm/s^2", "CM/S2": "cm/s^2", "CM/S^2": "cm/s^2"}
 
@@ -30,10 +36,10 @@ def at2(file: str, lines: Sequence[str]) -> RecordFile:
     samples: list[Fraction] = []
     places: list[int] = []
     for number, line in enumerate(lines[_HEADER:], _HEADER + 1):
-        for word in line.split():
+        for place, word in enumerate(line.split(), 1):
             value = decimal(word)
             if value is None:
-                raise damaged(file, number, f"{bare(word)} given, a decimal expected")
+                raise damaged(file, number, f"word {place} is no decimal")
             if len(samples) == count:
                 raise damaged(file, number, f"more numbers than the {count} of NPTS on line {_HEADER} given")
             samples.append(value)
@@ -62,11 +68,20 @@ def _counted(file: str, lines: Sequence[str]) -> tuple[int, Fraction]:
     found = _NAMED.fullmatch(line) or _BARE.fullmatch(line)
     step = decimal(found[2]) if found else None
     if found is None or step is None:
-        raise damaged(file, _HEADER, f"{bare(line)} given, {expected}")
+        raise damaged(file, _HEADER, expected)
     if step <= 0:
         raise damaged(file, _HEADER, f"DT = {bare(found[2])} given, more than 0 expected")
     if not found[1].strip("0"):
         raise damaged(file, _HEADER, "NPTS = 0 given, at least 1 expected")
-    if len(found[1]) > 9:
-        raise damaged(file, _HEADER, f"NPTS = {bare(found[1])} given, at most {10**9} expected")
-    return int(found[1]), step
+    clock = _clock(file, found[3])
+    if len(found[1]) > 9 or int(found[1]) > MOST_SAMPLES:
+        raise damaged(file, _HEADER, f"NPTS = {bare(found[1])} given, at most {MOST_SAMPLES} expected")
+    return int(found[1]), step * clock
+
+
+def _clock(file: str, words: str) -> Fraction:
+    """How many seconds the unit behind DT is. What stands apart from it by a comma is no unit."""
+    word = _NAMES.sub("", words).split(",")[0].strip(" .()[]")
+    if (clock := _CLOCKS.get(word.upper())) is None:
+        raise damaged(file, _HEADER, "the unit behind DT is not known, SEC or MSEC expected")
+    return clock

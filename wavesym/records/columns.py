@@ -43,10 +43,12 @@ def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
     mark = _mark(file, top)
     named = [_column(place, cell) for place, cell in enumerate(_cells(file, at, head, mark))]
     if all(decimal(column.header.replace(",", ".")) is not None for column in named):
-        raise damaged(file, at, f"{bare(head)} given, a header line expected, such as time,acceleration")
+        raise damaged(file, at, "a header line expected, such as time,acceleration")
     clock = next((column for column in named if column.name.casefold() in _TIMES), None)
-    column = _chosen(file, at, named, clock, wanted)
-    decimals = _Decimals(file, mark is not None and mark != ",")
+    below = _cells(file, *top[1], mark) if len(top) > 1 else []
+    numeric = any(decimal(cell.replace(",", ".")) is not None for cell in below)
+    column = _chosen(file, at, named, clock, wanted, numeric=numeric)
+    decimals = _Decimals(file, mark is not None and mark != ",", named if numeric else ())
     times: list[Fraction] = []
     samples: list[Fraction] = []
     written: list[str] = []
@@ -56,8 +58,8 @@ def columns(file: str, lines: Sequence[str], wanted: str | None) -> RecordFile:
         if len(cells) != len(named):
             raise damaged(file, number, f"{len(cells)} columns given, the {len(named)} of the header expected")
         if clock:
-            times.append(decimals.read(cells[clock.place], number, clock.header)[0])
-        sample, word = decimals.read(cells[column.place], number, column.header)
+            times.append(decimals.read(cells[clock.place], number, clock.place)[0])
+        sample, word = decimals.read(cells[column.place], number, column.place)
         samples.append(sample)
         written.append(word)
         places.append(number)
@@ -99,28 +101,28 @@ def _cells(file: str, number: int, row: str, mark: str | None) -> list[str]:
     try:
         (cells,) = csv.reader([row], delimiter=mark or ",", skipinitialspace=True, strict=True)
     except csv.Error:
-        raise damaged(file, number, f"{bare(row)} given, quotes around whole cells expected") from None
+        raise damaged(file, number, "quotes around whole cells expected") from None
     return [cell.strip() for cell in cells]
 
 
 class _Decimals:
     """The numbers of a file, exact; with a decimal comma where it `may` be one and every other number has it."""
 
-    def __init__(self, file: str, may: bool) -> None:
-        self._file, self._may = file, may
+    def __init__(self, file: str, may: bool, named: Sequence[_Column]) -> None:
+        self._file, self._may, self._named = file, may, named
         self._mark: str | None = None  # once there was one
 
-    def read(self, word: str, line: int, header: str) -> tuple[Fraction, str]:
+    def read(self, word: str, line: int, place: int) -> tuple[Fraction, str]:
         """A number, and how it is written, with a point."""
         mark = "." if "." in word else "," if self._may and "," in word else None
         plain = word.replace(",", ".") if mark == "," else word
         value = decimal(plain)
         if value is None:
-            raise damaged(self._file, line, f"{bare(word)} given, a decimal expected ({bare(header)})")
+            name = f" ({bare(self._named[place].header)})" if self._named else ""
+            raise damaged(self._file, line, f"column {place + 1}{name} is no decimal")
         if mark is not None and mark != self._mark:
             if self._mark is not None:
-                expected = f'a decimal with "{self._mark}" as before expected ({bare(header)})'
-                raise damaged(self._file, line, f"{bare(word)} given, {expected}")
+                raise damaged(self._file, line, f'{bare(word)} given, a decimal with "{self._mark}" as before expected')
             self._mark = mark
         return value, plain
 
@@ -133,18 +135,20 @@ def _column(place: int, header: str) -> _Column:
     return _Column(place, header, header, "")
 
 
-def _chosen(file: str, at: int, named: Sequence[_Column], clock: _Column | None, wanted: str | None) -> _Column:
-    """The column of the samples."""
+def _chosen(
+    file: str, at: int, named: Sequence[_Column], clock: _Column | None, wanted: str | None, *, numeric: bool
+) -> _Column:
+    """The column of the samples; messages name those of a `numeric` table, in which numbers follow the header."""
     others = [column for column in named if column is not clock]
-    known = ", ".join(bare(column.header) for column in others[:8])
+    known = f" ({', '.join(bare(column.header) for column in others[:8])})" if numeric else ""
     if not others:
-        raise damaged(file, at, f"only {bare(named[0].header)} given, a column of samples expected")
+        raise damaged(file, at, "one column of times given, a column of samples expected")
     if wanted is None:
         if len(others) > 1:
-            raise damaged(file, at, f"{len(others)} columns given, `column` expected to say which ({known})")
+            raise damaged(file, at, f"{len(others)} columns given, `column` expected to say which{known}")
         return others[0]
     matching = [column for column in others if wanted in (column.header, column.name)]
     if len(matching) != 1:
         what = "no column" if not matching else f"{len(matching)} columns"
-        raise damaged(file, at, f"{what} called {bare(wanted)} given, one expected ({known})")
+        raise damaged(file, at, f"{what} called {bare(wanted)} given, one expected{known}")
     return matching[0]

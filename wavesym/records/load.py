@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Annotated, Self
 
 from flint import fmpq
-from pydantic import Field, PlainValidator, model_validator
+from pydantic import Field, PlainValidator, PrivateAttr, model_validator
 
 from wavesym.fields.loads import Load, linear
 from wavesym.fields.numbers import Exact, Positive, decimal_text
@@ -36,6 +36,8 @@ class RecordedLoad(Load):
     scale: Exact = Fraction(1)
     record: Recorded = Field(description="the path of a file")
 
+    _delayed: bool = PrivateAttr(default=False)
+
     @model_validator(mode="after")
     def _said_once(self) -> Self:
         if self.record.unit or self.record.clock:
@@ -48,8 +50,8 @@ class RecordedLoad(Load):
         self._once("start", self.start, self.record.start)
         if self.spacing is None and self.record.spacing is None:
             raise wrong("missing, the time between samples expected (the file does not say it)", "spacing")
-        if self.begin != 0 and self.begin < self.step:
-            steps = f"{decimal_text(self.begin / self.step)} steps"
+        if self._start != 0 and self._start < self.step:
+            steps = f"{decimal_text(self._start / self.step)} steps"
             key = "record" if self.start is None else "start"
             raise wrong(f"a first sample after {steps} given, at 0 or after at least 1 expected (it comes from 0)", key)
         return self
@@ -68,7 +70,24 @@ class RecordedLoad(Load):
     @property
     def begin(self) -> Fraction:
         """The time of the first sample."""
+        return self.step if self._delayed else self._start
+
+    @property
+    def _start(self) -> Fraction:
         return next((start for start in (self.start, self.record.start) if start is not None), Fraction(0))
+
+    @property
+    def is_delayed(self) -> bool:
+        """Whether it begins one spacing later than it says, so that it does not jump to its first sample."""
+        return self._delayed
+
+    def without_jump(self) -> Self:
+        """The same load, one spacing later where it would jump at tau = 0: it rises to its first sample from 0."""
+        if self._start or not (self.scale and self.record.samples[0]):
+            return self
+        later = self.model_copy()
+        later._delayed = True
+        return later
 
     def units(self) -> Iterator[Applied]:
         """The load as unit responses: steps and ramps."""

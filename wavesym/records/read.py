@@ -10,7 +10,7 @@ from wavesym.errors import SceneError
 from wavesym.reading import read_bytes
 from wavesym.records.at2 import at2, is_at2
 from wavesym.records.columns import columns
-from wavesym.records.record_file import RecordFile, damaged
+from wavesym.records.record_file import MOST_SAMPLES, RecordFile, damaged
 
 _EXPECTED = "a file of AT2 or CSV"
 
@@ -28,6 +28,8 @@ def read_record(path: str | PathLike[str], column: str | None = None) -> RecordF
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise damaged(file, line, f"byte 0x{content[error.start]:02x} is not UTF-8, {_EXPECTED} expected") from None
+    if content.count(b"\n") + content.count(b"\r") > 2 * MOST_SAMPLES:
+        raise SceneError(f"more lines than {MOST_SAMPLES} samples take; thin the record, or cut it", file=file)
     if not text.strip():
         raise SceneError(f"empty, {_EXPECTED} expected", file=file)
     lines = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n").split("\n")

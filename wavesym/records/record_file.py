@@ -1,4 +1,8 @@
-"""What a file of a record says, and the decimals in it."""
+"""What a file of a record says, and the decimals in it.
+
+A path in a scene may point to any file. So a message names the place of what is wrong, and quotes numbers at most: text
+of a file is shown only where it is the header of a table of numbers.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +21,7 @@ from wavesym.fields.table import Written, shown
 _DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eEdD]([+-]?[0-9]{1,4}))?")
 _LARGEST = Fraction(10) ** LARGEST_EXPONENT
 _SMALLEST = 1 / _LARGEST
+MOST_SAMPLES = 1_000_000
 _NEAR = Fraction(1, 10)  # of a step: times that are written with few digits
 
 

@@ -12,8 +12,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from wavesym.mechanics.length import LengthUnit, in_unit, place_text
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
+from wavesym.programs.program import Program
 from wavesym.report.histories import Histories, Points, histories
 from wavesym.report.reduction import columns_of, extremes_between
 from wavesym.scene import Scene, lower
@@ -27,9 +29,11 @@ _CLIPPED = 0.995  # of all cells, those whose colours tell them apart
 
 @dataclass(frozen=True)
 class Spot:
-    """A place as it is written in a scene, `x` along its line; what is watched there stands for [low, high]."""
+    """A place as it is `written` in a scene without units, and `told`, in the scene's own unit as are `x` along its
+    line and what it stands for, [low, high]."""
 
     written: str
+    told: str
     x: float
     low: float
     high: float
@@ -50,12 +54,14 @@ class Band:
 
 @dataclass(frozen=True)
 class Along:
-    """A quantity along all lines of a chain, at `taus`."""
+    """A quantity along all lines of a chain, at `taus`, by a program. `length` is the unit of places."""
 
     quantity: str
     unit: str
     taus: Points
     bands: tuple[Band, ...]
+    program: Program
+    length: LengthUnit | None = None
 
     @property
     def storeys(self) -> bool:
@@ -68,7 +74,8 @@ def along(scene: Scene) -> tuple[Along, ...]:
     asked = {quantity: _asked(scene, quantity) for quantity in _quantities(scene)}
     written = {quantity: [spot.written for _, spots in lines for spot in spots] for quantity, lines in asked.items()}
     made = histories(_watching(scene, {quantity: written.get(quantity, []) for quantity in QUANTITIES}))
-    return tuple(_of(made, quantity, lines) for quantity, lines in asked.items())
+    length = _length(scene)
+    return tuple(replace(_of(made, quantity, lines), length=length) for quantity, lines in asked.items())
 
 
 def _watching(scene: Scene, places: Mapping[str, Sequence[str]]) -> Model:
@@ -99,7 +106,13 @@ def _asked(scene: Scene, quantity: str) -> list[tuple[str, tuple[Spot, ...]]]:
     rods = sum(1 for stations in lines.values() for _ in pairwise(stations))
     parts = 1 if scene.system.type == "building" else max(1, min(_FINEST, _PLACES // rods))
     make = {"drift": _drifts, "strain": _strains}.get(quantity, _motions)
-    return [(name, _distinct(scene, quantity, make(name, stations, parts))) for name, stations in lines.items()]
+    length = _length(scene)
+    return [(name, _distinct(scene, quantity, make(name, stations, parts, length))) for name, stations in lines.items()]
+
+
+def _length(scene: Scene) -> LengthUnit | None:
+    """The unit that places are told in."""
+    return scene.physical.length if scene.physical else None
 
 
 def _distinct(scene: Scene, quantity: str, spots: Iterable[Spot]) -> tuple[Spot, ...]:
@@ -116,48 +129,45 @@ def _distinct(scene: Scene, quantity: str, spots: Iterable[Spot]) -> tuple[Spot,
     return tuple(found)
 
 
-def _drifts(line: str, stations: tuple[Station, ...], _: int) -> Iterator[Spot]:
+def _drifts(line: str, stations: tuple[Station, ...], _: int, length: LengthUnit | None) -> Iterator[Spot]:
     """Of each rod."""
     for k, (one, other) in enumerate(pairwise(stations), 1):
-        low, high = float(one.x), float(other.x)
-        yield Spot(_place(line, k), (low + high) / 2, low, high)
+        low, high = in_unit(one.x, length), in_unit(other.x, length)
+        yield Spot(place_text(Fraction(k), line), place_text(Fraction(k), line), (low + high) / 2, low, high)
 
 
-def _strains(line: str, stations: tuple[Station, ...], parts: int) -> Iterator[Spot]:
+def _strains(line: str, stations: tuple[Station, ...], parts: int, length: LengthUnit | None) -> Iterator[Spot]:
     """In each rod from end to end."""
     for one, other in pairwise(stations):
         step = (other.x - one.x) / parts
         for k in range(parts + 1):
             x, side = one.x + k * step, {0: "+", parts: "-"}.get(k, "")
-            yield Spot(
-                _place(line, x, side), float(x), float(max(one.x, x - step / 2)), float(min(other.x, x + step / 2))
-            )
+            ends = (in_unit(each, length) for each in (x, max(one.x, x - step / 2), min(other.x, x + step / 2)))
+            yield Spot(place_text(x, line, side), place_text(x, line, side, length), *ends)
 
 
-def _motions(line: str, stations: tuple[Station, ...], parts: int) -> Iterator[Spot]:
+def _motions(line: str, stations: tuple[Station, ...], parts: int, length: LengthUnit | None) -> Iterator[Spot]:
     """At each station, on both sides of what may part there, and between."""
     places = [(stations[0].x, "+" if len(stations[0].points) > 1 else "")]
     for one, other in pairwise(stations):
         step = (other.x - one.x) / parts
         places += [(one.x + k * step, "") for k in range(1, parts)]
         places += [(other.x, side) for side in (("-", "+") if len(other.points) > 1 else ("",))]
-    xs = [float(x) for x, _ in places]
+    xs = [in_unit(x, length) for x, _ in places]
     for k, (x, side) in enumerate(places):
         low, high = xs[max(k - 1, 0)], xs[min(k + 1, len(xs) - 1)]
-        yield Spot(_place(line, x, side), xs[k], (low + xs[k]) / 2, (xs[k] + high) / 2)
-
-
-def _place(line: str, x: Fraction | int, side: str = "") -> str:
-    return f"{line}{line and ':'}{x}{side}"
+        spoken = place_text(x, line, side, length)
+        yield Spot(place_text(x, line, side), spoken, xs[k], (low + xs[k]) / 2, (xs[k] + high) / 2)
 
 
 def _of(made: Histories, quantity: str, lines: list[tuple[str, tuple[Spot, ...]]]) -> Along:
+    assert made.program is not None  # histories have one
     own = [history for history in made.outputs if history.output.quantity == quantity]
     taus = own[0].points[:, 0]
     rows = np.array([np.where(taus <= history.formal, history.points[:, 1], np.nan) for history in own])
     cuts = np.cumsum([len(spots) for _, spots in lines])[:-1]
     bands = (Band(*line, values) for line, values in zip(lines, np.split(rows, cuts), strict=True))
-    return Along(quantity, own[0].output.unit, taus, tuple(bands))
+    return Along(quantity, own[0].output.unit, taus, tuple(bands), made.program)
 
 
 def cells(along: Along, band: Band, columns: int) -> Points:

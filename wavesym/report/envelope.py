@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
+from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.report.along import Along, Band
 from wavesym.report.envelope_values import envelope, extremes
@@ -82,7 +83,7 @@ def _along_line(axes: Axes, quantity: Along, band: Band) -> None:
     for values, colour in ((greatest, _GREATEST), (least, _LEAST)):
         axes.plot(x, values, "-", color=colour)
     axes.axhline(0, color="0.6", linewidth=0.8)
-    axes.set_xlabel(f"{band.line}:x" if band.line else "x")
+    axes.set_xlabel(axis_text(band.line, quantity.length))
     axes.set_xlim(band.spots[0].low, band.spots[-1].high)
     axes.margins(y=0.2)
     axes.ticklabel_format(axis="y", scilimits=(-3, 5))

@@ -34,7 +34,7 @@ def extremes(found: Along, band: Band) -> Iterator[BandExtreme]:
         np.unravel_index(find(band.values), band.values.shape) for find in (np.nanargmax, np.nanargmin)
     ):
         spot = band.spots[place]
-        where = f"in storey {place + 1}" if found.storeys else f"at x = {spot.written}"
+        where = f"in storey {place + 1}" if found.storeys else f"at x = {spot.told}"
         tau, value = float(found.taus[instant]), float(band.values[place, instant])
         yield BandExtreme(where, found.unit, spot.x, tau, value)
 

@@ -137,7 +137,7 @@ def _title(number: int, model: Model, load: TriedLoad) -> Iterator[str]:
 def _list(number: int, load: TriedLoad, verdicts: Mapping[str, Record]) -> Iterator[str]:
     """The statements, what each was taken to mean, and for which loads it is true."""
     for id, statement in statements(number).items():
-        yield f"{id.removeprefix('text.')}  {verdicts[id].entry.printed}: {verdicts[id].verdict}"
+        yield f"{id.removeprefix('text.')}  {verdicts[id].entry.statement}: {verdicts[id].verdict}"
         yield from _indented("; ".join(_measured(number, load, statement)))
 
 

@@ -16,6 +16,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.report.along import Along, Band, cells, limit
 from wavesym.report.groups import axis_title, load_panel
@@ -70,4 +71,4 @@ def _frame(axes: Axes, quantity: Along, band: Band) -> None:
         axes.set_yticks(*zip(*band.numbered(_NAMED), strict=True))
         axes.set_ylabel("storey")
     else:
-        axes.set_ylabel(f"{band.line}:x" if band.line else "x")
+        axes.set_ylabel(axis_text(band.line, quantity.length))

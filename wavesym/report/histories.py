@@ -17,7 +17,7 @@ from flint import fmpq
 from numpy.typing import NDArray
 
 from wavesym.errors import SpacingError, ToleranceError, WavesymError
-from wavesym.exact.contacts.collision import ContactEnd, contact_ends
+from wavesym.exact.contacts.opening import ContactEnd, contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
@@ -82,19 +82,21 @@ class Histories:
     program: Program | None = None
 
 
-def histories(model: Model, columns: int = 1) -> Histories:
+def histories(model: Model, columns: int = 1, program: Program | None = None) -> Histories:
     """The histories of all outputs. ToleranceError, CostError where nothing can be generated either.
 
-    Their instants lie at the edges of so many `columns` of equal width, and between them.
+    Their instants lie at the edges of so many `columns` of equal width, and between them. They are those of a `program`
+    that has these outputs, or of one that is made quickly.
     """
-    program = drawable(model)
+    program = program or drawable(model)
+    names = [output.name for output in program.outputs]
     contacts = contact_ends(model)
     formal = [_formal(model, probe, contacts) for probe in model.probes]
     dense = _dense(model)
     sudden = rest_of(model) if program.kind == "hats" else model  # records do not jump
     fronts = [[] if dense else arrivals(sudden, probe) for probe in model.probes]
     taus = _instants(program, columns, fronts, formal)
-    values = program.evaluate(taus)
+    values = program.evaluate(taus)[[names.index(probe.name) for probe in model.probes]]
     return Histories(
         model,
         tuple(

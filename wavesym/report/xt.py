@@ -19,8 +19,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from wavesym.exact.contacts.collision import contact_ends
+from wavesym.exact.contacts.opening import contact_ends
 from wavesym.exact.field import Field
+from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.report.stations import open_times
@@ -83,9 +84,8 @@ def draw(model: Model, lines: Lines, physical: PhysicalScene | None = None) -> F
             for x, tau, values in rods:
                 axes.pcolormesh(x, tau, values, cmap=colours, norm=norm, rasterized=True)
             _frame(axes, name, stations, until, upward if column == 0 else "")
-            if physical and physical.length:
-                unit = physical.scale.results.texts["length"]
-                _lengths(axes, f"{name}:x in {unit}".removeprefix(":"), physical.length)
+            if model.length is not None:
+                _lengths(axes, axis_text(name, model.length), float(model.length.size))
             draw_nodes(axes, model.network, stations, opened, until)
             if not name:
                 _formal(axes, model, float(stations[-1].x))
@@ -153,7 +153,7 @@ def _image(
 def _frame(axes: Axes, name: str, stations: Sequence[Station], until: float, upward: str) -> None:
     axes.set_xlim(0, float(stations[-1].x))
     axes.set_ylim(0, until)
-    axes.set_xlabel(f"{name}:x" if name else "x", fontsize=_FONT)
+    axes.set_xlabel(axis_text(name), fontsize=_FONT)
     axes.locator_params(axis="x", nbins=6 if upward else 3)
     axes.tick_params(labelsize=_FONT - 1, labelleft=bool(upward))
     if upward:

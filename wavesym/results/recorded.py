@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from math import ceil, inf
 from typing import Any, NamedTuple
 
@@ -21,6 +20,7 @@ from wavesym.programs.modes.chain import ModalChain
 from wavesym.programs.modes.records import RecordResponse
 from wavesym.programs.modes.roughness import Roughness, scaled
 from wavesym.programs.modes.system import modal_chain
+from wavesym.results.near_zero import zero_within
 from wavesym.results.tops import Closely, Numbers, Places, tops
 
 _PARTS = 2
@@ -74,23 +74,32 @@ class RecordedExtremes:
     histories: Numbers
 
 
-def recorded_extremes(model: Model, records: ManyRecords, instants: Sequence[float] = ()) -> RecordedExtremes:
-    """Those of a model under each of many records; its own load is one of them, or any other that does not jump.
+class SharedModes:
+    """The modes of a model under records with this spacing: its own load is one of them, or any that does not jump.
 
-    UnservedError for what modes do not serve, ToleranceError as for `modal_system`.
+    UnservedError for what modes do not serve.
     """
-    chain = modal_chain(model)
 
-    @cache
-    def modes(count: int) -> _Modes:
-        known = chain.shares(count)
-        return _Modes(chain, known, count, RecordResponse(chain.system(known, count), records.spacing, _PARTS))
+    def __init__(self, model: Model, spacing: float) -> None:
+        self._chain, self._spacing = modal_chain(model), spacing
+        self._known: dict[int, _Modes] = {}
+        self._modes(self._chain.fewest)
 
-    found = _enough(modes, chain, records.hardest, chain.fewest)
-    if len(records.samples) > _HARDEST:
-        found = _enough(modes, chain, records, found.modes)
-    histories = _histories(modes(found.modes).response, records, np.array(instants, dtype=np.float64))
-    return replace(found, histories=histories)
+    def _modes(self, count: int) -> _Modes:
+        """The first modes, found once."""
+        if count not in self._known:
+            chain, known = self._chain, self._chain.shares(count)
+            response = RecordResponse(chain.system(known, count), self._spacing, _PARTS)
+            self._known[count] = _Modes(chain, known, count, response)
+        return self._known[count]
+
+    def extremes(self, records: ManyRecords, instants: Sequence[float] = ()) -> RecordedExtremes:
+        """Those under each of many records. ToleranceError as for `modal_system`."""
+        found = _enough(self._modes, self._chain, records.hardest, self._chain.fewest)
+        if len(records.samples) > _HARDEST:
+            found = _enough(self._modes, self._chain, records, found.modes)
+        histories = _histories(self._modes(found.modes).response, records, np.array(instants, dtype=np.float64))
+        return replace(found, histories=histories)
 
 
 class _Modes(NamedTuple):
@@ -132,6 +141,7 @@ def _by_modes(modes: _Modes, records: ManyRecords) -> RecordedExtremes:
     errors[:, np.array(chain.silent)] = 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         bounds = np.where(errors > 0, errors / np.maximum(largest - errors, 0.0), 0.0).max(axis=1, initial=0.0)
+    zero_within(values, taus, bounds[:, None, None], 0.0)  # all are at rest at first
     return RecordedExtremes(values, taus, bounds, count, np.empty((*values.shape[:2], 0)))
 
 

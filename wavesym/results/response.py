@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wavesym.errors import CostError, ToleranceError
+from wavesym.errors import CostError, ToleranceError, UnservedError, WavesymError
 from wavesym.exact.contacts.events import events
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.event import ContactEvent
@@ -17,6 +17,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.choice import attempts, best
 from wavesym.programs.program import Program, Provenance
+from wavesym.results.horizon import check_horizon
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -75,8 +76,26 @@ class Response:
     def events(self) -> tuple[ContactEvent, ...]:
         return events(self.model)
 
-    def __call__(self, tau: ArrayLike) -> NDArray[np.float64]:
-        """Values at tau (dimensionless): shape (len(outputs), *tau.shape), NaN where tau is out of [0, tau_max]."""
+    def __call__(self, tau: ArrayLike, *, strict: bool = False) -> NDArray[np.float64]:
+        """Values at instants of tau.
+
+        Args:
+            tau: instants, dimensionless, of any shape.
+            strict: whether an instant outside the horizon is an error.
+
+        Returns:
+            Shape (len(outputs), *tau.shape), in `units`; NaN, with one warning, where tau is outside [0, tau_max].
+
+        Raises:
+            WavesymError: where `strict`, for tau outside [0, tau_max].
+            CostError, ToleranceError: where no program computes the scene in moderate time, or to its tolerance.
+        """
+        taus = np.asarray(tau, dtype=np.float64)
+        check_horizon(taus, self.tau_max, strict=strict)
+        return self.values(taus)
+
+    def values(self, tau: ArrayLike) -> NDArray[np.float64]:
+        """The same without a word where tau is out of [0, tau_max]."""
         taus = np.asarray(tau, dtype=np.float64)
         flat = taus.ravel()
         inside = (flat >= 0.0) & (flat <= self.tau_max)
@@ -88,12 +107,12 @@ class Response:
         if not self._taken:
             try:
                 return self._reference.values(taus)
-            except CostError as error:
+            except (CostError, UnservedError) as error:
                 self._taken.append(_program(self.model, error))
         return self._taken[0].evaluate(taus)
 
 
-def _program(model: Model, error: CostError) -> Program:
+def _program(model: Model, error: WavesymError) -> Program:
     """What `generate` takes. ToleranceError where no program is good enough, the error where there is none at all.
 
     Of samples and records it is told what each program would need.

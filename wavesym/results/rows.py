@@ -44,7 +44,7 @@ def _columns(model: Model) -> list[str]:
 def _rows(response: Response, instants: Iterator[tuple[float, float]]) -> list[str]:
     """The lines of the next instants, none where there are no more."""
     some = list(islice(instants, _AT_ONCE))
-    values = np.vstack([np.asarray([first for first, _ in some]), response([tau for _, tau in some])]).T
+    values = np.vstack([np.asarray([first for first, _ in some]), response.values([tau for _, tau in some])]).T
     return [",".join(map(repr, row)) + "\n" for row in values.tolist()]
 
 

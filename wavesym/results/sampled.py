@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.results.near_zero import zero_within
+
 Numbers = NDArray[np.float64]
 Evaluate = Callable[[Numbers], Numbers]
 
@@ -21,11 +23,14 @@ _TOPS = 3  # of an output and a side that are looked at
 _EQUAL = 1e-14  # of the largest value: rounding makes no later instant of a plateau higher
 
 
-def sampled_extremes(taus: Numbers, values: Numbers, each: Evaluate | None = None) -> tuple[Numbers, Numbers]:
+def sampled_extremes(
+    taus: Numbers, values: Numbers, each: Evaluate | None = None, bound: float = 0.0
+) -> tuple[Numbers, Numbers]:
     """Values and tau, each (outputs, 2), of the least and the greatest value; the first of equal ones.
 
     `values` (outputs, taus) are those at `taus`, which are in order. What lies between is looked at where there is
-    `each`, which gives each output at instants of its own, (outputs, n).
+    `each`, which gives each output at instants of its own, (outputs, n). What is within the `bound` of the error of
+    values (relative to an output's largest) of 0 is 0, at the first sample that is, too.
     """
     both = np.stack([-values, values], axis=1)  # (outputs, sides, taus): greatest values are looked for in each
     equal = _EQUAL * np.abs(values).max(axis=1)[:, None]
@@ -35,7 +40,11 @@ def sampled_extremes(taus: Numbers, values: Numbers, each: Evaluate | None = Non
         for found, tau in _refined(each, taus, _tops(both)):
             better = found > best + equal
             best[better], when[better] = found[better], tau[better]
-    return best * [-1.0, 1.0] + 0.0, when
+    best = best * [-1.0, 1.0] + 0.0
+    near = np.abs(values) <= bound * np.abs(best).max(axis=1)[:, None]
+    first = np.where(near.any(axis=1), taus[near.argmax(axis=1)], np.inf)
+    zero_within(best, when, bound, np.minimum(when, first[:, None]))
+    return best, when
 
 
 def _tops(both: Numbers) -> NDArray[np.intp]:

@@ -10,21 +10,20 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.errors import CostError, WavesymError
+from wavesym.errors import CostError, UnservedError, WavesymError
 from wavesym.exact.arrival import first_arrivals, light_arrivals
-from wavesym.exact.extremes import NOTHING, Range, TrueExtreme, extremes
+from wavesym.exact.extremes import BOUND, NOTHING, Range, TrueExtreme, extremes
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.programs.making import make
+from wavesym.programs.program import Program
 from wavesym.results.response import Response
 from wavesym.results.sampled import sampled_extremes
 from wavesym.results.stepping import apart, sampled, spacing
 
 Numbers = NDArray[np.float64]
 
-# two roundings to double, and what exact/extremes.py takes for equal
-_EXACT = 1.2e-16
 _MOST_SAMPLES = 8_000_000
 _MOST_DRIFTS = 50  # rods in which the largest is looked for, though nobody asked for them
 
@@ -91,10 +90,18 @@ class Summary:
 
 
 def summarised(model: Model, samples: Sequence[float] | None = None, drifts: Sequence[Probe] = ()) -> Summary:
+    """The summary of `summary_and_program`."""
+    return summary_and_program(model, samples, drifts)[0]
+
+
+def summary_and_program(
+    model: Model, samples: Sequence[float] | None = None, drifts: Sequence[Probe] = ()
+) -> tuple[Summary, Program | None]:
     """The extremes of a model's outputs: true ones, or of the values at the tau of `samples`; the largest of `drifts`.
 
     True ones are proved where `run` gives values right to the last bit; else they are those of the program that `auto`
-    takes, found by samples. ToleranceError, CostError where there is no such program either.
+    takes, found by samples. The program is that whose values were searched, which has the bound of the summary; None
+    where there was none. ToleranceError, CostError where there is no such program either.
     """
     found = _found(model, samples)
     summary = Summary(
@@ -105,7 +112,7 @@ def summarised(model: Model, samples: Sequence[float] | None = None, drifts: Seq
         found.how,
         model.clock.unit if model.clock else None,
     )
-    return replace(summary, largest_drift=_largest(model, samples, summary.outputs, drifts))
+    return replace(summary, largest_drift=_largest(model, samples, summary.outputs, drifts)), found.program
 
 
 class _Found(NamedTuple):
@@ -113,15 +120,19 @@ class _Found(NamedTuple):
     bound: float
     proved: bool
     how: str
-    modal: bool = False
+    program: Program | None = None
+
+    @property
+    def modal(self) -> bool:
+        return self.program is not None and self.program.kind == "modes"
 
 
 def _found(model: Model, samples: Sequence[float] | None) -> _Found:
     if samples is not None:
         return _at(model, np.asarray(samples))
     try:
-        return _Found(extremes(model), _EXACT, True, "true extremes")
-    except CostError:
+        return _Found(extremes(model), BOUND, True, "true extremes")
+    except (CostError, UnservedError):
         return _searched(model)
 
 
@@ -173,11 +184,11 @@ def instant(model: Model, tau: float, exact: fmpq | None = None) -> When:
 def _at(model: Model, taus: Numbers) -> _Found:
     """The extremes of values at these tau, as `run` has them."""
     response = Response(model)
-    ranges = _ranges(*sampled_extremes(taus, response(taus)))
+    values = response(taus)
+    ranges = _ranges(*sampled_extremes(taus, values, bound=response.error_bound))
     made = response.program
     how = f"the values{f' of {made.evaluator}' if made else ''} at {taus.size} samples"
-    modal = made is not None and made.kind == "modes"
-    return _Found(ranges, response.error_bound, made is None or made.proved, how, modal)
+    return _Found(ranges, response.error_bound, made is None or made.proved, how, made)
 
 
 def _searched(model: Model) -> _Found:
@@ -190,9 +201,9 @@ def _searched(model: Model) -> _Found:
             f"at most {_MOST_SAMPLES // len(model.probes):.1e} expected (a shorter horizon or fewer outputs help)"
         )
     taus, values = sampled(model, program, step)
-    ranges = _ranges(*sampled_extremes(taus, values, program.each))
+    ranges = _ranges(*sampled_extremes(taus, values, program.each, program.error_bound))
     how = f"{program.evaluator} at {taus.size} samples, {apart(model, step)}, then refined"
-    return _Found(ranges, program.error_bound, False, how, program.kind == "modes")
+    return _Found(ranges, program.error_bound, False, how, program)
 
 
 def _ranges(values: Numbers, taus: Numbers) -> list[Range]:

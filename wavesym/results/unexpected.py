@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from wavesym.exact.contacts.collision import contact_ends
+from wavesym.exact.contacts.opening import contact_ends
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 
 def unexpected(model: Model) -> list[str]:
-    """No load, contacts that open early enough to matter to an output."""
-    return [*without_load(model), *_formal(model)]
+    """How the scene was read, no load, contacts that open early enough to matter to an output."""
+    return [*model.labels.notes, *without_load(model), *_formal(model)]
 
 
 def without_load(model: Model) -> list[str]:

@@ -10,14 +10,11 @@ from wavesym.errors import UnservedError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest
 from wavesym.rivals.network import NetworkProblem, network_problem
-from wavesym.rivals.problem import Array, Problem, Watch, problem
+from wavesym.rivals.problem import Array, Problem, Watch
 
 
 def stated(model: Model) -> Problem:
     """The problem of a model. UnservedError where it is no line of equal rods between bodies that start as these do."""
-    model.refuse_damping()
-    if model.chain and not model.network.contacts:
-        return problem(model.chain, model.loads, model.probes, nearest(model.until))
     network = network_problem(model)
     for what in _beyond(network):
         raise UnservedError(f"system: {what} given, a line of equal rods expected")

@@ -10,8 +10,7 @@ import numpy as np
 
 from wavesym.errors import UnservedError
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import fraction
-from wavesym.programs.modes.damped import damped
+from wavesym.numbers.doubles import fraction, nearest
 from wavesym.rivals.mass import Elements, dense
 from wavesym.rivals.oscillators import DERIVED, KEPT, condensed
 from wavesym.rivals.problem import Array
@@ -102,12 +101,23 @@ class DiscreteModel:
 
     def _ratios(self, w: Array) -> Array:
         """How modes of frequencies w are damped."""
-        modal, strained = self.elements.problem.modal, w[w > 0].tolist()
-        if modal and modal.modes and max(modal.modes) > len(strained):
+        modal, strained = self.elements.problem.modal, w > 0
+        ratios, count = np.zeros(len(w)), int(np.count_nonzero(strained))
+        if modal is None:
+            return ratios
+        given = np.array([nearest(ratio) for ratio in modal.ratios])
+        if modal.modes is None:
+            ratios[strained] = given[np.minimum(np.arange(count), len(given) - 1)]
+            return ratios
+        if max(modal.modes) > count:
             raise UnservedError(
-                f"system.damping: mode {max(modal.modes)} given, at most {len(strained)} expected of so few masses"
+                f"system.damping: mode {max(modal.modes)} given, at most {count} expected of so few masses"
             )
-        return damped(modal, strained).of(w)
+        # (a/w + b w)/2 that is the same at two frequencies
+        two = w[strained][[number - 1 for number in modal.modes]]
+        a, b = np.linalg.solve(np.stack([1 / two, two], axis=1) / 2, np.repeat(given, 2))
+        ratios[strained] = (a / w[strained] + b * w[strained]) / 2
+        return ratios
 
     @cached_property
     def _weights(self) -> Array:

@@ -13,11 +13,8 @@ import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import fraction, nearest
+from wavesym.numbers.doubles import nearest
 
 Array = NDArray[np.float64]
 Evaluate = Callable[[Array], Array]
@@ -127,33 +124,6 @@ def means(events: Sequence[Event], nodes: int, low: Array, high: Array) -> Array
         for k, c in enumerate(event.coefficients):
             total[:, event.node] += c / (k + 1) * (last ** (k + 1) - first ** (k + 1)) / (high - low)
     return total
-
-
-def problem(chain: Chain, loads: Sequence[Applied], probes: Sequence[Probe], until: float) -> Problem:
-    """A chain under `loads`, watched at `probes` for 0 <= tau <= until, all dimensionless.
-
-    ValueError for a load whose source the chain does not have.
-    """
-    events = []
-    for load in loads:
-        if load.source == "impact":  # that is in the rods' initial velocities
-            continue
-        if load.source not in chain.loaded:
-            raise ValueError(f"{load.source}: no such load")
-        x, unit = chain.loaded[load.source]
-        events.append(Event(fraction(load.time), x, terms([load.weight * c for c in unit.coefficients])))
-    column = {
-        name: np.array([nearest(getattr(node, name)) for node in chain.nodes])
-        for name in ("inertia", "alpha", "beta", "damping")
-    }
-    rods = np.array([nearest(chain.rod(i).velocity) for i in range(1, chain.m + 1)])
-    return Problem(
-        **column,
-        rods=rods,
-        events=tuple(events),
-        watches=tuple(Watch(probe.quantity, probe.rod, nearest(probe.place)) for probe in probes),
-        until=until,
-    )
 
 
 def terms(exact: Sequence[fmpq]) -> tuple[float, float, float]:

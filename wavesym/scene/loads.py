@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from wavesym.fields.loads import Load
 from wavesym.fields.table import first_error, listed, wrong
+from wavesym.records.load import RecordedLoad
 from wavesym.systems import SystemTable
 
 
@@ -15,7 +16,11 @@ def loads(tables: object, system: SystemTable) -> tuple[Load, ...]:
     """The loads on a system. Which keys a table has depends on the system, so pydantic is told here."""
     if isinstance(tables, Sequence) and tables and not system.load_kinds:
         raise wrong(f"loads given, none expected ({system.no_loads})")
-    return tuple(_load(table, k, system) for k, table in enumerate(listed(tables)))
+    found = tuple(_load(table, k, system) for k, table in enumerate(listed(tables)))
+    damping = getattr(system, "damping", None)
+    if damping is None or not damping.acts:
+        return found
+    return tuple(load.without_jump() if isinstance(load, RecordedLoad) else load for load in found)
 
 
 def _load(table: object, k: int, system: SystemTable) -> Load:

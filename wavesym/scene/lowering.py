@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
@@ -15,11 +16,14 @@ from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.loads import Applied, AppliedRecord, merged
 from wavesym.mechanics.model import Labels, Model
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import rational
+from wavesym.numbers.doubles import nearest, rational
+from wavesym.records.load import RecordedLoad
 from wavesym.scene.outputs import Observable
 from wavesym.scene.physical.scale import Scale
 from wavesym.scene.scene import Scene
 from wavesym.systems.place import Place
+
+_USUAL_DAMPING = fmpq(1, 5)  # of critical; above it a ratio is more often a slip than meant
 
 
 def lower(scene: Scene) -> Model:
@@ -27,7 +31,8 @@ def lower(scene: Scene) -> Model:
     if not isinstance(scene, Scene):
         raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
     output = scene.output
-    chain, network = scene.system.made(scene.load)
+    length = scene.physical.length if scene.physical else None
+    chain, network = scene.system.made(scene.load, length)
     return Model(
         name=scene.name,
         chain=chain,
@@ -38,6 +43,7 @@ def lower(scene: Scene) -> Model:
         tolerance=rational(output.tolerance),
         labels=_labels(scene),
         clock=scene.scale.clock if scene.scale else None,
+        length=length,
         damping=_damping(scene),
         inputs=_inputs(scene),
         spacing=min((rational(load.step) for load in scene.load if load.step), default=None),
@@ -66,7 +72,25 @@ def _labels(scene: Scene) -> Labels:
         system={"type": scene.system.type, **(scene.physical.system if scene.physical else scene.system.choices)},
         loads=scene.physical.loads if scene.physical else tuple(load.told for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
+        notes=(*_damping_notes(scene), *_record_notes(scene)),
     )
+
+
+def _damping_notes(scene: Scene) -> Iterator[str]:
+    """A line where a mode has more damping than structures have."""
+    damping = _damping(scene)
+    if damping and (largest := max(damping.ratios)) > _USUAL_DAMPING:
+        yield f"system.damping: {nearest(100 * largest):g} % of critical; structures have some percent"
+
+
+def _record_notes(scene: Scene) -> Iterator[str]:
+    """A line for each record that begins later, so that it does not jump."""
+    for k, load in enumerate(scene.load):
+        if isinstance(load, RecordedLoad) and load.is_delayed:
+            yield (
+                f"load[{k}].record: the first sample is not 0, and modes take no jump: the load rises to it from 0 "
+                f"over one spacing, so that the record begins {_spacing(scene, load)} later"
+            )
 
 
 def _loads(scene: Scene) -> tuple[Applied, ...]:

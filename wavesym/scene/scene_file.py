@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import tomllib
 from importlib.resources import files
+from itertools import islice
 from os import PathLike
 from typing import Any
 
@@ -75,8 +77,36 @@ def builtin_text(name: str) -> str:
     return _builtin(name).decode()
 
 
+# Strings (also without an end, so that each is looked at once) and comments.
+_STRINGS = re.compile(
+    r'"""(?:\\[\s\S]|[^\\])*?(?:"""|\Z)|"(?:\\.|[^"\\\n])*+"?' + r"|'''[\s\S]*?(?:'''|\Z)|'[^'\n]*+'?|#[^\n]*+"
+)
+_MOST_KEYS = 10  # in a dotted key
+_DEEP_KEY = re.compile(rf"(?<![\w-])(?:[\w-]++[ \t]*+\.[ \t]*+){{{_MOST_KEYS}}}[\w-]")
+_TABLE = re.compile(r"^[ \t]*+\[|\{", re.MULTILINE)
+_MOST_TABLES = 20_000
+_MOST_VALUES = 300_000
+
+
+def _refuse_large(file: str, text: str) -> None:
+    """SceneError for what would take long to parse: deep keys, and more tables or values than a scene has."""
+    bare = _STRINGS.sub("_", text)
+    if found := _DEEP_KEY.search(bare):
+        line = bare.count("\n", 0, found.start()) + 1
+        raise SceneError(f"a key of more than {_MOST_KEYS} parts; a scene has no deeper ones", f"line {line}", file)
+    tables = sum(1 for _ in islice(_TABLE.finditer(bare), _MOST_TABLES + 1))
+    if tables > _MOST_TABLES:
+        raise SceneError(
+            f"more than {_MOST_TABLES} tables; a load that changes often is one table with `samples` or a `record`",
+            file=file,
+        )
+    if bare.count(",") + bare.count("=") > _MOST_VALUES:
+        raise SceneError(f"more than {_MOST_VALUES} values; split the scene, or thin its samples", file=file)
+
+
 def parsed(file: str, text: str) -> dict[str, Any]:
     """The table in a text of TOML, decimals as they are written. SceneError, which names `file`, where it is none."""
+    _refuse_large(file, text)
     try:
         return tomllib.loads(text, parse_float=Written)
     except tomllib.TOMLDecodeError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from math import ceil, prod
@@ -12,9 +13,15 @@ import numpy as np
 from wavesym.sweeps.plan import SweepPlan
 
 _MOST_BATCHES = 5000  # where each case is computed by itself: so many files of every array at most
-_RECORDS = 1000  # at once: with their values at all samples some hundred MB
-_SETS, _FEWEST_SETS, _PARTS = 2048, 64, 8  # of parameters at once: enough of them, and of batches for all workers
+_GROUP = 64  # cases that share work: with more of them one that is wanted alone would take long
+_RECORDS = 16 * _GROUP  # in a batch: with their values at all samples some hundred MB
+_SETS, _PARTS = 32 * _GROUP, 8  # of parameters in a batch: enough of them, and of batches for all workers
 _NUMBERS = 1 << 23  # of histories in a batch
+
+Place = tuple[int, ...]
+"""The index of a case in each dimension."""
+Task = tuple[int, list[Place] | None]
+"""A batch, and which places of it; None for all."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +45,7 @@ class Batches:
     def __len__(self) -> int:
         return prod(self.grid)
 
-    def at(self, batch: int) -> tuple[int, ...]:
+    def at(self, batch: int) -> Place:
         """Its place in the grid."""
         return tuple(int(k) for k in np.unravel_index(batch, self.grid))
 
@@ -47,13 +54,28 @@ class Batches:
         ends = zip(self.at(batch), self.chunk, self.shape, strict=True)
         return tuple(slice(k * size, min((k + 1) * size, n)) for k, size, n in ends)
 
-    def places(self, batch: int) -> list[tuple[int, ...]]:
+    def count(self, batch: int) -> int:
+        """How many cases are in it."""
+        return prod(part.stop - part.start for part in self.region(batch))
+
+    def places(self, batch: int) -> list[Place]:
         """The indices of its cases, in order."""
         return list(product(*(range(part.start, part.stop) for part in self.region(batch))))
 
-    def mark(self, plan: SweepPlan, batch: int) -> str:
-        """A name for what becomes of a batch: a hash of all that goes into it."""
-        return hashlib.sha256(f"{plan.sha256} {self.kind} {self.chunk} {batch}".encode()).hexdigest()
+    def groups(self, batch: int) -> Iterator[list[Place]]:
+        """Its cases as they share work. Those of a group depend on each other to the last bits, and on no others."""
+        places = self.places(batch)
+        return (places[first : first + _GROUP] for first in range(0, len(places), _GROUP))
+
+    def touching(self, part: tuple[slice, ...]) -> Iterator[int]:
+        """The batches with cases in a part of the dimensions."""
+        ends = zip(part, self.chunk, strict=True)
+        for place in product(*(range(each.start // size, -(-each.stop // size)) for each, size in ends)):
+            yield int(np.ravel_multi_index(place, self.grid))
+
+    def mark(self, sweep: str, batch: int) -> str:
+        """A name for what becomes of a batch: a hash of all that goes into it, that of the `sweep` among it."""
+        return hashlib.sha256(f"{sweep} {self.kind} {self.chunk} {batch}".encode()).hexdigest()
 
 
 def batches(plan: SweepPlan, kind: str, together: tuple[bool, ...] = ()) -> Batches:
@@ -62,8 +84,8 @@ def batches(plan: SweepPlan, kind: str, together: tuple[bool, ...] = ()) -> Batc
     if kind == "recorded":
         return Batches(kind, plan.shape, (*(1 for _ in plan.shape[:-1]), min(plan.shape[-1], _RECORDS, fit)))
     if kind == "parameters":
-        most = min(max(_FEWEST_SETS, min(_SETS, plan.cases // _PARTS)), fit)
-        return Batches(kind, plan.shape, _blocks(plan.shape, together, most), together)
+        most = max(_GROUP, min(_SETS, plan.cases // _PARTS // _GROUP * _GROUP))
+        return Batches(kind, plan.shape, _blocks(plan.shape, together, min(most, fit)), together)
     return Batches(kind, plan.shape, _blocks(plan.shape, (True,) * len(plan.shape), ceil(plan.cases / _MOST_BATCHES)))
 
 

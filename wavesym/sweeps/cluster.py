@@ -2,32 +2,36 @@
 
 The store is the truth, not the scheduler: few batches are under way at a time, and what has come is let go at once, so
 that neither the scheduler nor this process grows with the sweep, and nothing that is done is done again when a worker
-dies. A batch whose worker died is tried again by the scheduler; one that it gave up, case by case, when all else is
-done.
+dies. A batch whose worker died is tried again by the scheduler; one that it gave up, in parts, when all else is sent.
 """
 
 from __future__ import annotations
 
 import logging
 import sys
+from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import CancelledError
-from contextlib import ExitStack, contextmanager
-from itertools import islice
+from contextlib import ExitStack, contextmanager, suppress
+from queue import Empty, SimpleQueue
+from time import monotonic
 from types import ModuleType
 from typing import Any
 from uuid import uuid4
 
 from wavesym import __version__
 from wavesym.errors import WavesymError
-from wavesym.sweeps.batches import Batches
+from wavesym.sweeps.batches import Batches, Place, Task
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.store import needed
 from wavesym.sweeps.values import BatchValues
 
 _AHEAD = 3  # batches under way for each thread, so that none waits for this process
 _DEATHS = 1  # of workers on this machine that a batch may survive, before it is given up
+_PARTS = 16  # of what is given up
 _WAIT = 30  # seconds for a scheduler to answer, and for a worker of it
+_LOOK = 1.0  # seconds after which it is asked how many threads there are now
+_DIED = "the worker that computed it died, again and again (a crash, or out of memory)"
 Done = tuple[int, BatchValues]
 
 
@@ -47,7 +51,9 @@ def connected(workers: int | None, address: str | None) -> Iterator[Any]:
     with ExitStack() as stack:
         stack.enter_context(_quiet())
         if not address:
-            stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": _DEATHS}))
+            # a worker that starts again takes long on a busy machine, and one that is given up never comes back
+            patience = {"distributed.deploy.lost-worker-timeout": "1 hour"}
+            stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": _DEATHS, **patience}))
             stack.enter_context(_without_script())
             alone = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": logging.CRITICAL}
             address = stack.enter_context(LocalCluster(n_workers=workers, **alone))
@@ -84,59 +90,87 @@ def _quiet() -> Iterator[None]:
             logger.setLevel(level)
 
 
-def on_workers(client: Any, plan: SweepPlan, batches: Batches, todo: Iterable[int]) -> Iterator[Done]:
-    """The batches as they are done, in any order. ClusterError where the scheduler goes, or workers cannot do it."""
+def on_workers(client: Any, plan: SweepPlan, batches: Batches, todo: Iterable[Task]) -> Iterator[Done]:
+    """The batches, or parts of them, as they are done, in any order.
+
+    What its workers died of comes again in parts, side by side, one on each thread; a case that is left of these comes
+    alone, so that no other one is blamed for it. ClusterError where the scheduler goes, or workers cannot do it.
+    """
     from distributed import KilledWorker
 
     _send(client, plan, batches)
-    given_up = []
-    for batch, future in _done(client, plan, ((batch,) for batch in todo)):
+    sent = _Sent(client, plan)
+    left, parts, alone = deque(todo), deque[Task](), deque[Task]()
+    last: Task | None = None
+    while left or parts or alone or sent:
+        while left and len(sent) < _AHEAD * sent.threads:
+            sent.add(left.popleft())
+        while parts and not left and len(sent) < sent.threads:
+            sent.add(parts.popleft())
+        if alone and not (left or parts or sent):
+            sent.add(last := alone.popleft())
+        if (found := sent.next_done()) is None:
+            continue
+        (batch, places), future = found
         try:
-            yield batch[0], _result(future)
+            yield batch, _result(future)
         except KilledWorker:
-            given_up.append(batch[0])
-    for batch in given_up:
-        yield batch, _one_by_one(client, plan, batches, batch)
-
-
-def _one_by_one(client: Any, plan: SweepPlan, batches: Batches, batch: int) -> BatchValues:
-    """A batch that killed its workers: each case alone, so that only what does it fails."""
-    from distributed import KilledWorker
-
-    whole = BatchValues.empty(plan, batches.region(batch))
-    for place in batches.places(batch):
-        for _, future in _done(client, plan, [(batch, place)], ahead=1):
-            try:
-                whole.join(batches.region(batch), place, _result(future))
-            except KilledWorker:
-                whole.failed[place] = "the worker that computed it died, again and again (a crash, or out of memory)"
-    return whole
-
-
-def _done(
-    client: Any, plan: SweepPlan, tasks: Iterable[tuple[Any, ...]], ahead: int | None = None
-) -> Iterator[tuple[Any, Any]]:
-    """Tasks with their futures as they are done; no future is held longer."""
-    from distributed import as_completed
-
-    from wavesym.sweeps.worker import computed
-
-    ahead = ahead or _AHEAD * _threads(client)
-    left, waiting, under_way = iter(tasks), {}, as_completed(loop=client.loop)
-
-    def send(count: int) -> None:
-        for task in islice(left, count):
-            # a name of its own: what another client asked for is another task
-            name = f"wavesym-{plan.sha256[:12]}-{task[0]}-{uuid4().hex[:12]}"
-            future = client.submit(computed, __version__, plan.sha256, *task, key=name, pure=False)
-            waiting[name] = task
-            under_way.add(future)
-
-    send(ahead)
-    for future in under_way:
-        yield waiting.pop(future.key), future
+            places = batches.places(batch) if places is None else places
+            if len(places) > 1:
+                parts.extend((batch, part) for part in _in_parts(places))
+            elif (batch, places) != last:
+                alone.append((batch, places))
+            else:
+                values = BatchValues.empty(plan, places)
+                values.failed[places[0]] = (
+                    "the worker that computed it died, again and again (a crash, or out of memory)"
+                )
+                yield batch, values
         future.release()
-        send(1)
+
+
+def _in_parts(places: list[Place]) -> Iterator[list[Place]]:
+    size = -(-len(places) // _PARTS)
+    return (places[first : first + size] for first in range(0, len(places), size))
+
+
+class _Sent:
+    """Tasks that are under way; their futures are let go as they are done."""
+
+    def __init__(self, client: Any, plan: SweepPlan) -> None:
+        self._client, self._plan = client, plan
+        self._tasks: dict[str, tuple[Task, Any]] = {}
+        self._done = SimpleQueue[Any]()
+        self._threads, self._asked = _threads(client), monotonic()
+
+    def __len__(self) -> int:
+        return len(self._tasks)
+
+    @property
+    def threads(self) -> int:
+        """Of all workers, as many as there are now."""
+        if monotonic() > self._asked + _LOOK:
+            with suppress(OSError, TimeoutError):  # where the scheduler is gone, futures say so
+                self._threads = sum(self._client.nthreads().values())
+            self._asked = monotonic()
+        return self._threads
+
+    def add(self, task: Task) -> None:
+        """Send a task."""
+        from wavesym.sweeps.worker import computed
+
+        # a name of its own: what another client asked for is another task
+        name = f"wavesym-{self._plan.sha256[:12]}-{task[0]}-{uuid4().hex[:12]}"
+        future = self._client.submit(computed, __version__, self._plan.sha256, *task, key=name, pure=False)
+        self._tasks[name] = task, future
+        future.add_done_callback(self._done.put)
+
+    def next_done(self) -> tuple[Task, Any] | None:
+        """A task and its future; None where there is none for a while."""
+        try:
+            return self._tasks.pop(self._done.get(timeout=_LOOK).key)
+        except Empty:
+            return None
 
 
 def _result(future: Any) -> BatchValues:

@@ -1,18 +1,34 @@
-"""Marks of what is done: a file for each batch, named by a hash of all that goes in, put in its place by rename.
-
-A mark holds the hashes of its chunks, and the reason of each of its cases that failed.
-"""
+"""Marks of what is done: a file for each batch, named by a hash of all that goes in, put in its place by rename."""
 
 from __future__ import annotations
 
-import json
-import os
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+
+from wavesym.sweeps.batches import Batches
+from wavesym.sweeps.sealed import DamagedError, SealedFile, Sha256, StrictTable
 
 FOLDER = "done"
+
+
+class FailedCase(StrictTable):
+    """A case that failed: its number, its values by path, and the reason."""
+
+    case: int
+    values: dict[str, str]
+    reason: str
+
+
+class BatchMark(SealedFile):
+    """What has come of a batch of so many `cases`: hashes of its `chunks` by array (None: no file, all NaN), how cases
+    were computed, those that `failed`, and the numbers of those that are `left`, where it is done in part."""
+
+    batch: int
+    cases: int
+    chunks: dict[str, Sha256 | None]
+    how: dict[str, int]
+    failed: list[FailedCase]
+    left: list[int]
 
 
 @dataclass(frozen=True)
@@ -21,41 +37,21 @@ class Marks:
 
     folder: Path
 
-    def put(self, name: str, mark: dict[str, Any]) -> None:
+    def path(self, name: str) -> Path:
+        """Of the mark of a batch."""
+        return self.folder / FOLDER / f"{name}.json"
+
+    def put(self, name: str, mark: BatchMark) -> None:
         """Mark a batch as done."""
-        place = self.folder / FOLDER / f"{name}.json"
-        draft = place.with_suffix(".part")
-        draft.write_text(json.dumps(mark, indent=1) + "\n", encoding="utf-8")
-        os.replace(draft, place)
+        mark.put(self.path(name))
 
-    def get(self, name: str) -> dict[str, Any] | None:
-        """The mark of a batch; None where there is none, or one that the disk has not kept."""
-        return _read(self.folder / FOLDER / f"{name}.json")
+    def remove(self, name: str) -> None:
+        """Say no more that a batch is done."""
+        self.path(name).unlink(missing_ok=True)
 
-    def names(self) -> set[str]:
-        """Of all batches that have one."""
-        return {path.stem for path in (self.folder / FOLDER).glob("*.json")}
-
-    def every(self) -> Iterator[dict[str, Any]]:
-        """All marks, in the order of their batches."""
-        found = (_read(path) for path in (self.folder / FOLDER).glob("*.json"))
-        yield from sorted((mark for mark in found if mark), key=lambda mark: mark["batch"])
-
-
-def _read(path: Path) -> dict[str, Any] | None:
-    try:
-        mark = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return None
-    return mark if _whole(mark) else None
-
-
-def _whole(mark: object) -> bool:
-    """Whether it is what was put there, as far as others build on it."""
-    if not isinstance(mark, dict):
-        return False
-    kinds = {"batch": int, "cases": int, "chunks": dict, "failed": list}
-    return all(isinstance(mark.get(key), kind) for key, kind in kinds.items()) and all(
-        isinstance(each, dict) and each.keys() >= {"case", "values", "reason"} and isinstance(each["values"], dict)
-        for each in mark["failed"]
-    )
+    def get(self, name: str, batches: Batches, batch: int) -> BatchMark | None:
+        """The mark of a batch; None where there is none. DamagedError for one that the disk has not kept."""
+        mark = BatchMark.read(self.path(name))
+        if mark and (mark.batch, mark.cases) != (batch, batches.count(batch)):
+            raise DamagedError(f"{self.path(name)}: damaged")
+        return mark

@@ -14,11 +14,11 @@ import numpy as np
 
 from wavesym.errors import WavesymError
 from wavesym.numbers.doubles import nearest
-from wavesym.programs.request import Request
-from wavesym.programs.runtime.making import runtime_program
+from wavesym.programs.runtime.making import sets_program
 from wavesym.running.model import RuntimeModel
 from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes
+from wavesym.sweeps.batches import Place
 from wavesym.sweeps.lanes import lane
 from wavesym.sweeps.plan import RECORD, SweepPlan
 from wavesym.sweeps.single import instants, of_model, output_rows
@@ -27,8 +27,6 @@ from wavesym.sweeps.values import CaseValues, Numbers
 
 _FEWEST = 8  # sets that are worth a program of their own
 _HOW = "parameters at run time, errors estimated"
-
-Place = tuple[int, ...]
 
 
 def together(plan: SweepPlan) -> tuple[bool, ...] | None:
@@ -49,7 +47,9 @@ def together(plan: SweepPlan) -> tuple[bool, ...] | None:
 def parameters(plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool]) -> Iterator[tuple[Place, CaseValues]]:
     """The cases of one topology, as far as its program serves them to the tolerance; the others are left out."""
     topology = tuple(0 if joins else k for k, joins in zip(places[0], joined, strict=True))
-    own, model = _program(plan, topology, joined)
+    if (made := _program(plan, topology, joined)) is None:
+        return
+    own, model = made
     served, given = _given(plan, places, joined, own, model)
     if not served:
         return
@@ -57,7 +57,7 @@ def parameters(plan: SweepPlan, places: Sequence[Place], joined: Sequence[bool])
     peaks = model.peaks(**given)
     values = {"min": peaks.min, "max": peaks.max, "tau_min": peaks.tau_min, "tau_max": peaks.tau_max}
     if plan.histories:
-        values["history"] = model.run(instants(own.model, plan.histories), **given)
+        values["history"] = model.run(instants(own.model, plan.histories), strict=True, **given)
     spread = {}
     for name, found in values.items():
         spread[name] = np.full((len(served), len(plan.outputs), *found.shape[2:]), np.nan)
@@ -97,17 +97,19 @@ class _Made(NamedTuple):
     model: RuntimeModel
 
 
-_PROGRAMS: dict[tuple[str, Place], _Made] = {}
+_PROGRAMS: dict[tuple[str, Place], _Made | None] = {}
 
 
-def _program(plan: SweepPlan, topology: Place, joined: Sequence[bool]) -> _Made:
-    """That of the first case of a topology; the last one is kept."""
+def _program(plan: SweepPlan, topology: Place, joined: Sequence[bool]) -> _Made | None:
+    """That of the first case of a topology; None where there is none. The last one is kept."""
     key = plan.sha256, topology
     if key not in _PROGRAMS:
         _PROGRAMS.clear()
-        scene, names = plan.scene(topology), _names(plan, joined)
-        case, given = RuntimeCase.of(scene, names), amplitudes(scene) if "load" in names else ()
-        _PROGRAMS[key] = _Made(case, RuntimeModel(runtime_program(case.model, Request(runtime=names), given)))
+        _PROGRAMS[key] = None
+        with suppress(WavesymError):
+            scene, names = plan.scene(topology), _names(plan, joined)
+            case, given = RuntimeCase.of(scene, names), amplitudes(scene) if "load" in names else ()
+            _PROGRAMS[key] = _Made(case, RuntimeModel(sets_program(case.model, names, given)))
     return _PROGRAMS[key]
 
 

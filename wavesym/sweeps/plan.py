@@ -24,7 +24,7 @@ from wavesym.sweeps.dimension import Column, SweepAxis, count_of, spread
 from wavesym.sweeps.measured import Unreadable, found, record_column
 from wavesym.sweeps.request import SweepRequest
 
-SCHEMA = 1
+SCHEMA = 2
 MOST = 10_000_000
 """Cases of a sweep."""
 _DIMENSIONS = 30  # with outputs and samples as many as an array of NumPy can have

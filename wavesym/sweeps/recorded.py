@@ -4,30 +4,32 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import ceil
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from wavesym.errors import WavesymError
+from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.modes.roughness import Roughness, of_samples
 from wavesym.records.load import RecordedLoad
-from wavesym.results.recorded import ManyRecords, recorded_extremes
+from wavesym.results.recorded import ManyRecords, SharedModes
 from wavesym.scene import Scene, lower
 from wavesym.scene.paths import changed
+from wavesym.sweeps.batches import Place
 from wavesym.sweeps.measured import Unreadable
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.single import instants, of_model, output_rows, spread_out
 from wavesym.sweeps.values import CaseValues, Numbers
 
-_PROBE = ["0", "1"]
-"""Samples of a record that tells what a scene makes of all records with the same spacing and units."""
-
-Place = tuple[int, ...]
+_PROBES = {False: ["0", "1"], True: ["1", "1"]}
+"""Samples of a record that tells what a scene makes of all records with the same spacing and units: of those whose
+first sample is 0, and of those that begin with a jump."""
 
 
 def serves(plan: SweepPlan) -> bool:
@@ -40,29 +42,53 @@ def serves(plan: SweepPlan) -> bool:
 
 def recorded(plan: SweepPlan, places: Sequence[Place]) -> Iterator[tuple[Place, CaseValues]]:
     """The cases of one structure, as far as modes serve them to the scene's tolerance; the others are left out."""
-    values, path = plan.records.values, plan.records.path  # type: ignore[union-attr]
-    alike: dict[str, list[Place]] = {}
+    values = plan.records.values  # type: ignore[union-attr]
+    alike: dict[tuple[bool, str], list[Place]] = {}
     for place in places:
         record = values[place[-1]]
         if not isinstance(record, Unreadable):
             head = json.dumps({key: each for key, each in record.items() if key != "samples"}, sort_keys=True)
-            alike.setdefault(head, []).append(place)
-    for head, some in alike.items():
-        try:
-            scene = Scene(**changed(plan.fields_at(some[0]), path, {**json.loads(head), "samples": _PROBE}))
-            yield from _together(plan, scene, [(place, doubles(key(values[place[-1]]))) for place in some])
-        except WavesymError:
-            continue
+            alike.setdefault((doubles(key(record)).jumps, head), []).append(place)
+    for (jumps, head), some in alike.items():
+        if structure := _structure(plan, some[0], jumps, head):
+            with suppress(WavesymError):
+                yield from _together(plan, structure, [(place, doubles(key(values[place[-1]]))) for place in some])
+
+
+class _Structure(NamedTuple):
+    """A model with one load, and its modes."""
+
+    model: Model
+    load: RecordedLoad
+    modes: SharedModes
+
+
+_STRUCTURES: dict[tuple[str, Place, bool, str], _Structure | None] = {}
+
+
+def _structure(plan: SweepPlan, place: Place, jumps: bool, head: str) -> _Structure | None:
+    """That of a case without its samples, of which is known whether they begin with a jump; None where modes do not
+    serve it. The last one is kept."""
+    name = plan.sha256, place[:-1], jumps, head
+    if name not in _STRUCTURES:
+        _STRUCTURES.clear()
+        _STRUCTURES[name] = None
+        with suppress(WavesymError):
+            path = plan.records.path  # type: ignore[union-attr]
+            scene = Scene(**changed(plan.fields_at(place), path, {**json.loads(head), "samples": _PROBES[jumps]}))
+            model, (load,) = lower(scene), scene.load
+            if isinstance(load, RecordedLoad):
+                _STRUCTURES[name] = _Structure(model, load, SharedModes(model, nearest(rational(load.step))))
+    return _STRUCTURES[name]
 
 
 def _together(
-    plan: SweepPlan, scene: Scene, records: Sequence[tuple[Place, _Samples]]
+    plan: SweepPlan, structure: _Structure, records: Sequence[tuple[Place, _Samples]]
 ) -> Iterator[tuple[Place, CaseValues]]:
-    """Those of records that a scene takes alike."""
-    model, (load,) = lower(scene), scene.load
-    if not isinstance(load, RecordedLoad):
-        return
-    # a record begins with a jump, where its first sample is at tau = 0 and is not 0: nothing for modes
+    """Those of records that a structure takes alike."""
+    model, load = structure.model, structure.load
+    # a record begins with a jump, where its first sample is at tau = 0 and is not 0: nothing for modes, unless damping
+    # lets it begin later
     late = load.begin > 0
     fit = [(place, each) for place, each in records if late or not each.jumps]
     if not fit:
@@ -79,7 +105,7 @@ def _together(
     factor = nearest(rational(load.record.samples[1] * load.scale))
     rough = [each.late if late else each.early for _, each in fit]
     many = ManyRecords(factor * samples, nearest(begin), nearest(h), rough, factor)
-    found = recorded_extremes(model, many, instants(model, plan.histories) if plan.histories else ())
+    found = structure.modes.extremes(many, instants(model, plan.histories) if plan.histories else ())
     rows, of_all = output_rows(plan, model), of_model(plan, model)
     for k, (place, _) in enumerate(fit):
         if found.bounds[k] <= nearest(model.tolerance):

@@ -18,7 +18,7 @@ from wavesym.scene.scene_file import builtin_names, parsed
 
 STATISTICS = ("min", "max", "tau_min", "tau_max", "arrival")
 _USUAL = STATISTICS[:4]
-_MOST_SAMPLES = 1_000_000
+MOST_SAMPLES = 1_000_000
 _EXPECTED = "a file of TOML that describes a sweep"
 
 
@@ -79,8 +79,8 @@ class Kept(SceneTable):
     @field_validator("histories")
     @classmethod
     def _samples(cls, count: int | None) -> int | None:
-        if count is not None and not 2 <= count <= _MOST_SAMPLES:
-            raise wrong(f"{count} samples given, 2 to {_MOST_SAMPLES} expected")
+        if count is not None and not 2 <= count <= MOST_SAMPLES:
+            raise wrong(f"{count} samples given, 2 to {MOST_SAMPLES} expected")
         return count
 
     @model_validator(mode="after")

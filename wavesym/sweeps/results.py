@@ -1,24 +1,32 @@
-"""What the folder of a sweep holds, to be shown: its dimensions, the values of each output, the scene of any case."""
+"""What the folder of a sweep holds, to be shown: its dimensions, the values of each output, the scene of any case.
+
+All of it is compared with its hash before anything is shown. It is data: neither zarr nor any codec sees it.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from pydantic import Field, ValidationError
 
 from wavesym.errors import WavesymError
 from wavesym.scene.paths import changed
-from wavesym.sweeps.manifest import read
-from wavesym.sweeps.status import SweepStatus, status
-from wavesym.sweeps.store import DIMENSIONS, arrays
+from wavesym.sweeps.manifest import Manifest
+from wavesym.sweeps.marks import BatchMark
+from wavesym.sweeps.sealed import DamagedError, StrictTable
+from wavesym.sweeps.status import SweepStatus, damage, marks_of, status_of
+from wavesym.sweeps.store import ATTRIBUTES, NAME, Store, file_hash, inside
+from wavesym.sweeps.values import Numbers
 
-Numbers = NDArray[np.float64]
+_DTYPE = re.compile("<f8|<U[1-9][0-9]{0,4}")
 
 
 @dataclass(frozen=True)
@@ -54,18 +62,27 @@ class StoredAxis:
 
 @dataclass(frozen=True)
 class SweepResults:
-    """The results in a folder; `outputs` have their units, `manifest` and `status` are those of the sweep."""
+    """The results in a folder: what sweep it is of, marks of its batches by number, and arrays where it has any."""
 
-    manifest: dict[str, Any]
-    status: SweepStatus
+    manifest: Manifest
+    marks: Mapping[int, BatchMark]
     dimensions: tuple[StoredAxis, ...]
-    outputs: dict[str, str]
-    _arrays: Any
+    store: Store
+
+    @property
+    def status(self) -> SweepStatus:
+        """How far it is."""
+        return status_of(self.manifest, self.marks)
 
     @property
     def name(self) -> str:
         """Of its scene."""
-        return str(self.manifest["name"])
+        return self.manifest.name
+
+    @property
+    def outputs(self) -> dict[str, str]:
+        """Their units, by name."""
+        return self.manifest.outputs
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -74,16 +91,29 @@ class SweepResults:
     @property
     def kept(self) -> tuple[str, ...]:
         """The statistics of outputs that there are."""
-        return tuple(self.manifest["keep"]["summary"])
+        return tuple(self.manifest.keep.summary)
 
     @property
     def bound(self) -> float:
         """The largest of any case, of errors of values; NaN where no case is done."""
-        return float(np.fmax.reduce(self._arrays["bound"][:], axis=None))
+        return float(np.fmax.reduce(self.array("bound"), axis=None))
 
     def values(self, statistic: str, output: int) -> Numbers:
         """A statistic of an output over all dimensions, NaN where there is none."""
-        return np.asarray(self._arrays[statistic][..., output], dtype=np.float64)
+        return self.array(statistic, output=output)
+
+    def array(self, name: str, part: tuple[slice, ...] | None = None, output: int | None = None) -> Numbers:
+        """An array over a part of the dimensions, or all, of one output or all; NaN where nothing is marked."""
+        part = part or tuple(slice(0, n) for n in self.shape)
+        beside = self.store.arrays[name] if output is None else ()
+        made = np.full((*(each.stop - each.start for each in part), *beside), np.nan)
+        for batch in self.store.batches.touching(part):
+            if batch in self.marks:
+                region = self.store.batches.region(batch)
+                here = [slice(max(a.start, b.start), min(a.stop, b.stop)) for a, b in zip(part, region, strict=True)]
+                values = self.store.read(name, batch)[_within(here, region)]
+                made[_within(here, part)] = values if output is None else values[..., output]
+        return made
 
     def place(self, case: int) -> tuple[int, ...]:
         """The index of a case in each dimension."""
@@ -96,7 +126,7 @@ class SweepResults:
 
     def scene(self, case: int) -> dict[str, Any]:
         """The fields of a case's scene, all values exact; records by their names, which count from the sweep's file."""
-        fields: dict[str, Any] = self.manifest["scene"]
+        fields: dict[str, Any] = self.manifest.scene
         for dimension, k in zip(self.dimensions, self.place(case), strict=True):
             for column in dimension.columns:
                 fields = changed(fields, column.path, _value(column.written[k]))
@@ -110,25 +140,67 @@ def _value(written: str) -> object:
     return written
 
 
+def _within(part: Sequence[slice], whole: Sequence[slice]) -> tuple[slice, ...]:
+    """A part as it counts from where the whole begins."""
+    return tuple(slice(a.start - b.start, a.stop - b.start) for a, b in zip(part, whole, strict=True))
+
+
+class _Said(StrictTable):
+    """What the store says of a coordinate."""
+
+    dimensions: list[str] = Field(alias="_ARRAY_DIMENSIONS", min_length=1, max_length=1)
+    path: str
+    number: int
+    written: list[str]
+    units: str = ""
+
+
 def results(folder: Path) -> SweepResults:
-    """What there is in the folder of a sweep. WavesymError where it is none."""
-    manifest = read(folder)
-    if manifest is None:
-        raise WavesymError(f"{folder}: no manifest.json in it, the folder of a sweep expected")
-    found = arrays(folder)
-    own: dict[str, list[tuple[int, StoredColumn]]] = {name: [] for name in manifest["dimensions"]}
-    for _, array in found.arrays():
-        if "path" in (said := array.attrs):
-            column = StoredColumn(said["path"], tuple(said["written"]), _plain(array[:]), said.get("units", ""))
-            own[said[DIMENSIONS][0]].append((said["number"], column))
-    dimensions = (StoredAxis(name, _in_order(columns)) for name, columns in own.items())
-    return SweepResults(manifest, status(folder), tuple(dimensions), manifest["outputs"], found)
+    """What there is in the folder of a sweep. WavesymError where it is none; DamagedError for what is not as it was."""
+    manifest = Manifest.of(folder)
+    store, marks = manifest.store(folder), marks_of(folder, manifest)
+    if not store.path.exists():
+        raise WavesymError(f"{folder}: no {NAME} in it, the folder of a sweep expected")
+    there = inside(store.path)
+    damaged = [
+        each for each, known in manifest.files.items() if each not in there or file_hash(store.path / each) != known
+    ]
+    again = {batch: wrong for batch, mark in marks.items() if (wrong := store.damaged(batch, mark.chunks))}
+    if damaged or again:
+        files = [f"{NAME}/{each}" for each in (*damaged, *chain.from_iterable(again.values()))]
+        raise damage(folder, files, sum(map(store.batches.count, again)), manifest.cases)
+    try:
+        return SweepResults(manifest, marks, _dimensions(store, manifest), store)
+    except (ValidationError, ValueError, LookupError, TypeError, RecursionError) as error:
+        # nothing of this comes from damage: it is none of a sweep, though its hashes are right
+        raise DamagedError(f"{store.path}: coordinates that are none ({type(error).__name__})") from None
+
+
+def _dimensions(store: Store, manifest: Manifest) -> tuple[StoredAxis, ...]:
+    """Dimensions and their columns, as the store says them."""
+    own: dict[str, list[tuple[int, StoredColumn]]] = {name: [] for name in manifest.dimensions}
+    for each in manifest.files:
+        name, _, last = each.rpartition("/")
+        if last == ATTRIBUTES and "path" in (fields := json.loads((store.path / each).read_bytes())):
+            said = _Said.model_validate(fields)
+            column = StoredColumn(said.path, tuple(said.written), _coordinate(store.path / name), said.units)
+            own[said.dimensions[0]].append((said.number, column))
+    made = tuple(StoredAxis(name, _in_order(columns)) for name, columns in own.items())
+    for axis, n in zip(made, manifest.dimensions.values(), strict=True):
+        if {len(each) for column in axis.columns for each in (column.written, column.coordinate)} != {n}:
+            raise ValueError("not as many values as cases")
+    return made
+
+
+def _coordinate(path: Path) -> tuple[float | str, ...]:
+    """The values of a coordinate: one chunk, of doubles or of texts."""
+    dtype = json.loads((path / ".zarray").read_bytes())["dtype"]
+    if not _DTYPE.fullmatch(dtype):
+        raise ValueError("neither doubles nor texts")
+    values: list[float | str] = np.frombuffer((path / "0").read_bytes(), dtype).tolist()
+    "".join(value for value in values if isinstance(value, str)).encode()  # half a character is none
+    return tuple(values)
 
 
 def _in_order(columns: list[tuple[int, StoredColumn]]) -> tuple[StoredColumn, ...]:
     return tuple(column for _, column in sorted(columns, key=lambda each: each[0]))
-
-
-def _plain(coordinate: Any) -> tuple[float | str, ...]:
-    values: Sequence[Any] = coordinate.tolist()
-    return tuple(value if isinstance(value, str) else float(value) for value in values)

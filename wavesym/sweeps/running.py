@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
 from time import monotonic
@@ -14,12 +14,14 @@ from typing import Any, NamedTuple
 from filelock import FileLock, Timeout
 
 from wavesym.errors import WavesymError
-from wavesym.sweeps.batches import Batches, batches
+from wavesym.sweeps.batches import Batches, Place, Task, batches
 from wavesym.sweeps.kinds import kind
 from wavesym.sweeps.manifest import settle
-from wavesym.sweeps.marks import Marks
+from wavesym.sweeps.marks import BatchMark, FailedCase, Marks
 from wavesym.sweeps.plan import SweepPlan, plan
 from wavesym.sweeps.request import SweepRequest
+from wavesym.sweeps.sealed import DamagedError
+from wavesym.sweeps.status import status
 from wavesym.sweeps.store import Store, needed
 from wavesym.sweeps.values import BatchValues
 from wavesym.sweeps.work import compute
@@ -58,59 +60,81 @@ def run(
     place = Path(folder)
     with _alone(place):
         store, marks = settle(place, planned, parts), Marks(place)
-        todo = _left(store, marks, retry_failed)
-        before = planned.cases - sum(len(parts.places(batch)) for batch in todo)
-        done = before
+        todo = _left(planned, store, marks, retry_failed)
+        before = done = planned.cases - sum(len(places) if places else parts.count(batch) for batch, places in todo)
         watch(planned.cases, done, before)
         for batch, values in _computed(planned, parts, todo, engine):
-            keep(store, marks, batch, values)
-            done += len(parts.places(batch))
+            keep(planned, store, marks, batch, values)
+            done += len(values.places)
             watch(planned.cases, done, before)
-        return sum(len(mark["failed"]) for mark in marks.every())
+        return status(place).failed
 
 
-def _left(store: Store, marks: Marks, retry_failed: bool) -> list[int]:
-    """The batches that have no mark, or whose chunks are not what the mark says."""
-    names = marks.names()
-    left = []
+def _left(planned: SweepPlan, store: Store, marks: Marks, retry_failed: bool) -> list[Task]:
+    """The batches that have no mark, and what is left of those that are done in part. A mark whose chunks are not what
+    it says is removed."""
+    left: list[Task] = []
     for batch in range(len(store.batches)):
-        name = store.batches.mark(store.plan, batch)
-        mark = marks.get(name) if name in names else None
-        if mark and mark["chunks"] == store.hashes(batch) and not (retry_failed and mark["failed"]):
-            continue
-        left.append(batch)
+        name = store.batches.mark(planned.sha256, batch)
+        with suppress(DamagedError):  # as if there were none
+            mark = marks.get(name, store.batches, batch)
+            if mark and not store.damaged(batch, mark.chunks):
+                if again := {*mark.left, *(failed.case for failed in mark.failed if retry_failed)}:
+                    every = store.batches.places(batch)
+                    left.append((batch, [place for place in every if planned.number(place) in again]))
+                continue
+        marks.remove(name)
+        left.append((batch, None))
     return left
 
 
-def keep(store: Store, marks: Marks, batch: int, values: BatchValues) -> None:
-    """First the chunks, then the mark."""
-    parts, planned = store.batches, store.plan
-    numbers = {place: planned.number(place) for place in values.failed}
-    marks.put(
-        parts.mark(planned, batch),
-        {
-            "batch": batch,
-            "cases": len(parts.places(batch)),
-            "chunks": store.write(batch, values),
-            "how": dict(sorted(values.how.items())),
-            "failed": [
-                {"case": numbers[place], "values": planned.told(place), "reason": reason}
-                for place, reason in sorted(values.failed.items())
-            ],
-        },
+def keep(planned: SweepPlan, store: Store, marks: Marks, batch: int, values: BatchValues) -> None:
+    """First the chunks, then the mark. What else is known of the batch stays."""
+    parts, name = store.batches, store.batches.mark(planned.sha256, batch)
+    left: set[Place] = set()
+    if len(values.places) < parts.count(batch):
+        values, left = _joined(planned, store, marks.get(name, parts, batch), batch, values)
+    mark = BatchMark(
+        batch=batch,
+        cases=parts.count(batch),
+        chunks=store.write(batch, values.arrays),
+        how=dict(sorted(values.how.items())),
+        failed=[
+            FailedCase(case=planned.number(place), values=planned.told(place), reason=reason)
+            for place, reason in sorted(values.failed.items())
+        ],
+        left=sorted(map(planned.number, left)),
     )
+    marks.put(name, mark)
+
+
+def _joined(
+    planned: SweepPlan, store: Store, mark: BatchMark | None, batch: int, values: BatchValues
+) -> tuple[BatchValues, set[Place]]:
+    """A batch with what its mark has and what is new, and what is left of it."""
+    whole = BatchValues.empty(planned, store.batches.places(batch))
+    left = set(whole.places)
+    if mark:
+        place = {planned.number(each): each for each in whole.places}
+        left = {place[case] for case in mark.left if case in place}
+        shape = {name: (len(whole.places), *rest) for name, rest in store.arrays.items()}
+        whole.arrays = {name: store.read(name, batch).reshape(each).copy() for name, each in shape.items()}
+        whole.failed = {place[each.case]: each.reason for each in mark.failed if each.case in place}
+        whole.how = dict(mark.how)
+    whole.join(values)
+    return whole, left - set(values.places)
 
 
 def _computed(
-    planned: SweepPlan, parts: Batches, todo: Iterable[int], engine: Computing
+    planned: SweepPlan, parts: Batches, todo: Iterable[Task], engine: Computing
 ) -> Iterator[tuple[int, BatchValues]]:
     """The batches by whoever is to compute them: this process, as long as that does not take long."""
     left = deque(todo)
     if not (engine.workers or engine.scheduler):
         times = [monotonic()]
         while left:
-            batch = left.popleft()
-            yield batch, compute(planned, parts, batch)
+            batch, places = left.popleft()
+            yield batch, compute(planned, parts, batch, places)
             times.append(monotonic())
             if _estimate(times) * len(left) > _PATIENCE and _several():
                 break

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from wavesym.errors import WavesymError
-from wavesym.sweeps.manifest import read
-from wavesym.sweeps.marks import Marks
+from wavesym.errors import printable
+from wavesym.sweeps.manifest import Manifest
+from wavesym.sweeps.marks import BatchMark, Marks
+from wavesym.sweeps.sealed import DamagedError
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,7 @@ class SweepStatus:
         lines = [self.line]
         for each in self.reasons:
             values = ", ".join(f"{path} = {value}" for path, value in each["values"].items())
-            lines.append(f"case {each['case']} ({values}): {each['reason']}")
+            lines.append(printable(f"case {each['case']} ({values}): {each['reason']}"))
         return "\n".join(lines) + "\n"
 
     def json(self) -> str:
@@ -41,11 +43,39 @@ class SweepStatus:
 
 
 def status(folder: Path) -> SweepStatus:
-    """The state of the sweep in a folder. WavesymError where there is none."""
-    manifest = read(folder)
-    if manifest is None:
-        raise WavesymError(f"{folder}: no manifest.json in it, the folder of a sweep expected")
-    marks = list(Marks(folder).every())
-    reasons = tuple(failure for mark in marks for failure in mark["failed"])
-    met = sum(mark["cases"] for mark in marks)
-    return SweepStatus(manifest["cases"], met - len(reasons), len(reasons), manifest["cases"] - met, reasons)
+    """The state of the sweep in a folder. WavesymError where there is none; DamagedError for damaged marks."""
+    manifest = Manifest.of(folder)
+    return status_of(manifest, marks_of(folder, manifest))
+
+
+def status_of(manifest: Manifest, marks: Mapping[int, BatchMark]) -> SweepStatus:
+    """The state of a sweep with some marks."""
+    reasons = tuple(failure.model_dump() for mark in marks.values() for failure in mark.failed)
+    met = sum(mark.cases - len(mark.left) for mark in marks.values())
+    return SweepStatus(manifest.cases, met - len(reasons), len(reasons), manifest.cases - met, reasons)
+
+
+def marks_of(folder: Path, manifest: Manifest) -> dict[int, BatchMark]:
+    """The marks of a sweep, by batch. DamagedError for those that are not as they were written."""
+    kept, batches = Marks(folder), manifest.batches
+    found: dict[int, BatchMark] = {}
+    wrong = {}
+    for batch in range(len(batches)):
+        name = batches.mark(manifest.sha256, batch)
+        try:
+            mark = kept.get(name, batches, batch)
+        except DamagedError:
+            wrong[batch] = kept.path(name).relative_to(folder).as_posix()
+            continue
+        if mark:
+            found[batch] = mark
+    if wrong:
+        raise damage(folder, list(wrong.values()), sum(map(batches.count, wrong)), manifest.cases)
+    return found
+
+
+def damage(folder: Path, files: Sequence[str], cases: int, of: int) -> DamagedError:
+    """The error that says which files of a folder are damaged, how many cases that concerns, and what helps."""
+    more = f" and {len(files) - 1} files more" if len(files) > 1 else ""
+    what = f"{cases} of {of} cases have to be computed again" if cases else "no case has to be computed again"
+    return DamagedError(f"{folder}: {files[0]}{more} damaged; {what} (wavesym sweep SWEEP -o {folder} mends it)")

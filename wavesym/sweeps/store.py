@@ -1,6 +1,8 @@
-"""The arrays of a sweep, in a zarr store that xarray reads: made whole at the start, NaN, and filled chunk by chunk.
+"""The arrays of a sweep, in a zarr store that xarray reads.
 
-One process writes. A chunk is whole on the disk before the mark that says so, which has its hash.
+Coordinates, and what is said of arrays, are made by zarr at every start and compared with what is there. What was
+computed is read and written here: a chunk is a file of doubles as they are in memory, so that no codec sees a folder
+that others have made. One process writes. A chunk is whole on the disk before the mark, which has its hash.
 """
 
 from __future__ import annotations
@@ -8,11 +10,14 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import shutil
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from math import prod
 from os import PathLike
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 from typing import Any
 
 import numpy as np
@@ -21,11 +26,14 @@ from wavesym.errors import WavesymError
 from wavesym.sweeps.batches import Batches
 from wavesym.sweeps.dimension import SweepAxis
 from wavesym.sweeps.plan import CASE, OUTPUT, SAMPLE, SweepPlan
-from wavesym.sweeps.values import BatchValues, kept_arrays, sizes
+from wavesym.sweeps.sealed import DamagedError
+from wavesym.sweeps.values import Numbers, kept_arrays, sizes
 
 NAME = "results.zarr"
 DIMENSIONS = "_ARRAY_DIMENSIONS"
 """The attribute that xarray reads the names of an array's dimensions from."""
+ATTRIBUTES = ".zattrs"
+_CHUNK = re.compile(r"\.?\d+(\.\d+)*(\.part)?")
 
 
 def needed(*libraries: str) -> None:
@@ -39,71 +47,136 @@ def needed(*libraries: str) -> None:
 
 @dataclass(frozen=True)
 class Store:
-    """The arrays of the sweep in a folder."""
+    """The chunks of a sweep in its folder: `arrays` have these lengths beside those of the sweep's dimensions."""
 
     folder: Path
-    plan: SweepPlan
     batches: Batches
+    arrays: Mapping[str, tuple[int, ...]]
 
     @property
     def path(self) -> Path:
         return self.folder / NAME
 
-    @cached_property
-    def _group(self) -> Any:
-        return _group(self.path, "r+", [each.name for each in kept_arrays(self.plan)])
+    def chunk(self, name: str, batch: int) -> str:
+        """The file of an array's chunk, in the store."""
+        return f"{name}/{'.'.join(map(str, (*self.batches.at(batch), *(0 for _ in self.arrays[name]))))}"
 
-    @property
-    def sha256(self) -> str:
-        """Of the sweep whose arrays there are."""
-        return str(self._group.attrs.get("sweep_sha256", ""))
+    def _shape(self, name: str) -> tuple[int, ...]:
+        return (*self.batches.chunk, *self.arrays[name])
 
-    def make(self) -> None:
-        """All arrays, with their coordinates. What was begun and is not whole is made again."""
-        import zarr
-
-        draft = self.folder / f".{NAME}.part"
-        shutil.rmtree(draft, ignore_errors=True)
-        group = zarr.create_group(draft, zarr_format=2, attributes=self._attributes)
-        for dimension in self.plan.dimensions:
-            _coordinates(group, dimension)
-        _plain(group, OUTPUT, OUTPUT, np.array(self.plan.outputs))
-        _plain(group, "unit", OUTPUT, np.array([unit or "1" for unit in self.plan.units]))
-        if self.plan.histories:
-            share = np.arange(self.plan.histories) / (self.plan.histories - 1)
-            _plain(group, SAMPLE, SAMPLE, share, long_name="part of the horizon that has passed", units="1")
-        names, lengths = [dimension.name for dimension in self.plan.dimensions], sizes(self.plan)
-        for each in kept_arrays(self.plan):
-            rest = tuple(lengths[name] for name in each.dimensions)
-            group.create_array(
-                each.name,
-                shape=(*self.plan.shape, *rest),
-                chunks=(*self.batches.chunk, *rest),
-                dtype="float64",
-                fill_value=np.nan,
-                attributes={DIMENSIONS: [*names, *each.dimensions], "long_name": each.what},
-            )
-        os.replace(draft, self.path)
-
-    @property
-    def _attributes(self) -> dict[str, str]:
-        return {"name": self.plan.name, "sweep_sha256": self.plan.sha256, "scene": json.dumps(self.plan.said_scene)}
-
-    def write(self, batch: int, values: BatchValues) -> dict[str, str]:
-        """Put a batch into its chunks; the hash of each of them. OSError where that cannot be."""
-        region = self.batches.region(batch)
-        for name, array in values.arrays.items():
-            self._group[name][region] = array
-        return self.hashes(batch)
-
-    def hashes(self, batch: int) -> dict[str, str]:
-        """The hash of each chunk of a batch, "" of one that is not there: nothing but NaN."""
-        at = self.batches.at(batch)
-        made = {}
-        for each in kept_arrays(self.plan):
-            chunk = self.path / each.name / ".".join(map(str, (*at, *(0 for _ in each.dimensions))))
-            made[each.name] = hashlib.sha256(chunk.read_bytes()).hexdigest() if chunk.exists() else ""
+    def write(self, batch: int, arrays: Mapping[str, Numbers]) -> dict[str, str | None]:
+        """Put the arrays of a batch, over its cases, into its chunks; the hash of each of them."""
+        made: dict[str, str | None] = {}
+        counts = [part.stop - part.start for part in self.batches.region(batch)]
+        for name, values in arrays.items():
+            place, made[name] = self.path / self.chunk(name, batch), None
+            if np.isnan(values).all():  # as no file is read
+                place.unlink(missing_ok=True)
+                continue
+            whole = np.full(self._shape(name), np.nan, "<f8")
+            whole[tuple(map(slice, counts))] = values.reshape(*counts, *self.arrays[name])
+            data, draft = whole.tobytes(), place.with_name(f".{place.name}.part")
+            draft.write_bytes(data)
+            os.replace(draft, place)
+            made[name] = hashlib.sha256(data).hexdigest()
         return made
+
+    def damaged(self, batch: int, hashes: Mapping[str, str | None]) -> list[str]:
+        """The chunks of a batch that are not what they should be."""
+        chunks = {name: self.chunk(name, batch) for name in self.arrays}
+        return [chunk for name, chunk in chunks.items() if self._hash(name, batch) != hashes.get(name, "none")]
+
+    def _hash(self, name: str, batch: int) -> str | None:
+        """Of a chunk; None where there is none, "" of a file that is no chunk of this array."""
+        path = self.path / self.chunk(name, batch)
+        found = file_hash(path)
+        return found and (found if path.stat().st_size == 8 * prod(self._shape(name)) else "")
+
+    def read(self, name: str, batch: int) -> Numbers:
+        """The values of a batch in an array, (dimensions, rest); NaN where there is no chunk."""
+        shape = self._shape(name)
+        try:
+            data = (self.path / self.chunk(name, batch)).read_bytes()
+            whole = np.frombuffer(data, "<f8").reshape(shape)
+        except FileNotFoundError:
+            whole = np.full(shape, np.nan)
+        except ValueError:
+            raise DamagedError(f"{self.path / self.chunk(name, batch)}: damaged") from None
+        return whole[tuple(slice(part.stop - part.start) for part in self.batches.region(batch))]
+
+
+def file_hash(path: Path) -> str | None:
+    """Of a file; None where there is none, "" of what is no file."""
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest() if path.is_file() else ""
+    except FileNotFoundError:
+        return None
+    except (IsADirectoryError, NotADirectoryError):
+        return ""
+
+
+def inside(path: Path) -> set[str]:
+    """What is in a folder, folders in it too. DamagedError for links, and what else could lead to elsewhere."""
+    found = [path, *(Path(parent, each) for parent, folders, files in os.walk(path) for each in (*folders, *files))]
+    for each in found:
+        if not S_ISREG(mode := each.lstat().st_mode) and not S_ISDIR(mode):
+            raise DamagedError(f"{each}: neither a file nor a folder, nothing else expected in a sweep's folder")
+    return {each.relative_to(path).as_posix() for each in found[1:]}
+
+
+def lay_out(folder: Path, plan: SweepPlan, batches: Batches) -> dict[str, str]:
+    """Make all of a store but its chunks; what is there already and as it should be stays. The hash of each file.
+
+    WavesymError where there is anything that does not belong to it: nothing that others have made is ever opened.
+    """
+    path, draft = folder / NAME, folder / f".{NAME}.part"
+    if draft.is_symlink():
+        draft.unlink()
+    shutil.rmtree(draft, ignore_errors=True)
+    _make(draft, plan, batches)
+    files = {each: file_hash(draft / each) or "" for each in sorted(inside(draft)) if (draft / each).is_file()}
+    if not path.exists() and not path.is_symlink():
+        os.replace(draft, path)
+        return files
+    names = {Path(each).parent.as_posix() for each in files}
+    for each in sorted(inside(path)):
+        parent, _, name = each.rpartition("/")
+        if each not in files and each not in names and not (parent in names and parent and _CHUNK.fullmatch(name)):
+            raise WavesymError(f"{path / each}: not of this sweep, nothing else expected there (move it to elsewhere)")
+    for each, known in files.items():
+        if file_hash(path / each) != known:
+            (path / each).parent.mkdir(exist_ok=True)
+            os.replace(draft / each, path / each)
+    shutil.rmtree(draft)
+    return files
+
+
+def _make(path: Path, plan: SweepPlan, batches: Batches) -> None:
+    """All arrays without what is computed, and coordinates."""
+    import zarr
+
+    said = {"name": plan.name, "sweep_sha256": plan.sha256, "scene": json.dumps(plan.said_scene)}
+    group = zarr.create_group(path, zarr_format=2, attributes=said)
+    for dimension in plan.dimensions:
+        _coordinates(group, dimension)
+    _plain(group, OUTPUT, OUTPUT, np.array(plan.outputs))
+    _plain(group, "unit", OUTPUT, np.array([unit or "1" for unit in plan.units]))
+    if plan.histories:
+        share = np.arange(plan.histories) / (plan.histories - 1)
+        _plain(group, SAMPLE, SAMPLE, share, long_name="part of the horizon that has passed", units="1")
+    names, lengths = [dimension.name for dimension in plan.dimensions], sizes(plan)
+    for each in kept_arrays(plan):
+        rest = tuple(lengths[name] for name in each.dimensions)
+        group.create_array(
+            each.name,
+            shape=(*plan.shape, *rest),
+            chunks=(*batches.chunk, *rest),
+            dtype="float64",
+            fill_value=np.nan,
+            compressors=None,
+            attributes={DIMENSIONS: [*names, *each.dimensions], "long_name": each.what},
+        )
 
 
 def _coordinates(group: Any, dimension: SweepAxis) -> None:
@@ -126,39 +199,18 @@ def _coordinates(group: Any, dimension: SweepAxis) -> None:
 
 
 def _plain(group: Any, name: str, dimension: str, values: Any, **attributes: object) -> None:
-    group.create_array(name, data=values, attributes={DIMENSIONS: [dimension], **attributes})
-
-
-def arrays(folder: str | PathLike[str]) -> Any:
-    """The arrays of the sweep in a folder as a zarr group, to read. WavesymError where there is none."""
-    needed("zarr")
-    if not Path(folder, NAME).is_dir():
-        raise WavesymError(f"{folder}: no {NAME} in it, the folder of a sweep expected")
-    return _group(Path(folder, NAME), "r", ["bound", OUTPUT])
-
-
-def _group(path: Path, mode: str, names: list[str]) -> Any:
-    """A group of arrays, some of which must be there. WavesymError where what is said of them is damaged."""
-    import zarr
-
-    try:
-        group = zarr.open_group(path, mode=mode)
-        missing = set(names) - {name for name, _ in group.arrays()}
-    except Exception as error:  # whatever comes of files that are not what they were
-        raise WavesymError(f"{path}: damaged ({type(error).__name__}), a sweep in a new folder expected") from None
-    if missing:
-        raise WavesymError(f"{path}: no {min(missing)} in it, a sweep in a new folder expected")
-    return group
+    said = {DIMENSIONS: [dimension], **attributes}
+    group.create_array(name, data=values, chunks=values.shape, compressors=None, attributes=said)
 
 
 def opened(folder: str | PathLike[str]) -> Any:
-    """The results of a sweep as an xarray.Dataset: labelled arrays, read when they are asked for.
+    """The results of a sweep that was just computed as an xarray.Dataset: labelled arrays, read when they are needed.
 
     The statistics, `bound` and what else was kept, over the varied paths, `record` and `output`; NaN where a case is
-    not done, or failed. WavesymError where xarray is missing, or the folder is none of a sweep.
+    not done, or failed. WavesymError where xarray is missing.
     """
     needed("xarray")
     import xarray
 
-    found = xarray.open_zarr(arrays(folder).store, consolidated=False, chunks=None)
+    found = xarray.open_zarr(Path(folder, NAME), zarr_format=2, consolidated=False, chunks=None)
     return found.set_coords([name for name in found.data_vars if "path" in found[name].attrs or name == "unit"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Iterator
 from math import prod
 from pathlib import Path
@@ -11,13 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from wavesym.errors import WavesymError
-from wavesym.sweeps.plan import OUTPUT
-from wavesym.sweeps.request import STATISTICS
-from wavesym.sweeps.store import DIMENSIONS, arrays, needed
+from wavesym.errors import WavesymError, printable
+from wavesym.sweeps.plan import CASE
+from wavesym.sweeps.results import SweepResults, results
+from wavesym.sweeps.store import needed
 from wavesym.writing import write_whole
 
 _ROWS = 4096
+_FORMULAS = tuple("=+-@\t\r\uff1d\uff0b\uff0d\uff20")
+_NUMBER = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?")
 Columns = dict[str, Any]
 
 
@@ -31,31 +34,27 @@ def write_table(folder: Path, path: Path) -> None:
         raise WavesymError(f"--table: {path} given, a file .csv or .parquet expected")
     if path.suffix == ".parquet":
         needed("pyarrow")
-    blocks = _columns(arrays(folder))
+    blocks = _columns(results(folder))
     if path.suffix == ".csv":
         write_whole({path: _csv(blocks)})
     else:
         _parquet(blocks, path)
 
 
-def _columns(found: Any) -> Iterator[Columns]:
+def _columns(found: SweepResults) -> Iterator[Columns]:
     """The columns of a sweep's arrays, block of rows by block."""
-    dimensions, shape = found["bound"].attrs[DIMENSIONS], found["bound"].shape
-    kept = [name for name in STATISTICS if name in found]
-    names = found[OUTPUT][:].tolist()
-    varied = []
-    for name, array in found.arrays():
-        if "path" in array.attrs:
-            axis = dimensions.index(array.attrs[DIMENSIONS][0])
-            varied.append((axis, array.attrs["number"], name, array[:]))
-    varied.sort(key=lambda each: each[:2])
-    for part in _slabs(shape):
+    varied = [
+        (axis, column.path if dimension.name == CASE else dimension.name, np.array(column.coordinate))
+        for axis, dimension in enumerate(found.dimensions)
+        for column in dimension.columns
+    ]
+    for part in _slabs(found.shape):
         counts = tuple(each.stop - each.start for each in part)
         place = np.unravel_index(np.arange(prod(counts)), counts)
-        made: Columns = {name: values[part[axis]][place[axis]] for axis, _, name, values in varied}
-        values = {name: found[name][part].reshape(len(place[0]), len(names)) for name in kept}
-        for k, output in enumerate(names):
-            made |= {f"{output}.{name}": values[name][:, k] for name in kept}
+        made: Columns = {name: values[part[axis]][place[axis]] for axis, name, values in varied}
+        values = {name: found.array(name, part).reshape(len(place[0]), -1) for name in found.kept}
+        for k, output in enumerate(found.outputs):
+            made |= {f"{output}.{name}": values[name][:, k] for name in found.kept}
         yield made
 
 
@@ -82,7 +81,7 @@ def _csv(blocks: Iterator[Columns]) -> Iterator[str]:
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         if not number:
-            writer.writerow(block)
+            writer.writerow(map(_text, block))
         columns = ([_cell(each) for each in column.tolist()] for column in block.values())
         writer.writerows(zip(*columns, strict=True))
         yield text.getvalue()
@@ -91,7 +90,13 @@ def _csv(blocks: Iterator[Columns]) -> Iterator[str]:
 def _cell(value: object) -> str:
     if isinstance(value, float):
         return "" if value != value else repr(value)
-    return str(value)
+    return _text(str(value))
+
+
+def _text(text: str) -> str:
+    """A text that a spreadsheet shows and does not compute: an apostrophe goes before what begins like a formula."""
+    shown = printable(text)  # in one line
+    return f"'{shown}" if text.startswith(_FORMULAS) and not _NUMBER.fullmatch(text) else shown
 
 
 def _parquet(blocks: Iterator[Columns], path: Path) -> None:

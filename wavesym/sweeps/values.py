@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from wavesym.sweeps.batches import Place
 from wavesym.sweeps.plan import OUTPUT, SAMPLE, SweepPlan
 
 Numbers = NDArray[np.float64]
@@ -58,37 +59,35 @@ class CaseValues:
 
 @dataclass
 class BatchValues:
-    """What came of a batch: `arrays` over its part of the dimensions, the reasons of cases that failed by their place
-    in the sweep, and how the others were computed."""
+    """What came of some cases of a batch: `arrays` over the `places` of these in the sweep, in their order, the reasons
+    of cases that failed, by place, and how the others were computed."""
 
+    places: list[Place]
     arrays: dict[str, Numbers]
-    failed: dict[tuple[int, ...], str] = field(default_factory=dict)
+    failed: dict[Place, str] = field(default_factory=dict)
     how: dict[str, int] = field(default_factory=dict)
 
     @classmethod
-    def empty(cls, plan: SweepPlan, region: tuple[slice, ...]) -> BatchValues:
+    def empty(cls, plan: SweepPlan, places: list[Place]) -> BatchValues:
         """Nothing yet."""
-        shape, lengths = [part.stop - part.start for part in region], sizes(plan)
-        return cls(
-            {
-                each.name: np.full((*shape, *(lengths[name] for name in each.dimensions)), np.nan)
-                for each in kept_arrays(plan)
-            }
-        )
+        lengths = sizes(plan)
+        shapes = {each.name: [lengths[name] for name in each.dimensions] for each in kept_arrays(plan)}
+        return cls(places, {name: np.full((len(places), *shape), np.nan) for name, shape in shapes.items()})
 
-    def put(self, region: tuple[slice, ...], place: tuple[int, ...], case: CaseValues) -> None:
-        """One case at its place."""
-        at = tuple(k - part.start for k, part in zip(place, region, strict=True))
+    def put(self, row: int, case: CaseValues) -> None:
+        """One case, of the place with this number."""
         for name, values in case.arrays.items():
             if name in self.arrays:
-                self.arrays[name][at] = values
+                self.arrays[name][row] = values
         self.how[case.how] = self.how.get(case.how, 0) + 1
 
-    def join(self, region: tuple[slice, ...], place: tuple[int, ...], other: BatchValues) -> None:
-        """The case at a place as another computation of the batch has it."""
-        at = tuple(k - part.start for k, part in zip(place, region, strict=True))
+    def join(self, other: BatchValues) -> None:
+        """Some of these cases as another computation has them."""
+        row = {place: k for k, place in enumerate(self.places)}
+        rows = [row[place] for place in other.places]
         for name, values in other.arrays.items():
-            self.arrays[name][at] = values[at]
+            self.arrays[name][rows] = values
+        self.failed = {place: reason for place, reason in self.failed.items() if place not in set(other.places)}
         self.failed |= other.failed
         for how, count in other.how.items():
             self.how[how] = self.how.get(how, 0) + count

@@ -1,11 +1,15 @@
-"""A batch computed: wherever it is, and from nothing but the plan and its number."""
+"""Cases computed: wherever that is, and from nothing but the plan and their batch.
+
+What a case gives depends on the sweep alone. Cases that share work do so in groups (`Batches.groups`): whoever needs
+one of them computes what its group shares, so that it is the same to the last bit.
+"""
 
 from __future__ import annotations
 
 from threading import Lock
 
 from wavesym.errors import WavesymError
-from wavesym.sweeps.batches import Batches
+from wavesym.sweeps.batches import Batches, Place
 from wavesym.sweeps.parameters import parameters
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.recorded import recorded
@@ -16,45 +20,38 @@ _ALONE = Lock()
 """The precision of balls is one for all threads of a process: two batches at once would set it for each other."""
 
 
-def compute(plan: SweepPlan, batches: Batches, batch: int) -> BatchValues:
-    """The values of a batch. What is wrong with a case is its reason, and the others go on."""
-    values = BatchValues.empty(plan, batches.region(batch))
-    region, left = batches.region(batch), batches.places(batch)
+def compute(plan: SweepPlan, batches: Batches, batch: int, places: list[Place] | None = None) -> BatchValues:
+    """The values of a batch, or of some places in it. What is wrong with a case is its reason, and the others go on."""
+    values = BatchValues.empty(plan, batches.places(batch) if places is None else places)
+    row = {place: k for k, place in enumerate(values.places)}
     with _ALONE:
-        for place, case in _shared(plan, batches, left):
-            values.put(region, place, case)
-            left.remove(place)
-        for place in left:
-            _attempt(plan, batches, batch, place, values)
+        for group in batches.groups(batch):
+            if asked := [place for place in group if place in row]:
+                shared = _shared(plan, batches, group)
+                for place in asked:
+                    if place in shared:
+                        values.put(row[place], shared[place])
+                    else:
+                        _attempt(plan, place, values, row[place])
     return values
 
 
-def _shared(
-    plan: SweepPlan, batches: Batches, places: list[tuple[int, ...]]
-) -> list[tuple[tuple[int, ...], CaseValues]]:
-    """The cases that can share work, as far as that serves them."""
+def _shared(plan: SweepPlan, batches: Batches, group: list[Place]) -> dict[Place, CaseValues]:
+    """The cases of a group that can share work, as far as that serves them."""
     try:
         if batches.kind == "recorded":
-            return list(recorded(plan, places))
+            return dict(recorded(plan, group))
         if batches.kind == "parameters":
-            return list(parameters(plan, places, batches.together))
-        return []
+            return dict(parameters(plan, group, batches.together))
+        return {}
     except Exception:  # each by itself says what is wrong
-        return []
+        return {}
 
 
-def compute_case(plan: SweepPlan, batches: Batches, batch: int, place: tuple[int, ...]) -> BatchValues:
-    """One case of a batch, by itself."""
-    values = BatchValues.empty(plan, batches.region(batch))
-    with _ALONE:
-        _attempt(plan, batches, batch, place, values)
-    return values
-
-
-def _attempt(plan: SweepPlan, batches: Batches, batch: int, place: tuple[int, ...], values: BatchValues) -> None:
+def _attempt(plan: SweepPlan, place: Place, values: BatchValues, row: int) -> None:
     """The values of one case, or the reason why it has none."""
     try:
-        values.put(batches.region(batch), place, single(plan, plan.scene(place)))
+        values.put(row, single(plan, plan.scene(place)))
     except WavesymError as error:
         values.failed[place] = str(error)
     except MemoryError:

@@ -6,10 +6,10 @@ from distributed import WorkerPlugin
 
 from wavesym import __version__
 from wavesym.errors import WavesymError
-from wavesym.sweeps.batches import Batches
+from wavesym.sweeps.batches import Batches, Place
 from wavesym.sweeps.plan import SweepPlan
 from wavesym.sweeps.values import BatchValues
-from wavesym.sweeps.work import compute, compute_case
+from wavesym.sweeps.work import compute
 
 _PLANS: dict[str, tuple[SweepPlan, Batches]] = {}
 """By the hash of the sweep."""
@@ -26,9 +26,9 @@ class SentPlan(WorkerPlugin):  # type: ignore[misc]
         _PLANS[self.plan.sha256] = self.plan, self.batches
 
 
-def computed(version: str, sha256: str, batch: int, place: tuple[int, ...] | None = None) -> BatchValues:
-    """A batch of a plan that was sent, or one case of it."""
+def computed(version: str, sha256: str, batch: int, places: list[Place] | None) -> BatchValues:
+    """A batch of a plan that was sent, or some cases of it."""
     if version != __version__:
         raise WavesymError(f"wavesym {__version__} found at a worker, {version} expected")
     plan, batches = _PLANS[sha256]
-    return compute(plan, batches, batch) if place is None else compute_case(plan, batches, batch, place)
+    return compute(plan, batches, batch, places)

@@ -14,16 +14,17 @@ from wavesym.systems.place import MisplacedError, Place, Position, position_of
 from wavesym.systems.station import Station
 
 
-def node(drawing: Drawing, written: str) -> int:
+def node(drawing: Drawing, at: str) -> int:
     """The point that a load acts on. MisplacedError."""
-    position, text = position_of(written), shown(written)
+    position = position_of(at)
+    text = shown(position.written)
     if position.x is None and position.name in drawing.names:
         return drawing.names[position.name]
     _, station, _ = _found(drawing, position, text)
     if station is None:
         raise MisplacedError(f"{text} given, the name or place of a node expected")
     if len(station.points) > 1 and not position.side:
-        raise MisplacedError(f'{text} given, a side there expected: "{written}-" or "{written}+"')
+        raise MisplacedError(f'{text} given, a side there expected: "{position.written}-" or "{position.written}+"')
     return station.points[-1 if position.side > 0 else 0]
 
 

@@ -17,7 +17,8 @@ from wavesym.fields.loads import Load
 from wavesym.fields.numbers import Numbers, Positives
 from wavesym.fields.table import shown, wrong
 from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.network import Link, Network, network_of
+from wavesym.mechanics.length import LengthUnit
+from wavesym.mechanics.network import Network, network_of, parted
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, single
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.preset import Preset
@@ -115,22 +116,7 @@ class Collision(Preset):
         beyond = position.side > 0
         return replace(place, side=position.side, rod=place.rod + beyond, part=Fraction(1 - beyond))
 
-    def made(self, loads: Sequence[Load]) -> tuple[Chain | None, Network]:
+    def made(self, loads: Sequence[Load], length: LengthUnit | None = None) -> tuple[Chain | None, Network]:
         """The chain as the paper has it, and as a network; with open contacts this alone."""
         network = network_of(self.chain)
-        return (self.chain, network) if self.contacts == "closed" else (None, _parted(network, range(2, self.m, 2)))
-
-
-def _parted(network: Network, contacts: range) -> Network:
-    """A chain whose points x in `contacts` are two, a contact between them; points stay in their order."""
-    points = [point for x, point in enumerate(network.points) for _ in range(1 + (x in contacts))]
-
-    def right(x: int) -> int:
-        """The point at x from which the rod on the right starts."""
-        return x + sum(1 for contact in contacts if contact <= x)
-
-    bars = [
-        replace(bar, left=right(bar.left), right=right(bar.right) - (bar.right in contacts)) for bar in network.bars
-    ]
-    links = [Link(right(x) - 1, right(x), contact=True, place=str(x)) for x in contacts]
-    return Network(tuple(points), tuple(bars), tuple(links))
+        return (self.chain, network) if self.contacts == "closed" else (None, parted(network, range(2, self.m, 2)))

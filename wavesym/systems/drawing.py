@@ -9,6 +9,7 @@ from fractions import Fraction
 from flint import fmpq
 
 from wavesym.fields.table import shown, wrong
+from wavesym.mechanics.length import LengthUnit, place_text
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import rational
@@ -37,30 +38,34 @@ def drawn(parts: Sequence[ChainPart | str], branches: Sequence[Branch]) -> Drawi
 
 @dataclass(frozen=True)
 class Drawing:
-    """The points, bars and links of a chain; `lines` are the stations of the main line ("") and of the branches."""
+    """The points, bars and links of a chain; `lines` are the stations of the main line ("") and of the branches, and
+    `contacts` says of the links that are some on which line they are, and where."""
 
     points: tuple[Point, ...]
     bars: tuple[Bar, ...]
     links: tuple[Link, ...]
     lines: Lines
     names: Mapping[str, int]
+    contacts: Mapping[int, tuple[str, Fraction]]
 
-    def network(self, sources: Mapping[int, Sequence[UnitLoad]]) -> Network:
-        """With unit loads on its points."""
-        places = self._places()
+    def network(self, sources: Mapping[int, Sequence[UnitLoad]], length: LengthUnit | None = None) -> Network:
+        """With unit loads on its points; its places are told in a unit of length."""
+        places = self._places(length)
         points = (
             replace(point, loads=tuple(sources.get(k, ())), place=places[k]) for k, point in enumerate(self.points)
         )
-        return Network(tuple(points), self.bars, self.links)
+        called = {k: place_text(x, line, "", length) for k, (line, x) in self.contacts.items()}
+        links = (replace(link, place=called.get(k, "")) for k, link in enumerate(self.links))
+        return Network(tuple(points), self.bars, tuple(told_apart([*links])))
 
-    def _places(self) -> Mapping[int, str]:
+    def _places(self, length: LengthUnit | None) -> Mapping[int, str]:
         """Where each point is: its line and how far along it, with a side where more than one is there."""
         places: dict[int, str] = {}
         for line, stations in self.lines.items():
             for station in stations:
                 sides = ("-", *("" for _ in station.points[2:]), "+") if len(station.points) > 1 else ("",)
                 for point, side in zip(station.points, sides, strict=True):
-                    places.setdefault(point, f"{line}{line and ':'}{station.x}{side}")
+                    places.setdefault(point, place_text(station.x, line, side, length))
         return places
 
     def length(self, bar: int | None) -> Fraction:
@@ -98,13 +103,15 @@ class _Pen:
     names: dict[str, int] = field(default_factory=dict)
     lines: dict[str, tuple[Station, ...]] = field(default_factory=dict)
     contacts: list[tuple[Link, Keys]] = field(default_factory=list)
+    written: dict[int, Keys] = field(default_factory=dict)  # points by the parts that they are, or that come next
+    places: dict[int, tuple[str, Fraction]] = field(default_factory=dict)  # of contacts, by the number of the link
 
     def drawing(self) -> Drawing:
         """What was drawn."""
         for k, point in enumerate(self.points):
             self._bearable(k, point)
         refuse_impacts(self.points, self.contacts)
-        return Drawing(tuple(self.points), tuple(self.bars), tuple(told_apart(self.links)), self.lines, self.names)
+        return Drawing(tuple(self.points), tuple(self.bars), tuple(self.links), self.lines, self.names, self.places)
 
     def line(
         self,
@@ -133,8 +140,8 @@ class _Pen:
             if isinstance(part, LinkPart):
                 self._link(part, left, right, turns)
             else:
-                place = f"{name}:{last.x}" if name else str(last.x)
-                self._contact(part, left, right, turns, place, (*at, number))
+                self.places[len(self.links)] = name, last.x
+                self._contact(part, left, right, turns, (*at, number))
             stations[-1] = replace(last, points=(*last.points, right))
         self.lines[name] = tuple(stations)
 
@@ -142,7 +149,9 @@ class _Pen:
         """A new point for a node."""
         self.points.append(Point(fmpq(0)))
         number = len(self.points) - 1
-        if (placed := nodes[k]) is not None:
+        placed = nodes[k]
+        self.written[number] = (*at, (placed or between[min(k, len(between) - 1)])[0])
+        if placed is not None:
             beside = [between[n][1] for n in (k - 1, k) if 0 <= n < len(between)]
             self._become(number, placed[1], [part for part in beside if isinstance(part, RodPart)], (*at, placed[0]))
         return number
@@ -168,9 +177,9 @@ class _Pen:
     def _link(self, part: RodPart | LinkPart, left: int, right: int, ratio: Fraction) -> None:
         self.links.append(Link(left, right, rational(part.spring), rational(part.dashpot), rational(ratio)))
 
-    def _contact(self, part: ContactPart, left: int, right: int, ratio: Fraction, place: str, at: Keys) -> None:
+    def _contact(self, part: ContactPart, left: int, right: int, ratio: Fraction, at: Keys) -> None:
         gap = rational(part.contact)
-        self.links.append(Link(left, right, ratio=rational(ratio), contact=True, gap=gap, place=place))
+        self.links.append(Link(left, right, ratio=rational(ratio), contact=True, gap=gap))
         self.contacts.append((self.links[-1], at))
 
     def agree(self, point: int, branch: Branch) -> None:
@@ -223,5 +232,13 @@ class _Pen:
 
     def _bearable(self, number: int, point: Point) -> None:
         """A point must have something that says how fast it is."""
-        if point.mass == 0 and not self._damped(number):
-            raise wrong("a joint without mass, rod or dashpot given, one of these at it expected", "parts")
+        if point.mass != 0 or self._damped(number):
+            return
+        at = self.written[number]
+        if any(number in (link.left, link.right) for link, _ in self.contacts):
+            raise wrong(
+                "a side of a contact given that no mass, rod or dashpot holds, a dashpot beside its spring, or a mass, "
+                "expected (what has lifted off needs a motion of its own)",
+                *at,
+            )
+        raise wrong("a joint without mass, rod or dashpot given, one of these at it expected", *at)

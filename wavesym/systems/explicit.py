@@ -7,18 +7,19 @@ from functools import cached_property
 from typing import Any, ClassVar, Literal, cast
 
 from flint import fmpq
-from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
+from pydantic import Field, SerializerFunctionWrapHandler, ValidationInfo, model_serializer, model_validator
 
 from wavesym.fields.damping import ModalDamping, without_damping
 from wavesym.fields.loads import Load, LoadKinds
 from wavesym.fields.table import SceneTable, shown, wrong
+from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.network import Network
 from wavesym.mechanics.node import UnitLoad
 from wavesym.systems.chain_places import node, place
 from wavesym.systems.drawing import Drawing, drawn
 from wavesym.systems.node_loads import NODE_LOADS, OnNode
 from wavesym.systems.parts import Branch, Parts, told
-from wavesym.systems.place import MisplacedError, Place, Position
+from wavesym.systems.place import MisplacedError, Place, Position, position_of
 from wavesym.systems.station import Lines
 
 
@@ -34,8 +35,9 @@ class ExplicitChain(SceneTable):
     damping: ModalDamping = None
 
     @model_validator(mode="after")
-    def _possible(self) -> ExplicitChain:
-        network = self.drawing.network({})  # which is refused where it cannot be drawn
+    def _possible(self, info: ValidationInfo) -> ExplicitChain:
+        # which is refused where it cannot be drawn; a scene with units says what its places are told in
+        network = self.drawing.network({}, info.context if isinstance(info.context, LengthUnit) else None)
         if self.damping and (other := _damper(network)):
             raise wrong(f"given with {other}, one of them expected", "damping")
         return self
@@ -74,17 +76,20 @@ class ExplicitChain(SceneTable):
         except MisplacedError as error:
             return str(error), "at"
         if self.drawing.points[point].motion == "fixed":
-            return f'{shown(_at(load))} given, a node that can move expected (a "fixed" end cannot)', "at"
+            return (
+                f'{shown(position_of(_at(load)).written)} given, a node that can move expected (a "fixed" end cannot)',
+                "at",
+            )
         return None
 
-    def made(self, loads: Sequence[Load]) -> tuple[None, Network]:
-        """No chain of the paper, and the network with the loads on its points."""
+    def made(self, loads: Sequence[Load], length: LengthUnit | None = None) -> tuple[None, Network]:
+        """No chain of the paper, and the network with the loads on its points; its places are told in a unit."""
         units: dict[int, dict[str, UnitLoad]] = {}
         for load in loads:
             for kind, coefficients in (("step", (fmpq(1),)), ("ramp", (fmpq(0), fmpq(1)))):
                 unit = UnitLoad(f"{_at(load)}:{kind}", None, coefficients)
                 units.setdefault(self._point(load), {})[unit.source] = unit
-        return None, self.drawing.network({point: tuple(each.values()) for point, each in units.items()})
+        return None, self.drawing.network({point: tuple(each.values()) for point, each in units.items()}, length)
 
     def _point(self, load: Load) -> int:
         return node(self.drawing, _at(load))

@@ -45,9 +45,9 @@ def alternating(
 
 
 def _refuse_loose(one: BETWEEN, other: BETWEEN, at: Keys) -> None:
-    """Beside a contact nothing but a rod makes a joint of what is not written."""
-    if any(isinstance(part, ContactPart) for part in (one, other)) and RodPart not in (type(one), type(other)):
-        raise wrong("a contact beside a contact, spring or dashpot given, a rod or a mass between them expected", *at)
+    """Between two contacts nothing makes a joint of what is not written."""
+    if isinstance(one, ContactPart) and isinstance(other, ContactPart):
+        raise wrong("a contact beside a contact given, a rod or a mass between them expected", *at)
 
 
 def _refuse_empty(between: Sequence[PlacedBetween], at: Keys, branch: bool) -> None:

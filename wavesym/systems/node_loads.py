@@ -10,7 +10,7 @@ from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import LONGEST, Numbers, exact, written
 from wavesym.fields.table import shown, wrong
 from wavesym.records.load import RecordedLoad
-from wavesym.systems.place import position_of
+from wavesym.systems.place import PlaceInUnits, position_of
 
 
 def _at(value: object) -> str:
@@ -20,7 +20,7 @@ def _at(value: object) -> str:
     if len(text) > LONGEST:
         raise wrong(f"{shown(value)} given, at most {LONGEST} characters expected")
     position_of(text)
-    return str(text)
+    return value if isinstance(value, PlaceInUnits) else str(text)
 
 
 At = Annotated[str, PlainValidator(_at)]

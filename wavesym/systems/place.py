@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from wavesym.fields.numbers import exact, written
 
@@ -22,6 +22,20 @@ class Position(NamedTuple):
     name: str = ""
 
 
+class PlaceInUnits(str):
+    """A place in rod lengths, as text, that a scene with units has `written` in them."""
+
+    written: str
+
+    def __new__(cls, text: str, written: str) -> Self:
+        place = super().__new__(cls, text)
+        place.written = written
+        return place
+
+    def __reduce__(self) -> tuple[type[Self], tuple[str, str]]:
+        return type(self), (str(self), self.written)
+
+
 _NAMED = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?::(.*))?")
 
 
@@ -29,6 +43,8 @@ def position_of(value: object) -> Position:
     """A position as TOML or Python has it: a number, or text such as "1/2+", "hammer" or "branch:1-"."""
     if isinstance(value, Position):
         return value
+    if isinstance(value, PlaceInUnits):
+        return position_of(str(value))._replace(written=value.written)
     text = written(value)
     if text is None:
         return Position(str(exact(value)), exact(value), 0)

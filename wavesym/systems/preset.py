@@ -16,6 +16,7 @@ from wavesym.fields.loads import Load, LoadKinds
 from wavesym.fields.numbers import Integer
 from wavesym.fields.table import SceneTable, Written, shown, wrong
 from wavesym.mechanics.chain import Chain
+from wavesym.mechanics.length import LengthUnit
 from wavesym.mechanics.network import Network, network_of
 from wavesym.mechanics.node import Parameters, System
 from wavesym.numbers.doubles import rational
@@ -109,8 +110,8 @@ class Preset(SceneTable):
         """What is wrong with a load, and under which key; None where nothing is."""
         return load.refused(self.m)
 
-    def made(self, loads: Sequence[Load]) -> tuple[Chain | None, Network]:
-        """The chain as the paper has it, and as a network."""
+    def made(self, loads: Sequence[Load], length: LengthUnit | None = None) -> tuple[Chain | None, Network]:
+        """The chain as the paper has it, and as a network; its places count rods."""
         return self.chain, network_of(self.chain)
 
     @property

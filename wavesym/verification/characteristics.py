@@ -1,45 +1,29 @@
-"""Direct integration of the wave equation with its boundary conditions, (2.1)-(2.4), along characteristics.
+"""Integration along characteristics over any network whose delays have a common measure: windows as long as that.
 
-On a rod (2.1) says that two waves travel unchanged, one each way, dU/dtau their sum and dU/dx the left-going less the
-right-going; at tau = 0 each is v/2, by (2.2). Let a and b be the waves that arrive at a node from its left and right
-rod, and q the node's velocity. It is that of both rods, (2.3): q - a leaves to the left and q - b to the right, so that
+In a bar two waves travel unchanged. Let a be the one that arrives at an end of impedance Z and ratio n, and q the
+velocity of its point: n q - a is sent back, so that the bar's force on the end is Z (2 a - n q), and
 
-    dU_left/dx = (q - a) - a = q - 2 a,        dU_right/dx = b - (q - b) = 2 b - q,
+    mass q' + (damping + sum of n^2 Z) q + stiffness u = sum of 2 n Z a + loads,        u' = q,
 
-and (2.4), inertia U_tt + damping U_t = (beta/2) dU_right/dx - (alpha/2) dU_left/dx + loads, becomes
-
-    inertia q' + (damping + (alpha + beta)/2) q = alpha a + beta b + loads.
-
-What arrives was sent one unit of tau earlier. So the nodes are independent of each other on every window [n, n + 1),
-and inside a window nothing jumps or bends but at the fractional parts of the load times: there it is cut into panels.
+by Lobatto IIIA, of order 4. Points without mass balance at every instant. What arrives was sent a whole number of
+windows earlier, and inside a window nothing jumps or bends but where loads begin: there it is cut into panels.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from math import prod
 
 import numpy as np
-from flint import fmpq, fmpq_poly
-from numpy.typing import NDArray
+from flint import fmpq
 
-from wavesym.errors import CostError
-from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.loads import Applied
-from wavesym.mechanics.node import Node
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import UNIT_ROUNDOFF, nearest, rational
-
-Array = NDArray[np.float64]
-
-LEFT, RIGHT = 0, 1  # which way a wave goes
-
-MOST_DOUBLES = 50_000_000
+from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, nearest, rational
+from wavesym.verification.graph import Array, Graph
 
 # Lobatto IIIA: the integral over a step, up to its middle and up to its end, from the values at 0, 1/2 and 1
 LOBATTO = np.array([[5 / 24, 1 / 3, -1 / 24], [1 / 6, 2 / 3, 1 / 6]])
@@ -80,53 +64,24 @@ class SteppedPanel:
         return nearest(self.length / self.steps)
 
 
-def integrate(chain: Chain, loads: Sequence[Applied], until: float, steps: int) -> Integrated:
-    """The motion of a chain under `loads` for 0 <= tau <= until, with `steps` steps (order 4) per unit of tau or more.
-
-    Dimensionless. ValueError for a load whose source the chain does not have, CostError where it would not fit into
-    memory.
-    """
-    windows = int(rational(until).floor()) + 1
-    panels = stepped_panels((load.time for load in loads), steps)
-    shape = windows + 1, 2, len(chain.nodes), panels[-1].points.stop
-    if prod(shape) > MOST_DOUBLES:
-        raise CostError(
-            f"output.until: direct integration would hold {float(prod(shape)):.1e} doubles, at most {MOST_DOUBLES:.1e} "
-            "expected (a shorter horizon, fewer rods or fewer load times help)"
-        )
-    waves = np.zeros(shape)
-    for x, node in enumerate(chain.nodes):  # the window before tau = 0
-        waves[0, LEFT, x] = nearest(node.left.velocity / 2) if node.left else 0.0
-        waves[0, RIGHT, x] = nearest(node.right.velocity / 2) if node.right else 0.0
-    bodies = _NodeSteps(chain.nodes)
-    forces = _NodeForces(chain, loads)
-    arriving = np.zeros((2, *waves.shape[2:]))
-    for n in range(windows):
-        arriving[RIGHT, 1:] = waves[n, RIGHT, :-1]
-        arriving[LEFT, :-1] = waves[n, LEFT, 1:]
-        for panel in panels:
-            a, b = arriving[RIGHT, :, panel.points], arriving[LEFT, :, panel.points]
-            q = bodies.moved(a, b, forces.on(n, panel), panel.step)
-            waves[n + 1, LEFT, :, panel.points] = q - a
-            waves[n + 1, RIGHT, :, panel.points] = q - b
-    return Integrated(panels, waves, until)
-
-
 @dataclass(frozen=True)
 class Integrated:
-    """What an integration found: `waves[1 + n, direction, x]` is sent by the node at x, at the points of window n.
+    """What an integration found: `waves[before + n, side, bar]` is sent into a bar in window n, at its points.
 
-    Window -1 (all of them `before` the first) holds the waves that are in the rods at tau = 0.
+    The windows `before` the first hold the waves that are in the bars at tau = 0. After the bars come the velocities of
+    the points (on side 0). A window is `measure` long.
     """
 
     panels: tuple[SteppedPanel, ...]
     waves: Array
     until: float
-    before: int = 1
+    before: int
+    measure: Fraction
+    graph: Graph
 
     @cached_property
     def integrals(self) -> Array:
-        """The integrals of the waves from tau = -1 on, at the same points."""
+        """The integrals of the waves from the first window on, at the same points."""
         result = np.empty_like(self.waves)
         total = np.zeros(self.waves.shape[1:3])
         for n in range(len(self.waves)):
@@ -148,16 +103,21 @@ class Integrated:
         """
         if not all(0 <= tau <= self.until for tau in taus):
             raise ValueError(f"tau outside [0, {self.until}]")
-        instants = [rational(tau) for tau in taus]
+        instants = [rational(Fraction(tau) / self.measure) for tau in taus]
         displacement = probe.quantity == "displacement"
-        field = self.integrals if displacement else self.waves
+        field = float(self.measure) * self.integrals if displacement else self.waves
 
-        def arrived(direction: int, node: int, lag: fmpq) -> Array:
-            values = self._sampled(field[:, direction, node], [tau - lag for tau in instants])
-            return values - self._sampled(field[:, direction, node], [-lag]) if displacement else values
+        def arrived(side: int, bar: int, lag: Fraction) -> Array:
+            late = rational(lag / self.measure)
+            values = self._sampled(field[:, side, bar], [tau - late for tau in instants])
+            return values - self._sampled(field[:, side, bar], [-late]) if displacement else values
 
-        right, left = arrived(RIGHT, probe.rod - 1, probe.place), arrived(LEFT, probe.rod, 1 - probe.place)
-        return left - right if probe.quantity == "strain" else left + right
+        if probe.point is not None:
+            return arrived(0, len(self.graph.delays) + probe.point, Fraction(0))
+        bar = probe.rod - 1
+        delay, place = self.graph.delays[bar], fraction(probe.place)
+        right, left = arrived(0, bar, place * delay), arrived(1, bar, (1 - place) * delay)
+        return (left - right) / self.graph.speed[bar] if probe.quantity == "strain" else left + right
 
     @property
     def size(self) -> int:
@@ -196,69 +156,105 @@ class Integrated:
         return np.asarray(np.sum(_lagrange(np.array(offsets)) * values, axis=1))
 
 
-class _NodeSteps:
-    """The nodes' conditions, for all of them at once."""
-
-    def __init__(self, nodes: Sequence[Node]) -> None:
-        inertia = _column(node.inertia for node in nodes)
-        self.alpha = _column(node.alpha for node in nodes)
-        self.beta = _column(node.beta for node in nodes)
-        self.gamma = _column(node.damping for node in nodes) + (self.alpha + self.beta) / 2
-        self.massive = np.flatnonzero(inertia)
-        self.inertia = inertia[self.massive]
-        # a body moves at first with the rod that is fixed to it
-        self.q = np.array([nearest(nodes[x].velocity) for x in self.massive.tolist()])
-
-    def moved(self, a: Array, b: Array, loads: Array, step: float) -> Array:
-        """The velocities of the nodes at the points of a panel, all of shape (nodes, points)."""
-        right = self.alpha * a + self.beta * b + loads
-        result = right / self.gamma  # what balances at once where there is no inertia
-        if self.massive.size:
-            result[self.massive] = self._carried(right[self.massive] / self.inertia, step)
-            self.q = result[self.massive, -1]
-        return result
-
-    def _carried(self, right: Array, step: float) -> Array:
-        """q' + rate q = right from the present q on, by Lobatto IIIA; exact in q, as the equation is linear."""
-        z = self.gamma[self.massive] / self.inertia * step
-        system = np.eye(2) + z[..., np.newaxis] * LOBATTO[:, 1:]
-        kept = np.linalg.solve(system, 1 - z[..., np.newaxis] * LOBATTO[:, :1])[..., 0]
-        gained = np.linalg.solve(system, step * LOBATTO @ np.swapaxes(stages(right), 1, 2))
-        result = np.empty_like(right)
-        q = self.q
-        result[:, 0] = q
-        for j, gain in enumerate(np.ascontiguousarray(gained[:, 1].T)):
-            q = kept[:, 1] * q + gain
-            result[:, 2 * j + 2] = q
-        result[:, 1::2] = kept[:, :1] * result[:, :-1:2] + gained[:, 0]
-        return result
+def doubles_of(made: Graph, until: float, steps: int) -> float:
+    """How many doubles an integration holds."""
+    windows = (Fraction(until) + max(made.delays)) // made.measure + 2
+    points = 2 * sum(panel.steps for panel in _panels(made, COARSEST)) * steps / COARSEST
+    return float(windows) * 2 * (len(made.delays) + len(made.mass)) * points
 
 
-class _NodeForces:
-    """The loads at the nodes, polynomials in the time since the start of the present panel; panels come in order."""
+def integrate(made: Graph, until: float, steps: int) -> Integrated:
+    """The motion for 0 <= tau <= until, with `steps` steps (order 4) per common measure of the delays or more."""
+    measure = made.measure
+    lags = [int(delay / measure) for delay in made.delays]
+    before, bars = max(lags), len(lags)
+    windows = Fraction(until) // measure + 1
+    panels = _panels(made, steps)
+    waves = np.zeros((before + windows, 2, bars + len(made.mass), panels[-1].points.stop))
+    strain = made.speed * made.start_strain
+    waves[:before, 0, :bars] = ((made.start_velocity - strain) / 2)[:, np.newaxis]
+    waves[:before, 1, :bars] = ((made.start_velocity + strain) / 2)[:, np.newaxis]
+    motion = _Motion(made)
+    came = before - np.array(lags)
+    every = np.arange(bars)
+    for n in range(windows):
+        for panel in panels:
+            arriving = np.empty((2 * bars, panel.points.stop - panel.points.start))
+            arriving[0::2] = waves[came + n, 1, every, panel.points]
+            arriving[1::2] = waves[came + n, 0, every, panel.points]
+            start = (n + fraction(panel.start)) * measure
+            q = motion.moved(arriving, start, float(measure) * panel.step)
+            sent = made.ratios[:, np.newaxis] * q[made.ends] - arriving
+            here = waves[before + n, :, :, panel.points]
+            here[0, :bars], here[1, :bars], here[0, bars:] = sent[0::2], sent[1::2], q
+    return Integrated(panels, waves, until, before, measure, made)
 
-    def __init__(self, chain: Chain, loads: Sequence[Applied]) -> None:
-        self._coming: dict[fmpq, list[tuple[int, fmpq_poly]]] = defaultdict(list)
-        for load in loads:
-            if load.source == "impact":  # that is in the rods' initial velocities
-                continue
-            if load.source not in chain.loaded:
-                raise ValueError(f"{load.source}: no such load")
-            x, unit = chain.loaded[load.source]
-            self._coming[load.time].append((x, load.weight * fmpq_poly(list(unit.coefficients))))
-        self._now = {x: fmpq_poly() for x, _ in chain.loaded.values()}
-        self._nodes = len(chain.nodes)
 
-    def on(self, window: int, panel: SteppedPanel) -> Array:
-        """The loads at the points of the panel in a window, shape (nodes, points)."""
-        for x, new in self._coming.get(window + panel.start, ()):
-            self._now[x] += new
-        local = panel.step / 2 * np.arange(2 * panel.steps + 1)
-        result = np.zeros((self._nodes, len(local)))
-        for x, load in self._now.items():
-            for coefficient in reversed(load.coeffs()):
-                result[x] = result[x] * local + nearest(coefficient)
-            self._now[x] = load(fmpq_poly([panel.length, 1]))
+def _panels(made: Graph, steps: int) -> tuple[SteppedPanel, ...]:
+    return stepped_panels((rational(event.time / made.measure) for event in made.events), steps)
+
+
+class _Motion:
+    """All points at once: y' = A y + what acts, for their displacements and the velocities of those with mass."""
+
+    def __init__(self, made: Graph) -> None:
+        size = len(made.mass)
+        self._made = made
+        given = np.isin(np.arange(size), list(made.given))
+        heavy = np.flatnonzero((made.mass > 0) & ~given)
+        light = np.flatnonzero((made.mass == 0) & ~given)
+        impedance = np.repeat(made.impedance, 2)
+        onto = np.zeros((size, len(made.ends)))
+        onto[made.ends, np.arange(len(made.ends))] = made.ratios
+        damping = made.damping + np.diag(onto**2 @ impedance)
+        self._onto = 2 * onto * impedance
+        self._given = given
+        # velocities from the state, and from what acts on free points (or is the velocity of the others)
+        of_state, of_acting = np.zeros((size, size + len(heavy))), np.zeros((size, size))
+        of_state[heavy, size + np.arange(len(heavy))] = 1.0
+        of_acting[given, given] = 1.0
+        inverse = np.linalg.inv(damping[np.ix_(light, light)])
+        known = np.setdiff1d(np.arange(size), light)
+        held = np.hstack([-made.stiffness, np.zeros((size, len(heavy)))])  # forces by displacements
+        for matrix, own in ((of_state, held), (of_acting, np.eye(size))):
+            matrix[light] = inverse @ (own[light] - damping[np.ix_(light, known)] @ matrix[known])
+        self._of_state, self._of_acting = of_state, of_acting
+        per_mass = (1 / made.mass[heavy])[:, np.newaxis]
+        force = held - damping @ of_state
+        self._state = np.vstack([of_state, per_mass * force[heavy]])
+        self._acting = np.vstack([of_acting, per_mass * (np.eye(size) - damping @ of_acting)[heavy]])
+        self.y = np.append(np.zeros(size), made.velocity[heavy])
+
+    def moved(self, arriving: Array, start: Fraction, step: float) -> Array:
+        """The velocities of the points at the points of a panel, shape (points, points of the panel)."""
+        acting = self._loads(start, step / 2 * np.arange(arriving.shape[1], dtype=float))
+        acting[~self._given] += (self._onto @ arriving)[~self._given]
+        size = len(self.y)
+        system = np.eye(2 * size) - step * np.kron(LOBATTO[:, 1:], self._state)
+        kept = np.linalg.solve(system, np.tile(np.eye(size), (2, 1)) + step * np.kron(LOBATTO[:, :1], self._state))
+        forced = stages(self._acting @ acting)
+        gained = step * np.einsum("ij,ynj->niy", LOBATTO, forced).reshape(forced.shape[1], 2 * size)
+        gained = np.linalg.solve(system, gained.T).T
+        states = np.empty((arriving.shape[1], size))
+        states[0] = y = self.y
+        for j, gain in enumerate(gained):
+            both = kept @ y + gain
+            states[2 * j + 1], y = both[:size], both[size:]
+            states[2 * j + 2] = y
+        self.y = y
+        return np.asarray(self._of_state @ states.T + self._of_acting @ acting)
+
+    def _loads(self, start: Fraction, local: Array) -> Array:
+        """The loads that began by `start`, or the velocities that they prescribe: shape (points, times)."""
+        result = np.zeros((len(self._made.mass), len(local)))
+        for point in self._made.given:
+            result[point] = self._made.velocity[point]
+        for event in self._made.events:
+            if event.time <= start:
+                since = float(start - event.time) + local
+                order = max(self._made.given.get(event.point, 1) - 1, 0)
+                for k, c in enumerate(event.coefficients):
+                    result[event.point] += c * since ** (k + order) / (k + 1 if order else 1)
         return result
 
 
@@ -270,10 +266,6 @@ def stepped_panels(times: Iterable[fmpq], steps: int) -> tuple[SteppedPanel, ...
         count = max(_FEWEST_STEPS, int(((high - low) * COARSEST).ceil())) * -(-steps // COARSEST)
         panels.append(SteppedPanel(low, high - low, count, panels[-1].points.stop if panels else 0))
     return tuple(panels)
-
-
-def _column(values: Iterable[fmpq]) -> Array:
-    return np.array([[nearest(value)] for value in values])
 
 
 def stages(values: Array) -> Array:

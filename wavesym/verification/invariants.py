@@ -1,48 +1,58 @@
-"""Momentum and energy of the whole chain: every right evaluator keeps them, and none is told of them.
+"""Momentum and energy over any network: every right evaluator keeps them, and none is told of them.
 
-The force in a rod is Z dU/dx, with a stiffness Z of its own. (2.4) times a weight w, such that w alpha/2 and w beta/2
-are the Z of the rods to the left and right, is the balance of forces at a node; along the chain inner forces cancel:
+With M, C, K of the points (no part of the bars in them), impedances Z, delays T, speeds c and the forces
+s = Z c U_x of the bars' ends on their points,
 
-    momentum = sum of w inertia q + sum of Z times the integral of U_t                  grows by the impulse of loads,
-    energy = sum of w inertia q^2/2 + sum of Z/2 times the integral of U_t^2 + U_x^2    grows by their work.
+    energy = sum of M q^2/2 + u K u/2 + sum of Z times the integral over the last T of right^2 + left^2,
+    momentum = sum of w M q + sum of w Z times the integral over the last T of right + left,
 
-A base that moves as it is told acts with the force of its rod. Z is 1 in the first rod. A rod is known from its ends:
-what is in it came in during the last unit of tau, (U_t - U_x)/2 at the left end and (U_t + U_x)/2 at the right one.
+where right = (v - c U_x)/2 came in at the left end of a bar and left = (v + c U_x)/2 at its right end. Energy grows by
+the work of loads and of prescribed motion, less what dashpots take; momentum by the impulse of loads, dashpots and
+springs. The weights w are 1 at the first point; a bar counts `ratio` times as much as its point, so that forces
+between bars and points cancel through gears, too. Nothing asks how long the delays are.
+
+A contact pushes what is on its two sides alike, and takes no energy: what it pushes with follows from the balance of
+the sides without mass. Where one moves as it is told, that is an impulse, and work.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
-from itertools import pairwise
-from typing import NamedTuple
+from heapq import heapify, heappop, heappush
+from itertools import pairwise, product
+from math import ceil
 
 import numpy as np
 from flint import fmpq
-from numpy.typing import NDArray
 
-from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.loads import Applied
+from wavesym.exact.contacts.events import events
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.node import Quantity
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import UNIT_ROUNDOFF, nearest
+from wavesym.numbers.doubles import UNIT_ROUNDOFF, fraction, rational
+from wavesym.verification.graph import Array, Graph, graph
 
-Array = NDArray[np.float64]
 Evaluate = Callable[[Array], Array]
 """tau, shape (n,), to the outputs, shape (outputs, n)."""
 
-# of Gauss's rule between two fronts, where everything is an entire function; half as many say how much is missed
-_POINTS = 32
+# of Gauss's rule between two fronts, where everything is an entire function; fewer say how much is missed
+_POINTS, _FEWER = 24, 16
 
-# a sum rounds no more often than there are windows and points in one
+# at so many instants balances are struck, on the horizon or on what is left when it is halved less often than this
+_STRUCK, _HALVED = (8, 4, 2, 1), 6
+
+# springs swing no further in a panel, in radians
+_SWING = 12
+
+# a sum rounds no more often than this for every panel
 _ROUNDINGS = 100
 
 
 @dataclass(frozen=True)
 class Balance:
-    """By how much a balance fails at most at tau = 1, 2, ... and by how much it may.
+    """By how much a balance fails at most where it is struck, and by how much it may.
 
     Energy relative to its largest value, momentum to the largest that all the mass can have with that energy.
     """
@@ -52,202 +62,340 @@ class Balance:
     allowed: float
 
 
-class MomentumWeights(NamedTuple):
-    """What stands before velocities in the momentum: of nodes with inertia and others, and of rods."""
-
-    nodes: tuple[fmpq, ...]
-    rods: tuple[fmpq, ...]
-
-
-def weights(system: Chain) -> MomentumWeights:
-    """The weights of nodes x = 0 ... m and rods i = 1 ... m; 0 for a node that no rod acts on."""
-    rods = [fmpq(1)]
-    first = system.nodes[0].beta
-    nodes = [2 / first if first != 0 else fmpq(0)]
-    for node in system.nodes[1:]:
-        nodes.append(2 * rods[-1] / node.alpha if node.alpha != 0 else fmpq(0))
-        rods.append(nodes[-1] * node.beta / 2)
-    return MomentumWeights(tuple(nodes), tuple(rods[:-1]))
-
-
-def watched(model: Model, until: int) -> Model:
-    """The model as it is watched here: strains at the left ends of rods, then at their right ends, and all velocities.
-
-    A contact has one strain.
-    """
-    left_ends, right_ends = _ends(model.named)
-    strains = {probe.name: probe for probe in left_ends + right_ends}.values()
-    return model.watching([*strains, *_velocities(model.named)]).shortened(fmpq(until))
-
-
-def values_per_window(model: Model) -> tuple[int, int]:
-    """How many outputs a model has when it is `watched`, and how many values of them a window of tau takes."""
-    outputs = len(watched(model, 1).probes)
-    panels = len(_cuts(model.loads)) - 1
-    return outputs, outputs * panels * (_POINTS + _POINTS // 2)
-
-
-def balances(model: Model, evaluate: Evaluate, errors: Sequence[float]) -> tuple[Balance, Balance]:
-    """The balances of momentum and energy of a `watched` model, as `evaluate` has it.
-
-    `errors` are the proved errors of the outputs, absolute: what they come to is allowed, and what quadrature misses.
-    """
-    fine, coarse = (_Books(model, evaluate, np.array(errors), points) for points in (_POINTS, _POINTS // 2))
-    largest = float(np.max(fine.energy.value)) or 1.0
-    unit = _ROUNDINGS * len(fine.energy.value) * float(UNIT_ROUNDOFF)
-
-    def balance(name: str, scale: float) -> Balance:
-        ours, theirs = getattr(fine, name), getattr(coarse, name)
-        missed = float(np.max(np.abs(ours.failing - theirs.failing)))
-        error, slack = float(np.max(np.abs(ours.failing))), float(np.max(ours.slack))
-        return Balance(name, error / scale, (slack + missed) / scale + unit)
-
-    return balance("momentum", (2 * largest * fine.mass) ** 0.5), balance("energy", largest)
-
-
-class _Account(NamedTuple):
-    """At tau = 0, 1, 2, ...: a sum, by how much it is not what was there and what came, and what errors come to."""
+@dataclass(frozen=True)
+class Within:
+    """Values, and what they may be wrong by."""
 
     value: Array
-    failing: Array
-    slack: Array
+    error: Array
+
+    def __add__(self, other: Within) -> Within:
+        return Within(self.value + other.value, self.error + other.error)
+
+    def __mul__(self, other: Within) -> Within:
+        error = np.abs(self.value) * other.error + np.abs(other.value) * self.error + self.error * other.error
+        return Within(self.value * other.value, error)
+
+    def times(self, factor: float) -> Within:
+        """A multiple."""
+        return Within(factor * self.value, abs(factor) * self.error)
+
+    def through(self, matrix: Array) -> Within:
+        """Sums of rows."""
+        return Within(matrix @ self.value, np.abs(matrix) @ self.error)
+
+    def part(self, rows: Sequence[int] | slice) -> Within:
+        """Some rows."""
+        return Within(self.value[rows], self.error[rows])
+
+    def total(self, weights: Array) -> Within:
+        """The integral over all times that have weights; these are not negative."""
+        return Within(self.value @ weights, self.error @ weights)
+
+
+class Balancing:
+    """A model as it is watched here: at the ends of all bars, and at all points, until the last balance is struck."""
+
+    def __init__(self, model: Model, most: int) -> None:
+        """With as many balances as take at most so many values of outputs; none where not even one does.
+
+        CostError, GrazingError where it is not known when contacts open and close.
+        """
+        self._graph = graph(model)
+        network = model.network
+        seen: list[Probe] = []
+        for quantity in ("velocity", "displacement"):
+            seen += [self._at_point(quantity, point) for point in range(len(network.points))]
+        ends = [(bar, side) for bar in range(len(network.bars)) for side in (0, 1)]
+        seen += [Probe(f"strain@end{k}", "strain", bar + 1, fmpq(side)) for k, (bar, side) in enumerate(ends)]
+        until = fraction(model.until)
+        limit = most // ((_POINTS + _FEWER) * len(seen))
+        fronts, last = self._fronts(until, limit, self._struck(model.watching(seen)))
+        self.struck: list[Fraction] = []
+        for end, count in product([until / 2**k for k in range(_HALVED)], _STRUCK):
+            struck = [end * k / count for k in range(1, count + 1)]
+            if end <= last and len(self._cuts(fronts, struck)) <= limit:
+                self.struck = struck
+                break
+        self._cut = np.array([float(cut) for cut in self._cuts(fronts, self.struck)])
+        self.model = model.watching(seen)
+        if self.struck:
+            self.model = self.model.shortened(rational(self.struck[-1]))
+
+    def balances(self, evaluate: Evaluate, errors: Sequence[float] | None = None) -> tuple[Balance, ...]:
+        """The balances of momentum and energy, as `evaluate` has the watched model, and what contacts must keep.
+
+        `errors` are the proved errors of the outputs, absolute, None where each value is rounded once: what they come
+        to is allowed, and what quadrature misses.
+        """
+        fine, coarse = (_Books(self, evaluate, errors, points) for points in (_POINTS, _FEWER))
+        largest = fine.largest
+        unit = _ROUNDINGS * len(self._cut) * float(UNIT_ROUNDOFF)
+
+        def balance(name: str, scale: float) -> Balance:
+            ours, theirs = getattr(fine, name), getattr(coarse, name)
+            missed = float(np.max(np.abs(ours.value - theirs.value)))
+            error, slack = float(np.max(np.abs(ours.value))), float(np.max(ours.error))
+            return Balance(name, error / scale, (slack + missed) / scale + unit)
+
+        found = balance("momentum", (2 * largest * fine.mass) ** 0.5), balance("energy", largest)
+        return (*found, balance("contacts", largest)) if self._graph.contacts else found
+
+    @property
+    def graph(self) -> Graph:
+        """What is balanced."""
+        return self._graph
+
+    def panels(self, points: int) -> tuple[Array, Array]:
+        """Gauss's points and weights, one panel after the other; a panel ends where balances or delays ask for it."""
+        nodes, weights = np.polynomial.legendre.leggauss(points)
+        low, width = self._cut[:-1, np.newaxis], np.diff(self._cut)[:, np.newaxis]
+        return (low + width * (nodes + 1) / 2).ravel(), (width * weights / 2).ravel()
+
+    def _at_point(self, quantity: str, point: int) -> Probe:
+        """An output at a point, or at the end of a bar there."""
+        for bar, ends in enumerate(self._graph.ends.reshape(-1, 2)):
+            for side in (0, 1):
+                if ends[side] == point:
+                    return Probe(f"{quantity}@point{point}", quantity, bar + 1, fmpq(side))
+        return Probe(f"{quantity}@point{point}", quantity, 0, fmpq(0), point)
+
+    def _cuts(self, fronts: Iterable[Fraction], struck: Sequence[Fraction]) -> list[Fraction]:
+        """Where panels end: at fronts, and where what is in a bar when a balance is struck has come in."""
+        came_in = {time - delay for time in struck for delay in (Fraction(0), *self._graph.delays)}
+        ends = sorted({Fraction(0), *(time for time in (*fronts, *came_in) if struck and 0 < time <= struck[-1])})
+        cuts = ends[:1]
+        for low, high in pairwise(ends):
+            parts = max(1, ceil(float(high - low) * self._graph.swings / _SWING))
+            cuts += [low + (high - low) * k / parts for k in range(1, parts + 1)]
+        return cuts
+
+    def _struck(self, seen: Model) -> list[tuple[Fraction, int]]:
+        """When contacts open and close, and a point of each: where panels end, and nothing else."""
+        sides = {link.place: link.left for link in seen.network.links if link.contact}
+        return [(Fraction(event.double), sides[event.x]) for event in events(seen)] if sides else []
+
+    def _fronts(
+        self, until: Fraction, most: int, struck: Sequence[tuple[Fraction, int]]
+    ) -> tuple[set[Fraction], Fraction]:
+        """When something not smooth can come to a point, so often at most, and until when that is all of them."""
+        made = self._graph
+        coming = [*struck]
+        coming += [(event.time, event.point) for event in made.events]
+        coming += [(Fraction(0), point) for point in range(len(made.mass))]
+        heapify(coming)
+        met: set[tuple[Fraction, int]] = set()
+        times: set[Fraction] = set()
+        while coming:
+            time, here = front = heappop(coming)
+            if front in met or time > until:
+                continue
+            met.add(front)
+            times.add(time)
+            if len(times) > most:
+                return times, time
+            for point in self._linked(here):
+                heappush(coming, (time, point))
+            for bar, ends in enumerate(made.ends.reshape(-1, 2).tolist()):
+                for side in (0, 1):
+                    if ends[side] == here:
+                        heappush(coming, (time + made.delays[bar], ends[1 - side]))
+        return times, until
+
+    def _linked(self, point: int) -> Iterator[int]:
+        yield from (other for group in self._graph.groups if point in group for other in group if other != point)
 
 
 class _Books:
-    """Momentum and energy from what happens at the nodes, with so many points between two fronts."""
+    """What is stored and what comes in, with so many points a panel."""
 
-    def __init__(self, model: Model, evaluate: Evaluate, errors: Array, points: int) -> None:
-        self._chain = model.named
-        self._windows = int(model.until.floor())
-        self._loads = [load for load in model.loads if load.source != "impact"]
-        times, self._gauss = _quadrature(_cuts(model.loads), self._windows, points)
-        self._times = times
-        values = evaluate(times.ravel()).reshape(-1, *times.shape)
-        ends = evaluate(np.arange(1.0, self._windows + 1))
-        names = [probe.name for probe in model.probes]
-        left, right = ([names.index(probe.name) for probe in ends] for ends in _ends(self._chain))
-        velocity = [names.index(probe.name) for probe in _velocities(self._chain)]
-        self._q, self._q_error = values[velocity], errors[velocity]
-        self._strains = (values[left], errors[left]), (values[right], errors[right])
-        self._reached = ends[velocity]
-        exact_weights = weights(self._chain)
-        bodies = [w * node.inertia for w, node in zip(exact_weights.nodes, self._chain.nodes, strict=True)]
-        self._bodies, self._rods = (np.array([nearest(w) for w in each]) for each in (bodies, exact_weights.rods))
-        self._nodes = np.array([nearest(w) for w in exact_weights.nodes])
-        self.mass = float(np.sum(self._bodies) + np.sum(self._rods))
+    def __init__(self, balancing: Balancing, evaluate: Evaluate, errors: Sequence[float] | None, points: int) -> None:
+        made = self._graph = balancing.graph
+        self._struck = np.array([float(time) for time in balancing.struck])
+        self._delays = [float(delay) for delay in made.delays]
+        self._times, self._weights = balancing.panels(points)
+        size = len(made.mass)
 
-    @cached_property
-    def momentum(self) -> _Account:
-        """Of bodies and rods, and the impulse of what acts from outside."""
-        value = self._bodies @ self._reached
-        slack = np.zeros(self._windows) + self._bodies @ self._q_error
-        for came_in, error in self._came_in:
-            value += self._rods @ (came_in @ self._gauss)
-            slack += self._rods @ error
-        came = np.zeros(self._windows)
-        for _, force, force_error in self._forces:
-            came += np.cumsum(force @ self._gauss)
-            slack += force_error * np.arange(1, self._windows + 1)
-        return self._account(value, came, slack, self._started(lambda v: v))
+        def at(times: Array) -> tuple[Within, Within, Within]:
+            values = evaluate(times)
+            rounded = float(UNIT_ROUNDOFF) * np.max(np.abs(values), axis=1)
+            allowed = rounded if errors is None else np.array(errors)
+            known = Within(values, np.zeros_like(values) + allowed[:, np.newaxis])
+            speeds = np.repeat(made.speed, 2)
+            scale = np.array([made.ratios[list(made.ends).index(p)] if p in made.ends else 1.0 for p in range(size)])
+            both = [known.part(slice(k * size, (k + 1) * size)).through(np.diag(1 / scale)) for k in (0, 1)]
+            return both[0], both[1], known.part(slice(2 * size, None)).through(np.diag(speeds))
+
+        self._q, _, self._strain = at(self._times)
+        self._end_q, self._end_u, _ = at(self._struck)
+        self._end_u_all = at(self._times)[1]
+        self._v = self._q.part(made.ends.tolist()).through(np.diag(made.ratios))
+        self._load = Within(made.load_integral(self._times, 0).T, np.zeros((size, len(self._times))))
+        impedance = np.repeat(made.impedance, 2)
+        sign = np.tile([1.0, -1.0], len(made.impedance))
+        self._force = self._strain.through(np.diag(sign * impedance))  # of the ends on their points
 
     @cached_property
-    def energy(self) -> _Account:
-        """Kinetic and elastic, and the work of what acts from outside."""
-        value = self._bodies @ self._reached**2 / 2
-        slack = np.zeros(self._windows) + self._bodies @ _square_error(self._reached, self._q_error) / 2
-        for came_in, error in self._came_in:
-            value += self._rods @ (came_in**2 @ self._gauss)
-            slack += self._rods @ (_square_error(came_in, error) @ self._gauss)
-        came = np.zeros(self._windows)
-        for x, force, force_error in self._forces:
-            q, q_error = self._q[x], self._q_error[x]
-            came += np.cumsum((force * q) @ self._gauss)
-            error_of_power = np.abs(force) * q_error + np.abs(q) * force_error + force_error * q_error
-            slack += np.cumsum(error_of_power @ self._gauss)
-        return self._account(value, came, slack, self._started(lambda v: v * v / 2))
+    def _free(self) -> Array:
+        """1 for points that are free to move, 0 for others."""
+        free = np.zeros(len(self._graph.mass))
+        free[self._graph.free] = 1.0
+        return free
 
     @cached_property
-    def _came_in(self) -> list[tuple[Array, Array]]:
-        """What enters the rods at their left and at their right ends, and its error."""
-        (left, left_error), (right, right_error) = self._strains
-        return [
-            ((self._q[:-1] - left) / 2, (self._q_error[:-1] + left_error) / 2),
-            ((self._q[1:] + right) / 2, (self._q_error[1:] + right_error) / 2),
-        ]
+    def _coming(self) -> Within:
+        """What came in at all ends, each into its bar."""
+        sign = np.tile([-0.5, 0.5], len(self._graph.impedance))
+        return self._v.times(0.5) + self._strain.through(np.diag(sign))
+
+    def _content(self, power: int, weights: Array) -> Within:
+        """The sum over bars of weights times the integral of their waves, to a power, when balances are struck."""
+        coming = self._coming if power == 1 else self._coming * self._coming
+        value, error = np.zeros(len(self._struck)), np.zeros(len(self._struck))
+        for k, tau in enumerate(self._struck):
+            for bar, delay in enumerate(self._delays):
+                inside = self._weights * ((self._times > tau - delay) & (self._times < tau))
+                part = coming.part([2 * bar, 2 * bar + 1]).total(inside)
+                left = max(delay - tau, 0.0)  # of this length there is still what was there at the start
+                first = np.array([-1.0, 1.0]) * self._graph.speed[bar] * self._graph.start_strain[bar]
+                held = (self._graph.start_velocity[bar] + first) / 2
+                value[k] += weights[bar] * (np.sum(part.value) + left * np.sum(held**power))
+                error[k] += abs(weights[bar]) * np.sum(part.error)
+        return Within(value, error)
+
+    def _since(self, rate: Within) -> Within:
+        """The integral of what comes in, until balances are struck."""
+        until = (self._times[:, np.newaxis] < self._struck) * self._weights[:, np.newaxis]
+        return Within(rate.value @ until, rate.error @ until)
+
+    # energy
 
     @cached_property
-    def _forces(self) -> list[tuple[int, Array, float]]:
-        """Where something acts from outside, its force and the error of that."""
-        (left, left_error), (right, right_error) = self._strains
-        forces = []
-        for x, node in enumerate(self._chain.nodes):
-            if node.alpha == 0 and node.beta == 0:  # it moves as it is told, by the force of its rod
-                if node.right:
-                    forces.append((x, -self._rods[x] * left[x], float(self._rods[x] * left_error[x])))
-                else:
-                    forces.append((x, self._rods[x - 1] * right[x - 1], float(self._rods[x - 1] * right_error[x - 1])))
-            elif node.loads or node.damping != 0:
-                units = {load.source: load.coefficients for load in node.loads}
-                braked = nearest(node.damping)
-                force = _acting(self._loads, units, self._times) - braked * self._q[x]
-                forces.append((x, self._nodes[x] * force, float(self._nodes[x] * braked * self._q_error[x])))
-        return forces
+    def stored(self) -> Within:
+        """The energy when balances are struck."""
+        made, q, u = self._graph, self._end_q, self._end_u
+        total = self._content(2, made.impedance) + (q * q).through(made.mass / 2)
+        return total + (u * u.through(made.stiffness)).through(np.full(len(made.mass), 0.5))
 
-    def _started(self, counted: Callable[[Array], Array]) -> float:
-        """What is there at tau = 0: bodies move with the rods that are fixed to them."""
-        nodes, rods = self._chain.nodes, range(1, self._chain.m + 1)
-        bodies = np.array([nearest(node.velocity) for node in nodes])
-        moving = np.array([nearest(self._chain.rod(i).velocity) for i in rods])
-        return float(self._bodies @ counted(bodies) + self._rods @ counted(moving))
+    @property
+    def largest(self) -> float:
+        """The largest energy, at tau = 0 or when balances are struck; 1 where all are 0."""
+        return max(float(np.max(self.stored.value)), self.started) or 1.0
 
-    def _account(self, value: Array, came: Array, slack: Array, before: float) -> _Account:
-        return _Account(np.append(before, value), np.append(0.0, value - before - came), np.append(0.0, slack))
+    @cached_property
+    def started(self) -> float:
+        """The energy at tau = 0."""
+        made = self._graph
+        bars = made.impedance * np.array(self._delays)
+        strain = made.speed * made.start_strain
+        moving = made.mass @ made.velocity**2 / 2
+        return float(moving + bars @ (made.start_velocity**2 + strain**2) / 2)
 
+    @cached_property
+    def energy(self) -> Within:
+        """By how much energy is not what was there and what came."""
+        made, q = self._graph, self._q
+        power = (self._load * q).through(self._free) + (q * q.through(made.damping)).through(
+            np.full(len(q.value), -1.0)
+        )
+        told = (self._force * self._v).through(-(1 - self._free)[made.ends])
+        told += (self._pushed * q).through(self._free - 1)
+        lost = q.through(made.damping) + self._end_u_all.through(made.stiffness)
+        power = power + told + (q * lost).through(1 - self._free)
+        came = self._since(power)
+        return self.stored + came.times(-1.0) + Within(np.full(len(self._struck), -self.started), np.zeros(1))
 
-def _ends(chain: Chain) -> tuple[list[Probe], list[Probe]]:
-    """The strains at the left and at the right ends of the rods; both are one where rods only touch."""
+    # momentum
 
-    def name(x: int, side: str) -> str:
-        divided = 0 < x < chain.m and chain.nodes[x].inertia
-        return f"strain@{x}{side}" if divided else f"strain@{x}"
+    @cached_property
+    def _counted(self) -> tuple[Array, Array]:
+        """The weights of points and of bars in the momentum."""
+        made = self._graph
+        points, bars = np.zeros(len(made.mass)), np.zeros(len(made.impedance))
+        ends, ratios = made.ends.reshape(-1, 2), made.ratios.reshape(-1, 2)
+        known = np.zeros(len(points), dtype=bool)
+        for first in range(len(points)):
+            if known[first]:
+                continue
+            points[first], known[first] = 1.0, True
+            waiting = [first]
+            while waiting:
+                here = waiting.pop()
+                joined = [(b, s) for b in range(len(bars)) for s in (0, 1) if ends[b, s] == here]
+                for bar, side in joined:
+                    bars[bar] = ratios[bar, side] * points[here]
+                    there = ends[bar, 1 - side]
+                    if not known[there]:
+                        points[there], known[there] = bars[bar] / ratios[bar, 1 - side], True
+                        waiting.append(int(there))
+                for row in made.parting[made.parting[:, here] != 0]:
+                    for other in np.flatnonzero(row):
+                        if not known[other]:
+                            points[other], known[other] = -row[here] / row[other] * points[here], True
+                            waiting.append(int(other))
+                for other in np.flatnonzero((made.damping[here] != 0) | (made.stiffness[here] != 0)):
+                    if not known[other]:
+                        points[other], known[other] = points[here], True
+                        waiting.append(int(other))
+        return points, bars
 
-    rods = range(1, chain.m + 1)
-    return (
-        [Probe(name(i - 1, "+"), "strain", i, fmpq(0)) for i in rods],
-        [Probe(name(i, "-"), "strain", i, fmpq(1)) for i in rods],
-    )
+    @property
+    def mass(self) -> float:
+        """All of it, as it counts in the momentum."""
+        points, bars = self._counted
+        return float(points**2 @ self._graph.mass + bars**2 @ (self._graph.impedance * np.array(self._delays)))
 
+    @cached_property
+    def momentum(self) -> Within:
+        """By how much momentum is not what was there and what came."""
+        made = self._graph
+        points, bars = self._counted
+        counted = points * self._free * self._unheld
+        value = self._content(1, bars * made.impedance) + self._end_q.through(counted * made.mass)
+        rate = (self._load + self._q.through(-made.damping) + self._end_u_all.through(-made.stiffness)).through(counted)
+        across = made.ratios * counted[made.ends] - np.repeat(bars, 2)  # 0 but where prescribed motion holds
+        came = self._since(rate + self._force.through(across))
+        moving = bars * made.impedance * np.array(self._delays)
+        before = float(counted * made.mass @ made.velocity + moving @ made.start_velocity)
+        return value + came.times(-1.0) + Within(np.full(len(self._struck), -before), np.zeros(1))
 
-def _velocities(chain: Chain) -> list[Probe]:
-    """The velocities of the nodes."""
-    first = Probe("velocity@0", "velocity", 1, fmpq(0))
-    return [first, *(Probe(f"velocity@{i}", "velocity", i, fmpq(1)) for i in range(1, chain.m + 1))]
+    # contacts
 
+    @cached_property
+    def _unheld(self) -> Array:
+        """0 for points without mass that contacts may hold to a prescribed motion, 1 for others."""
+        made, held = self._graph, 1 - self._free
+        touching = made.parting != 0
+        for _ in made.parting:
+            held = np.maximum(held, np.any(touching[np.any(touching & (held > 0), axis=1)], axis=0))
+        return np.where(made.mass == 0, 1 - held, 1.0)
 
-def _cuts(loads: Sequence[Applied]) -> list[float]:
-    """Where in a unit of tau a front may pass a node."""
-    parts = {load.time - load.time.floor() for load in loads}
-    return [nearest(cut) for cut in sorted({fmpq(0), fmpq(1), *parts})]
+    @cached_property
+    def _push(self) -> Within:
+        """What contacts push with: what points without mass need to be in balance."""
+        made = self._graph
+        onto = np.zeros((len(made.mass), len(made.ends)))
+        onto[made.ends, np.arange(len(made.ends))] = made.ratios
+        acting = self._load + self._force.through(onto) + self._q.through(-made.damping)
+        acting += self._end_u_all.through(-made.stiffness)
+        light = (made.mass == 0) & (self._free > 0)
+        return acting.part(np.flatnonzero(light).tolist()).through(
+            np.asarray(-np.linalg.pinv(made.parting[:, light].T))
+        )
 
+    @cached_property
+    def _pushed(self) -> Within:
+        """What contacts do to points."""
+        return self._push.through(self._graph.parting.T)
 
-def _quadrature(cuts: Sequence[float], windows: int, points: int) -> tuple[Array, Array]:
-    """Gauss's points between the cuts in every window, (windows, n), and their weights."""
-    nodes, rule = np.polynomial.legendre.leggauss(points)
-    local = np.concatenate([low + (high - low) * (nodes + 1) / 2 for low, high in pairwise(cuts)])
-    gauss = np.concatenate([(high - low) * rule / 2 for low, high in pairwise(cuts)])
-    return np.add.outer(np.arange(windows), local), gauss
-
-
-def _acting(loads: Sequence[Applied], units: Mapping[str, Sequence[Quantity]], times: Array) -> Array:
-    """The sum of the loads at a node whose unit loads are polynomials."""
-    total = np.zeros_like(times)
-    for load in loads:
-        since = np.maximum(times - nearest(load.time), 0.0)
-        for power, coefficient in enumerate(units.get(load.source, ())):
-            total += np.where(since > 0, nearest(coefficient * load.weight) * since**power, 0.0)
-    return total
-
-
-def _square_error(value: Array, error: Array) -> Array:
-    error = error.reshape(-1, *[1] * (value.ndim - 1))
-    return np.asarray(2 * np.abs(value) * error + error**2)
+    @cached_property
+    def contacts(self) -> Within:
+        """How far a push or a gap is negative, or neither is 0, at any time; as an energy."""
+        made, push = self._graph, self._push
+        gap = self._end_u_all.through(made.parting) + Within(made.gaps[:, np.newaxis], np.zeros(1))
+        length = (2 * self.largest / self.mass) ** 0.5 * max(self._delays)
+        parts = [push.times(length), gap.times(self.largest / length)]
+        wrong = [np.maximum(-part.value, 0.0) for part in parts]
+        both = np.minimum(*(np.abs(part.value) for part in parts))
+        errors = np.maximum(*(part.error for part in parts))
+        return Within(np.max(np.maximum(np.maximum(*wrong), both), axis=1), np.max(errors, axis=1))

@@ -61,7 +61,7 @@ def _value(coefficients: Sequence[float], since: Fraction) -> float:
 def observed(model: Model) -> list[Observed]:
     """The outputs of a model."""
     made = graph(model)
-    return [_scaled(_observed(model, made, probe), nearest(probe.factor)) for probe in model.probes]
+    return [_scaled(_observed(made, probe), nearest(probe.factor)) for probe in model.probes]
 
 
 def parted(model: Model) -> Model:
@@ -74,11 +74,11 @@ def _scaled(one: Observed, factor: float) -> Observed:
     return Observed(one.graph, shares, tuple((factor * weight, point) for weight, point in one.loads))
 
 
-def _observed(model: Model, made: Graph, probe: Probe) -> Observed:
+def _observed(made: Graph, probe: Probe) -> Observed:
     bar = probe.rod - 1
     match probe.quantity:
         case "acceleration":
-            return _accelerated(model, made, probe)
+            return _accelerated(made, probe)
         case "force":
             stiffness = float(made.impedance[bar] * made.speed[bar])
             return Observed(made, ((stiffness, _on("strain", probe.rod, probe.place)),))
@@ -87,20 +87,20 @@ def _observed(model: Model, made: Graph, probe: Probe) -> Observed:
             return Observed(made, ((1.0, far), (-1.0, near)))
         case "relative":
             told = [n for n, point in enumerate(made.network.points) if point.motion not in (None, "fixed")]
-            base = _at_point(model, "displacement", told[0] if told else 0)
+            base = _at_point("displacement", told[0] if told else 0)
             here = Probe("", "displacement", probe.rod, probe.place, probe.point)
             return Observed(made, ((1.0, here), (-1.0, base)))
         case _:
             return Observed(made, ((1.0, Probe("", probe.quantity, probe.rod, probe.place, probe.point)),))
 
 
-def _accelerated(model: Model, made: Graph, probe: Probe) -> Observed:
+def _accelerated(made: Graph, probe: Probe) -> Observed:
     point, times = probe.point, 1.0
     if point is None:
         end = 2 * (probe.rod - 1) + int(probe.place)
         point, times = int(made.ends[end]), float(made.ratios[end])
     together = _together(made, point) * (times / float(made.mass[point]))
-    shares = list(_forces(model, made, together))
+    shares = list(_forces(made, together))
     return Observed(made, tuple(shares), tuple((float(together[n]), n) for n in np.flatnonzero(together).tolist()))
 
 
@@ -120,7 +120,7 @@ def _together(made: Graph, point: int) -> Array:
     return speeds
 
 
-def _forces(model: Model, made: Graph, speeds: Array) -> Iterator[Share]:
+def _forces(made: Graph, speeds: Array) -> Iterator[Share]:
     """What acts on points but loads and pushes, as they work where points are so fast."""
     for end, (point, ratio) in enumerate(zip(made.ends.tolist(), made.ratios.tolist(), strict=True)):
         if speeds[point]:
@@ -130,15 +130,12 @@ def _forces(model: Model, made: Graph, speeds: Array) -> Iterator[Share]:
     for matrix, quantity in ((made.damping, "velocity"), (made.stiffness, "displacement")):
         held = -(speeds @ matrix)
         for point in np.flatnonzero(held).tolist():
-            yield float(held[point]), _at_point(model, quantity, point)
+            yield float(held[point]), _at_point(quantity, point)
 
 
 def _on(quantity: str, rod: int, place: fmpq) -> Probe:
     return Probe("", quantity, rod, place)
 
 
-def _at_point(model: Model, quantity: str, point: int) -> Probe:
-    """Of a point; in a named system, whose nodes are not watched by themselves, at the end of a rod."""
-    if model.chain is None:
-        return Probe("", quantity, 0, fmpq(0), point)
-    return _on(quantity, max(point, 1), fmpq(int(point > 0)))
+def _at_point(quantity: str, point: int) -> Probe:
+    return Probe("", quantity, 0, fmpq(0), point)

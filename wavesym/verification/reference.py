@@ -42,13 +42,26 @@ class KnownOutput:
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """The outputs of a model at `taus`, doubles in [0, until]; it is the `whole` one, or its beginning."""
+    """The outputs of a model at `taus`, doubles in [0, until]; it is the `whole` one, or its beginning.
+
+    `starts` are those of the taus from which on an output may be something else than before. `independent` is the model
+    as integrators read it (independent.py); without it they start from the network of programs. `exact` has more
+    values, where there are any.
+    """
 
     whole: Model
     model: Model
     until: float
     taus: Sequence[float]
     outputs: tuple[KnownOutput, ...]
+    starts: frozenset[float] = frozenset()
+    independent: Model | None = None
+    exact: Reference | None = None
+
+    @property
+    def integrated(self) -> Model:
+        """What integrators start from, as far as it is known."""
+        return self.model if self.independent is None else self.independent.shortened(self.model.until)
 
     @property
     def notes(self) -> Sequence[str]:
@@ -58,30 +71,35 @@ class Known:
         return [f"{self.whole.name}: compared to tau = {self.until:g}; exact values of all of it would take too long"]
 
 
-def known(model: Model) -> Known:
+def known(model: Model, independent: Model | None = None) -> Known:
     """A model's outputs at a few hundred spread taus, at every arrival, and at the doubles just before and after.
 
-    Of a long horizon the beginning, as far as it can be known in moderate time.
+    Of a long horizon the beginning, as far as it can be known in moderate time. `independent`: see `Known`.
     """
     exact = Reference(beginning(model))
-    taus = sorted(set(_taus(exact)))
+    starts = exact.breakpoints()
+    taus = sorted(set(_taus(exact.tau_max, starts)))
     outputs = (
         KnownOutput(probe, np.array(values)) for probe, values in zip(model.probes, exact.values(taus), strict=True)
     )
-    return Known(model, exact.model, exact.tau_max, taus, tuple(outputs))
+    return Known(model, exact.model, exact.tau_max, taus, tuple(outputs), frozenset(starts), independent, exact)
 
 
-def unknown(model: Model) -> Known:
+def unknown(model: Model, independent: Model | None = None) -> Known:
     """A model whose modes are damped, which balls know nothing of."""
-    return Known(model, model, model.horizon(), (), ())
+    return Known(model, model, model.horizon(), (), (), independent=independent)
 
 
-def _taus(exact: Reference) -> Iterator[float]:
-    until = exact.tau_max
+def spread(until: float) -> list[float]:
+    """Instants on [0, until], evenly and on no grid of any evaluator; single precision has them, too."""
+    golden = np.array([math.fmod(k * _GOLDEN, 1) * until for k in range(1, _SPREAD + 1)], np.float32)
+    return [tau for tau in golden.astype(np.float64).tolist() if tau <= until]
+
+
+def _taus(until: float, starts: Sequence[float]) -> Iterator[float]:
     yield from (0.0, until)
-    # multiples of the golden ratio fall evenly, and on no grid of any evaluator
-    yield from (math.fmod(k * _GOLDEN, 1) * until for k in range(1, _SPREAD + 1))
-    for first in exact.breakpoints():
+    yield from spread(until)
+    for first in starts:
         for tau in (math.nextafter(first, -math.inf), first, math.nextafter(first, math.inf)):
             if 0 <= tau <= until:
                 yield tau

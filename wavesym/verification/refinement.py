@@ -16,11 +16,11 @@ Array = NDArray[np.float64]
 class Solutions:
     """An output with N, 2N and 4N steps, its true values at the same instants, and what rounding may have added.
 
-    `scale` is what errors are relative to.
+    `scale` is what errors are relative to. Without a `truth` they are differences from the best solution.
     """
 
     values: tuple[Array, Array, Array]
-    truth: Array
+    truth: Array | None
     rounding: float
     scale: float
 
@@ -44,19 +44,24 @@ class Solutions:
         return self._refinement(quarter, self._largest(quarter - half) + self._largest(half - coarse))
 
     def _refinement(self, best: Array, between: float) -> Refinement:
-        coarse, half, quarter = (self._largest(values - self.truth) for values in self.values)
+        truth = best if self.truth is None else self.truth
+        coarse, half, quarter = (self._largest(values - truth) for values in self.values)
         rounding = self.rounding / self.scale
-        return Refinement((coarse, half, quarter), self._largest(best - self.truth), between, rounding)
+        return Refinement((coarse, half, quarter), self._largest(best - truth), between, rounding, best)
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """Errors at N, 2N and 4N, that of what is best, and what it may be: what lies `between` solutions, and rounding."""
+    """Errors at N, 2N and 4N, that of what is best, and what it may be: what lies `between` solutions, and rounding.
+
+    `values` are those of what is best.
+    """
 
     errors: tuple[float, float, float]
     best: float
     between: float
     rounding: float
+    values: Array
 
     @property
     def allowed(self) -> float:

@@ -1,39 +1,93 @@
-"""Every check on every scene: a table of errors for each check, and one verdict."""
+"""Every program and every check on every scene: a table for each, and one verdict."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from wavesym.mechanics.model import Model
-from wavesym.running.toolchain import compiler
+from wavesym.programs.request import Request
+from wavesym.running.toolchain import CompilerError, compiler
+from wavesym.scene import Scene
 from wavesym.verification.checks import CHECKS
 from wavesym.verification.columns import Row, table
 from wavesym.verification.damped import damped
-from wavesym.verification.reference import known, unknown
+from wavesym.verification.independent import independent_model
+from wavesym.verification.outcome import IntegratedOutput, Outcome
+from wavesym.verification.programs import compare_programs
+from wavesym.verification.reference import Known, known, unknown
 
-_LEGEND = "Errors are against ball arithmetic rounded once, relative to the output's largest value."
+_REFUSED = "refused"
+_LATE = 0.05  # parts of the horizon that an integration may leave out at its end
+_LEGEND = "Errors are relative to the output's largest value."
+_PROGRAMS = (
+    "Programs, each in the output in which it is worst: its error against exact values (ball arithmetic rounded\n"
+    "once), its difference from an integration, what that may be wrong by, and the bound that the program states\n"
+    "(for parameters and loads at run time: the estimate):"
+)
 
 
-def verify(models: Iterable[Model]) -> tuple[str, bool]:
-    """For each check a table of what it found for every model, and whether all errors are within what is allowed.
+def verify(scenes: Iterable[tuple[Scene, Model]], requests: Sequence[Request] | None = None) -> tuple[str, bool]:
+    """For each check a table of what it found for every scene, and whether all errors are within what is allowed.
 
-    CompilerError where there is no C compiler, or where it does not accept the generated C.
+    Without `requests` all programs that serve a scene and all checks; else these programs, and no more than is needed
+    to compare them with an integration. An output that no integration judges, or of no program, fails.
     """
-    chosen = compiler()
-    tables: list[list[Row]] = [[] for _ in CHECKS]
+    rows: list[list[Row]] = [[] for _ in range(1 + len(CHECKS))]
     notes: list[str] = []
     passed = True
-    for model in models:
-        truth = known(model) if model.damping is None else unknown(model)
+
+    def told(number: int, name: str, column: str, outcomes: Iterable[Outcome]) -> None:
+        nonlocal passed, notes
+        for outcome in outcomes:
+            verdict = "FAIL" if not outcome.passed else "-" if _REFUSED in outcome.cells.values() else "PASS"
+            rows[number].append({"scene": name, column: outcome.subject, **outcome.cells, "verdict": verdict})
+            notes += [outcome.note] if outcome.note else []
+            passed = passed and outcome.passed
+
+    for scene, model in scenes:
+        own = independent_model(scene, model)
+        truth = known(model, own) if model.damping is None else unknown(model, own)
         notes += truth.notes
-        for check, rows in zip(CHECKS, tables, strict=True):
-            for outcome in check.run(truth) if truth.outputs or check.run is damped else ():
-                verdict = "PASS" if outcome.passed else "FAIL"
-                rows.append({"scene": model.name, "of": outcome.subject, **outcome.cells, "verdict": verdict})
-                notes += [outcome.note] if outcome.note else []
-                passed = passed and outcome.passed
-    lines = [_LEGEND, f"The C compiler is {chosen.version}.", *dict.fromkeys(notes), ""]
-    for check, rows in zip(CHECKS, tables, strict=True):
-        if rows:
-            lines += [check.title, "", *table(rows, ("scene", "of", "verdict")), ""]
+        found: dict[str, IntegratedOutput] = {}
+        for number, check in enumerate(CHECKS, 1):
+            if (truth.outputs or check.run is damped) and not (
+                requests is not None and len(found) == len(model.probes)
+            ):
+                outcomes = check.run(truth)
+                told(number, model.name, "of", outcomes)
+                judges = ((each.subject, each.integral) for each in outcomes if each.integral)
+                found = {name: each for name, each in judges if _judges(each, truth)} | found
+        integrals = [found.get(probe.name) for probe in model.probes]
+        compared = compare_programs(scene, truth, integrals, requests)
+        told(0, model.name, "program", compared)
+        told(0, model.name, "program", _unseen(model, integrals, compared))
+    lines = [_LEGEND, _compiler(), *dict.fromkeys(notes), ""]
+    for title, of_check in zip((_PROGRAMS, *(check.title for check in CHECKS)), rows, strict=True):
+        if of_check:
+            lines += [title, "", *table(of_check, ("scene", "program", "of", "verdict")), ""]
     return "\n".join(lines[:-1]) + "\n", passed
+
+
+def _judges(integral: IntegratedOutput, truth: Known) -> bool:
+    """Whether it can tell what is wrong from what is right: of what is still 0 only at the end of the horizon."""
+    moves = integral.size > integral.allowed
+    return integral.judges and (moves or integral.taus[-1] >= truth.whole.horizon() * (1 - _LATE))
+
+
+def _unseen(model: Model, integrals: Sequence[IntegratedOutput | None], compared: Sequence[Outcome]) -> list[Outcome]:
+    """A row that fails for each output that nothing judges, and for a scene that no program serves."""
+    found = []
+    for probe, integral in zip(model.probes, integrals, strict=True):
+        if integral is None:
+            why = f"{model.name}: {probe.name} is not verified, as no integration is exact enough to judge it"
+            found.append(Outcome("none", {"of": probe.name, "error": "not seen"}, False, why))
+    if all(_REFUSED in outcome.cells.values() for outcome in compared):
+        found.append(Outcome("none", {"of": "-", "error": "refused"}, False, f"{model.name}: no program is verified"))
+    return found
+
+
+def _compiler() -> str:
+    try:
+        return f"The C compiler is {compiler().version}."
+    except CompilerError as error:
+        return f"C was not tried: {error}."

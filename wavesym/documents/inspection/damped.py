@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
-from wavesym.errors import CostError
+from wavesym.errors import CostError, UnservedError
 from wavesym.exact.modes.frequencies import frequencies
 from wavesym.mechanics.model import Model
 from wavesym.programs.modes.damped import damped
@@ -24,7 +24,7 @@ def damped_modes(model: Model) -> Iterator[Section]:
     count = max(_SHOWN, len(damping.ratios), *(damping.modes or (0,)))
     try:
         found = np.array([float(w) for w in frequencies(model.network, count + _RIGID)])
-    except CostError as refusal:
+    except (CostError, UnservedError) as refusal:
         yield Facts("modes", "Modes are not known", {"refusal": str(refusal)})
         return
     w = found[found > 0][:count]

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from flint import fmpq
 
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
-from wavesym.errors import CostError
+from wavesym.errors import CostError, UnservedError
 from wavesym.exact.joints.joint import JointLaw
 from wavesym.exact.knots import Knots
 from wavesym.exact.tables.joint_response import joint_polynomial, rates, written
@@ -34,7 +34,7 @@ def not_served(model: Model) -> Facts:
     """What named systems have and written-out chains have not."""
     try:
         refusal = str(model.named)
-    except CostError as error:
+    except UnservedError as error:
         refusal = str(error)
     words = "Symbolic tables, walks and highest powers are not served"
     return Facts("not_served", words, {"refusal": refusal})

@@ -9,8 +9,9 @@ from wavesym.documents.inspection.section import Facts, Listing, Plain, Section,
 from wavesym.documents.inspection.streamed import streamed
 from wavesym.documents.inspection.variants import told_degrees, variants
 from wavesym.errors import CostError, ToleranceError
-from wavesym.exact.contacts.collision import contact_ends
 from wavesym.exact.contacts.events import events
+from wavesym.exact.contacts.opening import contact_ends
+from wavesym.exact.contacts.schedule import GrazingError
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import Tried, attempts, best
 from wavesym.programs.program import Program, Provenance
@@ -65,7 +66,7 @@ def contacts(model: Model) -> Listing:
     words = "Contacts whose opening can reach an output"
     try:
         rows = [{"x": end.x, "tau": end.digits, "refusal": Told(None, "")} for end in contact_ends(model)]
-    except CostError as error:
+    except (CostError, GrazingError) as error:
         words = "When contacts open is not known in time, for which generate refuses the scene"
         return Listing("contacts", words, [{"x": None, "tau": None, "refusal": str(error)}], ("refusal",))
     return Listing("contacts", words, rows, ("refusal",))
@@ -76,7 +77,7 @@ def _happening(model: Model) -> Listing:
     words = "When contacts open and close, as far as that can reach an output"
     try:
         rows = [{"x": e.x, "kind": e.kind, "tau": e.digits, "refusal": Told(None, "")} for e in events(model)]
-    except CostError as error:
+    except (CostError, GrazingError) as error:
         words = "When contacts open and close is not known in time, for which generate refuses the scene"
         return Listing("events", words, [{"x": None, "kind": None, "tau": None, "refusal": str(error)}], ("refusal",))
     return Listing("events", words, rows, ("refusal",))

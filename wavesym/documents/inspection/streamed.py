@@ -23,7 +23,9 @@ def streamed(model: Model, sources: Sequence[str]) -> Facts:
     except WavesymError as refusal:
         return Facts("stream", "As a stream, whose loads come while it runs, there is none", {"refusal": str(refusal)})
     numbers = made.constants
-    waves = made.real.bytes * int(numbers["slot_count"] * (numbers["degree"] + 1))
+    waves, each = (
+        made.real.bytes * int(numbers[count] * (numbers["degree"] + 1)) for count in ("slot_count", "entry_count")
+    )
     direct = {
         output.name: [made.sources[j] for j in of] for output, of in zip(made.outputs, made.direct, strict=True) if of
     }
@@ -36,6 +38,8 @@ def streamed(model: Model, sources: Sequence[str]) -> Facts:
             "panel": numbers["panel"],
             "degree": numbers["degree"],
             "state_bytes": Told(waves, f"about {waves}"),
+            "breakpoints": numbers["breakpoints"],
+            "breakpoint_bytes": each,
             "bytes": made.bytes,
             "panel_work": numbers["operations"],
             "step_work": numbers["step_operations"],

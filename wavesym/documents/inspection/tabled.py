@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
-from wavesym.errors import CostError
+from wavesym.errors import CostError, UnservedError
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.network_table import NetworkTable, network_table
 from wavesym.exact.tables.table import Table, full_table
@@ -22,7 +22,7 @@ def tabled(model: Model) -> Iterator[Section]:
     try:
         _refuse_long(model)
         made = _made(model)
-    except CostError as refusal:
+    except (CostError, UnservedError) as refusal:
         yield Facts("table", "The exact table is not made here", {"refusal": str(refusal)})
     else:
         yield from _sizes(made)
@@ -81,7 +81,7 @@ def _knots(model: Model) -> Iterator[dict[str, Plain]]:
     shown = "first" if model.chain is None else "parts"
     try:
         motion = Motion(model, rational(model.horizon()))
-    except CostError as refusal:
+    except (CostError, UnservedError) as refusal:
         for probe in model.probes:
             yield {"name": probe.name, "count": None, shown: Told(None, ""), "refusal": str(refusal)}
         return

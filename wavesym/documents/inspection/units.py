@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from flint import arb
 
 from wavesym.documents.inspection.section import Facts, Listing, Plain, Section, Told
-from wavesym.errors import CostError
+from wavesym.errors import CostError, UnservedError
 from wavesym.exact.modes.frequencies import frequencies
 from wavesym.fields.numbers import decimal_text
 from wavesym.mechanics.model import Model
@@ -62,7 +62,7 @@ def _periods(model: Model, seconds: float) -> tuple[list[float], str]:
     """The longest periods in s, or why they are not known."""
     try:
         found = frequencies(model.network, _PERIODS + _RIGID)
-    except CostError as error:
+    except (CostError, UnservedError) as error:
         return [], f"not known: {error}"
     turning = [2 * arb.pi() / w * seconds for w in found if not w.contains(0)]
     return [midpoint(period) for period in turning[:_PERIODS]], ""

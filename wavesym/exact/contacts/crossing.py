@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import cast
 
-from flint import acb, arb, arb_poly, ctx, fmpq, fmpq_poly
+from flint import acb, arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly
 
 from wavesym.numbers.doubles import middle
 
@@ -75,7 +75,7 @@ def _last(p: arb_poly, error: arb, low: fmpq, high: fmpq, resolution: fmpq) -> f
 def sign_after(p: fmpq_poly, x: fmpq) -> int:
     """The sign of an exact function right after a place; 0 where it is 0 throughout."""
     local = p(fmpq_poly([x, 1])) if x != 0 else p
-    first = next((c for c in local.coeffs() if c != 0), fmpq(0))
+    first = next((c for c in local.numer().coeffs() if c != 0), 0)
     return (first > 0) - (first < 0)
 
 
@@ -94,11 +94,15 @@ def first_fall(p: fmpq_poly, low: fmpq, high: fmpq) -> fmpq | tuple[fmpq, fmpq] 
     return None
 
 
+def _factors(p: fmpz_poly) -> list[fmpz_poly]:
+    """The irreducible ones; long coefficients of a straight line need not be factored for it."""
+    return [p] if p.degree() == 1 else [factor for factor, _ in p.factor()[1]]
+
+
 def _roots(p: fmpq_poly, low: fmpq, high: fmpq) -> Iterator[tuple[fmpq, fmpq]]:
     """The roots in (low, high), in order: rationals on both sides of each, twice the same where it is one."""
-    _, factors = p.numer().factor()
     rational, other = [], []
-    for factor, _ in factors:
+    for factor in _factors(p.numer()):
         if factor.degree() == 1:
             rational.append(fmpq(-int(factor[0]), int(factor[1])))
         else:

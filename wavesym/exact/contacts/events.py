@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flint import arb, ctx, fmpq
+from flint import arb, fmpq
 
 from wavesym.mechanics.event import ContactEvent
 from wavesym.mechanics.model import Model
@@ -13,8 +13,6 @@ from wavesym.numbers.reals import DOUBLE, Real
 
 if TYPE_CHECKING:
     from wavesym.exact.contacts.schedule import Schedule
-
-_BITS = 320
 
 
 def scheduled(model: Model, until: fmpq) -> Schedule | None:
@@ -37,16 +35,11 @@ def events(model: Model, real: Real = DOUBLE) -> tuple[ContactEvent, ...]:
     if known is None:
         return ()
     seen = model.contacts(until)
-    with ctx.workprec(_BITS):
-        return tuple(
-            ContactEvent(
-                model.network.links[each.link].place,
-                "closes" if each.closes else "opens",
-                arb(each.low) if each.low == each.high else arb(each.low).union(arb(each.high)),
-            )
-            for each in known.found
-            if each.link in seen and each.low <= until
-        )
+    return tuple(
+        ContactEvent(model.network.links[each.link].place, "closes" if each.closes else "opens", each.instant)
+        for each in known.found
+        if each.link in seen and each.low <= until
+    )
 
 
 def what_helps(model: Model, real: Real = DOUBLE) -> str:

@@ -7,12 +7,12 @@ contact that opens or closes on the way cuts the stretch there. `docs/contacts.m
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from heapq import heappop, heappush
 from itertools import chain, combinations
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from flint import arb, ctx, fmpq
 
@@ -20,18 +20,22 @@ from wavesym.errors import CostError, WavesymError
 from wavesym.exact.contacts.cluster import Closed
 from wavesym.exact.contacts.crossing import first_fall, positive_until, sign_after
 from wavesym.exact.contacts.touching_joint import Moved, SwingError
-from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves
+from wavesym.exact.contacts.touching_waves import Stage, TouchingWaves, replayed
 from wavesym.exact.joints.joint import Enclosed
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import middle, nearest
 
 # stretches in all, and those whose motion is a series: half a minute
-MOST_STAGES, MOST_SERIES = 20_000, 20_000
+MOST_STAGES, MOST_SERIES = 20_000, 10_000
+# after so many of these, half a second, it is told how many there would be; the margin of that, which gets less
+_FORETOLD, _MARGIN = 96, 3
 # how often joints are moved, told before it begins: half a minute
 MOST_MOVES = 500_000
 # an instant is known this closely, in shortest delays
 _WIDTH = fmpq(1, 2**230)
+# bits with which instants are told
+_TOLD = 320
 # how much longer each next stretch is on which it is left open what a contact does, in bits
 _LONGER = 3
 # working precision at first, and how much of it is beyond the first of these stretches
@@ -39,6 +43,9 @@ _BITS, _SPARE = 448, 128
 _ATTEMPTS = 2
 # a series is begun anew where it would have to bear more than exp(this)
 _SWING = fmpq(12)
+_NOTHING = fmpq(0)
+
+T = TypeVar("T")
 
 
 class GrazingError(WavesymError):
@@ -54,27 +61,54 @@ class Found:
     low: fmpq
     high: fmpq
 
+    @property
+    def instant(self) -> arb:
+        """The ball between these, to as many digits as are told."""
+        with ctx.workprec(_TOLD):
+            return arb(self.low) if self.low == self.high else arb(self.low).union(arb(self.high))
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class Schedule:
-    """The stages of every joint, when its last one ends, and what contacts did, in order of time."""
+    """The stages of every joint, when its last one ends, and what contacts did, in order of time.
+
+    No stage on which it is left open what a contact does is longer than `vague`. `waves` are those that it was found
+    with, in so many `bits`.
+    """
 
     stages: Mapping[int, Sequence[Stage]]
     ends: Mapping[int, fmpq]
     found: tuple[Found, ...]
+    vague: fmpq
+    waves: TouchingWaves
+    bits: int
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=4)
 def schedule(network: Network, loads: tuple[Applied, ...], last: tuple[tuple[int, fmpq], ...]) -> Schedule:
     """What happens at the joints, each until its last instant.
 
     CostError where it would take minutes, GrazingError where no number of bits tells what a contact does.
     """
+    return _decided(network, lambda: _Search(network, loads, dict(last)).scheduled())
+
+
+@lru_cache(maxsize=16)
+def first_opening(network: Network, loads: tuple[Applied, ...], last: tuple[tuple[int, fmpq], ...]) -> Found | None:
+    """The first opening of any contact; what comes after it is not looked at. None where there is none.
+
+    CostError, GrazingError as in `schedule`.
+    """
+    return _decided(network, lambda: _Search(network, loads, dict(last)).opening())
+
+
+def _decided(network: Network, search: Callable[[], T]) -> T:
+    """What is found with as many bits as it takes."""
     for attempt in range(_ATTEMPTS):
         bits = _BITS << attempt
         try:
             with ctx.workprec(bits):
-                return _Search(network, loads, dict(last)).found()
+                return search()
         except _Undecided as doubt:
             undecided = doubt
     link = network.links[undecided.link]
@@ -83,6 +117,15 @@ def schedule(network: Network, loads: tuple[Applied, ...], last: tuple[tuple[int
         f"contact at {link.place}: its {what} is 0 at tau = {nearest(undecided.tau):.17g} and {bits} bits do not show "
         "what follows (another gap, load or length helps)"
     )
+
+
+@lru_cache(maxsize=1)
+def waves(network: Network, loads: tuple[Applied, ...], known: Schedule, bits: int) -> TouchingWaves:
+    """The waves of what is scheduled, with so many bits; the last ones are kept for whoever asks again."""
+    with ctx.workprec(bits):
+        if bits <= known.bits:
+            return known.waves.rounded(known.ends)
+        return replayed(network, known.stages, known.ends, loads)
 
 
 class _Undecided(Exception):
@@ -156,6 +199,7 @@ class _Course:
     moved: Moved | None = None
     doubt: _Doubt | None = None
     spread: fmpq | None = None
+    swing: fmpq = _NOTHING
     knots: list[fmpq] = field(default_factory=list)
     stages: list[Stage] = field(default_factory=list)
 
@@ -178,7 +222,7 @@ class _Search:
         self._waves = TouchingWaves(network, last, loads)
         self._found: list[Found] = []
         self._coming: list[tuple[fmpq, int]] = []
-        self._counts = {MOST_STAGES: 0, MOST_SERIES: 0}
+        self._stages = self._series = 0
         self._width = min(bar.delay for bar in network.bars) * _WIDTH
         # the first stretch on which it is left open what a contact does
         self._least = min(bar.delay for bar in network.bars) / fmpq(2) ** (ctx.prec - _SPARE)
@@ -215,27 +259,44 @@ class _Search:
                 f"{nearest(moves):.1e} times, at most {MOST_MOVES:g} expected (a shorter horizon or longer rods help)"
             )
 
-    def found(self) -> Schedule:
+    def opening(self) -> Found | None:
+        """The first opening."""
+        for _ in self._steps():
+            for each in self._found:
+                if not each.closes:
+                    return each
+        return None
+
+    def scheduled(self) -> Schedule:
         """All of it."""
+        for _ in self._steps():
+            pass
+        return Schedule(
+            {number: course.stages for number, course in self._courses.items()},
+            {number: course.reached for number, course in self._courses.items()},
+            tuple(sorted(self._found, key=lambda each: (each.low, each.link))),
+            self._width,
+            self._waves,
+            ctx.prec,
+        )
+
+    def _steps(self) -> Iterator[None]:
+        """Joints are moved in order of time."""
         self._coming = [(fmpq(0), number) for number in self._courses]
         while self._coming:
             time, number = heappop(self._coming)
             course = self._courses[number]
             if time <= course.last:
                 self._advance(course, time)
+                yield
                 heappush(self._coming, (course.reached, number))
-        return Schedule(
-            {number: course.stages for number, course in self._courses.items()},
-            {number: course.reached for number, course in self._courses.items()},
-            tuple(sorted(self._found, key=lambda each: (each.low, each.link))),
-        )
 
     def _advance(self, course: _Course, time: fmpq) -> None:
         """From where a joint's motion is known up to the next limit, or to where a contact may change."""
         knot, limit = course.comes(time), course.limit(time)
         if course.moved is not None and not knot and not self._swings(course.moved, limit - course.since):
             moved = self._moved(course, course.since, limit - course.since, course.moved.closed)
-            self._kept(course, moved, time - course.since)
+            self._kept(course, moved, self._end(course, moved, time - course.since))
             return
         if course.moved is not None:
             self._take(course, course.moved)
@@ -257,13 +318,12 @@ class _Search:
 
     def _begin(self, course: _Course, start: fmpq, limit: fmpq) -> None:
         """A new stretch: what is closed on it? Until that is certain, it is left open, a little longer each time."""
-        moved = None
-        if course.spread is None:
-            moved = self._decided(course, start, limit)
-        if moved is None:
+        decided = self._decided(course, start, limit) if course.spread is None else None
+        if decided is None:
             course.reached = self._drift(course, start, limit, course.spread or fmpq(0))
             course.spread = None
             return
+        moved, end = decided
         for n, gap in course.gaps.items():
             closed = n in moved.closed
             if closed != gap.closed:
@@ -273,34 +333,68 @@ class _Search:
                 gap.closed = closed
         course.since = start
         self._staged(course, Stage(start, moved.closed), moved)
-        self._kept(course, moved, fmpq(0))
+        self._kept(course, moved, end)
 
     def _staged(self, course: _Course, stage: Stage, moved: Moved) -> None:
         course.stages.append(stage)
-        self._counts[MOST_STAGES] += 1
-        self._counts[MOST_SERIES] += moved.swing > 0
-        for most, count in self._counts.items():
+        course.swing = moved.swing
+        self._stages += 1
+        self._series += moved.swing > 0
+        for count, most in ((self._stages, MOST_STAGES), (self._series, MOST_SERIES)):
             if count > most:
                 raise CostError(
-                    f"output.until: fronts and {len(self._found)} openings and closings of contacts make more than "
-                    f"{most} stretches by tau = {nearest(stage.start):g}, at most {most} expected (a shorter horizon "
-                    "or lengths with a larger common measure help)"
+                    f"output.until: {self._met} make more than {most} stretches by tau = {nearest(stage.start):g}, at "
+                    f"most {most} expected ({self._helps} help)"
+                )
+        if moved.swing > 0 and self._series % _FORETOLD == 0 and stage.start > 0:
+            last = max(each.last for each in self._courses.values())
+            foretold = self._series * last / stage.start
+            if foretold > MOST_SERIES * (1 + fmpq(_MARGIN * _FORETOLD, self._series)):
+                raise CostError(
+                    f"output.until: {self._met} make {self._series} stretches by tau = {nearest(stage.start):g}, which "
+                    f"would be {nearest(foretold):.1e} by tau = {nearest(last):g}, at most {MOST_SERIES} expected "
+                    f"({self._helps} help)"
                 )
 
-    def _decided(self, course: _Course, start: fmpq, limit: fmpq) -> Moved | None:
-        """The motion under the choice of closed contacts that is certainly the right one just after `start`."""
+    @property
+    def _met(self) -> str:
+        """What makes stretches."""
+        events = f"{len(self._found)} openings and closings of contacts"
+        if not self._is_fast(course := self._busiest):
+            return f"fronts and {events}"
+        place = self._network.points[self._network.joints[course.number].points[0]].place
+        return f"what swings or decays at {place} at a rate of {nearest(course.swing):.3g}, fronts and {events}"
+
+    @property
+    def _helps(self) -> str:
+        if not self._is_fast(self._busiest):
+            return "a shorter horizon or lengths with a larger common measure"
+        return "heavier bodies, or joints with dashpots in place of light ones, softer springs or a shorter horizon"
+
+    @property
+    def _busiest(self) -> _Course:
+        """The joint with most stretches."""
+        return max(self._courses.values(), key=lambda course: len(course.stages))
+
+    def _is_fast(self, course: _Course) -> bool:
+        """Whether stretches are cut short by what swings, not by fronts."""
+        ends = self._network.joints[course.number].ends
+        return course.swing * min((self._network.bars[end.bar].delay for end, _ in ends), default=course.last) > _SWING
+
+    def _decided(self, course: _Course, start: fmpq, limit: fmpq) -> tuple[Moved, _End | None] | None:
+        """The motion under the choice of closed contacts that is certainly right just after `start`, and its end."""
         shut = [n for n, gap in course.gaps.items() if gap.shut]
         for closed in _most_first(shut):
             moved = self._moved(course, start, limit - start, closed)
             if all(_starts_well(moved, n, gap) for n, gap in course.gaps.items()):
                 end = self._end(course, moved, fmpq(0))
-                return moved if end is None or end.length > 0 else None
+                return (moved, end) if end is None or end.length > 0 else None
         return None
 
-    def _kept(self, course: _Course, moved: Moved, low: fmpq) -> None:
-        """A stretch up to its end, or to where a contact may change (not before `low`)."""
+    def _kept(self, course: _Course, moved: Moved, end: _End | None) -> None:
+        """A stretch all the way, or up to its `end`, where a contact may change."""
         since = course.since
-        if (end := self._end(course, moved, low)) is None:
+        if end is None:
             course.moved, course.reached = moved, since + moved.length
             self._tell(course, since, moved)
             return
@@ -351,6 +445,8 @@ class _Search:
                     return None
             end = positive_until(known.polynomial, known.error, low, high, self._resolution)
             return None if end is None else _End(end, _spread(known, end))
+        if known.over(arb(low).union(arb(high))) > 0:
+            return None
         fall = first_fall(known.exact, low, high)
         if not isinstance(fall, tuple):
             return None if fall is None else _End(fall, None)

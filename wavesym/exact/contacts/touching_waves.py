@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 from operator import itemgetter
@@ -56,6 +57,23 @@ class TouchingWaves(Waves):
             if point in self.velocities:
                 self._kept(self.velocities[point], start, together(moved.velocities[k]))
         return begun
+
+    def rounded(self, ends: Mapping[int, fmpq]) -> TouchingWaves:
+        """The same at the working precision, with no more powers than it needs; `ends` are those of the last stretches.
+
+        How joints move is no longer told.
+        """
+        same = copy(self)
+        joint_of, point_at = self.network.joint_of, self.network.point_at
+        same.sent = {
+            end: wave.rounded(ends[joint_of[point_at(end)]]) if joint_of[point_at(end)] in ends else wave
+            for end, wave in self.sent.items()
+        }
+        same.velocities = {
+            point: wave.rounded(ends[joint_of[point]]) if joint_of[point] in ends else wave
+            for point, wave in self.velocities.items()
+        }
+        return same
 
     @staticmethod
     def _kept(wave: SentWave, start: fmpq, new: Enclosed) -> bool:

@@ -22,7 +22,7 @@ and what is not known goes on unchanged where a contact opens or closes, as no m
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import isqrt
@@ -208,7 +208,8 @@ class Enclosed:
     @classmethod
     def of(cls, exact: fmpq_poly) -> Enclosed:
         """A polynomial that is known."""
-        return cls(arb_poly([arb(c) for c in exact.coeffs()]), arb(0), exact)
+        below = arb(exact.denom())  # fractions would be reduced one by one, which takes long where they are long
+        return cls(arb_poly([arb(c) / below for c in exact.numer().coeffs()]), arb(0), exact)
 
     def at(self, w: fmpq) -> arb:
         """An enclosure of its value."""
@@ -277,41 +278,34 @@ class JointMotion:
         s = [_padded(force.polynomial, terms) for force in forces]
         q: list[list[arb]] = [[] for _ in size]
         u = [[value] for value in self.displacement]
-        given = {
-            k: [arb(c) for c in prescribed[k].coeffs()] + [arb(0)] * terms for k in size if law.given[k] is not None
-        }
-        damping = [[(b, arb(c)) for b, c in enumerate(row) if c != 0] for row in law.damping]
-        stiffness = [[(b, arb(c)) for b, c in enumerate(row) if c != 0] for row in law.stiffness]
-        inverse = [[arb(law.inverse[a, b]) for b in range(len(law.light))] for a in range(len(law.light))]
-        mass = {k: arb(law.mass[k]) for k in law.heavy}
+        given = [
+            (q[k], [arb(c) for c in prescribed[k].coeffs()] + [arb(0)] * terms)
+            for k in size
+            if law.given[k] is not None
+        ]
+
+        def pulls(k: int, without: Collection[int] = ()) -> list[tuple[arb, list[arb]]]:
+            """What else acts on a point: factors of velocities, but of some, and of displacements."""
+            slow = [(arb(c), q[b]) for b, c in enumerate(law.damping[k]) if c != 0 and b not in without]
+            return slow + [(arb(c), u[b]) for b, c in enumerate(law.stiffness[k]) if c != 0]
+
+        light = [(s[k], pulls(k, law.light)) for k in law.light]
+        found = [(q[k], [arb(law.inverse[row, b]) for b in range(len(light))]) for row, k in enumerate(law.light)]
+        heavy = [(k, q[k], s[k], pulls(k), arb(law.mass[k])) for k in law.heavy]
         last = {k: self.velocity[k] for k in law.heavy}
+        moves = [(u[k], q[group], arb(ratio)) for k, (group, ratio) in enumerate(law.moves)] if law.springs else []
         for n in range(terms):
-            for k, series in given.items():
-                q[k].append(series[n])
-            for k in law.heavy:
-                q[k].append(last[k])
-            right = []
-            for k in law.light:
-                value = s[k][n]
-                for b, c in damping[k]:
-                    if b not in law.light:
-                        value -= c * q[b][n]
-                for b, c in stiffness[k]:
-                    value -= c * u[b][n]
-                right.append(value)
-            for row, k in enumerate(law.light):
-                q[k].append(_dot(inverse[row], right).mid())
-            for k in law.heavy:
-                value = s[k][n]
-                for b, c in damping[k]:
-                    value -= c * q[b][n]
-                for b, c in stiffness[k]:
-                    value -= c * u[b][n]
-                last[k] = (value / (mass[k] * (n + 1))).mid()
-            if law.springs:
-                for k, (group, ratio) in enumerate(law.moves):
-                    gained = q[group][n] if ratio == 1 else arb(ratio) * q[group][n]
-                    u[k].append((gained / (n + 1)).mid())
+            for series, known in given:
+                series.append(known[n])
+            for k, series, *_ in heavy:
+                series.append(last[k])
+            right = [_less(force[n], pulled, n) for force, pulled in light]
+            for series, shares in found:
+                series.append(_dot(shares, right).mid())
+            for k, _, force, pulled, mass in heavy:
+                last[k] = (_less(force[n], pulled, n) / (mass * (n + 1))).mid()
+            for places, series, ratio in moves:
+                places.append((ratio * series[n] / (n + 1)).mid())
         return q, u
 
     def _errors(self, forces: Sequence[Enclosed], q: list[list[arb]], u: list[list[arb]], length: fmpq) -> list[arb]:
@@ -381,4 +375,13 @@ def _size(polynomial: arb_poly, h: arb) -> arb:
 
 
 def _dot(one: Sequence[arb], other: Sequence[arb]) -> arb:
+    if len(one) == 1:
+        return one[0] * other[0]
     return sum((a * b for a, b in zip(one, other, strict=True)), arb(0))
+
+
+def _less(value: arb, pulls: Sequence[tuple[arb, Sequence[arb]]], n: int) -> arb:
+    """A power of a force without what pulls."""
+    for factor, series in pulls:
+        value -= factor * series[n]
+    return value

@@ -16,7 +16,7 @@ from wavesym.mechanics.network import End, Joint, Network
 
 # on a stretch that is shorter a few powers are enough
 _BRIEF = fmpq(1, 2**64)
-_COARSE = 32
+_COARSE, _FIRST = 32, 8
 
 
 @dataclass
@@ -25,11 +25,27 @@ class SentWave:
 
     starts: list[fmpq] = field(default_factory=list)
     stretches: list[Enclosed] = field(default_factory=list)
+    _asked: int = 0
 
     def at(self, tau: fmpq) -> tuple[Enclosed, fmpq]:
-        """The stretch that tau is in, and how long after its start."""
-        place = bisect_right(self.starts, tau) - 1
-        return self.stretches[place], tau - self.starts[place]
+        """The stretch that tau is in, and how long after its start. (Mostly the one asked for last, or the next.)"""
+        starts, place = self.starts, self._asked
+        if tau < starts[place]:
+            place = bisect_right(starts, tau, hi=place) - 1
+        elif place + 1 < len(starts) and starts[place + 1] <= tau:
+            place = bisect_right(starts, tau, lo=place + 1, hi=min(place + 3, len(starts))) - 1
+            if place == self._asked + 2:
+                place = bisect_right(starts, tau, lo=place) - 1
+        self._asked = place
+        return self.stretches[place], tau - starts[place]
+
+    def rounded(self, last: fmpq) -> SentWave:
+        """The same at the working precision, up to its `last` instant, without powers that count for nothing."""
+        ends = [*self.starts[1:], last]
+        return SentWave(
+            self.starts,
+            [_rounded(known, end - start) for start, end, known in zip(self.starts, ends, self.stretches, strict=True)],
+        )
 
 
 class Waves:
@@ -190,9 +206,16 @@ def weighted(terms: Sequence[tuple[fmpq, Enclosed]]) -> Enclosed:
     """A sum with exact factors; what has the factor 0 is not in it."""
     polynomial, error = arb_poly(), arb(0)
     for factor, known in terms:
-        if factor != 0:
-            polynomial += arb(factor) * known.polynomial
-            error += abs(arb(factor)) * known.error
+        if factor == 1:
+            polynomial += known.polynomial
+            error += known.error
+        elif factor == -1:
+            polynomial -= known.polynomial
+            error += known.error
+        elif factor != 0:
+            size = arb(factor)
+            polynomial += size * known.polynomial
+            error += abs(size) * known.error
     return Enclosed(polynomial, error.upper())
 
 
@@ -212,24 +235,26 @@ def _bounds_later(known: Enclosed, by: fmpq) -> tuple[fmpq_poly | None, fmpq_pol
     return least, most
 
 
+def _rounded(known: Enclosed, length: fmpq) -> Enclosed:
+    return _shortened(Enclosed(known.polynomial * arb(1), known.error, known.exact), length)
+
+
 def _shortened(known: Enclosed, length: fmpq) -> Enclosed:
-    """Without the powers that count for less on a stretch than the last bit of the others."""
+    """Without the highest powers, as far as they count for less on a stretch than the last bit of the first ones."""
     powers = known.polynomial.coeffs()
     if known.exact is not None or len(powers) < 2:
         return known
-    bits, sizes = ctx.prec, []
+    bits, count, rest = ctx.prec, len(powers), arb(0)
     with ctx.workprec(_COARSE):
-        h, power = arb(length), arb(1)
-        for c in powers:
-            sizes.append((abs(c) * power).upper())
-            power *= h
-        least, rest = max(sizes) * arb(2) ** (-bits - 4), arb(0)
-        while sizes and (more := (rest + sizes[-1]).upper()) <= least:
+        h = arb(length)
+        size = max((abs(c) * h**k).upper() for k, c in enumerate(powers[:_FIRST]))
+        least = size * arb(2) ** (-bits - 4)
+        while count and (more := (rest + abs(powers[count - 1]) * h ** (count - 1)).upper()) <= least:
             rest = more
-            sizes.pop()
-    if len(sizes) == len(powers):
+            count -= 1
+    if count == len(powers):
         return known
-    return replace(known, polynomial=arb_poly(powers[: len(sizes)]), error=(known.error + rest).upper())
+    return replace(known, polynomial=arb_poly(powers[:count]), error=(known.error + rest).upper())
 
 
 def briefly(known: Enclosed, by: fmpq, length: fmpq) -> Enclosed:

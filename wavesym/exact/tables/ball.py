@@ -15,7 +15,7 @@ from flint import arb, arb_poly, ctx, fmpq
 from wavesym.exact.tables.increments import Increment
 from wavesym.exact.tables.signal import Signal
 from wavesym.numbers.balls import FIRST_BITS, precise
-from wavesym.numbers.doubles import midpoint, not_below, rational, rounded
+from wavesym.numbers.doubles import midpoint, rational, rounded
 
 # a quarter of the smallest double
 NEGLIGIBLE = arb(2) ** -1076
@@ -25,12 +25,14 @@ NEGLIGIBLE = arb(2) ** -1076
 class Segment:
     """An output between two arrivals: sum over rates of exp(-rate u) * polynomial(u), u = tau - start.
 
-    `from_zero`: it is exactly 0 at the start, whatever is not known of it later.
+    `from_zero`: it is exactly 0 at the start, whatever is not known of it later. `vague`: no double lies on it, and it
+    is left open what contacts do, so that only its neighbours tell what it is.
     """
 
     start: fmpq
     families: dict[fmpq, arb_poly]
     from_zero: bool = False
+    vague: bool = False
 
     def at(self, u: fmpq | arb) -> arb:
         """The value, a ball, at a point or on an interval."""
@@ -44,10 +46,6 @@ class Segment:
             ),
             arb(0),
         )
-
-    def shifted(self, by: fmpq) -> dict[fmpq, arb_poly]:
-        """The same function in a local variable that starts `by` later."""
-        return dict(zip(self.families, shifted(self.families, self.families.values(), by), strict=True))
 
 
 def shifted(rates: Iterable[fmpq], polynomials: Iterable[arb_poly], by: fmpq) -> list[arb_poly]:
@@ -107,10 +105,10 @@ class Balls:
         return max((abs(value).lower() for value in points), default=arb(0))
 
     def sizes(self, until: fmpq) -> Iterator[arb]:
-        """Upper bounds of the absolute values on all segments in which a double lies."""
+        """Upper bounds of the absolute values on all segments that are not vague."""
         ends = [*self._starts[1:], until]
         for segment, end in zip(self.segments, ends, strict=True):
-            if segment.start == end or not_below(segment.start) < not_below(end):
+            if not segment.vague:
                 yield abs(segment.at(arb(0).union(arb(end - segment.start)))).upper()
 
     def at(self, tau: fmpq) -> arb:

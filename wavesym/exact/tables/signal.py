@@ -7,11 +7,9 @@ left is a list of arrivals: from `time` on, the output contains sum_g exp(-g w) 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf
-from typing import Protocol
 
 from flint import fmpq
 
@@ -20,15 +18,12 @@ from wavesym.exact.tables.increments import Increment, combined, integrated
 from wavesym.exact.tables.increments import start as start_of
 from wavesym.exact.tables.network_joints import unit_at
 from wavesym.exact.tables.network_response import RuledNetwork
-from wavesym.exact.tables.table import Function, Part, Rules, unit_response
-from wavesym.exact.tables.table_size import refuse_large
-from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.gauge import Gauge, readings
+from wavesym.exact.tables.table import Function
+from wavesym.mechanics.gauge import readings
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import Network, network_of
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import nearest, rational
+from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, Real
 
 
@@ -48,39 +43,13 @@ class Signal:
     arrivals: tuple[Arrival, ...]
 
 
-class Ruled(Protocol):
-    """A chain with laws that run."""
-
-    @property
-    def network(self) -> Network:
-        """The chain as a network."""
-
-    def parts(self, reading: Gauge) -> Sequence[Part]:
-        """The wave functions that are read."""
-
-    def motion(self, reading: Gauge) -> Increment:
-        """The part of what is read that is not wave."""
-
-    def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
-        """All that makes waves."""
-
-    def responses(
-        self, source: str, reach: Mapping[Function, fmpq], most: float = inf
-    ) -> Mapping[Function, Iterable[tuple[fmpq, Increment]]]:
-        """What a unit of `source` gives each function on its clock, in order, until the time that is wanted of it."""
-
-
 def signals(model: Model, most: float = inf, real: Real = DOUBLE) -> tuple[Signal, ...]:
     """The outputs of a model on its horizon in `real` numbers, exact.
 
     CostError where the tables would have more than `most` numbers.
     """
     model.refuse_damping()
-    return observed(_ruled(model), model.probes, model.loads, rational(model.horizon(real)), most)
-
-
-def _ruled(model: Model) -> RuledChain | RuledNetwork:
-    return RuledNetwork(model.network) if model.chain is None else RuledChain(model.chain)
+    return observed(RuledNetwork(model.network), model.probes, model.loads, rational(model.horizon(real)), most)
 
 
 def refuse_many(model: Model, most: float) -> None:
@@ -88,67 +57,15 @@ def refuse_many(model: Model, most: float) -> None:
 
     The first load of each source is not counted: what that costs is known from its table.
     """
-    if (arrivals := _ruled(model).arrivals(model.probes, model.loads, model.until)) > most:
+    if (arrivals := RuledNetwork(model.network).arrivals(model.probes, model.loads, model.until)) > most:
         raise CostError(
             f"load: {arrivals:.1e} increments would arrive at the outputs, at most {most:.1e} expected (fewer load "
             "times or outputs, or a shorter horizon, help)"
         )
 
 
-class RuledChain:
-    """A named chain and its rules, derived as they are needed; functions are on the clocks of Table 1."""
-
-    def __init__(self, chain: Chain) -> None:
-        self.chain = chain
-        self.network = network_of(chain)
-
-    @cached_property
-    def rules(self) -> Rules:
-        """Those of its nodes; to derive them takes SymPy."""
-        return Rules(self.chain)
-
-    def parts(self, reading: Gauge) -> tuple[Part, Part]:
-        """dU/dx = g' - f', dU/dtau = f' + g' + v, U = f + g + v tau, each on the clocks of (4.2)."""
-        rod = self.chain.rod(reading.rod)
-        offset = reading.x - rod.x0
-        right, left = reading.weights
-        return (
-            Part(right, Function("f", reading.rod), rod.tau0 + offset),
-            Part(left, Function("g", reading.rod), rod.tau0 - offset),
-        )
-
-    def motion(self, reading: Gauge) -> Increment:
-        """The part of what is read that is not wave: v, or v tau."""
-        v = self.chain.rod(reading.rod).velocity * fmpq(sum(reading.weights), 2)
-        if v == 0:
-            return {}
-        return {fmpq(0): [v] if reading.order == 0 else [fmpq(0), v]}
-
-    def acting(self, loads: Sequence[Applied]) -> Sequence[Applied]:
-        """The loads; an impact is one of them."""
-        return loads
-
-    def arrivals(self, probes: Sequence[Probe], loads: Sequence[Applied], until: fmpq) -> float:
-        """How many increments all loads but the first of each source bring to outputs, at most."""
-        first = {load.source: load.time for load in reversed(loads)}
-        later = [load.time for load in loads if first[load.source] < load.time <= until]
-        count = sum(len(readings(self.network, probe)) for probe in probes)
-        return 2 * count * sum(nearest(until - time) + 1 for time in later)
-
-    def responses(
-        self, source: str, reach: Mapping[Function, fmpq], most: float = inf
-    ) -> dict[Function, Sequence[tuple[fmpq, Increment]]]:
-        """The increments of functions until the time that is wanted of each, with the starts of their intervals."""
-        interval = self.rules.interval
-        wanted = {function: int((until / interval).floor()) + 1 for function, until in reach.items()}
-        refuse_large(self.chain, interval, wanted, [source], "output.until", most)
-        response = unit_response(self.rules, source, wanted)
-        starts = {function: enumerate(response.get(function, ())) for function in wanted}
-        return {function: [(fmpq(interval * n), each) for n, each in found] for function, found in starts.items()}
-
-
 def observed(
-    ruled: Ruled,
+    ruled: RuledNetwork,
     probes: Sequence[Probe],
     loads: Sequence[Applied],
     until: fmpq,

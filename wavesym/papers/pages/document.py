@@ -11,9 +11,20 @@ from operator import attrgetter
 
 from wavesym import __version__
 from wavesym.papers.about import About, Heading, TableLayout
-from wavesym.papers.pages.findings import Findings, Survivor, Unjudged, by_place, faults_tried, lines, origin, titles
+from wavesym.papers.pages.findings import (
+    Findings,
+    ScanEdit,
+    Survivor,
+    Unjudged,
+    by_place,
+    difference,
+    faults_tried,
+    lines,
+    origin,
+    titles,
+)
 from wavesym.papers.pages.reproduction import ReproducedPage, reproduction
-from wavesym.papers.pages.shown import Shown, Stated, compared, formula, inferred, printed, readable
+from wavesym.papers.pages.shown import Shown, Stated, compared, formula, inferred, printed, readable, words
 from wavesym.papers.record import VERDICTS, Record
 
 SIGNS = {
@@ -36,7 +47,10 @@ SHORTEST = 16
 
 @dataclass(frozen=True)
 class Judged:
-    """A record as it is shown; `right` where what is printed does not hold, below it where both are `wide`."""
+    """A record as it is shown; `right` where what is printed does not hold, below it where both are `wide`.
+
+    Of prose `words` are printed, and `printed` says so in English.
+    """
 
     id: str
     anchor: str
@@ -44,15 +58,15 @@ class Judged:
     sign: str
     where: str
     lines: str
+    words: Shown | None
     printed: Stated
     right: Stated | None
     wide: bool
     size: int
     inferred: tuple[Shown, ...]
-    scan: str
-    edits: tuple[tuple[str, str, str], ...]
     note: str
     evidence: str
+    difference: str
     origin: str
     against: str
     faults: str
@@ -102,6 +116,7 @@ class Document:
     about: About
     version: str
     command: str
+    whole: bool
     records: int
     counts: Sequence[tuple[str, str, int, str]]
     statistics: Sequence[tuple[str, Sequence[int]]]
@@ -110,6 +125,7 @@ class Document:
     mistakes: Sequence[Mistake]
     tables: Sequence[Laid]
     holding: Mapping[str, Sequence[tuple[str, Sequence[Judged]]]]
+    edits: Sequence[ScanEdit]
     unjudged: Sequence[tuple[str, Unjudged]]
     survivors: Sequence[Survivor]
 
@@ -134,6 +150,7 @@ def document(findings: Findings, format: str) -> Document:
         findings.about,
         __version__,
         f"wavesym verify --published --format {format}",
+        findings.whole,
         len(findings.records),
         [(verdict, SIGNS[verdict], count, VERDICTS[verdict]) for verdict, count in findings.counts],
         [(name, [counts[verdict] for verdict in used]) for name, counts in findings.statistics],
@@ -142,6 +159,7 @@ def document(findings: Findings, format: str) -> Document:
         mistakes,
         [_laid(table, judged) for table in findings.about.table if table.ids() & judged.keys()],
         {name: _by_test([judged[record.id] for record in group]) for name, group in by_place(findings.holding).items()},
+        findings.edits,
         [(lines(part.lines), part) for part in findings.unjudged],
         findings.survivors,
     )
@@ -150,7 +168,6 @@ def document(findings: Findings, format: str) -> Document:
 def _judged(record: Record, reproduce: bool) -> Judged:
     entry = record.entry
     one, other = compared(record) or (printed(record), None)
-    note = entry.slip.note if entry.slip else entry.note
     return Judged(
         record.id,
         re.sub(r"[^\w.-]+", "_", record.id.strip("(")),
@@ -158,15 +175,15 @@ def _judged(record: Record, reproduce: bool) -> Judged:
         SIGNS[record.verdict],
         entry.where.removesuffix(f", {record.id}"),
         lines(entry.lines),
+        words(record),
         one,
         other,
-        max(len(entry.printed), len(record.corrected or "")) > LONGEST,
+        max(len(entry.statement), len(record.corrected or "")) > LONGEST,
         len(entry.printed),
         inferred(record),
-        entry.scan if entry.scan != entry.printed else "",
-        entry.edits,
-        readable(note),
-        readable(" ".join(sentence for sentence in record.evidence if sentence != note)),
+        readable(record.note),
+        readable(" ".join(record.evidence)),
+        difference(record),
         origin(record),
         record.against,
         faults_tried(record),
@@ -182,7 +199,7 @@ def _by_test(records: Sequence[Judged]) -> list[tuple[str, list[Judged]]]:
 
 def _note(group: Sequence[Record]) -> str:
     """The note that an error's records share, if they do."""
-    notes = {record.entry.slip.note if record.entry.slip else "" for record in group}
+    notes = {record.note for record in group}
     return readable(notes.pop()) if len(notes) == 1 else ""
 
 

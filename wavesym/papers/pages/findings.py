@@ -38,6 +38,16 @@ class Survivor:
 
 
 @dataclass(frozen=True)
+class ScanEdit:
+    """A place of the scan that is not judged as it stands, how it is read, and why."""
+
+    record: Record
+    scan: str
+    read: str
+    because: str
+
+
+@dataclass(frozen=True)
 class Findings:
     """The verdicts on a paper, or on the records of it that were asked for; `reproduce`: with their examples.
 
@@ -97,6 +107,11 @@ class Findings:
         return found
 
     @property
+    def edits(self) -> list[ScanEdit]:
+        """Where the scan is read otherwise than it stands, in the order of print."""
+        return [ScanEdit(record, *edit) for record in self.records for edit in record.entry.edits]
+
+    @property
     def survivors(self) -> list[Survivor]:
         """The faults that no case turned."""
         return [
@@ -154,6 +169,11 @@ def origin(record: Record) -> str:
     """What is known of where a slip comes from; of what the text says without a slip, nothing."""
     slip = record.entry.slip
     return ORIGINS[slip.origin] if slip and slip.verdict in ("misprint", "unreadable") else ""
+
+
+def difference(record: Record) -> str:
+    """What is printed less what is derived, where that is known and not nothing."""
+    return record.difference if record.difference and record.difference != "0" else ""
 
 
 def faults_tried(record: Record) -> str:

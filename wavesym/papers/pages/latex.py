@@ -46,6 +46,20 @@ _CHARACTERS = {
     "✓": r"\ensuremath{\surd}",
     "✗": r"\ensuremath{\times}",
 }
+_RUSSIAN = {
+    **dict(zip("абвгдеёзийклмнопрстуфыэ", "abvgdeeziiklmnoprstufye", strict=True)),
+    "ж": "zh",
+    "\N{CYRILLIC SMALL LETTER HA}": "kh",
+    "ц": "ts",
+    "ч": "ch",
+    "ш": "sh",
+    "щ": "shch",
+    "ъ": "''",
+    "ь": "'",
+    "ю": "yu",
+    "я": "ya",
+}
+"""As it is transliterated: what LaTeX needs for Cyrillic is not everywhere."""
 _ACCENTS = {"\u0301": "'", "\u0300": "`", "\u0307": ".", "\u0328": "k", "\u0308": '"', "\u0302": "^", "\u030c": "v"}
 
 
@@ -71,6 +85,9 @@ def _character(character: str) -> str:
         return _CHARACTERS[character]
     if character.isascii():
         return character
+    if character.lower() in _RUSSIAN:
+        latin = _RUSSIAN[character.lower()].replace("'", _CHARACTERS["'"])
+        return latin if character.islower() else latin.capitalize()
     parts = unicodedata.normalize("NFD", character)
     if len(parts) == 2 and parts[0].isascii() and parts[1] in _ACCENTS:
         return f"\\{_ACCENTS[parts[1]]}{{{parts[0]}}}"

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from wavesym.papers.pages.findings import Findings, by_place, lines, origin, ranges_as_corrected, tested, titles
+from wavesym.papers.pages.findings import (
+    Findings,
+    by_place,
+    difference,
+    lines,
+    origin,
+    ranges_as_corrected,
+    tested,
+    titles,
+)
 from wavesym.papers.pages.reproduction import ReproducedPage, reproduction
 from wavesym.papers.record import VERDICTS, Record
 
@@ -15,7 +24,8 @@ def page(findings: Findings) -> str:
     parts = [
         "# Errata",
         f"{about.author}, *{about.title}* ({about.english}), {about.date}. {about.transcription} Written by "
-        "`wavesym verify --published --format markdown`; every number in it is computed.",
+        "`wavesym verify --published --format markdown`; verdicts and evidence are computed, notes and reasons are "
+        "our reading.",
         _table(("verdict", "records", "meaning"), [(name, str(n), VERDICTS[name]) for name, n in findings.counts]),
         "A case is one comparison of exact numbers that could have come out otherwise. What holds, as printed or as "
         f"corrected, was also tried with {tried} faults put in, one at a time: {turned} of them made a case fail.",
@@ -28,8 +38,11 @@ def page(findings: Findings) -> str:
     if findings.holding:
         parts.append("## What holds")
     for name, records in by_place(findings.holding).items():
-        heads = ("id", "printed", "range", "cases", "faults", "compared with")
+        heads = ("id", "source", "printed", "range", "evidence", "faults", "compared with", "note")
         parts += [f"### {name}", _table(heads, map(_row, records))]
+    if findings.edits:
+        edited = [(e.record.id, _code(e.scan), _code(e.read) or "nothing", e.because) for e in findings.edits]
+        parts += ["## What is read otherwise than the scan has it", _table(("id", "scan", "read as", "why"), edited)]
     if findings.unjudged:
         rows = [(lines(part.lines), _code(part.scan), part.why) for part in findings.unjudged]
         parts += ["## What was not judged, and why", _table(("source", "text", "why"), rows)]
@@ -49,14 +62,18 @@ def _error(record: Record, reproduce: bool) -> str:
 def _items(record: Record) -> Iterator[str]:
     entry = record.entry
     yield f"- printed: {_with_ranges(entry.printed, entry.ranges)}"
+    if entry.english:
+        yield f"- in English: {_code(entry.english)}"
     if entry.inferred:
         yield f"- not printed: {', '.join(map(_code, entry.inferred))}"
     if entry.slip:
         yield f"- corrected: {_with_ranges(entry.slip.corrected, ranges_as_corrected(entry.slip, entry))}"
-    if record.difference and record.difference != "0":
-        yield f"- difference: {_code(record.difference)}"
+    if left := difference(record):
+        yield f"- difference: {_code(left)}"
     yield f"- evidence: {' '.join(record.evidence)}"
-    if entry.slip:
+    if record.note:
+        yield f"- note: {record.note}"
+    if origin(record):
         yield f"- origin: {origin(record)}"
     yield f"- tested: {tested(record)}"
     yield from (f"- problem: {problem}" for problem in record.problems)
@@ -71,9 +88,11 @@ def _reproduction(shown: ReproducedPage) -> Iterator[str]:
 
 
 def _row(record: Record) -> Sequence[str]:
-    ranges = ", ".join(map(_code, record.entry.ranges))
-    turned = f"{record.mutations.turned} of {record.mutations.tried}"
-    return record.id, _code(record.entry.printed), ranges, str(record.cases), turned, record.against
+    entry, turned = record.entry, f"{record.mutations.turned} of {record.mutations.tried}"
+    said = f"{_code(entry.printed)}, in English: {_code(entry.english)}" if entry.english else _code(entry.printed)
+    ranges = ", ".join([*map(_code, entry.ranges), *(f"{_code(range_)} (not printed)" for range_ in entry.inferred)])
+    source, evidence = f"{entry.where}, {lines(entry.lines)}", " ".join(record.evidence)
+    return record.id, source, said, ranges, evidence, turned, record.against, record.note
 
 
 def _statistics(findings: Findings) -> str:

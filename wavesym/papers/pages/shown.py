@@ -40,9 +40,14 @@ class Stated:
 
 
 def printed(record: Record) -> Stated:
-    """What is printed, alone."""
+    """What is printed, alone; of prose the sentence in English that is judged."""
     entry = record.entry
-    return Stated(_said(entry.printed, entry.translated), tuple(map(_range, entry.ranges)))
+    return Stated(_said(entry.statement, bool(entry.english)), tuple(map(_range, entry.ranges)))
+
+
+def words(record: Record) -> Shown | None:
+    """The words of prose as they are printed, in the language of the paper."""
+    return _said(record.entry.printed, prose=True) if record.entry.english else None
 
 
 def inferred(record: Record) -> tuple[Shown, ...]:
@@ -55,12 +60,12 @@ def compared(record: Record) -> tuple[Stated, Stated] | None:
     entry, before = record.entry, printed(record)
     if entry.slip is None:
         return None
-    said: tuple[Shown, Shown] = before.formula, _said(entry.slip.corrected, entry.translated)
+    said: tuple[Shown, Shown] = before.formula, _said(entry.slip.corrected, bool(entry.english))
     ranges: tuple[tuple[Shown, ...], tuple[Shown, ...]]
     ranges = before.ranges, tuple(map(_range, ranges_as_corrected(entry.slip, entry)))
     match said:
-        case _ if entry.translated:
-            said = _marked_words(entry.printed, entry.slip.corrected)
+        case _ if entry.english:
+            said = _marked_words(entry.english, entry.slip.corrected)
         case (one, other) if not isinstance(one, Words) and not isinstance(other, Words):
             said = marked(one, other)
     trees = [[range_ for range_ in side if not isinstance(range_, Words)] for side in ranges]
@@ -83,8 +88,8 @@ def _sign(command: re.Match[str]) -> str:
         return command[0]
 
 
-def _said(text: str, translated: bool) -> Shown:
-    return Words(_parts((token, False) for token in _TOKENS.split(text))) if translated else formula(text)
+def _said(text: str, prose: bool) -> Shown:
+    return Words(_parts((token, False) for token in _TOKENS.split(text))) if prose else formula(text)
 
 
 def formula(text: str) -> Shown:
@@ -119,4 +124,4 @@ def _parts(tokens: Iterable[tuple[str, bool]]) -> tuple[tuple[str | Tree, bool],
 
 def _part(token: str) -> str | Tree:
     said = formula(token.strip("$")) if token.startswith("$") else token
-    return token if isinstance(said, Words) else said
+    return said if not isinstance(said, (str, Words)) else readable(token.strip("$"))

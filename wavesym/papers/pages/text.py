@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from textwrap import fill, indent
 
-from wavesym.papers.pages.findings import Findings, counted, lines, origin, ranges_as_corrected, tested
+from wavesym.papers.pages.findings import Findings, counted, difference, lines, origin, ranges_as_corrected, tested
 from wavesym.papers.pages.reproduction import ReproducedPage, reproduction
 from wavesym.papers.record import VERDICTS, Record
 
@@ -23,7 +23,9 @@ def page(findings: Findings) -> str:
     parts += ["\n".join(_record(record, findings.reproduce)) for record in full]
     if findings.whole:
         parts += [
-            "\n".join(part) for part in (_statistics(findings), _unjudged(findings), _survivors(findings)) if part
+            "\n".join(part)
+            for part in (_statistics(findings), _edits(findings), _unjudged(findings), _survivors(findings))
+            if part
         ]
     if len(records) > 1:
         parts.append("\n".join(_counts(findings)))
@@ -44,17 +46,21 @@ def _record(record: Record, reproduce: bool) -> Iterator[str]:
     yield _said("printed", entry.printed)
     yield from (_said("range", range_) for range_ in entry.ranges)
     yield from (_said("inferred", f"{range_} (not printed)") for range_ in entry.inferred)
-    if entry.edits or entry.translated:
+    if entry.english:
+        yield _said("English", entry.english)
+    if entry.edits and not entry.english:
         yield _said("scan", " ".join(entry.scan.split()))
-    yield from (_said("read", f"{before} as {after}: {why}") for before, after, why in entry.edits)
+    yield from (_said("read", f"{before} as {after or 'nothing'}: {why}") for before, after, why in entry.edits)
     if entry.slip:
         yield _said("corrected", entry.slip.corrected)
         if entry.slip.ranges is not None:
             yield from (_said("range", range_) for range_ in ranges_as_corrected(entry.slip, entry))
-    if record.difference and record.difference != "0":
-        yield _said("difference", record.difference)
+    if left := difference(record):
+        yield _said("difference", left)
     yield _said("evidence", " ".join(record.evidence))
-    if record.entry.slip:
+    if record.note:
+        yield _said("note", record.note)
+    if origin(record):
         yield _said("origin", origin(record))
     yield _said("tested", tested(record))
     yield from (_said("survived", f"{change}: {because}") for change, because in record.mutations.survived)
@@ -88,6 +94,14 @@ def _statistics(findings: Findings) -> Iterator[str]:
     yield f"{'':{width}}  " + "  ".join(f"{verdict:>10}" for verdict in used)
     for name, counts in findings.statistics:
         yield f"{name:{width}}  " + "  ".join(f"{counts[verdict] or '-':>10}" for verdict in used)
+
+
+def _edits(findings: Findings) -> Iterator[str]:
+    if findings.edits:
+        yield "Read otherwise than the scan has it:"
+        for edit in findings.edits:
+            said = f"{edit.record.id}: {edit.scan} as {edit.read or 'nothing'}: {edit.because}"
+            yield fill(said, WIDTH, initial_indent="    ", subsequent_indent=" " * 8)
 
 
 def _unjudged(findings: Findings) -> Iterator[str]:

@@ -179,6 +179,7 @@ def cell(entry: PaperEntry) -> Test:
         f"n = 0 ... {MOST_N[name]}",
         partial(_cases, entry, name),
         faults=faults,
+        conventions={"functions that rest have no power": partial(_while_moving, entry)} if name == "III" else {},
     )
 
 
@@ -196,6 +197,13 @@ def _cases(entry: PaperEntry, name: str, reading: Reading) -> Iterator[Case]:
         yield from copy(_kept(name, entry.heads, part))
     else:
         yield from counted_cases(name, {entry.id: reading}, entry.heads, part=part)
+
+
+def _while_moving(entry: PaperEntry, reading: Reading) -> Iterator[Case]:
+    """Without those of n = 0 of the functions g, which rest then: text.8."""
+    for tried in _cases(entry, "III", reading):
+        if tried.at["n"] or not str(tried.at["function"]).startswith("g"):
+            yield tried
 
 
 @cache

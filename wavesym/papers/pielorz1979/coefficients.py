@@ -30,12 +30,14 @@ def coefficient(entry: PaperEntry) -> Test:
         "the exact tables with equal floors under a load of three steps, m = 3 ... 6, m + n < 11: values, the H of "
         "every coefficient, and every coefficient given once",
         partial(_cases, entry.id),
+        conventions={"the functions g of the first interval are 0": partial(_cases, entry.id, rests=True)},
         difference=partial(_difference, entry.id) if entry.slip else None,
         observed=partial(consequence, entry.id) if entry.slip else None,
     )
 
 
-def _cases(id: str, line: Reading) -> Iterator[Case]:
+def _cases(id: str, line: Reading, rests: bool = False) -> Iterator[Case]:
+    """`rests`: a coefficient of g in the first interval, text.8, may be let in."""
     for small, (m, n) in product((True, False), SIZES):
         for place, key, right in gives(line, m, n, [(m + n) % len(STEPS)]):
             if small is (m + n < SMALL):
@@ -43,15 +45,18 @@ def _cases(id: str, line: Reading) -> Iterator[Case]:
                 true = truth(m)(key)
                 yield case(place, value, true, true != 0, partial(truth(m).example, key))
             if not small:
-                yield from _lets_in(place, key, right)
+                yield from _lets_in(place, key, right, rests)
         if not small:
             yield from _coverage(id, line, m, n)
 
 
-def _lets_in(place: dict[str, int], key: Key, right: Tree) -> Iterator[Case]:
+def _lets_in(place: dict[str, int], key: Key, right: Tree, rests: bool) -> Iterator[Case]:
     """H lets in the coefficients that exist, and no others; none rests on itself."""
     exists = truth(place["m"]).exists
-    used, behind = _asked(place, right), _asked(place, right, opened=True)
+    used, behind = (
+        [one for one in _asked(place, right, opened) if not (rests and one.letter == "g" and one.interval == 1)]
+        for opened in (False, True)
+    )
     if key in used:
         yield Case({**place, "claim": "does not rest on itself"}, False, True)
     if len(behind) > len(used) or not all(map(exists, used)):

@@ -18,12 +18,13 @@ from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, sides, span
 from wavesym.papers.exact_tables import UNEQUAL_COLLISION, grounded_building, unequal_collision
 from wavesym.papers.pielorz1979.equations import left_over, once, ranges_of, within
+from wavesym.papers.pielorz1979.forms import moved
 from wavesym.papers.pielorz1979.letters import IndexedLetters, Moving, letter, rods_at
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.symbols import ACCELERATION, DISPLACEMENTS, Symbols, moment, strain, told
 from wavesym.papers.pielorz1979.transcript import others
 from wavesym.papers.pielorz1979.truth import EXAMPLES, DrivenChain, driven, instants, loads
-from wavesym.papers.reader import UnreadableError
+from wavesym.papers.reader import UnreadableError, read_range
 from wavesym.papers.record import Case, Reading, Reproduction, Test, reading, shown
 from wavesym.papers.tree import Call, Derivative, Progression, Symbol, Tree, latex
 
@@ -57,7 +58,18 @@ def test(entry: PaperEntry) -> Test:
             for m in EXAMPLES[name].sizes:
                 yield from _tried(entry.id, name, _moved(name, m, kind, base), read, kind)
 
+    def where_equal(read: Reading) -> Iterator[Case]:
+        for m in EXAMPLES["III"].sizes:
+            yield from _tried(entry.id, "III", moved("III", m), read, kind)
+
+    def numbered(numbering: str) -> Callable[[Reading], Iterator[Case]]:
+        place = read_range(f"x_i = {numbering}")
+        return lambda read: cases(Reading(read.formula, (*read.ranges, place)))
+
     in_symbols = not base and _balances(entry)
+    conventions = {f"body i stands at x = {place}": numbered(place) for place in ("(i-1)l", "il") if kind}
+    if names == ("III",) and not base:
+        conventions["all floors are equal"] = where_equal
     return Test(
         "the exact motion of chains with all parameters different under loads of several steps"
         + (", on a foundation that moves with the ground" if base else "")
@@ -65,6 +77,7 @@ def test(entry: PaperEntry) -> Test:
         cases,
         difference=partial(_difference, names, kind) if in_symbols else None,
         mathematics=(lambda read: cases(read, None)) if base else None,
+        conventions=conventions,
     )
 
 
@@ -119,8 +132,6 @@ def _tried(id: str, name: str, driven: DrivenChain, read: Reading, kind: str | N
     scope = Moving(driven)
     scope.functions[DISPLACEMENTS[name]] = scope.functions[r"\barU"]
     scope.letters["U"] = lambda rod: scope.functions["U"](rod, scope.bound["x"], scope.bound["t"])
-    # along positive rotation; the tables count the moment on the last body against it
-    scope.functions[r"\barM"] = lambda i, t: (-1 if i == m + 1 else 1) * scope.functions["M"](i, t)
     _add_section_2(scope, name, read)
     nodes = [x for x, node in enumerate(chain.nodes) if KINDS[kind](node)] if kind else None
     for bound in _places(read, m, nodes):
@@ -194,8 +205,6 @@ def _balanced(scope: Moving, read: Reading, x: int, at: Mapping[str, object]) ->
         look = (
             f"put strain and velocity of tau = {tau}, and its slope there, {shown(f + g)}, into the condition: {left}"
         )
-        if node.loads and not node.right:  # of a drive
-            look += " (M along positive rotation: minus the scene's, which counts against it)"
         until = tau if tau > 0 else 1
         return example(driven.exact, driven.loads, until, outputs, "wavesym run SCENE --samples 1001", look)
 
@@ -265,6 +274,5 @@ def _balance(node: Node, x: Expr) -> Expr:
     if node.left:
         total -= Rational(1, 2) * node.alpha * strain(expand(x))
     for unit in node.loads:
-        sign = -1 if unit.number == COUNT + 1 else 1
-        total += sign * unit.coefficients[0] * moment(unit.number)
+        total += unit.coefficients[0] * moment(unit.number)
     return total

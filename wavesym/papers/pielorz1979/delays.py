@@ -16,11 +16,12 @@ from wavesym.mechanics.node import System
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.evaluation import MeaninglessError, Scope, items, sides, span
 from wavesym.papers.pielorz1979.equations import left_over, once, ranges_of, within
+from wavesym.papers.pielorz1979.forms import moved
 from wavesym.papers.pielorz1979.letters import Moving
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.symbols import Symbols, expression, told
 from wavesym.papers.pielorz1979.transcript import others
-from wavesym.papers.pielorz1979.truth import EXAMPLES, JumpingChain, driven, instants
+from wavesym.papers.pielorz1979.truth import EXAMPLES, DrivenChain, JumpingChain, driven, instants
 from wavesym.papers.record import Case, Reading, Reproduction, Test
 from wavesym.papers.tree import Call, Symbol, Tree
 
@@ -37,10 +38,10 @@ def test(entry: PaperEntry) -> Test:
     """How an equation is tried: both its sides at instants, and whether it gives what no other of its group gives."""
     drawn = EXAMPLES[str(entry.about["example"])]
 
-    def cases(read: Reading) -> Iterator[Case]:
+    def cases(read: Reading, chain: Callable[[str, int], DrivenChain] = driven) -> Iterator[Case]:
         for m in drawn.sizes:
             given: Counter[Unknown] = Counter()
-            motion = driven(drawn.name, m)
+            motion = chain(drawn.name, m)
             scope, jumps = Moving(motion), _Jumps(JumpingChain(motion.exact, motion.loads))
             for equation, bound in _stated(read, m):
                 given[_unknown(equation, Scope(bound))] += 1
@@ -57,6 +58,7 @@ def test(entry: PaperEntry) -> Test:
         f"m = {drawn.sizes[0]} ... {drawn.sizes[-1]}; the derived equation for symbolic i and m",
         cases,
         difference=partial(_difference, drawn.system),
+        conventions={"all floors are equal": lambda read: cases(read, moved)} if drawn.name == "III" else {},
     )
 
 

@@ -20,7 +20,7 @@ from wavesym.papers.pielorz1979.remarks import moments
 from wavesym.papers.pielorz1979.tabled import ALPHA, HALVES, functions
 from wavesym.papers.pielorz1979.truth import EXAMPLES
 from wavesym.papers.reader import read_formula, read_range
-from wavesym.papers.record import Case, case
+from wavesym.papers.record import Case, Reproduction, case
 from wavesym.papers.tree import Call, Number, Series
 
 
@@ -46,15 +46,6 @@ def entier(words: Words) -> Iterator[Case]:
     way = ways[words["way"]]
     rounded = type("Rounded", (FormScope,), {"entier": lambda self, value: int(way(fmpq(value)))})
     yield from form_cases(right_form("I"), scope=rounded)
-
-
-def heaviside(words: Words) -> Iterator[Case]:
-    """(4.12) with H(0) as said; with 0 and 1 where it is not."""
-    known = {" with H(0) = 0": (0,), " with H(0) = 1": (1,)}.get(words["at_0"], (0, 1))
-    for at_0 in known:
-        scope = type("At0", (FormScope,), {"heaviside_at_0": at_0})
-        for tried in form_cases(right_form("III"), scope=scope):
-            yield replace(tried, at={"H(0)": at_0, **tried.at})
 
 
 def acting_moments(words: Words) -> Iterator[Case]:
@@ -122,18 +113,32 @@ def series(words: Words) -> Iterator[Case]:
 
 def meetings(words: Words) -> Iterator[Case]:
     """Highest powers by what waves have met."""
+    for at, count, true, told in _counted(reflected_only=words["met"] == "reflected"):
+        said = count - {"one less than": 1, "": 0}[words["less"]]
+        yield Case(at, max(said, -1), true, true >= 0, told)
+
+
+def connected(words: Words) -> Iterator[Case]:
+    """Whether places with the same number have the same highest power, in each example."""
+    powers: dict[tuple[object, int], int] = {}
+    for at, count, true, told in _counted(reflected_only=words["met"] == "reflected from"):
+        said = powers.setdefault((at["example"], max(count, 0)), true)
+        yield Case(at, said, true, true >= 0, told)
+
+
+def _counted(*, reflected_only: bool) -> Iterator[tuple[dict[str, object], int, int, Callable[[], Reproduction]]]:
+    """Where, the most times that a wave has met the body, and the highest power at its rate."""
     for example, sizes in (("I", (4, 6)), ("II", (1, 2, 3)), ("III", (2, 3))):
         for m in sizes:
             exact = EXAMPLES[example].tables(m)
             for source, (body, rate) in product(exact.responses, rates(exact).items()):
                 node = body - (exact.interval == 1)
-                count = most_meetings(exact, source, node, reflected_only=words["met"] == "reflected")
+                count = most_meetings(exact, source, node, reflected_only=reflected_only)
                 for (letter, rod), interval in product(functions(example, m), range(1, 7)):
                     true = exact.degree(letter, rod, interval, rate, source)
-                    said = count(letter, rod, interval) - {"one less than": 1, "": 0}[words["less"]]
                     at = {"example": example, "m": m, "source": source, "body": body}
                     at |= {"function": f"{letter}_{rod}", "interval": interval}
-                    yield Case(at, max(said, -1), true, true >= 0, shown(exact, (letter, rod), interval))
+                    yield at, count(letter, rod, interval), true, shown(exact, (letter, rod), interval)
 
 
 def earlier(words: Words) -> Iterator[Case]:

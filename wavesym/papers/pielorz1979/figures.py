@@ -43,7 +43,7 @@ from wavesym.scene import lower
 
 NEAR = 0.01
 """How far a time that is read off a figure may be out, as a part of itself."""
-ONLY = ", under these loads only: "
+ONLY = ", of the loads tried under these: "
 _KINDS: Mapping[str, Any] = tomllib.loads(Path(__file__).with_name("figure_sentences.toml").read_text(encoding="utf-8"))
 _READERS = {
     number: sentence_reader(
@@ -118,7 +118,7 @@ def true(scene: Described, load: TriedLoad, statement: FigureStatement) -> bool:
 
 def statements(number: int) -> dict[str, FigureStatement]:
     """What is printed of a figure, by id."""
-    return {entry.id: read(number, entry.printed) for entry in _of(number, "figure")}
+    return {entry.id: read(number, entry.statement) for entry in _of(number, "figure")}
 
 
 def findings(number: int, statement: FigureStatement) -> list[tuple[TriedLoad, Finding]]:
@@ -142,6 +142,7 @@ def said_of_figure(entry: PaperEntry) -> Test:
         lambda said: _cases(figure(number), said.formula),
         lambda printed, _: Reading(read(number, printed)),
         partial(_faults, number),
+        varied="loads",
         observed=lambda: _observed(figure(number), entry),
     )
 
@@ -161,7 +162,7 @@ def _cases(scene: Described, said: FigureStatement) -> Iterator[Case]:
 def _observed(scene: Described, entry: PaperEntry) -> str:
     """Every load with its outcome."""
     try:
-        said = read(scene.figure, entry.printed)
+        said = read(scene.figure, entry.statement)
     except UnreadableError as error:
         return f"Nothing was measured: {error}."
     told = [f"Measured ({meaning(said)}): {_outcomes(scene, said)}."]
@@ -226,7 +227,7 @@ def _described_cases(number: int, formula: Tree) -> Iterator[Case]:
     for entry in _of(number, "contact"):
         yield case({"said": entry.printed, "allowed": f"{NEAR:.0%}"}, partial(near, printed_end(entry)), True)
     for entry in _of(number, "figure"):
-        yield case({"said": entry.printed}, partial(under_some_load, entry.printed), True)
+        yield case({"said": entry.statement}, partial(under_some_load, entry.statement), True)
 
 
 def end_of_contact(entry: PaperEntry) -> Test:

@@ -101,7 +101,7 @@ class Moving(IndexedLetters):
             **dict.fromkeys(("M", r"\barM"), lambda i, k: self._weight(f"M{i}", k)),
         }
         self.functions = {
-            "M": lambda i, t: motion.load(self._source(i), t),
+            **dict.fromkeys(("M", r"\barM"), lambda i, t: motion.load(self._source(i), t)),
             "U": self._displaced,
             r"\barU": lambda i, x, tau: self.displacement(i, Jet.of(x), Jet.of(tau)),
         }

@@ -13,7 +13,8 @@ from wavesym.mechanics.node import Parameters
 from wavesym.papers.evaluation import MeaninglessError, Scope
 from wavesym.papers.exact_tables import building, collision, drive, with_parameters
 from wavesym.papers.pielorz1979.cells import Asked, Counted, Indices, counted
-from wavesym.papers.pielorz1979.forms import INTERVALS, SIZES, FormScope, moved, numbers, right_form
+from wavesym.papers.pielorz1979.forms import INTERVALS, SIZES, FormScope, moved, numbers, rates, right_form
+from wavesym.papers.pielorz1979.rates import chains_of_rates
 from wavesym.papers.pielorz1979.tabled import functions
 from wavesym.papers.pielorz1979.truth import DrivenChain
 from wavesym.papers.reader import read_formula
@@ -64,11 +65,22 @@ def table(name: str) -> Callable[[Words], Iterator[Case]]:
                 scope = Asked(name, chain.driven, letter)
                 for number in range(1, numbers(name, INTERVALS[name])[-1] + 1):
                     yield from chain.cases(scope, letter, rod, number, {**at, "interval": number})
+        yield from _of_rates(name, words["hypothesis"])
         if "powers" in words:
             letters = {latex(tree) for tree in symbols(right_form("I").step) if tree.name == "K"}
             yield Case({"claim": "a letter of (4.9)"}, latex(read_formula(words["powers"])) in letters, True)
 
     return cases
+
+
+def _of_rates(name: str, hypothesis: str) -> Iterator[Case]:
+    """Whether no power is higher than in the table just where the hypothesis holds."""
+    for exact, true in chains_of_rates({"I": "T2", "II": "T3", "III": "T4"}[name]):
+        kappa, gamma = exact.chain.parameters.kappa, rates(exact)
+        said = "rates" not in hypothesis or len(set(gamma.values())) == len(gamma)
+        said = said and ("2" not in hypothesis or 2 * kappa[1] != kappa[exact.m])
+        at = {"m": exact.m, "kappa": dict(kappa), "rates": tuple(gamma.values())}
+        yield Case({**at, "claim": "no power is higher than in the table"}, said, true)
 
 
 def _chains(name: str, hypothesis: str) -> Iterator[Counted]:

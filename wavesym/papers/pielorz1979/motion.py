@@ -7,6 +7,7 @@ the laws of the nodes. A load is what acts on a node, which its exact motion tel
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from itertools import product
 from typing import Any
@@ -20,6 +21,7 @@ from wavesym.papers.pielorz1979.equations import covers
 from wavesym.papers.pielorz1979.letters import Moving, Units
 from wavesym.papers.pielorz1979.scenes import example
 from wavesym.papers.pielorz1979.transcript import entry as entry_of
+from wavesym.papers.pielorz1979.transcript import settled
 from wavesym.papers.pielorz1979.truth import DrivenChain, LoadStep, driven
 from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, Reading, Reproduction, Test, case
@@ -39,8 +41,13 @@ def _scopes(kind: Callable[..., Moving] = Moving, **known: Any) -> Scopes:
     """Chains under loads, the smallest first, with what to call them; all velocities are of rods."""
     for name, m, units in _CHAINS:
         scope = kind(driven(name, m), units, **known)
-        scope.letters[r"\barv"] = scope.velocity
+        scope.letters |= {r"\barv": scope.velocity, "t": partial(_arrives, scope)}
         yield {"example": name, "m": m, "c_f": units.c_f, "l": units.l}, scope
+
+
+def _arrives(scope: Moving, zero: int, rod: int) -> Any:
+    """t_(0,i); the instants t_k are those of (3.2) alone."""
+    return scope.value(read_formula(rf"\tau_{{{zero},{rod}}}")) * scope.units.l / scope.units.c_f
 
 
 def _rods(reading: Reading, scope: Moving, at: Mapping[str, object]) -> Case:
@@ -139,7 +146,12 @@ def definition(entry: PaperEntry) -> Test:
         defining = _scopes(partial(_Defining, letter, means), constants=given(reading.ranges))
         return _solution_cases(reading, read_formula(entry_of("(4.2)").printed), defining)
 
-    return Test(f"(4.2) with it: {_NODES}", cases)
+    def unbarred(reading: Reading) -> Iterator[Case]:
+        letter, means = sides(reading.formula)
+        plain = replace(letter, accent="") if isinstance(letter, Symbol) else letter
+        return cases(Reading(Relation((plain, means), ("=",)), reading.ranges))
+
+    return Test(f"(4.2) with it: {_NODES}", cases, conventions={"a letter means the same with a bar": unbarred})
 
 
 class _Defining(Moving):
@@ -245,4 +257,11 @@ def bodies(entry: PaperEntry) -> Test:
             )
             yield covers({"m": m}, "rods and loaded bodies", [named], scope, wanted, telling=True, example=shown)
 
-    return Test("what acts on the rigid bodies by the exact motion", cases)
+    def counted_as_in_3_1(reading: Reading) -> Iterator[Case]:
+        return cases(Reading(reading.formula, (range_of("i", settled("(3.1)").ranges),)))
+
+    return Test(
+        "what acts on the rigid bodies by the exact motion",
+        cases,
+        conventions={"i is the number of a body, as in (3.1)": counted_as_in_3_1},
+    )

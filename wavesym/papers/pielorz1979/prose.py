@@ -10,6 +10,7 @@ import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from wavesym.papers.entries import PaperEntry
 from wavesym.papers.pielorz1979 import dependence, listed
@@ -21,24 +22,35 @@ from wavesym.papers.sentences import SentencePattern, sentence_reader
 @cache
 def sayings() -> Mapping[str, tuple[SentencePattern, str]]:
     """The patterns of sentences, each with what it is compared with, by name."""
-    told = tomllib.loads(Path(__file__).with_name("sayings.toml").read_text(encoding="utf-8"))
-    return {name: (SentencePattern(name, said["text"], said["words"]), said["against"]) for name, said in told.items()}
+    return {
+        name: (SentencePattern(name, said["text"], said["words"]), said["against"]) for name, said in _sayings().items()
+    }
+
+
+@cache
+def _sayings() -> Mapping[str, Any]:
+    return tomllib.loads(Path(__file__).with_name("sayings.toml").read_text(encoding="utf-8"))
 
 
 def solution(entry: PaperEntry) -> Test:
     """Adapter: a sentence about the solutions."""
     reader = sentence_reader(pattern for pattern, _ in sayings().values())
-    told = entry.slip.corrected if entry.slip else entry.printed
+    told = entry.slip.corrected if entry.slip else entry.statement
     against = next((against for pattern, against in sayings().values() if pattern.match(told)), "nothing known")
 
     def cases(reading: Reading) -> Iterator[Case]:
         return CASES[reading.formula.pattern](reading.formula.words)
 
-    return Test(against, cases, reader.read, reader.faults)
+    said = next((pattern.name for pattern, _ in sayings().values() if pattern.match(entry.statement)), None)
+    meant = _sayings()[said].get("convention", {}) if said else {}
+
+    def as_meant(reading: Reading) -> Iterator[Case]:
+        return CASES[reading.formula.pattern]({**reading.formula.words, **meant["words"]})
+
+    return Test(against, cases, reader.read, reader.faults, conventions={meant["meaning"]: as_meant} if meant else {})
 
 
 CASES: Mapping[str, Callable[[Words], Iterator[Case]]] = {
-    "heaviside": dependence.heaviside,
     "lengths": dependence.lengths,
     "entier": dependence.entier,
     "table_2": listed.table("I"),
@@ -53,6 +65,7 @@ CASES: Mapping[str, Callable[[Words], Iterator[Case]]] = {
     "unlisted": dependence.unlisted,
     "masses": dependence.masses,
     "series": dependence.series,
+    "connected": dependence.connected,
     "meetings": dependence.meetings,
     "earlier": dependence.earlier,
     "changes_1": dependence.changes_1,

@@ -1,4 +1,4 @@
-"""What Tables 2 to 4 leave unsaid: their highest powers are those of bodies whose rates differ.
+"""The rates gamma, and what Tables 2 to 4 leave unsaid: their highest powers are those of bodies whose rates differ.
 
 A body that is shaken at its own rate answers with one power more, so that powers of bodies with one rate add up. Where
 rates differ the powers of the tables are the highest there can be; for special ones some cancel. The tables are tried
@@ -16,13 +16,13 @@ from flint import fmpq
 
 from wavesym.mechanics.node import Parameters
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, holds, items, places, sides
+from wavesym.papers.evaluation import MeaninglessError, Scope, items, places, sides
 from wavesym.papers.exact_tables import Exact, collision, drive, with_parameters
 from wavesym.papers.pielorz1979.cells import EXAMPLE
 from wavesym.papers.pielorz1979.forms import TABLES, known, rates
 from wavesym.papers.pielorz1979.transcript import ids, settled
-from wavesym.papers.record import Case, Reading, Test, case, faults
-from wavesym.papers.tree import Blank, Progression, Symbol, latex
+from wavesym.papers.record import Case, Reading, Test, case
+from wavesym.papers.tree import Symbol, latex
 
 _ONE, _A, _B, _C = fmpq(1), fmpq(2, 3), fmpq(3, 5), fmpq(5, 7)
 _COLLISIONS = (
@@ -62,39 +62,6 @@ class RateScope(Scope):
         return known(self.values[symbol.name], self.indices(symbol)[0], symbol.name)
 
 
-def differing(entry: PaperEntry) -> Test:
-    """The functions of a table: for which rates its powers are theirs."""
-
-    def cases(reading: Reading) -> Iterator[Case]:
-        running = [range_ for range_ in reading.ranges if isinstance(range_, Progression)]
-        said = [range_ for range_ in reading.ranges if range_ not in running]
-        for exact, true in _tabled(entry.id[:2]):
-            scope, values = RateScope(exact), rates(exact)
-            shown = exact.chain.parameters.kappa
-            if entry.id[:2] == "T3":
-                shown, scope.values = values, {r"\gamma": values}
-            at = {"m": exact.m, "gamma" if entry.id[:2] == "T3" else "kappa": tuple(shown[i] for i in sorted(shown))}
-            found = all(_hold(said, scope, place) for place in places(running, scope))
-            yield Case({**at, "claim": "no power is higher than tabled"}, found, true)
-
-    def of_ranges(right: Reading) -> Iterator[tuple[str, Reading]]:
-        """The letter names functions and is no formula."""
-        for change, wrong in faults(Reading(Blank("F"), right.ranges)):
-            yield change, Reading(right.formula, wrong.ranges)
-
-    return Test(
-        "the degrees of exact tables with equal rates, beside those with different ones: a power of the table is "
-        "the highest of all bodies with its rate",
-        cases,
-        faults=of_ranges,
-    )
-
-
-def _hold(said: Iterable[Any], scope: Scope, place: Mapping[str, Any]) -> bool:
-    with scope.binding(place):
-        return all(holds(range_, scope) for range_ in said)
-
-
 def _variants(table: str) -> Iterator[tuple[int, Parameters]]:
     """m and parameters."""
     if table == "T2":
@@ -115,8 +82,10 @@ def _each(values: Iterable[Any]) -> dict[int, fmpq]:
 
 
 @cache
-def _tabled(table: str) -> tuple[tuple[Exact, bool], ...]:
-    """Chains, and whether no power is higher than those of a chain with all rates different, in which nothing cancels.
+def chains_of_rates(table: str) -> tuple[tuple[Exact, bool], ...]:
+    """Chains with different and with equal rates, and whether no power is higher than where nothing cancels.
+
+    There all rates are different.
 
     Lower ones there are: of bodies with kappa 1, 2, 3 those of the middle one cancel.
     """

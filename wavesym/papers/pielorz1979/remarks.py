@@ -1,24 +1,26 @@
-"""Formulas within the text of section 4: which functions rest, the moments and powers of one column of Table 3, and
-which coefficients the solutions have."""
+"""Formulas within the text of section 4: which functions rest, H, the moments and powers of one column of Table 3,
+and which coefficients the solutions have."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import product
 
 from flint import fmpq
 
 from wavesym.papers.entries import PaperEntry
-from wavesym.papers.evaluation import MeaninglessError, Scope, items, places, sides, span
+from wavesym.papers.evaluation import MeaninglessError, Scope, given, items, places, sides, span
 from wavesym.papers.exact_tables import building, drive
 from wavesym.papers.exponentials import exponential
 from wavesym.papers.pielorz1979.cells import counted
-from wavesym.papers.pielorz1979.forms import FORMS, FormScope, moved, only, rates, right_form, shown
+from wavesym.papers.pielorz1979.equations import within
+from wavesym.papers.pielorz1979.forms import FORMS, FormScope, form_cases, moved, only, rates, right_form, shown
 from wavesym.papers.pielorz1979.tabled import ALPHA, functions
 from wavesym.papers.pielorz1979.transcript import ids, settled
-from wavesym.papers.reader import read_formula
+from wavesym.papers.reader import read_formula, read_range
 from wavesym.papers.record import Case, Reading, Test, case
-from wavesym.papers.tree import Call, Number, Symbol, Tree, latex, symbols
+from wavesym.papers.tree import Call, Number, Symbol, Tree, latex, replaced, symbols
 
 MOST_N = 4
 
@@ -109,6 +111,32 @@ def power(entry: PaperEntry) -> Test:
     return Test(
         "highest powers of the exact tables, m = 1 ... 5, n = 0 ... 4; every l in one of the three ranges", cases
     )
+
+
+def heaviside(entry: PaperEntry) -> Test:
+    """H in (4.12), with the H(0) of its range; with 0 and with 1 where there is none."""
+
+    def cases(reading: Reading) -> Iterator[Case]:
+        at_0 = [int(Scope().value(value)) for left, value in given(reading.ranges).items() if left == _AT_0]
+        if len(at_0) != len(reading.ranges):
+            raise MeaninglessError("a range of something else")
+        form = right_form("III")
+        (own,) = {part for part in within(form.step) if isinstance(part, Call) and part.function == Symbol("H")}
+        tried = replace(form, step=replaced(form.step, own, reading.formula))
+        for value in at_0 or (0, 1):
+            scope = type("At0", (FormScope,), {"heaviside_at_0": value})
+            for found in form_cases(tried, scope=scope):
+                yield replace(found, at={"H(0)": value, **found.at})
+
+    one = read_range("H(0) = 1")
+    return Test(
+        "the motion, by (4.12) with it",
+        cases,
+        conventions={"H(0) = 1": lambda reading: cases(Reading(reading.formula, (one,)))},
+    )
+
+
+_AT_0 = read_formula("H(0)")
 
 
 def factor(entry: PaperEntry) -> Test:

@@ -13,7 +13,7 @@ from pathlib import Path
 from flint import arb, fmpq
 
 from wavesym.derivation.delay import delay_equations
-from wavesym.exact.contacts.collision import contact_ends
+from wavesym.exact.contacts.opening import contact_ends
 from wavesym.exact.tables.table import Function
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.loads import Applied
@@ -136,8 +136,9 @@ def _orders(words: Words) -> Iterator[Case]:
 
 
 def _given(words: Words) -> Iterator[Case]:
-    first, second, *_ = (int(value) for value in words["least"].split(", "))
-    for m in range(2, 12):
+    numbers = words["sizes"].removeprefix(", where m = ").split(", ") if words["sizes"] else ("2", "4")
+    first, second, *_ = map(int, numbers[:2])
+    for m in range(2, 12, 2):
         said = m >= first and (m - first) % (second - first) == 0
         yield Case({"m": m, "what": "every function is given once"}, said, given_once("(4.6)", m))
 

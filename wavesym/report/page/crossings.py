@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from wavesym.errors import WavesymError
-from wavesym.exact.contacts.collision import ContactEnd, contact_ends
+from wavesym.exact.contacts.opening import ContactEnd, contact_ends
 from wavesym.exact.field import Field
+from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Link
 from wavesym.numbers.doubles import nearest, rational
@@ -72,7 +74,8 @@ def _drawn(model: Model, lines: Lines, field: Field, name: str, units: Scale | N
     )
     title = f"{name}: place to the right, time upward".capitalize()
     height = TOP + _TALL + BELOW + 34
-    frame = Frame(x, y, "x", scale.title).drawn()
+    size = float(model.length.size) if model.length else 1.0
+    frame = Frame(replace(x, high=size * long), y, axis_text("", model.length), scale.title).drawn()
     return Shown(title, picture(f"xt-{name}", title, told, height, frame, cells, formal, nodes, bar, class_="plot"))
 
 

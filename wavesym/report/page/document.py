@@ -10,7 +10,7 @@ from wavesym import __version__
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.probe import Probe
-from wavesym.numbers.doubles import nearest
+from wavesym.numbers.doubles import nearest, rational
 from wavesym.programs.program import Program
 from wavesym.rendering import render
 from wavesym.report.along import Along, along
@@ -24,6 +24,7 @@ from wavesym.report.page.said import SaidTable, advice_told, extremes_told
 from wavesym.report.page.small import first_rows, first_text, fitting
 from wavesym.report.page.structure import structure
 from wavesym.report.timescale import Timescale, timescale
+from wavesym.results.summary import Summary, summary_and_program
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import drifts
 
@@ -76,7 +77,8 @@ def page(scene: Scene) -> str:
 def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[int], Report]:
     """All of it, computed once, whose curves may be drawn with fewer columns than `most`."""
     scale, until = timescale(model), nearest(model.until)
-    made = histories(drawn, most)
+    summary, program = _summary(model, drifts(scene))
+    made = histories(drawn, most, program)
     loads = load_histories(model, scene.scale)[:_LOADS]
     stack = [load_panel(loads, 1.0)] if loads else []
     stack += [each for each in panels(made) if each.histories]
@@ -86,7 +88,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
     title = f"The structure of {model.name}"
     report = Report(
         name=model.name,
-        facts=tuple(_facts(model, made, loads, scale)),
+        facts=tuple(_facts(model, made, found, loads, scale)),
         structure=Shown(
             title, picture("structure", title, structured.told, structured.height, structured.drawn, class_="plot")
         ),
@@ -95,7 +97,7 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         until=repr(until * scale.per_tau),
         time=scale.unit,
         columns=most,
-        extremes=first_rows(extremes_told(model, drifts(scene), scale)),
+        extremes=first_rows(extremes_told(model, summary, scale)),
         advice=first_rows(advice_told(model)),
         maps=tuple(crossings(model, lines, scene.scale) or maps(model, found, scale)),
         along=tuple(along_pictures(model, found, scale)),
@@ -115,6 +117,14 @@ def _report(scene: Scene, model: Model, drawn: Model, most: int) -> Callable[[in
         return replace(report, histories=tuple(curves), columns=columns, notes=notes)
 
     return with_columns
+
+
+def _summary(model: Model, drifts: Sequence[Probe]) -> tuple[Summary | WavesymError, Program | None]:
+    """The extremes, and the program that they are of, whose curves are drawn; or why there are none."""
+    try:
+        return summary_and_program(model, drifts=drifts)
+    except WavesymError as error:
+        return error, None
 
 
 def _along(scene: Scene) -> tuple[tuple[Along, ...], str]:
@@ -139,7 +149,9 @@ def _left_out(model: Model, drawn: Model) -> list[str]:
     )
 
 
-def _facts(model: Model, made: Histories, loads: Sequence[History], scale: Timescale) -> Iterator[tuple[str, str]]:
+def _facts(
+    model: Model, made: Histories, found: Sequence[Along], loads: Sequence[History], scale: Timescale
+) -> Iterator[tuple[str, str]]:
     """What there is to know at first sight, each under a word."""
     network, program = model.network, made.program
     assert program is not None  # histories have one
@@ -154,7 +166,12 @@ def _facts(model: Model, made: Histories, loads: Sequence[History], scale: Times
     if model.clock is not None:
         yield "One tau", f"{nearest(model.clock.seconds):.6g} s: the time that a wave takes to cross a rod of length 1"
     yield "Computed by", program.provenance.reason.rpartition("; ")[2]
-    yield "Bound", _bound(program)
+    yield (
+        "Bound",
+        f"{_bound('a curve over time', program, model)} Whether the model is the structure is another question.",
+    )
+    if found and found[0].program.error_bound != program.error_bound:
+        yield "Bound over place", _bound("what is drawn over place", found[0].program, model)
     for end in made.contacts:
         yield (
             "Contact",
@@ -185,13 +202,18 @@ def _count(number: int, one: str, many: str = "") -> str:
     return f"{number} {one if number == 1 else many or one + 's'}"
 
 
-def _bound(program: Program) -> str:
-    if not program.proved:
-        return (
-            f"{program.error_bound:.2g}, an estimate that is not proved: so far from the exact solution of this model, "
-            "in parts of its own largest value, a curve of this page may be."
+def _bound(what: str, program: Program, model: Model) -> str:
+    """How far from the truth is what is drawn, and whether that meets the tolerance that was asked for."""
+    if program.proved:
+        known = (
+            f"proved: at no time is {what} farther from the exact solution of this model than this part of its own "
+            "largest value."
         )
-    return (
-        f"{program.error_bound:.2g}, proved: at no time is a curve of this page farther from the exact solution of "
-        "this model than this part of its own largest value. Whether the model is the structure is another question."
-    )
+    else:
+        known = (
+            "an estimate that is not proved: so far from the exact solution of this model, in parts of its own largest "
+            f"value, {what} may be."
+        )
+    met = rational(program.error_bound) <= model.tolerance
+    coarse = f" That is more than the tolerance asked for, {nearest(model.tolerance):g}, but less than a picture shows."
+    return f"{program.error_bound:.2g}, {known}{'' if met else coarse}"

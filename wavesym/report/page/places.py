@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from wavesym.mechanics.length import axis_text
 from wavesym.mechanics.model import Model
 from wavesym.report.along import Along, Band, cells, limit
 from wavesym.report.envelope_values import BandExtreme, envelope, extremes
@@ -73,7 +74,7 @@ def _along_line(model: Model, quantity: Along, band: Band, scale: Timescale) -> 
     least, greatest = envelope(band)
     low, high = spread(min(0.0, float(np.min(least))), max(0.0, float(np.max(greatest))), 0.14)
     x, y = PlotAxis(band.spots[0].low, band.spots[-1].high, LEFT, WIDTH - RIGHT), PlotAxis(low, high, TOP + _ALONG, TOP)
-    frame = Frame(x, y, f"{band.line}:x" if band.line else "x", axis_title(model, quantity.quantity, quantity.unit))
+    frame = Frame(x, y, axis_text(band.line, quantity.length), axis_title(model, quantity.quantity, quantity.unit))
     ends = [(x.at(spot.x), y.at(a), y.at(b)) for spot, a, b in zip(band.spots, least, greatest, strict=True)]
     parts = [
         frame.drawn(),
@@ -122,7 +123,7 @@ def _map(
     x = PlotAxis(0.0, float(quantity.taus[-1]) * scale.per_tau, LEFT, WIDTH - RIGHT)
     y = PlotAxis(band.spots[0].low, band.spots[-1].high, TOP + tall, TOP)
     places = band.numbered(_NUMBERED) if quantity.storeys else None
-    upward = "storey" if quantity.storeys else f"{band.line}:x" if band.line else "x"
+    upward = "storey" if quantity.storeys else axis_text(band.line, quantity.length)
     rows = _evenly(band, values)
     image = element(
         "image",

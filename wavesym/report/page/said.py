@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from wavesym.documents.advice import WAVES, Advice, Candidate
+from wavesym.documents.summary import instant, number
 from wavesym.errors import WavesymError
-from wavesym.exact.contacts.collision import contact_ends
+from wavesym.exact.contacts.opening import contact_ends
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.probe import Probe
 from wavesym.report.timescale import Timescale
-from wavesym.results.summary import OutputSummary, Peak, When, summarised
+from wavesym.results.summary import OutputSummary, Peak, Summary
 from wavesym.rivals.advice import advise
 
 _TOLERANCE = 0.01  # of the largest value: what an engineer would not see
@@ -31,20 +30,19 @@ class SaidTable:
     notes: tuple[str, ...]
 
 
-def extremes_told(model: Model, drifts: Sequence[Probe], scale: Timescale) -> SaidTable:
-    """Of each output the least and the greatest value, when, and when it first moves; the largest of `drifts`."""
-    try:
-        found = summarised(model, drifts=drifts)
-    except WavesymError as error:
-        return SaidTable((), (), (f"Not found: {error}",))
+def extremes_told(model: Model, found: Summary | WavesymError, scale: Timescale) -> SaidTable:
+    """Of each output the least and the greatest value, when, and when it first moves; the largest drift; as `summary`
+    writes them, or why they were not found."""
+    if isinstance(found, WavesymError):
+        return SaidTable((), (), (f"Not found: {found}",))
     when = f"{scale.symbol} in {scale.unit}" if scale.unit else scale.symbol
     head = ("Output", "Least", f"at {when}", "Greatest", f"at {when}", f"First moves at {when}")
     rows = (
         (
             f"{each.name}, {each.unit}" if each.unit else each.name,
-            *_peak(each.min, scale),
-            *_peak(each.max, scale),
-            "never" if each.arrival is None else _when(each.arrival, scale),
+            *_peak(each.min),
+            *_peak(each.max),
+            "never" if each.arrival is None else number(instant(each.arrival)),
         )
         for each in found.outputs
     )
@@ -62,16 +60,13 @@ def extremes_told(model: Model, drifts: Sequence[Probe], scale: Timescale) -> Sa
 def _drift(found: OutputSummary | None, scale: Timescale) -> str:
     if found is None:
         return ""
-    value = f"{found.largest.value:.6g} {found.unit}".rstrip()
-    return f"Largest drift of a rod: {found.name}, {value} at {scale.told(found.largest.at.tau)}"
+    value = f"{number(found.largest.value)} {found.unit}".rstrip()
+    when = f"{scale.symbol} = {number(instant(found.largest.at))} {scale.unit}".rstrip()
+    return f"Largest drift of a rod: {found.name}, {value} at {when}"
 
 
-def _peak(peak: Peak, scale: Timescale) -> tuple[str, str]:
-    return f"{peak.value:.6g}", _when(peak.at, scale) + "\u2212" * (not peak.reached)
-
-
-def _when(at: When, scale: Timescale) -> str:
-    return f"{at.tau * scale.per_tau:.6g}"
+def _peak(peak: Peak) -> tuple[str, str]:
+    return number(peak.value), number(instant(peak.at)) + "\u2212" * (not peak.reached)
 
 
 def advice_told(model: Model) -> SaidTable:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from wavesym.mechanics.length import LengthUnit, place_text
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.numbers.doubles import nearest
@@ -40,7 +41,8 @@ def structure(model: Model, lines: Lines) -> Picture:
     """The structure with its supports, loads, names, and the places of its outputs."""
     if model.labels.system["type"] == "building":
         return _building(model)
-    return _Pen(model.network, {name: stations for name, stations in lines.items() if stations[-1].x}).chain(model)
+    shown = {name: stations for name, stations in lines.items() if stations[-1].x}
+    return _Pen(model.network, shown, model.length).chain(model)
 
 
 def _building(model: Model) -> Picture:
@@ -91,6 +93,7 @@ class _Pen:
 
     network: Network
     lines: Lines
+    length: LengthUnit | None
     at: dict[int, tuple[float, float]] = field(default_factory=dict)  # points
     rods: dict[int, tuple[float, float, float]] = field(default_factory=dict)  # bars: from, to, and their height
     parts: list[Svg] = field(default_factory=list)
@@ -159,7 +162,7 @@ class _Pen:
                 x += width * shrink
             self.at.update({point: ((begun + x) / 2, y) for point in new if point not in self.at})
             held = any(self.network.points[point].damping or self.network.points[point].stiffness for point in new)
-            self._under((begun + x) / 2, y + 52, str(station.x), numbers, beside=held)
+            self._under((begun + x) / 2, y + 52, place_text(station.x, unit=self.length), numbers, beside=held)
             if following is not None and station.right is not None:
                 length = unit * float(following.x - station.x)
                 self._rod(station.right, x, length, y)

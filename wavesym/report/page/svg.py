@@ -41,6 +41,11 @@ def polyline(points: list[tuple[float, float]], class_: str) -> Svg:
     return element("path", class_=class_, d="M" + "L".join(f"{short(x)} {short(y)}" for x, y in points))
 
 
+def upright(points: list[tuple[float, float]], base: float, class_: str) -> Svg:
+    """A line from each point up or down to the height of a base."""
+    return element("path", class_=class_, d="".join(f"M{short(x)} {short(base)}V{short(y)}" for x, y in points))
+
+
 def box(x: float, y: float, width: float, height: float, class_: str) -> Svg:
     """A rectangle by its upper left corner."""
     return element("rect", class_=class_, x=x, y=y, width=width, height=height)

@@ -70,8 +70,8 @@ def sweep_page(folder: Path) -> str:
         failed=_failed(found),
         scenes=tuple(_shown(found, case) for case in sorted(set(extremes))),
         folder=folder.resolve().name,
-        version=found.manifest["wavesym"],
-        sha256=found.manifest["sha256"],
+        version=found.manifest.wavesym,
+        sha256=found.manifest.sha256,
     )
     return render("html/sweep.html.j2", _Context(page))
 
@@ -95,7 +95,7 @@ def _known(found: SweepResults) -> str:
     return {
         "parameters": "an estimate, as parameters came at run time",
         "recorded": "of values; extremes between samples are an estimate",
-    }.get(found.manifest["computed"]["as"], "of values; wavesym summary says of a scene whether it is proved")
+    }.get(found.manifest.computed.kind, "of values; wavesym summary says of a scene whether it is proved")
 
 
 def _extremes(output: SweepOutput) -> tuple[int, ...]:

@@ -11,11 +11,13 @@ from wavesym.report.page.frame import Frame, PlotAxis, spread
 from wavesym.report.page.places import colour_bar
 from wavesym.report.page.plots import BELOW, LEFT, RIGHT, TOP, WIDTH, Shown, picture, spot
 from wavesym.report.page.png import address, shaded
-from wavesym.report.page.svg import Svg, element, line, polyline, text
+from wavesym.report.page.svg import Svg, element, polyline, text, upright
+from wavesym.report.reduction import reduced
 from wavesym.sweeps.results import StoredAxis, SweepResults
 
 _TALL, _MAP = 230.0, 360.0  # pixels high
 _CELLS = 120  # of a map, in each direction; of more the greatest of some is shown
+_COLUMNS = 300  # of a curve
 _NUMBERED = 10
 _LONGEST = 60  # characters of a text in a picture
 
@@ -82,18 +84,21 @@ def _curve(number: str, output: SweepOutput, axis: StoredAxis) -> Shown:
     low, high = spread(min(0.0, float(np.min(least[done]))), max(0.0, float(np.max(greatest[done]))), 0.1)
     ends = spread(float(along[done].min()), float(along[done].max()), 0.02)
     x, y = PlotAxis(*ends, LEFT, WIDTH - RIGHT), PlotAxis(low, high, TOP + _TALL, TOP)
-    places = None if ordered else [(float(k), str(k)) for k in range(1, len(done) + 1, -(-len(done) // _NUMBERED))]
+    numbers = None if ordered else [(float(k), str(k)) for k in range(1, len(done) + 1, -(-len(done) // _NUMBERED))]
     worst = int(np.nanargmax(output.size.ravel()))
     value = float(greatest[worst] if greatest[worst] >= -least[worst] else least[worst])
     title = f"{output.name} over {axis.name}"
     told = f"Largest: {_told(value, output.unit)} where {_where(axis, worst)}."
-    parts: list[Svg] = [Frame(x, y, x_title, output.title, x_places=places).drawn()]
-    for values, class_ in ((least, "least"), (greatest, "greatest")):
-        points = [(x.at(float(along[k])), y.at(float(values[k]))) for k in done]
+    parts: list[Svg] = [Frame(x, y, x_title, output.title, x_places=numbers).drawn()]
+    for values, class_, sign in ((least, "least", -1.0), (greatest, "greatest", 1.0)):
+        points = np.column_stack([along[done] - x.low, values[done]])
         if ordered:
-            parts.append(polyline(points, class_))
-        else:
-            parts += [line(at, y.at(0.0), at, end, class_) for at, end in points]
+            points = reduced(points, x.high - x.low, _COLUMNS)
+        elif len(done) > _COLUMNS:  # of some the longest
+            starts = np.arange(_COLUMNS) * len(done) // _COLUMNS
+            points = np.column_stack([points[starts, 0], sign * np.maximum.reduceat(sign * points[:, 1], starts)])
+        places = [(x.at(at + x.low), y.at(value)) for at, value in points.tolist()]
+        parts.append(polyline(places, class_) if ordered else upright(places, y.at(0.0), class_))
     parts += _named(x.at(float(along[worst])), y.at(value), _where(axis, worst), above=value > 0)
     return Shown(title, picture(number, title, told, TOP + _TALL + BELOW, *parts, class_="plot"))
 

@@ -22,6 +22,7 @@ from wavesym.scene.physical.places import PlaceInMetres, place
 from wavesym.scene.physical.rewritten import LoadUnit, Rewritten
 from wavesym.scene.physical.scale import Kind
 from wavesym.systems.parts import PartName
+from wavesym.systems.place import PlaceInUnits
 
 _Keys = tuple[str | int, ...]
 _Read = tuple[_Keys, object]
@@ -203,7 +204,7 @@ class _Pen:
             found = place(load["at"], self.lines)
         at: object = found.name if isinstance(found, PlaceInMetres) and found.x is None else (found.line, found.x)
         unit = self.displacement / self.rods.seconds
-        added = {"at": found.dimensionless(self.rods.first.length)}
+        added = {"at": PlaceInUnits(found.dimensionless(self.rods.first.length), load["at"])}
         if len(added["at"]) > LONGEST:
             raise wrong(f"{shown(load['at'])} given, a place of fewer digits expected", "at")
         match self.moved.get(at):

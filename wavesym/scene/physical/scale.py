@@ -11,6 +11,7 @@ from typing import Any, Literal
 from wavesym.fields.quantity import unit
 from wavesym.fields.table import SceneTable, shown, wrong
 from wavesym.mechanics.clock import Clock
+from wavesym.mechanics.length import LengthUnit
 from wavesym.numbers.doubles import rational
 from wavesym.scene.physical.elastic import Rods
 from wavesym.scene.physical.measured import placed
@@ -73,6 +74,10 @@ class Results:
                 sizes[key] = unit(given, dimensions[key])
             texts[key] = str(given)
         return cls(texts, sizes)
+
+    def length(self, one: Fraction) -> LengthUnit:
+        """Their unit of length; `one` of x, in m, is so many of it."""
+        return LengthUnit(one / self.sizes["length"], self.texts["length"])
 
     def told(self, dimension: str) -> tuple[Fraction, str]:
         """The unit that a load of a dimension would be told in: its size and its text."""

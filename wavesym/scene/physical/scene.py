@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from wavesym.fields.numbers import exact
 from wavesym.fields.table import key_path, shown, wrong
+from wavesym.mechanics.length import LengthUnit
 from wavesym.scene.outputs import LONGEST_HORIZON
 from wavesym.scene.physical.building import PhysicalBuilding
 from wavesym.scene.physical.chain import PhysicalChain
@@ -48,11 +49,9 @@ class PhysicalScene:
     inputs: tuple[tuple[Fraction, str], ...] = ()
 
     @property
-    def length(self) -> float | None:
-        """How long one of x is in results; None where places count rods."""
-        if self.said["system"]["type"] != "chain":
-            return None
-        return float(self.scale.lengths[0] / self.scale.results.sizes["length"])
+    def length(self) -> LengthUnit | None:
+        """The unit of results that places are lengths in; None where they count rods."""
+        return self.scale.results.length(self.scale.lengths[0]) if self.said["system"]["type"] == "chain" else None
 
     @property
     def system(self) -> dict[str, str]:
@@ -74,7 +73,8 @@ def physical(fields: Mapping[str, Any]) -> PhysicalScene:
     with placed("units"):
         results = Results.of(units, found.kind)
     with placed("system"), _of_quantities(fields["system"]):  # before loads and places on it
-        made["system"] = _table(found.system).model_validate(found.system)
+        length = results.length(found.lengths[0]) if found.lines is not None else None
+        made["system"] = _table(found.system).model_validate(found.system, context=length)
     seconds = found.rods.seconds
     said = dict(fields)
     inputs = []

@@ -1,0 +1,167 @@
+"""Batches that workers died of: in parts, side by side, each part marked as it is done; what kills again is alone."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("zarr", reason="the extra `sweep` is not installed")
+pytest.importorskip("distributed", reason="the extra `sweep` is not installed")
+
+from distributed import KilledWorker
+
+from tests.sweeps.test_cluster import files
+from tests.sweeps.test_store import fake
+from wavesym.sweeps import batches as cutting
+from wavesym.sweeps import cluster, running, work
+from wavesym.sweeps.batches import Task
+from wavesym.sweeps.running import Computing, run
+from wavesym.sweeps.status import status
+
+CASES = 40
+SWEEP: dict[str, Any] = {"scene": "drive_m1", "vary": {"output.until": {"from": 4, "to": 43, "count": CASES}}}
+
+
+class Client:
+    """A cluster of threads, as many as `threads` says of the number of tasks that were sent; `dies` says which tasks
+    kill their worker."""
+
+    loop = None
+
+    def __init__(self, dies: Callable[[Any], bool], threads: Callable[[int], int] = lambda sent: 2) -> None:
+        self.dies, self.threads, self.pool = dies, threads, ThreadPoolExecutor(1)
+        self.sent: list[Task] = []
+        self.under_way = 0
+        self.most: list[int] = []
+
+    def register_plugin(self, plugin: Any) -> None:
+        self.plan, self.batches = plugin.plan, plugin.batches
+
+    def wait_for_workers(self, *_: Any, **__: Any) -> None: ...
+
+    def nthreads(self) -> dict[str, int]:
+        return {"worker": self.threads(len(self.sent))}
+
+    def submit(self, _: Any, version: str, sha256: str, batch: int, places: Any, key: str, pure: bool) -> Any:
+        self.sent.append((batch, places))
+        self.under_way += 1
+        self.most.append(self.under_way)
+        given = places or self.batches.places(batch)
+
+        future = SimpleNamespace(key=key, release=self.released)
+
+        def done(put: Callable[[Any], None]) -> None:
+            time.sleep(0.002)
+            try:
+                if self.dies(given):
+                    raise KilledWorker("task", SimpleNamespace(address=""), 1)
+                values = work.compute(self.plan, self.batches, batch, places)
+                future.result = lambda: values
+            except Exception as error:
+                future.result = partial(raised, error)
+            put(future)
+
+        future.add_done_callback = partial(self.pool.submit, done)
+        return future
+
+    def released(self) -> None:
+        self.under_way -= 1
+
+
+def raised(error: Exception) -> None:
+    raise error
+
+
+@pytest.fixture
+def swept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Client]:
+    """Computes the sweep, all in one batch, by such a cluster."""
+    monkeypatch.setattr(cutting, "_MOST_BATCHES", 1)
+    monkeypatch.setattr(work, "single", fake_summary)
+    monkeypatch.setattr(running, "_several", lambda: False)
+    monkeypatch.setattr(cluster, "_LOOK", 0.001)
+    run(SWEEP, tmp_path / "alone")
+
+    def computed(client: Client, **options: Any) -> Client:
+        @contextmanager
+        def connected(*_: Any) -> Iterator[Any]:
+            yield client
+
+        monkeypatch.setattr(cluster, "connected", connected)
+        run(SWEEP, tmp_path / "out", Computing(scheduler="fake"), **options)
+        return client
+
+    return computed
+
+
+def fake_summary(plan: Any, scene: Any) -> Any:
+    case = fake(plan, scene)
+    return type(case)({name: values for name, values in case.arrays.items() if name != "history"}, case.how)
+
+
+def test_what_is_given_up_comes_in_parts_and_gives_the_same(swept: Callable[..., Client], tmp_path: Path) -> None:
+    """Workers that do not live long enough for more than three cases."""
+    client = swept(Client(dies=lambda places: len(places) > 3))
+    assert [len(places or range(CASES)) for _, places in client.sent] == [CASES] + [3] * 13 + [1]
+    assert max(client.most) == 2  # side by side: one on each thread
+    assert files(tmp_path / "out") == files(tmp_path / "alone")
+
+
+def test_a_case_that_kills_whatever_is_beside_it_is_the_only_one_that_fails(
+    swept: Callable[..., Client], tmp_path: Path
+) -> None:
+    client = swept(Client(dies=lambda places: (7,) in places))
+    found = status(tmp_path / "out")
+    assert (found.done, found.failed, found.left) == (CASES - 1, 1, 0)
+    assert found.reasons[0]["case"] == 7
+    assert "died" in found.reasons[0]["reason"]
+    assert client.sent[-1] == (0, [(7,)])  # once more, when nothing else was under way
+    assert client.most[-1] == 1
+    swept(again := Client(dies=lambda places: False), retry_failed=True)
+    assert again.sent == [(0, [(7,)])]
+    assert files(tmp_path / "out") == files(tmp_path / "alone")
+
+
+def test_a_case_that_dies_for_others_does_not_fail(swept: Callable[..., Client], tmp_path: Path) -> None:
+    """As of a worker that is killed from outside: the third time it lives."""
+    deaths = iter([True, True, True])
+    swept(Client(dies=lambda places: (7,) in places and next(deaths, False)))
+    assert status(tmp_path / "out").failed == 0
+    assert files(tmp_path / "out") == files(tmp_path / "alone")
+
+
+def test_parts_that_are_done_stay_done(swept: Callable[..., Client], tmp_path: Path) -> None:
+    class Gone(Exception):
+        pass
+
+    def dies(places: Any) -> bool:
+        if (30,) in places and len(places) < CASES:
+            raise Gone
+        return len(places) > 3
+
+    with pytest.raises(Exception, match="Gone"):
+        swept(Client(dies, threads=lambda sent: 1))
+    found = status(tmp_path / "out")
+    assert (found.done, found.failed, found.left) == (30, 0, 10)
+    client = swept(Client(dies=lambda places: False))
+    assert client.sent == [(0, [(case,) for case in range(30, CASES)])]
+    assert files(tmp_path / "out") == files(tmp_path / "alone")
+
+
+def test_a_cluster_that_grows_is_fed_as_it_is_now(
+    swept: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(cutting, "_MOST_BATCHES", 5000)
+    client = swept(Client(dies=lambda places: False, threads=lambda sent: 1 if sent < 10 else 4))
+    assert max(client.most[:9]) == 3
+    assert max(client.most) == 12  # three for each thread
+    assert np.all(np.diff([batch for batch, _ in client.sent]) > 0)
+    assert status(tmp_path / "out").done == CASES

@@ -1,0 +1,174 @@
+"""Every program of a scene beside integrations: a fault in any kernel is seen, and named, whatever `generate` takes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import pytest
+
+from tests.support.without_compiler import without_compiler
+from wavesym import compiler
+from wavesym.cli import main
+from wavesym.programs.program import Program
+from wavesym.programs.request import Request
+from wavesym.scene import Scene, lower
+from wavesym.targets.files import files
+from wavesym.verification import programs, report
+
+SAMPLES = {"spacing": "1/2", "samples": [0, 1, -2, 1, 0]}
+DRIVE = Scene(
+    name="small",
+    system={"type": "drive", "m": 1, "kappa": [1], "inertia": [1, 2]},
+    load=[{"body": 1, **SAMPLES}],
+    output={"until": 3, "tolerance": "1e-4", "velocity": [1], "displacement": [0]},
+)
+CHAIN = Scene(
+    name="small",
+    system={
+        "type": "chain",
+        "parts": [{"mass": 1, "name": "a"}, {"rod": 1}, {"rod": "1/2", "impedance": 2}, {"mass": 2, "name": "b"}],
+    },
+    load=[{"at": "a", **SAMPLES}],
+    output={"until": 3, "tolerance": "1e-4", "velocity": ["b"], "displacement": ["a"]},
+)
+FAULTS = {
+    "closed.c": (DRIVE, "--evaluator closed", "sum += polynomial", "sum -= polynomial"),
+    "closed form in NumPy": (DRIVE, "--evaluator closed", "row[late] += polynomial", "row[late] -= polynomial"),
+    "pieces.c": (DRIVE, "--evaluator pieces", "tau - centre[piece]", "tau + centre[piece]"),
+    "march.c": (DRIVE, "--evaluator march", "sum += gain[k] * arrived", "sum -= gain[k] * arrived"),
+    "rings.c": (CHAIN, "--evaluator march", "out[output] += gain[k] * heard", "out[output] -= gain[k] * heard"),
+    "modes.c": (DRIVE, "--evaluator modes", "v0[n] * before + v1[n] * now", "v0[n] * before - v1[n] * now"),
+    "runtime.c": (DRIVE, "--runtime kappa,load", "c[k] += gain * w[k];", "c[k] -= gain * w[k];"),
+    "joints/march.c": (CHAIN, "--runtime mass,load", "s[k] += factor * a[k];", "s[k] -= factor * a[k];"),
+    "stream.c": (DRIVE, "--stream", "out[output] += gain[k] * now;", "out[output] -= gain[k] * now;"),
+    "in single precision": (DRIVE, "--evaluator march --precision single", "sum += gain[k]", "sum -= gain[k]"),
+}
+QUICK = ("closed form in NumPy", "closed.c", "rings.c", "runtime.c")
+
+
+def changing(right: str, wrong: str) -> Callable[..., dict[str, str]]:
+    """What writes programs with a fault in their C or in their NumPy."""
+
+    def changed(program: Program, language: str) -> dict[str, str]:
+        made = files(program, language)
+        assert any(right in text for text in made.values()) or language != ("numpy" if "row" in right else "c")
+        return {name: text.replace(right, wrong) for name, text in made.items()}
+
+    return changed
+
+
+def failing(text: str) -> set[str]:
+    """The programs that fail, of the table of programs."""
+    block = next(block for block in text.split("\n\n") if block.startswith("scene  program"))
+    start = block.index("program")
+    end = block.index("  of ")
+    return {line[start:end].strip() for line in block.splitlines() if line.endswith("FAIL")}
+
+
+@pytest.mark.parametrize("kernel", [k if k in QUICK else pytest.param(k, marks=pytest.mark.slow) for k in FAULTS])
+def test_a_fault_is_seen_and_its_program_named(
+    kernel: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene, options, right, wrong = FAULTS[kernel]
+    monkeypatch.setattr(programs, "files", changing(right, wrong))
+    (tmp_path / "small.toml").write_text(toml(scene))
+    assert main(["verify", str(tmp_path / "small.toml"), *options.split()]) == 1
+    found = failing(capsys.readouterr().out)
+    assert found
+    language = "NumPy" if "NumPy" in kernel else "C"
+    assert all(f", {language}" in name for name in found)
+
+
+def toml(scene: Scene) -> str:
+    """A scene as a file; JSON's values are TOML's here."""
+    fields = scene.model_dump(mode="json")
+    lines = [f"name = {json.dumps(fields['name'])}", f"system = {_inline(fields['system'])}"]
+    lines += [f"load = [{', '.join(map(_inline, fields['load']))}]", f"output = {_inline(fields['output'])}"]
+    return "\n".join(lines)
+
+
+def _inline(value: object) -> str:
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{key} = {_inline(each)}" for key, each in value.items() if each is not None) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_inline, value)) + "]"
+    return json.dumps(value)
+
+
+@pytest.mark.slow
+def test_all_programs_of_a_scene_are_there_and_right() -> None:
+    for scene in (DRIVE, CHAIN):
+        text, passed = compiler.verify([scene])
+        assert passed, text
+        block = next(block for block in text.split("\n\n") if block.startswith("scene  program"))
+        kinds = ["run", "closed, NumPy", "closed, C", "pieces, NumPy", "pieces, C", "march, NumPy", "march, C"]
+        kinds += ["modes, NumPy", "modes, C", "pieces, single, C", "march, single, C", "stream, C", ", C, others"]
+        for kind in kinds:
+            assert f"{kind}  " in block, kind
+        numbers = "kappa inertia load" if scene is DRIVE else "velocity load mass impedance"
+        assert f"runtime {numbers}, C  " in block
+
+
+def test_what_is_asked_for_alone_is_compared() -> None:
+    text, passed = compiler.verify([DRIVE], "closed")
+    assert passed
+    assert (text.count("closed, NumPy"), text.count("closed, C"), text.count("march, C")) == (1, 1, 0)
+    assert "Integration along characteristics" in text  # which says how well it agrees with exact values
+    assert "Central differences" not in text
+
+
+def test_a_program_that_does_not_serve_is_not_verified() -> None:
+    stepped = DRIVE.with_({"load": [{"body": 1, "times": [0], "steps": [1]}]})
+    text, passed = compiler.verify([stepped], "modes")
+    assert not passed
+    assert "small: not modes: load: M1 jumps by 1 at tau = 0" in text
+    assert "small: no program is verified" in text
+
+
+def test_without_a_compiler_it_is_said_which_programs_were_not_tried() -> None:
+    with without_compiler():
+        text, passed = compiler.verify([DRIVE], "closed")
+        assert passed
+        assert "C was not tried: no C compiler" in text
+        assert "small: not closed, C: there is no C compiler" in text
+        text, passed = compiler.verify([DRIVE], runtime="kappa")
+        assert not passed  # there is no NumPy of it
+        assert "no program is verified" in text
+
+
+def test_an_output_that_no_integration_judges_is_not_verified(monkeypatch: pytest.MonkeyPatch) -> None:
+    checks = [check for check in report.CHECKS if check.run.__name__ == "invariants"]
+    monkeypatch.setattr(report, "CHECKS", checks)
+    text, passed = report.verify([(DRIVE, lower(DRIVE))], [Request("closed")])
+    assert not passed
+    assert "small: velocity@1 is not verified, as no integration is exact enough to judge it" in text
+
+
+def test_an_output_that_does_not_move_before_an_integration_ends_is_not_judged_by_it() -> None:
+    """A wave that comes after tau = 2 to where an integration saw nothing until then."""
+    late = DRIVE.with_({"output.displacement": [], "output.velocity": [1], "load": [{"body": 1, **SAMPLES}]})
+    truth = report.known(lower(late))
+    outcomes = [check.run(truth) for check in report.CHECKS if check.run.__name__ == "spacetime"]
+    (integral,) = (outcome.integral for found in outcomes for outcome in found)
+    assert integral is not None
+    assert report._judges(integral, truth)
+    early = programs.IntegratedOutput(integral.taus[:5], 0 * integral.values[:5], 0.0)
+    assert not report._judges(early, truth)
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--stream", "--evaluator", "march"], "--evaluator: march given with --stream, auto expected"),
+        (["--runtime", "speed"], "--runtime: speed given, kappa, inertia or load expected"),
+        (["--published", "--stream"], "--stream given with --published"),
+    ],
+)
+def test_a_wrong_request_is_one_line(options: list[str], says: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", *([] if "--published" in options else ["drive_m1"]), *options]) == 2
+    out, told = capsys.readouterr()
+    assert out == ""
+    assert says in told
+    assert "Traceback" not in told

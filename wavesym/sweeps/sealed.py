@@ -1,0 +1,69 @@
+"""Files of a sweep's folder as they were written, or not at all: JSON with a hash of itself, and no links."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from pathlib import Path
+from stat import S_ISREG
+from typing import Annotated, Any, Self
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from wavesym.errors import WavesymError
+
+_LARGEST = 1 << 28  # bytes of JSON
+Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+
+
+class DamagedError(WavesymError):
+    """Files that are not as they were written; the message says which, and what writes them again."""
+
+    status = 1
+
+
+class StrictTable(BaseModel):
+    """Data from a file: all fields and no others, of exactly these types."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class SealedFile(StrictTable):
+    """A file of JSON whose key `seal` is the hash of all others."""
+
+    def put(self, path: Path) -> None:
+        """Write it, in its place by rename."""
+        draft = path.with_suffix(".part")
+        draft.unlink(missing_ok=True)  # it may be a link, in a folder that others have made
+        fields = self.model_dump()
+        draft.write_text(json.dumps({**fields, "seal": _seal(fields)}, indent=1) + "\n", encoding="utf-8")
+        os.replace(draft, path)
+
+    @classmethod
+    def read(cls, path: Path) -> Self | None:
+        """The file at a path, None where there is none.
+
+        Raises DamagedError, which names the path, for one that is not as it was written.
+        """
+        try:
+            fields = json.loads(file_bytes(path, _LARGEST))
+            if isinstance(fields, dict) and fields.pop("seal", None) == _seal(fields):
+                return cls.model_validate(fields)
+        except (FileNotFoundError, NotADirectoryError):
+            return None
+        except (ValidationError, ValueError, RecursionError):
+            pass
+        raise DamagedError(f"{path}: damaged")
+
+
+def file_bytes(path: Path, most: int) -> bytes:
+    """The bytes of a file. DamagedError for a link, a device or a folder, and for more than `most` bytes."""
+    status = path.lstat()
+    if not S_ISREG(status.st_mode) or status.st_size > most:
+        raise DamagedError(f"{path}: damaged")
+    return path.read_bytes()
+
+
+def _seal(fields: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(fields, indent=1).encode()).hexdigest()

@@ -1,0 +1,325 @@
+"""Every program of a scene, compiled and run, against exact values and against what integrations have of its outputs.
+
+A program answers for the bound, or the estimate, that it states itself. An integration may be wrong by what it allows:
+a program that differs more than both together from it, or more than its bound from exact values, is wrong. Where all of
+them, `run` too, differ from integrations alike, what they start from is wrong, or the integrations are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from math import inf, isnan
+from typing import NamedTuple
+
+import numpy as np
+from flint import fmpq
+from numpy.typing import NDArray
+
+from wavesym.errors import CostError, RangeError, ToleranceError, UnservedError
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import nearest
+from wavesym.numbers.reals import SINGLE
+from wavesym.programs.making import make
+from wavesym.programs.program import Program
+from wavesym.programs.request import KINDS, Request
+from wavesym.programs.runtime.making import runtime_program
+from wavesym.programs.stream.making import stream_program
+from wavesym.programs.stream.plan import inputs_of
+from wavesym.running.compiled import Compiled, compiled, imported
+from wavesym.running.toolchain import CompilerError, compiler
+from wavesym.scene import Scene
+from wavesym.scene.lowering import amplitudes, sources
+from wavesym.targets.files import files
+from wavesym.verification.checks import characteristics
+from wavesym.verification.graph import Array
+from wavesym.verification.other_parameters import draw_parameters, runtime_names
+from wavesym.verification.outcome import IntegratedOutput, Outcome
+from wavesym.verification.reference import Known
+from wavesym.verification.refinement import shown
+from wavesym.verification.streams import step_modes, step_stream
+
+FLAGS = ("-std=c99", "-O1")
+"""Tests compile programs strictly, and with more effort; here are many of them."""
+LOOSENED = (fmpq(1, 1000), fmpq(1, 20))
+"""The tolerances that programs in single precision are made for where they do not meet the scene's."""
+_ROUNDED = 2.0**-53  # exact values are rounded once
+_ROUNDINGS = 8  # no program in single precision is made for a smaller tolerance
+_MOST_MARCHED = 400  # values of a march in C, each from tau = 0 on
+_SOME = 4  # of the instants one of so many is compared for other parameters
+_CLOSE = 1e-9  # instants of samples that are the same
+
+Integrals = Sequence[IntegratedOutput | None]
+"""What integrations have of each output."""
+
+
+@dataclass(frozen=True)
+class ProgramValues:
+    """A program in a language, run: its values, (outputs, n), at `taus`, or as much as `late` beside them.
+
+    `sizes` are the largest values of outputs, and `bounds` what it states of its errors relative to these. One that
+    has other parameters than the scene is compared with `integrals` alone. Instants that are as `close` are the same.
+    A `note` says what is wrong with it already, `refused` why it was not run.
+    """
+
+    name: str
+    taus: Array
+    values: Array
+    sizes: Sequence[float]
+    bounds: Sequence[float]
+    late: float = 0.0
+    note: str = ""
+    integrals: Integrals = ()
+    close: float = 0.0
+    refused: str = ""
+
+
+def all_requests(scene: Scene, model: Model) -> Iterator[Request]:
+    """What may serve a scene: all evaluators, in double and in single precision, parameters and loads at run time."""
+    for precision in ("double", "single"):
+        yield from (Request(kind, precision) for kind in KINDS)
+    if names := runtime_names(scene, model):
+        yield Request(runtime=names)
+    yield Request(stream=True)
+
+
+def compare_programs(
+    scene: Scene, known: Known, integrals: Integrals, requests: Sequence[Request] | None = None
+) -> list[Outcome]:
+    """A row for each program in each language: the output in which it is worst.
+
+    Without `requests` all that may serve the scene, and `run`. What is refused has a row that says so, and no error.
+    """
+    model, compiles = known.whole, _compiles()
+    found: list[ProgramValues] = []
+    reasons: dict[str, list[str]] = {}
+    refused: set[str] = set()
+    if requests is None and known.outputs:
+        found.append(_run(known, integrals))
+    for request in all_requests(scene, model) if requests is None else requests:
+        if requests is None and request.precision == "single" and request.evaluator in refused:
+            continue
+        name = _name(request)
+        try:
+            program = _made(scene, model, request, asked=requests is not None)
+        except (CostError, UnservedError, ToleranceError, RangeError) as error:
+            refused.add(request.evaluator)
+            reasons.setdefault(str(error), []).append(name)
+            continue
+        found += _run_numpy(known, integrals, program, name)
+        if program.numpy_only or not compiles:
+            reasons.setdefault(program.numpy_only or "there is no C compiler", []).append(f"{name}, C")
+        else:
+            found += _run_c(scene, known, integrals, program, name)
+    for each in found:
+        if each.refused:
+            reasons.setdefault(each.refused, []).append(each.name)
+    return [_compare(known, integrals, each) for each in found if not each.refused] + [
+        Outcome(name, {"of": "-", "error": "refused"}, True, f"{model.name}: not {'; not '.join(names)}: {why}")
+        for why, names in reasons.items()
+        for name in names
+    ]
+
+
+def _compiles() -> bool:
+    try:
+        compiler()
+    except CompilerError:
+        return False
+    return True
+
+
+def _name(request: Request) -> str:
+    kind = request.evaluator if request.evaluator != "auto" else "" if request.stream or request.runtime else "auto"
+    runtime = " ".join(("runtime", *request.runtime)) if request.runtime else ""
+    precision = "single" if request.precision == "single" else ""
+    return ", ".join(filter(None, (kind, "stream" if request.stream else "", runtime, precision)))
+
+
+def _made(scene: Scene, model: Model, request: Request, *, asked: bool) -> Program:
+    """The program; in single precision for a larger tolerance, where it has to be."""
+    if request.stream and request.evaluator != "modes":
+        endless = replace(model, endless=True)
+        return stream_program(endless, request, inputs_of(endless, sources(scene)))
+    if request.runtime:
+        return runtime_program(model, request, amplitudes(scene) if "load" in request.runtime else ())
+    tolerances = [model.tolerance]
+    if request.precision == "single":
+        least = max(model.tolerance, _ROUNDINGS * SINGLE.roundoff)
+        tolerances = [each for each in (model.tolerance, *LOOSENED) if each >= least]
+    for tolerance in tolerances[:-1]:
+        with suppress(CostError, UnservedError, ToleranceError):
+            return make(model.tolerating(tolerance), request, tested=True, asked=asked)
+    return make(model.tolerating(tolerances[-1]), request, tested=True, asked=asked)
+
+
+# running
+
+
+def _run(known: Known, integrals: Integrals) -> ProgramValues:
+    """What `run` gives: the exact values, and more of them where integrations ask for them."""
+    others = sorted({tau for each in integrals if each and each.clear for tau in each.taus} - {*known.taus})
+    exact = np.array([each.values for each in known.outputs])
+    taus = np.array([*known.taus, *others])
+    if others and known.exact:
+        exact = np.hstack([exact, known.exact.values(others)])
+    sizes, order = [each.scale for each in known.outputs], np.argsort(taus[: exact.shape[1]])
+    return ProgramValues("run", taus[order], exact[:, order], sizes, [_ROUNDED] * len(sizes))
+
+
+def _run_numpy(known: Known, integrals: Integrals, program: Program, name: str) -> Iterator[ProgramValues]:
+    if program.evaluator in ("runtime", "stream"):
+        return
+    module = imported(files(program, "numpy")[f"{known.whole.name}.py"], known.whole.name)
+    taus, given, late = _instants(known, integrals, program)
+    values = np.asarray(module.evaluate(given), np.float64)
+    yield ProgramValues(f"{name}, NumPy", taus, values, _sizes(known, integrals, program), _bounds(program), late)
+
+
+def _run_c(scene: Scene, known: Known, integrals: Integrals, program: Program, name: str) -> Iterator[ProgramValues]:
+    model, sizes, bounds = known.whole, _sizes(known, integrals, program), _bounds(program)
+    real = np.float32 if program.real.bytes == 4 else np.float64
+    flags = (*FLAGS, f"-D{model.name.upper()}_ONE_SET")
+    taus, given, late = _instants(known, integrals, program)
+    with compiled(files(program, "c"), len(model.probes), real, flags) as built:
+        fails = f"{model.name}: {name}: the self-test of the generated C fails"
+        note = fails if program.reference and built.selftest() != 0 else ""
+        if program.evaluator == "runtime":
+            yield from _with_parameters(scene, known, integrals, program, built, name)
+        elif program.evaluator == "stream":
+            taus, values, lost = step_stream(scene, known, program, built, taus)
+            yield ProgramValues(f"{name}, C", taus, values, sizes, [bound + lost for bound in bounds], 0.0, note)
+        elif program.evaluator == "modes":
+            taus, values = step_modes(scene, known, program, built)
+            yield ProgramValues(f"{name}, C", taus, values, sizes, bounds, 0.0, note, close=_CLOSE)
+        else:
+            some = np.arange(len(taus))
+            if program.evaluator == "march":
+                some = np.unique(np.linspace(0, len(taus) - 1, _MOST_MARCHED).round().astype(int))
+            yield ProgramValues(f"{name}, C", taus[some], built(given[some].tolist()), sizes, bounds, late, note)
+
+
+def _with_parameters(
+    scene: Scene, known: Known, integrals: Integrals, program: Program, built: Compiled, name: str
+) -> Iterator[ProgramValues]:
+    """With the scene's own parameters, and with others, of which only integrations know anything."""
+    assert program.laws is not None
+    taus, given, late = _instants(known, integrals, program)
+    own = [nearest(value) for field in program.laws.fields for value in field.values]
+    status, estimate, values = built.model(own, given.tolist())
+    bounds = [estimate] * len(program.outputs)
+    note = f"{known.whole.name}: {name}: build returns {status}" if status else ""
+    yield ProgramValues(f"{name}, C", taus, values, _sizes(known, integrals, program), bounds, late, note)
+    numbers, other = draw_parameters(scene, known.whole, program.laws.fields)
+    instants = [tau for tau in known.taus if np.float32(tau) == tau][::_SOME]
+    try:
+        _, refined = characteristics(other.shortened(known.model.until), known.until, instants, [None] * len(bounds))
+    except (CostError, UnservedError) as error:
+        yield ProgramValues(f"{name}, C, others", taus, values, [], [], refused=str(error))
+        return
+    sizes = [float(np.max(np.abs(each.values))) for each in refined]
+    judges = [
+        IntegratedOutput(instants, each.values, each.allowed * (size or 1.0))
+        for each, size in zip(refined, sizes, strict=True)
+    ]
+    status, estimate, values = built.model(numbers, instants)
+    bounds = [estimate] * len(program.outputs)
+    note = f"{known.whole.name}: {name}: build returns {status} for other parameters" if status else ""
+    yield ProgramValues(f"{name}, C, others", np.array(instants), values, sizes, bounds, 0.0, note, judges)
+
+
+def _instants(known: Known, integrals: Integrals, program: Program) -> tuple[Array, Array, float]:
+    """Where values are compared, these as numbers of the program's type, and how far they are from that at most.
+
+    A front may pass between an instant and the number of single precision that is nearest to it: such instants are
+    compared only where integrations are clear of fronts.
+    """
+    real = np.float32 if program.real.bytes == 4 else np.float64
+    there = [each for each in integrals if each]
+    exact = np.array([*known.taus, *(tau for each in there if not each.clear for tau in each.taus)])
+    clear = np.array([tau for each in there if each.clear for tau in each.taus])
+    taus = np.unique(np.concatenate([exact[exact.astype(real) == exact], clear]))
+    given = np.minimum(taus.astype(real), real(program.tau_max)).astype(np.float64)
+    return taus, given, float(np.max(np.abs(given - taus), initial=0.0))
+
+
+def _sizes(known: Known, integrals: Integrals, program: Program) -> list[float]:
+    """The largest value of each output on the whole horizon, as far as it is known."""
+    found = []
+    for k, output in enumerate(program.outputs):
+        if known.outputs:
+            seen = 0.0 if known.outputs[k].zero else known.outputs[k].scale
+        else:
+            seen = each.size if (each := integrals[k]) else 0.0
+        found.append(max(output.largest, seen))
+    return found
+
+
+def _bounds(program: Program) -> list[float]:
+    return [output.bound + _ROUNDED for output in program.outputs]
+
+
+# judging
+
+
+def _compare(known: Known, integrals: Integrals, found: ProgramValues) -> Outcome:
+    """The row of a program: of the output in which it comes closest to what it may be wrong by, or is wrong."""
+    worst, row = -1.0, {"of": "-"}
+    exact = _exact(known, found)
+    for k, probe in enumerate(known.whole.probes):
+        size, integral = found.sizes[k], (found.integrals or integrals)[k]
+        stated, unit, parts = found.bounds[k] * size, size or 1.0, []
+        cells = {"of": probe.name, "error": "-", "difference": "-", "allowed": "-", "bound": shown(stated / unit)}
+        if exact:
+            error = _largest(found.values[k][exact.mine] - exact.values[k])
+            parts.append(_part(error, stated))
+            cells["error"] = shown(error / unit)
+        if integral and len(pairs := _pairs(found.taus, np.array(integral.taus), found.close)):
+            error = _largest(found.values[k][pairs[:, 0]] - integral.values[pairs[:, 1]])
+            allowed = integral.allowed + found.late * integral.steepest
+            parts.append(_part(error, stated + allowed))
+            cells |= {"difference": shown(error / unit), "allowed": shown(allowed / unit)}
+        if (part := max(parts, default=inf)) > worst:
+            worst, row = part, cells
+    return Outcome(found.name, row, not found.note and worst <= 1, found.note)
+
+
+class _ExactValues(NamedTuple):
+    """Exact values of each output, and at which of a program's instants they are."""
+
+    mine: NDArray[np.int_]
+    values: Sequence[Array]
+
+
+def _exact(known: Known, found: ProgramValues) -> _ExactValues | None:
+    if found.integrals or not known.outputs or not len(found.taus):
+        return None
+    if len(pairs := _pairs(found.taus, np.array(known.taus))):
+        return _ExactValues(pairs[:, 0], [output.values[pairs[:, 1]] for output in known.outputs])
+    if known.exact is None:
+        return None
+    return _ExactValues(np.arange(len(found.taus)), [np.array(row) for row in known.exact.values(found.taus.tolist())])
+
+
+def _pairs(mine: Array, theirs: Array, close: float = 0.0) -> NDArray[np.int_]:
+    """Which of two ascending lists of instants are the same: pairs of places, (n, 2)."""
+    if not len(mine):
+        return np.zeros((0, 2), int)
+    after = np.clip(np.searchsorted(mine, theirs), 0, len(mine) - 1)
+    before = np.maximum(after - 1, 0)
+    near = np.where(np.abs(mine[before] - theirs) < np.abs(mine[after] - theirs), before, after)
+    (same,) = np.nonzero(np.abs(mine[near] - theirs) <= close)
+    return np.stack([near[same], same], axis=1)
+
+
+def _largest(errors: Array) -> float:
+    """The largest absolute value; NaN where there is one."""
+    return float(np.max(np.abs(errors), initial=0.0))
+
+
+def _part(error: float, allowed: float) -> float:
+    """What an error is of what is allowed: more than 1 where it is wrong."""
+    if isnan(error) or error > allowed == 0:
+        return inf
+    return error / allowed if allowed else 0.0

@@ -1,0 +1,106 @@
+"""Streams under the loads of a scene, as its user would feed them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from flint import fmpq
+from numpy.typing import NDArray
+
+from wavesym.mechanics.model import Model
+from wavesym.numbers.doubles import fraction, nearest
+from wavesym.programs.program import Program
+from wavesym.running.compiled import Compiled
+from wavesym.scene import Scene
+from wavesym.verification.graph import Array
+from wavesym.verification.independent import changes
+from wavesym.verification.reference import Known
+
+_CLEAR = 1e-6  # outputs are looked at so far from fronts and from changes of loads, and no closer together
+_MOST_LOOKED = 300
+
+FedLoads = tuple[Fraction, list[float], bool]
+"""When, the loads, and whether they jump to these."""
+
+
+def step_stream(
+    scene: Scene, known: Known, program: Program, built: Compiled, taus: Array
+) -> tuple[Array, Array, float]:
+    """A stream of waves: some of the taus, the outputs there, and what it says that it has lost.
+
+    It steps to every change of a load; one that jumps does so in a step of its own.
+    """
+    feed = LoadFeed(scene, known.whole, program.sources)
+    fronts = np.array([*known.starts, *map(float, feed.times)])
+    apart = np.array([tau for tau in taus if np.min(np.abs(fronts - tau), initial=np.inf) > _CLEAR])
+    chosen = _some(apart[np.diff(apart, prepend=0.0) > _CLEAR])
+    stops = [Fraction(tau) for tau in chosen.tolist()]
+    looked, columns, told = set(stops), [], 0.0
+    own = [nearest(value) for field in program.laws.fields for value in field.values] if program.laws else None
+    stream = built.stream(own)
+    for tau, loads, jumps in feed.through(stops, everywhere=True):
+        column = stream.step(0.0 if jumps else float(tau) - told, loads)
+        told = float(tau)
+        if tau in looked:
+            columns.append(column)
+    return chosen, np.array(columns).T, stream.lost
+
+
+def step_modes(scene: Scene, known: Known, program: Program, built: Compiled) -> tuple[Array, Array]:
+    """A stream of modes: some multiples of its spacing after the first change of a load, and the outputs there."""
+    feed = LoadFeed(scene, known.whole, program.sources)
+    step = Fraction(program.constants["spacing"])
+    if (told := known.whole.spacing) and abs(fraction(told) / step - 1) < _CLEAR:
+        step = fraction(told)  # as it is, and not as a double has it
+    first = feed.times[0] % step if feed.times else Fraction(0)
+    stops = [first + k * step for k in range(1, int((fraction(known.model.until) - first) / step) + 1)]
+    stream = built.stream()
+    columns = [stream.step(program.constants["spacing"], loads) for _, loads, _ in feed.through(stops)]
+    some = _some(np.arange(len(stops)))
+    return np.array([float(stop) for stop in stops])[some], np.array(columns).T[:, some]
+
+
+def _some(given: NDArray[Any]) -> NDArray[Any]:
+    """As many as are looked at, evenly."""
+    return np.asarray(
+        given[np.unique(np.linspace(0, len(given) - 1, min(len(given), _MOST_LOOKED)).round().astype(int))]
+    )
+
+
+class LoadFeed:
+    """The loads of a scene as a stream takes them, in the units that stand with their names.
+
+    `times` are those at which one changes.
+    """
+
+    def __init__(self, scene: Scene, model: Model, names: Sequence[str]) -> None:
+        bare = [name.partition(" [")[0] for name in names]
+        self._rows = len(names)
+        self._changes: dict[Fraction, list[tuple[int, Fraction, Fraction]]] = {}
+        for load in scene.load:
+            called = [source.removesuffix(kind) for source, kind in zip(load.sources, (":step", ":ramp"), strict=True)]
+            row = next(bare.index(name) for name in called if name in bare)
+            size, _ = next((model.inputs[source] for source in load.sources if source in model.inputs), (fmpq(1), ""))
+            for time, jump, slope in changes(load):
+                if jump or slope:
+                    self._changes.setdefault(time, []).append((row, fraction(size) * jump, fraction(size) * slope))
+        self.times = sorted(self._changes)
+
+    def through(
+        self, stops: Sequence[Fraction], *, everywhere: bool = False
+    ) -> Iterator[tuple[Fraction, list[float], bool]]:
+        """The loads at each stop, or wherever they change, too; after that as they are once they have jumped there."""
+        now, loads, slopes = Fraction(0), [Fraction(0)] * self._rows, [Fraction(0)] * self._rows
+        wanted = set(stops)
+        for then in sorted({*(time for time in self.times if stops and time <= stops[-1]), *stops}):
+            loads, now = [load + (then - now) * slope for load, slope in zip(loads, slopes, strict=True)], then
+            if then in wanted or (everywhere and then > 0):
+                yield then, [float(load) for load in loads], False
+            here = self._changes.get(then, ())
+            for row, jump, slope in here:
+                loads[row], slopes[row] = loads[row] + jump, slopes[row] + slope
+            if everywhere and any(jump for _, jump, _ in here):
+                yield then, [float(load) for load in loads], True
