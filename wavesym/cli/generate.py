@@ -61,12 +61,6 @@ KAPPA = PositiveParameter("a positive number such as 5 or 1/2")
     "--precision", type=click.Choice(PRECISIONS), default="double", show_default=True, help="Type of all numbers."
 )
 @click.option(
-    "--windows",
-    type=click.IntRange(1, MOST_WINDOWS),
-    metavar="N",
-    help="For a march that will be driven by hand for N units of tau, under loads that come while it runs.",
-)
-@click.option(
     "--optimize",
     type=click.Choice(AIMS),
     help="What is best, of programs that will do.  [default: speed; for single precision size]",
@@ -109,7 +103,6 @@ def generate(
     language: str,
     evaluator: str,
     precision: str,
-    windows: int | None,
     optimize: str | None,
     runtime: str | None,
     parts: str | None,
@@ -129,7 +122,7 @@ def generate(
     """
     from wavesym import compiler
 
-    asked = (scene, directory, language, evaluator, precision, windows, optimize)
+    asked = (scene, directory, language, evaluator, precision, optimize)
     given, named = map(_names, (runtime, parts))
     more: dict[str, Any] = {"parts": named, "kappa_max": kappa_max, "stream": stream, "step": step, "package": package}
     if only_check and target:

@@ -30,7 +30,6 @@ def generate(
     language: str = "c",
     evaluator: str = "auto",
     precision: str = "double",
-    windows: int | None = None,
     optimize: str | None = None,
     runtime: Sequence[str] = (),
     *,
@@ -44,11 +43,10 @@ def generate(
 ) -> tuple[Path, ...]:
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
 
-    `windows`: a march is to be driven by hand for so many, under loads that are given while it runs. `optimize` is for
-    "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters that C takes when it
-    runs: "kappa", "inertia", "velocity", "load"; `parts` are what it has then besides values and the estimate of their
-    errors: "peaks", "gradients", "batch", "misfit", "bound". `kappa_max` is the largest kappa that it is made for (ten
-    times the scene's own), of a chain that is written out the largest rate of a joint. A `stream` takes the loads
+    `optimize` is for "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters
+    that C takes when it runs: "kappa", "inertia", "velocity", "load"; `parts` are what it has then besides values and
+    the estimate of their errors: "peaks", "gradients", "batch", "misfit", "bound". `kappa_max` is the largest kappa that it
+    is made for (ten times the scene's own), in a general chain the largest rate of a joint. A `stream` takes the loads
     sample by sample, at any time, or best at multiples of `step`, in tau, and `runtime` when it starts. `package` adds
     what CMake builds, tests and installs C with. `target` "fmu2" or "fmu3" makes one file, NAME.fmu, a stream for
     simulators, whose parameters are `runtime`, or all of a named system; CompilerError without a C compiler. Files that
@@ -62,7 +60,7 @@ def generate(
     drive/drive_m1.py
     """
     runtime_options = tuple(runtime), tuple(parts), kappa_max
-    request = _request(evaluator, precision, windows, optimize, *runtime_options, stream, step, target)
+    request = _request(evaluator, precision, optimize, *runtime_options, stream, step, target)
     made: Mapping[Path, str | bytes]
     if target:
         made = {Path(directory or scene.name) / f"{scene.name}.fmu": _fmu(scene, language, request, package)}
@@ -81,7 +79,6 @@ def check(
     language: str = "c",
     evaluator: str = "auto",
     precision: str = "double",
-    windows: int | None = None,
     optimize: str | None = None,
     source: str = "SCENE",
     runtime: Sequence[str] = (),
@@ -98,7 +95,7 @@ def check(
     last line is the command that mends them, with the scene as it is given by `source`.
     """
     runtime_options = tuple(runtime), tuple(parts), kappa_max
-    request = _request(evaluator, precision, windows, optimize, *runtime_options, stream, step)
+    request = _request(evaluator, precision, optimize, *runtime_options, stream, step)
     made = _written(scene, directory, language, request, package)
     folder = Path(directory or scene.name)
     found = [path for path in {*folder.glob(f"{scene.name}*"), *made} if path.is_file()]
@@ -111,7 +108,6 @@ def check(
 def _request(
     evaluator: str,
     precision: str,
-    windows: int | None,
     optimize: str | None,
     runtime: tuple[str, ...],
     parts: tuple[str, ...],
@@ -129,7 +125,7 @@ def _request(
     if kappa_max is not None and kappa_max <= 0:
         raise WavesymError(f"--kappa-max: {kappa_max} given, a positive number expected")
     every, largest = (None if number is None else rational(number) for number in (step, kappa_max))
-    return Request(evaluator, precision, windows, optimize, runtime, stream, every, target, parts, largest)
+    return Request(evaluator, precision, optimize, runtime, stream, every, target, parts, largest)
 
 
 def _written(

@@ -21,11 +21,10 @@ from wavesym.programs.request import unmet
 
 if TYPE_CHECKING:
     from wavesym.programs.hats.evaluator import HatMarch
-    from wavesym.programs.march.evaluator import MarchEvaluator
+    from wavesym.programs.march.evaluator import March
     from wavesym.programs.modes.evaluator import ModesEvaluator
-    from wavesym.programs.rings.evaluator import RingMarch
 
-Made: TypeAlias = "ClosedForm | Pieces | ModesEvaluator | MarchEvaluator | RingMarch | HatMarch"
+Made: TypeAlias = "ClosedForm | Pieces | ModesEvaluator | March | HatMarch"
 
 _USUAL_TABLES = {"double": "speed", "single": "size"}
 # Closed forms with larger tables than this are not tried unless asked for: they have lost their digits long before.
@@ -97,7 +96,6 @@ def choose(
     model: Model,
     name: str = "auto",
     precision: str = "double",
-    windows: int | None = None,
     optimize: str | None = None,
     *,
     asked: bool = True,
@@ -106,15 +104,12 @@ def choose(
 
     Best is what takes least work or, where it is to `optimize` "size", has the least tables. Pieces in single precision
     have small tables unless "speed" is asked for. More may be spent on an evaluator that is `asked` for by its name.
-    `windows`: for how many of them a march is driven by hand; WavesymError for another evaluator.
     ToleranceError where none does: it says what can be had. CostError, RangeError where one is asked for that would
     cost too much or need numbers beyond those of its format.
     """
-    if windows is not None and name != "march":
-        raise WavesymError(f"--windows goes with --evaluator march, {name} given")
     if name == "auto":
         return best(model, attempts(model, precision, optimize), optimize)
-    only = attempt(model, name, precision, windows, optimize, asked=asked)
+    only = attempt(model, name, precision, optimize, asked=asked)
     if only.error:
         raise only.error
     return best(model, (only,), optimize)
@@ -139,7 +134,6 @@ def attempt(
     model: Model,
     kind: str,
     precision: str = "double",
-    windows: int | None = None,
     optimize: str | None = None,
     *,
     asked: bool = False,
@@ -147,7 +141,7 @@ def attempt(
 ) -> Tried:
     """One kind of program tried; more may be spent on one that is `asked` for by its name, less where one `served`."""
     try:
-        form = MAKERS[kind](model, REALS[precision], asked, windows, optimize or _USUAL_TABLES[precision], served)
+        form = MAKERS[kind](model, REALS[precision], asked, optimize or _USUAL_TABLES[precision], served)
     except (CostError, UnservedError) as refusal:
         return Tried(kind, None, str(refusal), refusal)
     except ToleranceError as refusal:
@@ -186,7 +180,7 @@ def _closed(model: Model, real: Real, asked: bool, *_: object) -> ClosedForm:
     return closed_form(merged, model.horizon(real), real)
 
 
-def _pieces(model: Model, real: Real, asked: bool, windows: int | None, optimize: str, served: bool) -> Pieces:
+def _pieces(model: Model, real: Real, asked: bool, optimize: str, served: bool) -> Pieces:
     return pieces(model, real, model.tolerance, optimize, _OF_MANY if served else inf)
 
 
@@ -197,12 +191,9 @@ def _modes(model: Model, real: Real, *_: object) -> ModesEvaluator:
     return modes(model, real)
 
 
-def _march(
-    model: Model, real: Real, asked: bool, windows: int | None, *_: object
-) -> MarchEvaluator | RingMarch | HatMarch:
+def _march(model: Model, real: Real, asked: bool, *_: object) -> March | HatMarch:
     from wavesym.programs.hats.evaluator import hat_march
-    from wavesym.programs.march.evaluator import marched
-    from wavesym.programs.rings.evaluator import ring_march
+    from wavesym.programs.march.evaluator import march
 
     if not asked and model.tolerance < real.roundoff:
         digits, most = (-log10(nearest(each)) for each in (model.tolerance, real.roundoff))
@@ -210,18 +201,14 @@ def _march(
             f"output: {digits:.0f} digits would be marched for, at most {most:.0f} expected, as many as "
             f"{real.name} precision has (a larger tolerance helps)"
         )
-    if model.chain is None and windows is not None:
-        raise UnservedError(
-            f"--windows: {model.labels.type} given, collision, drive or building expected (they take given loads)"
-        )
     try:
-        return ring_march(model, real) if model.chain is None else marched(model, real, windows=windows)
+        return march(model, real)
     except SpacingError as refusal:
-        hats = hat_march(model, str(refusal)) if windows is None and real is DOUBLE else None
+        hats = hat_march(model, str(refusal)) if real is DOUBLE else None
         if hats is None:
             raise
         return hats
 
 
-Maker: TypeAlias = "Callable[[Model, Real, bool, int | None, str, bool], Made]"
+Maker: TypeAlias = "Callable[[Model, Real, bool, str, bool], Made]"
 MAKERS: dict[str, Maker] = {"closed": _closed, "pieces": _pieces, "modes": _modes, "march": _march}

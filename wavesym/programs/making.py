@@ -23,7 +23,7 @@ def make(model: Model, request: Request = _USUAL, *, tested: bool = False, asked
     ToleranceError where no evaluator, or not the one asked for, meets the model's tolerance; CostError where the one
     asked for would cost too much.
     """
-    _, form, why = choose(model, request.evaluator, request.precision, request.windows, request.optimize, asked=asked)
+    _, form, why = choose(model, request.evaluator, request.precision, request.optimize, asked=asked)
     happening = events(model, form.real) if model.network.contacts else None
     provenance = Provenance(model, why, request.options, contact_ends(model, form.real), happening)
     return _made(model, form, provenance, tested)

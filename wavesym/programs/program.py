@@ -82,28 +82,18 @@ class SteppedValues:
 
 
 @dataclass(frozen=True)
-class Driven:
-    """What holds of a march that is driven by hand for `windows`: each output's error per unit of a load."""
-
-    windows: int
-    errors: tuple[float, ...]
-
-
-@dataclass(frozen=True)
 class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
-    `kind` names its scheme: "closed", "pieces", "march", "rings", the march of a chain that is written out, "hats",
-    that of one hat of each record, in NumPy alone, "modes", "runtime": a march whose parameters come at run time, by
-    its `laws`, "joints": that of a chain, or "stream": one whose loads do. The last three are C alone.
+    `kind` names its scheme: "closed", "pieces", "march", "hats", that of one hat of each record, in NumPy alone,
+    "modes", "runtime": a march whose parameters come at run time, by its `laws`, "joints": that of a chain, or
+    "stream": one whose loads do. The last three are C alone.
     `tables` are flat (flat.py), by name, each number as it is written; which there are, the `program` of each
-    evaluator says, of marches march/tables.py and rings/tables.py, of modes modes/tables.py, of streams
-    stream/tables.py.
-    `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. Of a march,
-    modes and a stream, `sources` are the names of loads that it can be given; a march is `whole` where no node was left
-    out. Its error is `proved`, or an estimate. Of a stream `direct` has for each output the sources that act on it at
-    once. `numpy_only` says why there is no C of it, and what helps. `parts` are what C with parameters at run time has
-    besides values.
+    evaluator says, of marches march/tables.py, of modes modes/tables.py, of streams stream/tables.py.
+    `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. `sources`
+    are the names of loads that modes and a stream can be given. Its error is `proved`, or an estimate. Of a stream
+    `direct` has for each output the sources that act on it at once. `numpy_only` says why there is no C of it, and what
+    helps. `parts` are what C with parameters at run time has besides values.
     """
 
     kind: str
@@ -116,8 +106,6 @@ class Program:
     provenance: Provenance
     reference: ReferenceValues | StreamedValues | SteppedValues | None = None
     sources: tuple[str, ...] = ()
-    whole: bool = True
-    driven: Driven | None = None
     proved: bool = True
     laws: RuntimeLaws | None = None
     direct: tuple[tuple[int, ...], ...] = ()
@@ -127,7 +115,7 @@ class Program:
     @property
     def evaluator(self) -> str:
         """What a user calls its kind."""
-        return {"rings": "march", "hats": "march", "joints": "runtime"}.get(self.kind, self.kind)
+        return {"hats": "march", "joints": "runtime"}.get(self.kind, self.kind)
 
     @property
     def error_bound(self) -> float:

@@ -19,7 +19,7 @@ PARTS = ("peaks", "gradients", "batch", "misfit", "bound")
 
 @dataclass(frozen=True)
 class Request:
-    """`evaluator` is a kind of program or "auto"; `windows` is for a march that is driven by hand.
+    """`evaluator` is a kind of program or "auto".
 
     `optimize` says of programs that meet the tolerance which is best: the fastest ("speed"), or the one with the least
     tables ("size"). Unless it is said the fastest kind is taken; in single precision, which is for small machines, with
@@ -30,7 +30,6 @@ class Request:
 
     evaluator: str = "auto"
     precision: str = "double"
-    windows: int | None = None
     optimize: str | None = None
     runtime: tuple[str, ...] = ()
     stream: bool = False
@@ -44,7 +43,6 @@ class Request:
         """Those that differ from what is usual, as they are typed."""
         options = "" if self.evaluator == "auto" else f" --evaluator {self.evaluator}"
         options += "" if self.precision == "double" else f" --precision {self.precision}"
-        options += "" if self.windows is None else f" --windows {self.windows}"
         options += "" if self.optimize is None else f" --optimize {self.optimize}"
         options += " --stream" if self.stream and not self.target else ""
         options += f" --target {self.target}" if self.target else ""

@@ -23,9 +23,9 @@ from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, not_below
 from wavesym.programs.hats.split import rest_of
 from wavesym.programs.making import make
+from wavesym.programs.march.plan import march_plan
 from wavesym.programs.program import Program
 from wavesym.programs.request import Request
-from wavesym.programs.rings.plan import ring_plan
 
 Points = NDArray[np.float64]
 
@@ -126,7 +126,7 @@ def drawable(model: Model) -> Program:
 def _fits(model: Model) -> bool:
     """Whether loads fit into the windows of a march; to march one hat instead takes longer than modes."""
     try:
-        ring_plan(model)
+        march_plan(model)
     except SpacingError:
         return False
     except WavesymError:  # as will be said

@@ -14,7 +14,6 @@ CODE_AT_MOST = {
     "closed": 1024,
     "pieces": 4096,
     "march": 8192,
-    "rings": 8192,
     "hats": 0,
     "modes": 4096,
     "stream": 8192,
@@ -45,7 +44,6 @@ def manifest(description: Description, program: Program) -> str:
         **({} if program.laws else {"error_bound": program.error_bound}),
         **_clock(program),
         "outputs": [_output(output, program) for output in program.outputs],
-        **_driven(program),
         **_streamed(program),
         **_runtime(program),
         "contact_end": {contact.position: contact.digits for contact in description.contacts},
@@ -113,11 +111,3 @@ def _streamed(program: Program) -> dict[str, object]:
         pairs = zip(program.outputs, program.direct, strict=True)
         told["direct"] = {output.name: [program.sources[j] for j in of] for output, of in pairs if of}
     return {key: program.constants[key], "loads": list(program.sources), **told}
-
-
-def _driven(program: Program) -> dict[str, object]:
-    """What is proved for loads that are given while a march runs."""
-    if program.driven is None:
-        return {}
-    errors = zip(program.outputs, program.driven.errors, strict=True)
-    return {"windows": program.driven.windows, "given_error": {output.name: error for output, error in errors}}

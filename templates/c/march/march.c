@@ -4,361 +4,299 @@
 #include "tables.h"
 #include "../series.h"
 
-/* False for what is no number. */
-static int within_reach(real x)
+/* A march: `waves` has a ring for each track, its last windows; x are the states of the joints. */
+typedef struct march {
+    int window;
+    int event;
+    real x[STATES + 1];
+    real total[OUTPUTS];       /* integrals at the start of the window */
+    real load[FORCES + 1][3];  /* in powers of the time since */
+    int changed[FORCES + 1][2]; /* that window and panel */
+    real waves[SLOTS][PANELS][SIZE];
+} march;
+
+/* Where a track has the current window. */
+static real *wave_sent(march *state, int number, int panel)
 {
-    return x >= -reach && x <= reach;
+    return state->waves[ring[number] + state->window % (steps[number] + 1)][panel];
 }
 
-static real magnitude(real x)
+/* What a track had so many windows ago, at most as many as it has steps. */
+static const real *wave(const march *state, int number, int windows, int panel)
 {
-    return x < 0 ? -x : x;
+    const int turn = steps[number] + 1;
+    return state->waves[ring[number] + (state->window + turn - windows) % turn][panel];
 }
 
-/* What is heard, where it arrives, t after the start of the window. */
-static real arrived(const march *state, int heard, real t)
+/* A track where it is heard, t after the start of the cycle. */
+static real heard(const march *state, int number, int late, real t)
 {
-    int s = first_stretch[delay[heard]];
-    while (s + 1 < first_stretch[delay[heard] + 1] && t >= from[s + 1]) {
+    const int phase = state->window % CYCLE;
+    int s = first_stretch[late];
+    while (s + 1 < first_stretch[late + 1] && t >= from[(s + 1) * CYCLE + phase]) {
         ++s;
     }
-    const int half = back[s] ? !state->half : state->half;
-    const real w = (t - start[s]) + excess[s];
-    return series(state->waves[half][way[heard]][panel_of[s]][sender[heard] + 1], w / half_length[panel_of[s]] - 1);
+    const real w = (t - start[s * CYCLE + phase]) + excess[s * CYCLE + phase];
+    return series(wave(state, number, back[s], panel_of[s]), w / half_length[panel_of[s]] - 1);
 }
 
-/* Its integral from the start of the window to t after it, 0 <= t <= 1. */
-static real gathered(const march *state, int heard, real t)
+/* Its integral from the start of the window to t, or over the `whole` of it. */
+static real gathered(const march *state, int number, int late, real t, int whole)
 {
-    const int begin = first_stretch[delay[heard]];
-    const int end = first_stretch[delay[heard] + 1];
+    const int phase = state->window % CYCLE;
+    const int first = first_stretch[late];
+    const int end = first_stretch[late + 1];
     real sum = 0;
-    for (int s = begin; s < end && (s == begin || t >= from[s]); ++s) {
-        const int half = back[s] ? !state->half : state->half;
-        const real *const wave = state->waves[half][way[heard]][panel_of[s]][sender[heard] + 1];
-        const real length = half_length[panel_of[s]];
-        const int ends = s + 1 < end && t >= from[s + 1];
-        const real low = s == begin ? excess[s] - start[s] : (real)0;
-        const real high = ends ? 2 * length : (t - start[s]) + excess[s];
-        sum += length * (antiderivative(wave, high / length - 1) - antiderivative(wave, low / length - 1));
+    for (int s = first; s < end && (s == first || whole || t >= from[s * CYCLE + phase]); ++s) {
+        const real *const c = wave(state, number, back[s], panel_of[s]);
+        const real half = half_length[panel_of[s]];
+        const int over = whole || (s + 1 < end && t >= from[(s + 1) * CYCLE + phase]);
+        const real until = over ? high[s] : (t - start[s * CYCLE + phase]) + excess[s * CYCLE + phase];
+        sum += half * (antiderivative(c, until / half - 1) - antiderivative(c, low[s] / half - 1));
     }
     return sum;
 }
 
 /* The integrals in an output. */
-static real displaced(const march *state, int output, real t)
+static real integral(const march *state, int output, real t, int whole)
 {
-    real sum = 0;
+    real sum = state->total[output];
     for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
         if (summed[k]) {
-            sum += gain[k] * gathered(state, k, t);
+            sum += gain[k] * gathered(state, track[k], delay[k], t, whole);
         }
     }
-    return state->displacement[output] + sum;
+    return sum;
 }
 
-static real value(const march *state, int output, real t)
+static void read_at(const march *state, real t, real out[OUTPUTS])
 {
-    real sum = 0;
-    for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
-        if (!summed[k]) {
-            sum += gain[k] * arrived(state, k, t);
+    for (int output = 0; output < OUTPUTS; ++output) {
+        out[output] = integral(state, output, t, 0);
+        for (int k = first_heard[output]; k < first_heard[output + 1]; ++k) {
+            if (!summed[k]) {
+                out[output] += gain[k] * heard(state, track[k], delay[k], t);
+            }
         }
     }
-    return displaced(state, output, t) + sum;
 }
 
-/* The scene's own loads on a panel, as series. */
-static void own(march *state, int panel, real force[FORCES + 1][SIZE])
+/* What acts on a point on a panel: three coefficients. */
+static void acts(const march *state, int force, int panel, real *c)
 {
+    const real *const power = state->load[force];
+    const int *const then = state->changed[force];
     const real half = half_length[panel];
-    for (int f = 0; f <= FORCES; ++f) {
-        const real *const c = state->load[f];
-        const int *const from_then = state->since[f];
-        const real middle = ((real)(state->window - from_then[0]) + since[panel * PANELS + from_then[1]]) + half;
-        force[f][0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2];
-        force[f][1] = half * (c[1] + 2 * middle * c[2]);
-        force[f][2] = half * half / 2 * c[2];
-        for (int k = 3; k <= DEGREE; ++k) {
-            force[f][k] = 0;
+    const real middle = ((real)(state->window - then[0]) * step + since[panel * PANELS + then[1]]) + half;
+    c[0] = (power[0] + middle * power[1]) + (middle * middle + half * half / 2) * power[2];
+    c[1] = half * (power[1] + 2 * middle * power[2]);
+    c[2] = half * half / 2 * power[2];
+}
+
+/* The changes of the loads at the start of a panel. */
+static void change(march *state, int panel)
+{
+    while (state->event < EVENTS && event_window[state->event] == state->window &&
+           event_panel[state->event] == panel) {
+        const int force = event_force[state->event];
+        for (int power = 0; power < 3; ++power) {
+            state->load[force][power] = event_power[3 * state->event + power];
         }
+        state->changed[force][0] = state->window;
+        state->changed[force][1] = panel;
+        state->event += 1;
     }
 }
 
-/* What a load has left at the highest degrees, more than rounding: it is too rough for its points. */
-static real roughness(const real *values, const real *c)
+/* A body on a panel: from p and its velocity at the start that at the end, and its own. */
+static void step_body(march *state, int joint, int panel)
 {
-    real largest = 0;
-    for (int k = 0; k <= DEGREE; ++k) {
-        largest = magnitude(values[k]) > largest ? magnitude(values[k]) : largest;
+    const real *const e = matrix + answer[panel * JOINTS + joint];
+    const real *const at_first = e + SIZE;
+    const real *const at_last = e + 2 * SIZE;
+    real *const x = state->x + first_state[joint];
+    const int force = force_on[first_point[joint]];
+    const int first = first_port[joint];
+    const int end = first_port[joint + 1];
+    real p[SIZE + 1];
+    real q[SIZE];
+    const real *const arrived = wave(state, arrive[first], steps[arrive[first]], panel);
+    for (int k = 0; k < SIZE; ++k) {
+        p[k] = push[first] * arrived[k];
     }
-    const real rough = (magnitude(c[DEGREE]) + magnitude(c[DEGREE - 1])) - noise * largest;
-    return rough > 0 ? rough : 0;
-}
-
-/* Loads given at the points of a panel, as series: c_k = 2/DEGREE sum of values times T_k, halves at both ends. */
-static void given(march *state, int panel, const real *loads, real force[FORCES + 1][SIZE])
-{
-    for (int f = 0; f <= FORCES; ++f) {
-        for (int k = 0; k <= DEGREE; ++k) {
-            force[f][k] = 0;
-        }
+    p[SIZE] = 0;
+    for (int port = first + 1; port < end; ++port) {
+        add(p, push[port], wave(state, arrive[port], steps[arrive[port]], panel), SIZE);
     }
-    for (int s = 0; s < SOURCES; ++s) {
-        const real *const values = loads + s * NAME_POINTS + panel * SIZE;
-        real c[SIZE + 1];
-        for (int k = 0; k <= DEGREE; ++k) {
-            real sum = 0;
-            for (int j = 0; j <= DEGREE; ++j) {
-                const int turn = (int)((long)j * k % (2 * DEGREE));
-                const real term = values[DEGREE - j] * cosine[turn <= DEGREE ? turn : 2 * DEGREE - turn];
-                sum += j == 0 || j == DEGREE ? term / 2 : term;
-            }
-            c[k] = (k == 0 || k == DEGREE ? sum : 2 * sum) / (real)DEGREE;
-        }
-        c[SIZE] = 0;
-        const real rough = magnitude(source_gain[s]) * roughness(values, c);
-        state->rough = rough > state->rough ? rough : state->rough;
-        real *const on = force[source_force[s]];
-        if (source_integral[s]) {
-            const real half = half_length[panel];
-            const real before = antiderivative(c, -1);
-            on[0] += source_gain[s] * (state->integral[s] - half * before);
-            for (int k = 1; k <= DEGREE; ++k) {
-                on[k] += source_gain[s] * (half * ((k == 1 ? 2 * c[0] : c[k - 1]) - c[k + 1]) / (real)(2 * k));
-            }
-            state->integral[s] += half * (antiderivative(c, 1) - before);
-        } else {
-            add(on, source_gain[s], c, SIZE);
-        }
+    if (force >= 0) {
+        real c[3];
+        acts(state, force, panel, c);
+        add(p, drive[joint], c, 3);
     }
-}
-
-/* The velocity q of a body on a panel; `velocity` goes from its start to its end. What the polynomial misses. */
-static real moved(int row, const real p[SIZE + 1], real q[SIZE], real *velocity)
-{
-    const real *const e = ratio + row * SIZE;
-    const real *const at_first = first + row * SIZE;
-    const real *const at_last = last + row * SIZE;
     real y = 0;
-    real begun = 0;
-    real ended = 0;
+    real begun_at = 0;
+    real ended_at = 0;
     for (int k = DEGREE; k > 0; --k) {
         y = e[k] * (((k == 1 ? 2 * p[0] : p[k - 1]) - p[k + 1]) + y);
         q[k] = y;
-        begun += at_first[k] * y;
-        ended += at_last[k] * y;
+        begun_at += at_first[k] * y;
+        ended_at += at_last[k] * y;
     }
-    begun = *velocity - begun;
-    q[0] = begun - slack[row] * begun;
-    *velocity = q[0] + (ended - loss[row] * q[0]);
+    begun_at = *x - begun_at;
+    q[0] = begun_at - e[0] * begun_at;
+    *x = q[0] + (ended_at - at_first[0] * q[0]);
     real before = 2 * q[0];
     for (int k = 1; k <= DEGREE; ++k) {
         before = q[k] - e[k] * before;
         q[k] = before;
     }
-    return leak[row] * magnitude(q[DEGREE] - p[DEGREE]);
-}
-
-static void watch(march *state, real found)
-{
-    if (magnitude(found) > state->size) {
-        state->size = magnitude(found);
-    }
-}
-
-void name_init(march *state)
-{
-    state->window = -1;
-    state->half = 0;
-    state->within = 1;
-    state->alarm = 0;
-    state->event = 0;
-    state->leak = 0;
-    state->size = 0;
-    state->rough = 0;
-    for (int node = 0; node < NODES; ++node) {
-        state->velocity[node] = motion[node];
-    }
-    for (int output = 0; output < OUTPUTS; ++output) {
-        state->displacement[output] = 0;
-    }
-    for (int s = 0; s <= SOURCES; ++s) {
-        state->integral[s] = 0;
-    }
-    for (int f = 0; f <= FORCES; ++f) {
-        for (int power = 0; power < 3; ++power) {
-            state->load[f][power] = 0;
-        }
-        state->since[f][0] = 0;
-        state->since[f][1] = 0;
-    }
-    for (int half = 0; half < 2; ++half) {
-        for (int panel = 0; panel < PANELS; ++panel) {
-            for (int node = 0; node < NODES + 2; ++node) {
-                for (int to = 0; to < WAYS; ++to) {
-                    for (int k = 0; k <= DEGREE; ++k) {
-                        state->waves[half][to][panel][node][k] = 0;
-                    }
-                }
-                if (node > 0) {
-                    state->waves[half][LEFT][panel][node][0] = rod[node - 1];
-                }
-                if (node <= NODES) {
-                    state->waves[half][RIGHT][panel][node][0] = rod[node];
-                }
-            }
+    for (int port = first; port < end; ++port) {
+        const real *const a = wave(state, arrive[port], steps[arrive[port]], panel);
+        real *const out = wave_sent(state, send[port], panel);
+        for (int k = 0; k < SIZE; ++k) {
+            out[k] = ratio[port] * q[k] - a[k];
         }
     }
 }
 
-/* The changes of the scene's own loads at the start of a panel. */
-static void change(march *state, int panel)
+/* A block on a panel: from what acts on its points, and x at the start, their velocities, and x on. */
+static void step_block(march *state, int joint, int panel)
 {
-    while (state->event < EVENTS && event_window[state->event] == state->window &&
-           event_panel[state->event] == panel) {
-        const int f = event_force[state->event];
-        for (int power = 0; power < 3; ++power) {
-            state->load[f][power] = event_power[3 * state->event + power];
+    const int points = first_point[joint + 1] - first_point[joint];
+    const int states = first_state[joint + 1] - first_state[joint];
+    const int width = points * SIZE + states;
+    const real *const columns = matrix + answer[panel * JOINTS + joint];
+    real *const x = state->x + first_state[joint];
+    real given[WIDEST];
+    real found[WIDEST];
+    for (int k = 0; k < width; ++k) {
+        given[k] = k < points * SIZE ? (real)0 : x[k - points * SIZE];
+        found[k] = 0;
+    }
+    for (int point = 0; point < points; ++point) {
+        const int force = force_on[first_point[joint] + point];
+        if (force >= 0) {
+            acts(state, force, panel, given + point * SIZE);
         }
-        state->since[f][0] = state->window;
-        state->since[f][1] = panel;
-        state->event += 1;
+    }
+    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+        add(given + point_of[port] * SIZE, push[port], wave(state, arrive[port], steps[arrive[port]], panel), SIZE);
+    }
+    for (int k = 0; k < width; ++k) {
+        add(found, given[k], columns + k * width, width);
+    }
+    for (int k = 0; k < states; ++k) {
+        x[k] += found[points * SIZE + k];
+    }
+    for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+        const real *const a = wave(state, arrive[port], steps[arrive[port]], panel);
+        const real *const q = found + point_of[port] * SIZE;
+        real *const out = wave_sent(state, send[port], panel);
+        for (int k = 0; k < SIZE; ++k) {
+            out[k] = ratio[port] * q[k] - a[k];
+        }
     }
 }
 
-/* The next window. Whether all of it is within reach. */
-static int marched(march *state, const real *loads)
+/* A joint without state: what it sends is a sum of what arrives and acts. */
+static void scatter(march *state, int joint, int panel)
 {
-    const int before = state->half;
-    int within = 1;
-    if (state->window >= 0) {
-        for (int output = 0; output < OUTPUTS; ++output) {
-            state->displacement[output] = displaced(state, output, 1);
-            within &= within_reach(state->displacement[output]);
+    const int first = first_port[joint];
+    const int end = first_port[joint + 1];
+    const real *factor = matrix + answer[panel * JOINTS + joint];
+    for (int port = first; port < end; ++port) {
+        real *const out = wave_sent(state, send[port], panel);
+        for (int k = 0; k < SIZE; ++k) {
+            out[k] = 0;
         }
     }
-    state->half = !before;
-    state->window += 1;
+    for (int port = first; port < end; ++port) {
+        const real *const a = wave(state, arrive[port], steps[arrive[port]], panel);
+        for (int other = first; other < end; ++other) {
+            add(wave_sent(state, send[other], panel), *factor++, a, SIZE);
+        }
+    }
+    for (int point = first_point[joint]; point < first_point[joint + 1]; ++point) {
+        real c[3] = {0, 0, 0};
+        if (force_on[point] >= 0) {
+            acts(state, force_on[point], panel, c);
+        }
+        for (int other = first; other < end; ++other) {
+            add(wave_sent(state, send[other], panel), *factor++, c, 3);
+        }
+    }
+}
+
+/* The window that has just been made known. */
+static void advance(march *state)
+{
     for (int panel = 0; panel < PANELS; ++panel) {
         change(state, panel);
-        real force[FORCES + 1][SIZE];
-        if (loads) {
-            given(state, panel, loads, force);
-        } else {
-            own(state, panel, force);
-        }
-        for (int to = LOAD; to < WAYS; ++to) {
-            for (int f = 0; f < FORCES; ++f) {
-                for (int k = 0; k <= DEGREE; ++k) {
-                    state->waves[state->half][to][panel][f + 1][k] = force[f][k];
-                }
+        for (int joint = 0; joint < JOINTS; ++joint) {
+            if (law[joint] == BODY) {
+                step_body(state, joint, panel);
+            } else if (BLOCKS > 0 && law[joint] == BLOCK) {
+                step_block(state, joint, panel);
+            } else {
+                scatter(state, joint, panel);
             }
-        }
-        for (int node = 0; node < NODES; ++node) {
-            const real *const a = state->waves[before][RIGHT][panel][node];
-            const real *const b = state->waves[before][LEFT][panel][node + 2];
-            real *const left = state->waves[state->half][LEFT][panel][node + 1];
-            real *const right = state->waves[state->half][RIGHT][panel][node + 1];
-            real p[SIZE + 1];
-            real q[SIZE];
-            for (int k = 0; k <= DEGREE; ++k) {
-                p[k] = alpha[node] * a[k] + beta[node] * b[k];
-            }
-            p[SIZE] = 0;
-            if (force_on[node] >= 0) {
-                add(p, 1, force[force_on[node]], SIZE);
-            }
-            const int row = body[panel * NODES + node];
-            if (row >= 0) {
-                state->leak += moved(row, p, q, &state->velocity[node]);
-                watch(state, state->velocity[node]);
-                within &= within_reach(state->velocity[node]);
-            }
-            const real *const sent = row >= 0 ? q : p;
-            for (int k = 0; k <= DEGREE; ++k) {
-                left[k] = sent[k] - a[k];
-                right[k] = sent[k] - b[k];
-                within &= within_reach(left[k]) && within_reach(right[k]);
-            }
-            watch(state, left[0]);
-            watch(state, right[0]);
         }
     }
-    for (int s = 0; s < SOURCES; ++s) {
-        within &= within_reach(state->integral[s]);
-    }
-    return within;
 }
 
-/* Whether loads, and what they make of their nodes, are numbers within reach. */
-static int given_within_reach(const real *loads)
+static void begin_march(march *state)
 {
-    for (int s = 0; s < SOURCES; ++s) {
-        for (int k = 0; k < NAME_POINTS; ++k) {
-            const real load = loads[s * NAME_POINTS + k];
-            if (!within_reach(load) || !within_reach(source_gain[s] * load)) {
-                return 0;
-            }
-        }
+    state->window = 0;
+    state->event = 0;
+    for (int k = 0; k < STATES; ++k) {
+        state->x[k] = begun[k];
     }
-    return 1;
-}
-
-int name_advance(march *state, const real *loads)
-{
-    if (!state->within || state->window >= LAST_WINDOW || (loads && !given_within_reach(loads))) {
-        return 2;
-    }
-    state->within = marched(state, loads);
-    if (!state->within) {
-        return 2;
-    }
-    state->alarm |= state->leak > trusted * state->size || state->rough > smooth * state->size;
-    return state->alarm;
-}
-
-int name_read(const march *state, real tau, real out[OUTPUTS])
-{
-    const real t = tau - (real)state->window;
-    const int inside = state->within && state->window >= 0 && t >= 0 && t < 1 && tau <= last_tau;
     for (int output = 0; output < OUTPUTS; ++output) {
-        out[output] = inside ? value(state, output, t) : not_a_number();
+        state->total[output] = 0;
     }
-    return !inside;
-}
-
-real name_energy(const march *state)
-{
-    real energy = 0;
-    for (int node = 0; node < NODES; ++node) {
-        energy += mass[node] * state->velocity[node] * state->velocity[node] / 2;
-        for (int direction = 0; direction < 2; ++direction) {
+    for (int force = 0; force < FORCES; ++force) {
+        for (int power = 0; power < 3; ++power) {
+            state->load[force][power] = 0;
+        }
+        state->changed[force][0] = 0;
+        state->changed[force][1] = 0;
+    }
+    for (int k = 0; k < TRACKS; ++k) {
+        for (int slot = ring[k]; slot <= ring[k] + steps[k]; ++slot) {
             for (int panel = 0; panel < PANELS; ++panel) {
-                const real *const c = state->waves[state->half][direction][panel][node + 1];
-                real sum = 0;
-                for (int j = 0; j <= DEGREE; ++j) {
-                    for (int k = j % 2; k <= DEGREE; k += 2) {
-                        const real both = (real)(j + k);
-                        const real apart = (real)(j - k);
-                        sum += c[j] * c[k] * (1 / (1 - both * both) + 1 / (1 - apart * apart));
-                    }
+                for (int power = 0; power < SIZE; ++power) {
+                    state->waves[slot][panel][power] = power == 0 ? held[k] : (real)0;
                 }
-                energy += impedance[node + direction] * half_length[panel] * sum;
             }
         }
     }
-    return energy;
+    advance(state);
 }
 
 /* March on to tau and read. */
-static int outputs_at(march *state, real tau, real out[OUTPUTS])
+static void outputs_at(march *state, real tau, real out[OUTPUTS])
 {
-    int status = 0;
-    while (state->window < (int)tau && status < 2) {
-        status |= name_advance(state, NULL);
+    int cycle = (int)(tau / span);
+    if ((real)cycle * span > tau) {
+        --cycle;
     }
-    return (status != 0) | name_read(state, tau, out);
+    const real t = tau - (real)cycle * span;
+    int phase = t > 0 ? (int)(t / step) : 0;
+    phase = phase < CYCLE ? phase : CYCLE - 1;
+    while (phase > 0 && t < begin[phase]) {
+        --phase;
+    }
+    while (phase + 1 < CYCLE && t >= begin[phase + 1]) {
+        ++phase;
+    }
+    while (state->window < cycle * CYCLE + phase) {
+        for (int output = 0; output < OUTPUTS; ++output) {
+            state->total[output] = integral(state, output, 0, 1);
+        }
+        state->window += 1;
+        advance(state);
+    }
+    read_at(state, t, out);
 }
 
 static int refuse(real out[OUTPUTS])
@@ -375,24 +313,25 @@ int name_eval(real tau, real out[OUTPUTS])
     if (!(tau == tau && tau >= 0 && tau <= NAME_TAU_MAX)) {
         return refuse(out);
     }
-    name_init(&state);
-    return outputs_at(&state, tau, out);
+    begin_march(&state);
+    outputs_at(&state, tau, out);
+    return 0;
 }
 
 int name_sample(real tau0, real dtau, size_t count, real *out)
 {
     march state;
     int outside = 0;
-    name_init(&state);
+    begin_march(&state);
     for (size_t i = 0; i < count; ++i) {
         /* towards later tau, whatever the sign of dtau */
         const size_t k = dtau < 0 ? count - 1 - i : i;
         /* volatile: the product is rounded by itself, so that every compiler means the same tau_k */
-        const volatile real step = (real)k * dtau;
-        const real tau = tau0 + step;
+        const volatile real distance = (real)k * dtau;
+        const real tau = tau0 + distance;
         real at_tau[OUTPUTS];
         if (tau == tau && tau >= 0 && tau <= NAME_TAU_MAX) {
-            outside |= outputs_at(&state, tau, at_tau);
+            outputs_at(&state, tau, at_tau);
         } else {
             outside |= refuse(at_tau);
         }

@@ -1,80 +1,73 @@
 /* tables.h: stands for what march.c.j2 writes above the text of march.c, where that is read by itself. */
 #include "../name.h"
 
-enum { NAME_DEGREE = 20, NAME_PANELS = 2, NAME_NODES = 3, NAME_FORCES = 1, NAME_WAYS = 3, NAME_SOURCES = 1, NAME_POINTS = 42 };
-
-#include "state.h"
-
 #include "../real.h"
-typedef name_state march;
 
 enum {
     OUTPUTS = NAME_OUTPUTS,
-    DEGREE = NAME_DEGREE,
+    DEGREE = 20,
     SIZE = DEGREE + 1,
-    PANELS = NAME_PANELS,
-    NODES = NAME_NODES,
-    FORCES = NAME_FORCES,
-    SOURCES = NAME_SOURCES,
+    PANELS = 2,
+    JOINTS = 3,
+    BLOCKS = 1,
+    STATES = 2,
+    FORCES = 1,
     EVENTS = 3,
-    LAST_WINDOW = 100,
-    LEFT = 0,
-    RIGHT = 1,
-    LOAD = 2,
-    WAYS = NAME_WAYS
+    TRACKS = 5,
+    SLOTS = 13,
+    CYCLE = 2,
+    WIDEST = 2 * SIZE + 1,
+    BODY = 1,
+    BLOCK = 2
 };
 
-void name_init(march *state);
-int name_advance(march *state, const real *loads);
-int name_read(const march *state, real tau, real out[OUTPUTS]);
-real name_energy(const march *state);
+extern const real step, span;
 
-extern const real reach, last_tau, trusted, smooth, noise;
-
-/* The points of a panel on [-1, 1], from 1 down. */
-extern const real cosine[];
+/* tracks: how many windows later it arrives, where its ring of windows starts, and what is on its way at tau = 0 */
+extern const int steps[];
+extern const int ring[];
+extern const real held[];
+/* joints: what they do (0 scatter, BODY, BLOCK), where their points, states and ports start in the next tables, how
+ * strong loads are on a body; where on each panel their matrix is, by columns: of a body three rows of SIZE, slack and
+ * ratios, loss and first, 0 and last */
+extern const int law[];
+extern const int first_point[];
+extern const int first_state[];
+extern const int first_port[];
+extern const real drive[];
+extern const int answer[];
+extern const real matrix[];
+extern const real begun[];
+extern const int force_on[];
+/* ports: the point of the joint, factors, and tracks */
+extern const int point_of[];
+extern const real push[];
+extern const real ratio[];
+extern const int arrive[];
+extern const int send[];
 /* half the length of a panel; what its start is later than that of another: since[panel*PANELS + other] */
 extern const real half_length[];
 extern const real since[];
-/* Nodes; body[panel*NODES + node] is the row of a body in the tables below, -1 for a node without inertia. */
-extern const real alpha[];
-extern const real beta[];
-extern const int body[];
-extern const int force_on[];
-extern const real motion[];
-extern const real mass[];
-/* rods: impedance, and their waves at tau = 0, of the one on the left of each node and that on the right of the last */
-extern const real impedance[];
-extern const real rod[];
-/* bodies on panels: rows of DEGREE + 1 */
-extern const real ratio[];
-extern const real first[];
-extern const real last[];
-extern const real slack[];
-extern const real loss[];
-extern const real leak[];
-/* changes of the scene's loads: from there on three powers of the time since */
+/* changes of the loads: from there on three powers of the time since */
 extern const int event_window[];
 extern const int event_panel[];
 extern const int event_force[];
 extern const real event_power[];
-/* loads that can be given: on which force, how strong, and whether it is their integral that acts */
-extern const int source_force[];
-extern const real source_gain[];
-extern const int source_integral[];
-/* Outputs: where what they hear starts in the next tables; which way it is sent and by which node (or which load it is),
- * factors, whether the integral counts, and how late it arrives. */
+/* Outputs: where their tracks start in the next tables; factors, whether the integral counts, and delays. */
 extern const int first_heard[];
-extern const int way[];
-extern const int sender[];
+extern const int track[];
 extern const real gain[];
 extern const int summed[];
 extern const int delay[];
-/* Delays: in a window, t after its start, a wave is that of `panel`, `back` windows ago, from t >= `from` on, with
- * u = (t - start + excess) / half - 1. */
+
+extern const real begin[];
+/* Delays: from t >= `from` on, t counted from the start of the cycle, a wave is that of `panel_of`, `back` windows ago,
+ * with u = (t - start + excess) / half - 1; an integral over all of a window is from low to high. */
 extern const int first_stretch[];
 extern const real from[];
 extern const real start[];
 extern const real excess[];
+extern const real low[];
+extern const real high[];
 extern const int back[];
 extern const int panel_of[];

@@ -9,10 +9,9 @@ from wavesym.mechanics.model import Model
 from wavesym.programs.choice import MAKERS, Made, Tried, attempt
 from wavesym.programs.closed import ClosedForm
 from wavesym.programs.hats.evaluator import HatMarch
-from wavesym.programs.march.evaluator import MarchEvaluator
+from wavesym.programs.march.evaluator import March
 from wavesym.programs.modes.evaluator import ModesEvaluator
 from wavesym.programs.pieces import Pieces
-from wavesym.programs.rings.evaluator import RingMarch
 
 # To fit pieces whose tables are so large once more, in floats or the smallest ones, takes some seconds.
 MOST_BYTES = 64 << 10
@@ -69,7 +68,7 @@ def _dear(form: Made) -> str:
             f"not tried, nor the smallest tables: to fit {form.bytes} bytes once more takes long, "
             f"at most {MOST_BYTES} expected"
         )
-    if isinstance(form, (MarchEvaluator, RingMarch, HatMarch)) and (marched := form.marched) > MOST_MARCHED:
+    if isinstance(form, (March, HatMarch)) and (marched := form.marched) > MOST_MARCHED:
         return f"not tried: a march would take {marched:.1e} operations, at most {MOST_MARCHED:.1e} expected"
     return ""
 
@@ -82,7 +81,7 @@ def told_degrees(form: Made) -> Told | None:
         case Pieces():
             low, high = form.degrees
             return Told([low, high], f"{low}..{high}")
-        case MarchEvaluator() | RingMarch() | HatMarch():
+        case March() | HatMarch():
             return Told([form.degree, form.degree], str(form.degree))
 
 

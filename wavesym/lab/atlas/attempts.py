@@ -80,7 +80,7 @@ def attempt(known: Truth, name: str) -> Attempt:
     model, taus = known.model, known.taus
     nothing = np.full(len(taus), math.inf)
     try:
-        form = MAKERS[name](model.tolerating(rational(AIM)), DOUBLE, True, None, "speed", False)
+        form = MAKERS[name](model.tolerating(rational(AIM)), DOUBLE, True, "speed", False)
     except (CostError, UnservedError, OverflowError) as error:
         return Attempt(name, taus, None, nothing, str(error))
     met = rational(min(form.error_bound, 2.0)) <= model.tolerance

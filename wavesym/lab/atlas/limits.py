@@ -16,7 +16,7 @@ import numpy as np
 from wavesym.lab.atlas.family import AtlasPoint, Axis, CurveFamily, Progress
 from wavesym.lab.atlas.scenes import made
 from wavesym.programs.making import program
-from wavesym.programs.march.evaluator import marched
+from wavesym.programs.march.evaluator import march
 from wavesym.rivals.advice import springs
 from wavesym.scene import Scene, lower
 
@@ -82,10 +82,10 @@ def difference(system: Lumped, kappa: Fraction) -> float:
     """Between the strains in the middle of the rods and those of springs, relative to the largest of the latter."""
     until = math.ceil(SLOW_TIME / math.sqrt(kappa))
     model = lower(_scene(system, kappa, until))
-    march = program(model, marched(model))
+    waves = program(model, march(model))
     taus, strains = springs(model, 0.0, until / SAMPLES)
     taus, strains = taus[:-1], strains[:, :-1]  # a front may arrive at the end
-    return float(np.max(np.abs(march.evaluate(taus) - strains)) / np.max(np.abs(strains)))
+    return float(np.max(np.abs(waves.evaluate(taus) - strains)) / np.max(np.abs(strains)))
 
 
 def _scene(system: Lumped, kappa: Fraction, until: int) -> Scene:

@@ -15,7 +15,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import midpoint, nearest, rational
 from wavesym.programs.hats.evaluator import hat_march
 from wavesym.programs.making import make, program
-from wavesym.programs.march.evaluator import marched
+from wavesym.programs.march.evaluator import march
 from wavesym.programs.program import Program
 from wavesym.programs.request import Request
 from wavesym.scene import lower
@@ -67,7 +67,7 @@ def _modes(model: Model) -> Program:
 
 def _march(model: Model) -> Program:
     """As it is, and not of one hat."""
-    return program(model, marched(model))
+    return program(model, march(model))
 
 
 def _hat(model: Model) -> Program:

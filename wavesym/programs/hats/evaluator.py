@@ -1,7 +1,7 @@
 """The march of one hat of each record as an evaluator: any spacing, in three panels a window.
 
 What a record does is the sum of what its hats do, and these do the same, one spacing after the other. So one hat is
-marched for each load, by the march of any chain (../rings); what is no record is marched beside it. docs/march.md has
+marched for each load, by the march (../march); what is no record is marched beside it. docs/march.md has
 the proof of the bound: that of a hat's march times the sum of the absolute samples, and what the sum loses.
 """
 
@@ -19,11 +19,11 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational, relative
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.hats.split import RecordLoad, split, still
+from wavesym.programs.march.bound import Verdict
+from wavesym.programs.march.evaluator import March, judged
 from wavesym.programs.program import Program, ProgramOutput, Provenance
-from wavesym.programs.rings.bound import RingVerdict
-from wavesym.programs.rings.evaluator import RingMarch, judged_march
 from wavesym.programs.schemes.hats import HatScheme, ShiftedHats
-from wavesym.programs.schemes.rings import RingScheme
+from wavesym.programs.schemes.march import MarchScheme
 
 Numbers = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ class HatMarch:
     `refusal` says why the loads are not marched as they are.
     """
 
-    marches: tuple[RingMarch, ...]
+    marches: tuple[March, ...]
     rest: int
     records: tuple[RecordLoad, ...]
     refusal: str
@@ -69,12 +69,12 @@ class HatMarch:
     def tables(self) -> dict[str, tuple[float, ...]]:
         """The numbers of its program, those of all marches one after the other."""
         marches = [march.tables for march in self.marches]
-        made = {name: tuple(number for one in marches for number in one[name]) for name in RingScheme.TABLES}
+        made = {name: tuple(number for one in marches for number in one[name]) for name in MarchScheme.TABLES}
         samples = [record.samples for record in self.records]
         firsts = np.cumsum([0, *map(len, samples)]).tolist()
         return made | {
-            "extent": tuple(len(one[name]) for one in marches for name in RingScheme.TABLES),
-            "constant": tuple(float(march.constants[name]) for march in self.marches for name in RingScheme.CONSTANTS),
+            "extent": tuple(len(one[name]) for one in marches for name in MarchScheme.TABLES),
+            "constant": tuple(float(march.constants[name]) for march in self.marches for name in MarchScheme.CONSTANTS),
             "spacing": tuple(part for record in self.records for part in _parts(record.spacing)),
             "begin_at": tuple(part for record in self.records for part in _parts(record.begin)),
             "first_sample": tuple(firsts),
@@ -149,10 +149,10 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
         return None
     moving = [bar.velocity or bar.strain for bar in model.network.bars] + [p.velocity for p in model.network.points]
     try:
-        rest = [judged_march(replace(model, loads=parts.rest))] if parts.rest or any(moving) else []
+        rest = [judged(replace(model, loads=parts.rest))] if parts.rest or any(moving) else []
     except SpacingError:
         return None
-    hats = [judged_march(still(model, record)) for record in parts.records]
+    hats = [judged(still(model, record)) for record in parts.records]
     made = HatMarch(tuple(march for march, _ in (*rest, *hats)), len(rest), parts.records, refusal)
     parted = [np.array([verdict.errors, verdict.heights]) for _, verdict in rest]
     parted += [_added(record, *hat) for record, hat in zip(parts.records, hats, strict=True)]
@@ -170,7 +170,7 @@ def hat_march(model: Model, refusal: str = "") -> HatMarch | None:
     )
 
 
-def _added(record: RecordLoad, march: RingMarch, hat: RingVerdict) -> Numbers:
+def _added(record: RecordLoad, march: March, hat: Verdict) -> Numbers:
     """Of what hats add up to the largest error and what values do not exceed: (2, outputs)."""
     samples = np.abs([nearest(value) for value in record.samples])
     count, plan = len(samples), march.plan

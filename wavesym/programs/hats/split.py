@@ -13,7 +13,7 @@ from wavesym.errors import SpacingError
 from wavesym.mechanics.loads import Applied, merged
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
-from wavesym.programs.march.plan import told
+from wavesym.programs.march.plan import readable
 
 _MOST = 100_000  # samples of a record
 _FEW = 4  # instants that are marched as they are
@@ -83,9 +83,9 @@ def _record(step: str, ramp: str, loads: Sequence[Applied], until: fmpq) -> tupl
     spacing = reduce(fmpq.gcd, (after - before for before, after in pairwise(times)))
     if (count := int(((until - begin) / spacing).floor()) + 2) > _MOST:
         raise SpacingError(
-            f"load: {step.removesuffix(':step')} has {count} samples on the horizon at a spacing of {told(spacing)}, "
-            f"at most {_MOST} expected in a march of one hat (modes, instants with a larger common measure, or a "
-            "shorter horizon, help)"
+            f"load: {step.removesuffix(':step')} has {count} samples on the horizon at a spacing of "
+            f"{readable(spacing)}, at most {_MOST} expected in a march of one hat (modes, instants with a larger "
+            "common measure, or a shorter horizon, help)"
         )
     jumps, bends = ({load.time: load.weight for load in loads if load.source == source} for source in (step, ramp))
     samples = []

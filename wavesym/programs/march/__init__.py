@@ -1,1 +1,1 @@
-"""The march, the evaluator for long horizons: its plan, its operators, one run of it, and what a run proves."""
+"""The march: waves window by window, for long horizons and many rods, in constant memory and with a proved bound."""

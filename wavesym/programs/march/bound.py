@@ -1,55 +1,67 @@
-"""How far a march can be from the truth: an a-posteriori bound, proved.
+"""How far a march can be from the truth: an a-posteriori bound, proved. docs/march.md has each step.
 
-Take as the state at an instant all waves that are in the rods, and the velocities of the bodies. Its energy,
+Take as the state at an instant all waves that are in the bars, the velocities of masses and how long springs have
+become. Its energy, sum of Z * integral of wave**2 over all waves + sum of M q**2 / 2 + sum of K z**2 / 2, does not grow
+where nothing is loaded. The equations are linear, so the error of the march is at most the sum, over windows and
+panels, of what each adds anew, in the norm E, the root of that energy:
 
-    E**2 = sum over rods of Z * integral of both waves squared + sum over bodies of M q**2 / 2,
+- Truncation. On a panel of length h the computed state misses its equation by R = eps (T_(d+1) -+ 1). For a body of
+  rate g its error e solves e + L int e = R with L = g h / 2, whence |e| <= 2 |eps|, and the energy of what it sends and
+  keeps is at most M eps**2 (4 g h + 2). For a block, g the norm of its rates, that adds at most
+  2 |eps| (sqrt(g h) + (1 + g h)/sqrt(2)).
+- Rounding, by running the recurrences of bodies, and the matrices of the others, on absolute values. In L2 over a panel
+  a series has at most sqrt(pi h) / 2 times its norm (2 c_0**2 + c_1**2 + ...)**0.5, as (1 - u**2)**-0.5 >= 1. Underflow
+  loses up to the smallest number in each product.
 
-does not grow where nothing is loaded: M q' + (Z_l + Z_r) q = 2 Z_l a + 2 Z_r b makes what arrives,
-Z_l a**2 + Z_r b**2, less what leaves, Z_l (q - a)**2 + Z_r (q - b)**2, the growth of M q**2 / 2; and a node without
-inertia sends no more than arrives. The equations are linear, so the difference of two motions under the same loads does
-not grow in E, and the error of the march is at most the sum, over windows and panels, of what each adds anew:
-
-- Truncation. On a panel the computed q satisfies q + L int q = L int p + start up to R = eps (T_(d+1) -+ 1), with
-  eps = x_(d+1) (q_d - p_d) and L = rate h / 2. Its error e solves e + L int e = R, whence |e| <= 2 |eps|.
-- Rounding, by running the recurrences on absolute values: coefficients of q are wrong by at most u T |p| + u t |start|,
-  with a matrix T and a vector t without negative entries, and q - a by u |q - a| more. In L2 over a panel a series has
-  at most sqrt(pi h) / 2 times its norm (2 c_0**2 + c_1**2 + ...)**0.5, as (1 - u**2)**-0.5 >= 1.
-- Underflow, which makes a product wrong by up to the smallest number instead, is run through the same recurrences.
-
-From energy to values: the true wave on a panel is a polynomial of degree K up to some tail (tail.py), K for the
-horizon and no lower than d; so its difference from the computed one is, and a polynomial of degree K in [-1, 1] is
-nowhere larger than (K + 1)/sqrt(2) times its L2 norm. Reading a value adds the rounding of Clenshaw's recurrence, at
-most 12 u sum ((k + 1)(k + 2) + d) |c_k| with that of the local variable; and 4 (d + 3)**2 of the smallest number. A
-displacement is an integral, so L2 will do.
-
-Errors are relative to the largest value on the horizon: of the last window only what tau_max reaches counts.
+From energy to values: a wave is in L2 at most E/sqrt(Z), the velocity of a free point at most
+E ((5 + 2 h) [(C + M)^-1])**0.5, and the true ones are polynomials of degree K up to some tail (tail.py), K for the
+horizon and no lower than d. So their differences are, and a polynomial of degree K in [-1, 1] is nowhere larger than
+(K + 1)/sqrt(2) times its L2 norm. Reading a value adds the rounding of Clenshaw's recurrence, at most
+12 u sum ((k + 1)(k + 2) + d) |c_k| with that of the local variable. A displacement is an integral, so L2 will do.
 
 All of it holds to first order in u, and a margin of 1 % is added for the rest.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from math import ceil, inf, log2, pi, sqrt
-from typing import NamedTuple
+from math import inf, pi, sqrt
 
 import numpy as np
-from flint import fmpq
+from flint import fmpq, fmpq_mat
+from numpy.typing import NDArray
 
+from wavesym.exact.joints.joint import JointLaw
 from wavesym.exact.silence import silent
 from wavesym.numbers.doubles import nearest, not_below, rational
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.operator import Array, PanelOperator
-from wavesym.programs.march.plan import LEFT, LOAD, RIGHT, HeardWave, Plan, power_of_two
-from wavesym.programs.march.run import Block, Run
-from wavesym.programs.march.sampler import OutputSampler
-from wavesym.programs.march.tail import Tail, tail
+from wavesym.programs.march.block import NEGLIGIBLE
+from wavesym.programs.march.body import body_roundings
+from wavesym.programs.march.plan import MarchedJoint, MarchPlan, OutputTerm, Panel, largest_number, power_of_two
+from wavesym.programs.march.tables import MarchTables
+from wavesym.programs.march.tail import Tail, tail_of
+from wavesym.programs.schemes.march import (
+    Blocks,
+    Bodies,
+    JointGroup,
+    Marching,
+    MarchScheme,
+    RunningLoads,
+    Scatterers,
+    WindowBlock,
+)
 
+Array = NDArray[np.float64]
+
+SAMPLES = 16
+"""Instants in a window at which the generator looks for an output's largest value."""
 MARGIN = 1.01
-_ONE = fmpq(1)
-# products on the way to a coefficient of p or q that may underflow, besides those of a scan
-_SPARE = 16.0
+# roundings of a product in a sum, besides those of the sum: of factors, pushes, loads and their times
+_SPARE = 24
+_LOADED = 5  # times those of a sum of at least 5 products are no less than those of a load and its times
+# square roots of exact numbers, rounded a few times
+_ABOVE = 1 + 1e-12
 
 
 @dataclass(frozen=True)
@@ -57,8 +69,9 @@ class Verdict:
     """What a march at some degree is worth.
 
     `errors` and `sizes` are, for each output, a bound of its largest error and the largest value that was seen; of
-    the energy norm of the error, `truncated` is the part of the degree, `rounded` that of the arithmetic. `quiet` says
-    that the programs, which watch what their polynomials miss as they run, will not complain.
+    the energy norm of the error, `truncated` is the part of the degree, `rounded` that of the arithmetic. Values of an
+    output do not exceed its `heights`, nor their slopes over tau its `slopes`. True waves are polynomials of degree
+    `smooth` on each panel, up to a tail.
     """
 
     degree: int
@@ -66,7 +79,9 @@ class Verdict:
     sizes: tuple[float, ...]
     truncated: float
     rounded: float
-    quiet: bool
+    smooth: int = 0
+    heights: tuple[float, ...] = ()
+    slopes: tuple[float, ...] = ()
 
     @property
     def largest(self) -> tuple[float, ...]:
@@ -82,65 +97,81 @@ class Verdict:
         )
 
 
-def judge(plan: Plan, degree: int, real: Real) -> Verdict:
+def judge(plan: MarchPlan, degree: int, real: Real, *, blocked: bool = False) -> Verdict:
     """March once over the horizon at `degree` for a program in `real` numbers, and bound its errors.
 
-    All is divided by the size of what moves it, so that no square of a wave underflows here. OverflowError where waves
-    grow beyond what programs take.
+    Its bodies may be `blocked`. All is divided by the size of what moves it, so that no square of a wave underflows
+    here. OverflowError where waves grow beyond what programs take.
     """
-    powers = (power for event in plan.events for power in event.powers)
-    scale = power_of_two((*plan.rods, *(node.motion for node in plan.junctions), *powers))
-    verdict = _judge(plan.scaled(1 / scale), degree, real, scale)
-    errors, sizes = (tuple(nearest(scale) * value for value in of) for of in (verdict.errors, verdict.sizes))
-    return replace(verdict, errors=errors, sizes=sizes)
+    scale = power_of_two([largest_number(plan)])
+    verdict = _judge(plan.scaled(1 / scale), degree, real, scale, blocked)
+    errors, sizes, heights, slopes = (
+        tuple(nearest(scale) * value for value in of)
+        for of in (verdict.errors, verdict.sizes, verdict.heights, verdict.slopes)
+    )
+    return replace(verdict, errors=errors, sizes=sizes, heights=heights, slopes=slopes)
 
 
-def _judge(plan: Plan, degree: int, real: Real, scale: fmpq) -> Verdict:
+def _judge(plan: MarchPlan, degree: int, real: Real, scale: fmpq, blocked: bool) -> Verdict:
     """The same for a plan whose motions are so many times as small as those of the program."""
-    run = Run(plan, degree)
+    made = MarchTables(plan, degree, DOUBLE, blocked=blocked)
+    scheme = MarchScheme(made.tables([False] * len(plan.outputs)), made.constants(), plan.tau_max, np.float64)
     unit, smallest = nearest(real.roundoff), not_below(real.smallest / scale)
     reach = nearest(min(real.reach / scale, DOUBLE.reach))
-    roundings = Roundings(plan, run, real, scale)
-    smooth = tail(plan, degree)
-    samplers = [OutputSampler(plan, output, degree) for output in plan.outputs]
-    weights, summing = (reading_weights(degree, displaced) for displaced in (False, True))
-    truncated = rounded = summed = 0.0
-    alarm = Alarm(plan.trusted)
-    largest, reading, sums = (np.zeros(len(samplers)) for _ in range(3))
-    loads = np.zeros(len(plan.junctions))
-    for block in run.blocks():
-        lost, inexact = roundings.of(block)
-        truncated += float(np.sum(lost))
-        rounded += float(np.sum(inexact))
-        summed += len(lost) * (truncated + rounded)
-        alarm.watch(block, roundings.leak)
-        for o, sampler in enumerate(samplers):
-            largest[o] = max(largest[o], float(np.max(np.abs(sampler.values(block)))))
-            reading[o] = max(reading[o], float(np.max(sampler.size(block, weights, summed=False))))
-            sums[o] += float(np.sum(sampler.size(block, summing, summed=True)))
-        loads = np.maximum(loads, np.max(block.forces, axis=(0, 1)))
-        if not np.max(np.abs(block.after)) < reach:
+    losses = Losses(plan, made, scheme, unit, smallest)
+    outputs, step = len(plan.outputs), nearest(plan.step)
+    truncated, rounded, summed = 0.0, losses.begun, 0.0
+    largest, reading, sums, held, height, slope = (np.zeros(outputs) for _ in range(6))
+    shortest = min(nearest(panel.length) for panel in plan.panels)
+    one, bent = np.ones(degree + 1), 2 / shortest * np.arange(degree + 1.0) ** 2
+    for block in _blocks(scheme, plan.windows):
+        lost, inexact = losses.of(block)
+        truncated += lost
+        rounded += inexact
+        summed += block.count * (truncated + rounded)
+        window = (block.first + np.arange(block.count))[:, None]
+        taus = np.unique(np.minimum((window + np.linspace(0, 1, SAMPLES, endpoint=False)) * step, plan.tau_max))
+        inside = np.isin(scheme.places(taus)[0], window)
+        largest = np.maximum(largest, np.max(np.abs(block.read(taus[inside])), axis=1, initial=0.0))
+        held = np.maximum(held, np.max(np.abs(block.totals), axis=1))
+        for o, output in enumerate(plan.outputs):
+            reading[o] = max(reading[o], _size(block, output.part(summed=False), reading_weights(degree, False)))
+            sums[o] += block.count * _size(block, output.part(summed=True), reading_weights(degree, True))
+            direct, gathered = (_size(block, output.part(summed=summed), one) for summed in (False, True))
+            height[o] = max(height[o], direct + float(np.max(np.abs(block.totals[o]))) + step * gathered)
+            slope[o] = max(slope[o], _size(block, output.part(summed=False), bent) + gathered)
+        if not np.max(np.abs(block.waves)) < reach:
             raise OverflowError(f"waves beyond {nearest(real.reach):.1g}")
-    errors = []
-    lost_reading = 4.0 * (degree + 3) ** 2 * smallest
+    smooth = smoothness(plan, degree)
+    lost_reading = 8.0 * (degree + 3) ** 2 * smallest
     stretches = 2.0 * len(plan.panels) + 2
+    errors = []
     for o, output in enumerate(plan.outputs):
         error = 0.0
         if of := output.part(summed=True):
-            held = largest[o] + reading[o]
-            error += felt(plan, of) * summed + unit * (24 * stretches * sums[o] + len(of) * plan.windows * held)
-            error += plan.windows * stretches * lost_reading * max(1, len(of) / 2)
+            error += _felt(plan, of) * sqrt(step) * summed
+            error += unit * (24 * stretches * step * sums[o] + len(of) * plan.windows * held[o])
+            error += plan.windows * stretches * lost_reading * (1 + step) * max(1, len(of) / 2)
+            error += _direct(losses, of) * step * plan.windows
         if of := output.part(summed=False):
-            error += wave_error(smooth, plan, of, truncated + rounded) + (10 + max(2, len(of))) * unit * reading[o]
-            error += sum(load_error(plan, each, loads, unit, smallest) for each in of if each.way == LOAD)
-            error += lost_reading * max(1, len(of) / 2)
+            error += _felt(plan, of) * largest_wave(smooth, plan, truncated + rounded)
+            error += (12 + max(2, len(output.heard))) * unit * reading[o] + lost_reading * max(1, len(of) / 2)
+            error += _direct(losses, of)
+        if 0 < len(output.part(summed=True)) < len(output.heard):
+            error += len(output.heard) * unit * held[o]  # one is added to the other
         errors.append(MARGIN * float(error))
     # what rounding could have made may be nothing at all: programs then return exactly 0
     if any(size <= error for size, error in zip(largest, errors, strict=True)):
         for o, nothing in enumerate(silent(plan.model, rational(plan.tau_max))):
             if nothing:
-                errors[o] = largest[o] = 0.0
-    return Verdict(degree, tuple(errors), tuple(map(float, largest)), truncated, rounded, not alarm.rung)
+                errors[o] = largest[o] = height[o] = slope[o] = 0.0
+    sizes, heights, slopes = (tuple(of.tolist()) for of in (largest, height, slope))
+    return Verdict(degree, tuple(errors), sizes, truncated, rounded, smooth.degree, heights, slopes)
+
+
+def _size(block: WindowBlock, heard: Iterable[OutputTerm], weights: Array) -> float:
+    """The weighted absolute coefficients of what is heard, at most."""
+    return sum(abs(nearest(each.gain)) * float(np.max(np.abs(block.waves[:, each.track]) @ weights)) for each in heard)
 
 
 def reading_weights(degree: int, displaced: bool) -> Array:
@@ -149,167 +180,256 @@ def reading_weights(degree: int, displaced: bool) -> Array:
     return k + 8 + degree / (k + 1.0) if displaced else (k + 1) * (k + 2.0) + degree
 
 
-def largest_wave(smooth: Tail, plan: Plan, energy: float) -> float:
-    """The largest value of a wave on a window whose L2 norm is `energy`, and whose tail is known."""
-    shortest = min(nearest(panel.length) for panel in plan.panels)
-    factor = (smooth.degree + 1) / sqrt(2)
-    return factor * (sqrt(2 / shortest) * energy + sqrt(2) * smooth.size) + smooth.size
-
-
-def felt(plan: Plan, heard: Sequence[HeardWave]) -> float:
+def _felt(plan: MarchPlan, heard: Iterable[OutputTerm]) -> float:
     """How large what is heard can be, in L2 over a window, where the norm of energy is 1."""
-    return sum(abs(nearest(each.gain)) / sqrt(_impedance(plan, each)) for each in heard if each.way != LOAD)
+    return sum(abs(nearest(each.gain)) * size_of(plan, each.track) for each in heard)
 
 
-def wave_error(smooth: Tail, plan: Plan, heard: Sequence[HeardWave], energy: float) -> float:
-    """The largest error of what is heard where that of all waves is in the norm of energy."""
-    return sum(
-        abs(nearest(each.gain)) * largest_wave(smooth, plan, energy / sqrt(_impedance(plan, each)))
-        for each in heard
-        if each.way != LOAD
+def _direct(losses: Losses, heard: Iterable[OutputTerm]) -> float:
+    """How wrong what is heard may be by itself."""
+    return sum(abs(nearest(each.gain)) * float(losses.direct[each.track]) for each in heard)
+
+
+def _blocks(scheme: MarchScheme, windows: int) -> Iterator[WindowBlock]:
+    marching = Marching(scheme)
+    for first in range(0, windows, marching.most):
+        yield marching.block(first, min(marching.most, windows - first))
+
+
+def largest_wave(smooth: Tail, plan: MarchPlan, energy: float) -> float:
+    """The largest value of what is in L2 at most `energy`, and a polynomial up to a tail."""
+    shortest = min(nearest(panel.length) for panel in plan.panels)
+    return (smooth.degree + 1) / sqrt(2) * (sqrt(2 / shortest) * energy + sqrt(2) * smooth.size) + smooth.size
+
+
+def size_of(plan: MarchPlan, track: int) -> float:
+    """How large what is on a track can be, in L2 over a window, where the norm of energy is 1."""
+    if impedance := plan.tracks[track].impedance:
+        return 1 / sqrt(nearest(impedance))
+    if plan.tracks[track].prescribed:
+        return 0.0
+    number, point = next(
+        (number, port.point)
+        for number, joint in enumerate(plan.joints)
+        for port, send in zip(joint.space.ports, joint.sends, strict=True)
+        if send == track
     )
+    network = plan.model.network
+    reached = list(plan.model.reached(rational(plan.tau_max)))
+    law = JointLaw.of(network, network.joints[reached[number]])
+    free = [k for k, given in enumerate(law.given) if given is None]
+    held = [law.damping[a][b] + (law.mass[a] if a == b else 0) for a in free for b in free]
+    at = free.index(point)
+    return _ABOVE * sqrt(nearest(fmpq_mat(len(free), len(free), held).inv()[at, at] * (5 + 2 * plan.step)))
 
 
-def load_error(plan: Plan, heard: HeardWave, loads: Array, unit: float, smallest: float) -> float:
-    """How wrong the series of a load is that is heard, where loads on columns are at most so large."""
-    size = float(loads[plan.loaded[heard.column]])
-    return abs(nearest(heard.gain)) * (8 * unit * size + _SPARE * smallest)
+def smoothness(plan: MarchPlan, degree: int) -> Tail:
+    """How near to polynomials of some degree, and no lower one, true waves are where the norm of energy is 1."""
+    rate = max((joint.space.norm for joint in plan.joints), default=0.0)
+    jumps = list(_jumps(plan, rate)) if rate else [0.0] * 3
+    if not any(jumps):
+        return Tail(max(degree, 3), 0.0)  # without a state waves are as the loads
+    added = (plan.windows + 2) * len(plan.panels) / sqrt(2 * rate)
+    return tail_of(degree, jumps, rate, plan.crossings, added, [nearest(panel.length) for panel in plan.panels])
 
 
-def _impedance(plan: Plan, heard: HeardWave) -> float:
-    """That of the rod that a wave is sent into."""
-    node = plan.junctions[heard.column]
-    return nearest(node.right if heard.way == RIGHT else node.left)
+def _jumps(plan: MarchPlan, rate: float) -> Iterator[float]:
+    """Those of order 0, 1, 2 that loads and start make, as waves (velocity times root of impedance), all added up."""
+    strengths: dict[int, float] = {}
+    begin = 0.0
+    for joint in plan.joints:
+        for point, force in enumerate(joint.forces):
+            if force >= 0:  # where a load is read only it moves nothing
+                strengths[force] = max(strength(joint, point, rate), strengths.get(force, 0.0))
+        begin += started(plan, joint, rate)
+    loads = [0.0] * 3
+    for force, powers in plan.changes():
+        for order, c in enumerate(powers):
+            loads[order] += strengths[force] * abs(nearest(c)) * (2 if order == 2 else 1)
+    loads[0] += begin
+    yield from loads
 
 
-class Alarm:
-    """What the programs watch: the sum of all leaks |eps|, which may be `trusted` of the largest velocity or mean of a
-    wave so far.
+def strength(joint: MarchedJoint, point: int, rate: float) -> float:
+    """The jump of waves that a jump of what acts on a point counts as."""
+    space = joint.space
+    state = sum((weight * space.pushed[n, point] ** 2 for n, weight in enumerate(space.weights)), fmpq(0))
+    sent = sum((port.impedance * (port.ratio * space.passed[port.point, point]) ** 2 for port in space.ports), fmpq(0))
+    return _ABOVE * (sqrt(nearest(state) / rate) / 2 + sqrt(nearest(sent)))
+
+
+def started(plan: MarchPlan, joint: MarchedJoint, rate: float) -> float:
+    """The same for the start: as if what was held in joint until tau = 0 were let go."""
+    space = joint.space
+    arriving = [plan.tracks[track].held for track in joint.arrive]
+    acting = [fmpq(0)] * space.points
+    for port, a in zip(space.ports, arriving, strict=True):
+        acting[port.point] += port.push * a
+    x, s = (fmpq_mat(len(values), 1, list(values)) for values in (space.begun, acting))
+    moved, q = space.rates * x + space.pushed * s, space.shown * x + space.passed * s
+    state = sum((weight * moved[n, 0] ** 2 for n, weight in enumerate(space.weights)), fmpq(0))
+    sent = fmpq(0)
+    for port, a, track in zip(space.ports, arriving, joint.sends, strict=True):
+        sent += port.impedance * (port.ratio * q[port.point, 0] - a - plan.tracks[track].held) ** 2
+    return _ABOVE * (sqrt(nearest(state) / rate) / 2 + sqrt(nearest(sent)))
+
+
+class Losses:
+    """What windows add to the error: in the norm of energy, and on tracks that carry none.
+
+    `begun` is what the numbers of the start lose. `direct` is how wrong what is read of each track may be by itself.
     """
 
-    def __init__(self, trusted: float) -> None:
-        self._trusted = trusted
-        self._leak = self._size = 0.0
-        self.rung = False
+    def __init__(self, plan: MarchPlan, made: MarchTables, scheme: MarchScheme, unit: float, smallest: float) -> None:
+        self._scheme, self._unit, self._smallest = scheme, unit, smallest
+        # of the same loads, how large what cancels may have been
+        self._loads = RunningLoads(scheme, np.abs(scheme.event_power), np.abs(scheme.since))
+        self._lengths = [nearest(panel.length) for panel in plan.panels]
+        self._impedance = np.array([*(nearest(track.impedance) for track in plan.tracks), 0.0])
+        self._weights = np.array([nearest(weight) for joint in plan.joints for weight in joint.space.weights])
+        self._pushes = max(group.send.shape[1] for group in scheme.groups)
+        first = [plan.joints[group.joints[0]] for group in scheme.groups]
+        self._norms = [joint.space.norm for joint in first]
+        self._missed: dict[tuple[int, int], Array] = {}
+        self._bodies: dict[tuple[int, int], BodyLosses] = {}
+        for number, group in enumerate(scheme.groups):
+            for place, panel in enumerate(plan.panels):
+                if isinstance(group, Blocks):
+                    self._missed[number, place] = made.missed(first[number], panel.length)
+                if isinstance(group, Bodies):
+                    self._bodies[number, place] = self._body_losses(plan, made, group, panel)
+        delays = nearest(plan.step) * scheme.steps
+        self.begun = unit * sqrt(delays * self._impedance @ scheme.held**2 + self._weights @ scheme.begun**2 / 2)
+        self.direct = np.zeros(len(scheme.held))
 
-    def watch(self, block: Block, leak: Array) -> None:
-        """The windows of a block, with the leak per unit of `excess` of each panel and column."""
-        leaks = self._leak + np.cumsum(np.sum(leak * np.abs(block.excess), axis=(1, 2)))
-        means = np.max(np.abs(block.after[:, :LOAD, ..., 0]), axis=(1, 2, 3))
-        sizes = np.maximum.accumulate(np.maximum(means, np.max(np.abs(block.ends), axis=(1, 2))))
-        sizes = np.maximum(sizes, self._size)
-        self.rung |= bool(np.any(leaks > self._trusted * sizes))
-        self._leak, self._size = float(leaks[-1]), float(sizes[-1])
+    def of(self, block: WindowBlock) -> tuple[float, float]:
+        """By truncation and by rounding, in all windows of a block."""
+        panels = range(len(self._lengths))
+        loads = np.array([[self._loads.on(block.first + n, panel) for panel in panels] for n in range(block.count)])
+        lost = inexact = 0.0
+        for panel in panels:
+            truncation, rounding = np.zeros(block.count), np.zeros(block.count)
+            for number, group in enumerate(self._scheme.groups):
+                a, sent = self._waves(block, group, panel)
+                size = loads[:, panel, group.points]
+                x = block.starts[:, panel, group.states]
+                if isinstance(group, Bodies):
+                    wrong, single, ends, missed = self._of_bodies(group, self._bodies[number, panel], a, sent, size, x)
+                elif isinstance(group, Blocks):
+                    acting = block.acting[:, panel, group.points]
+                    wrong, single, ends, missed = self._of_blocks(group, number, panel, a, sent, acting, size, x)
+                else:
+                    wrong, single, ends, missed = self._of_scatterers(group, panel, a, size)
+                rounding += np.sum(self._weights[group.states] / 2 * ends**2, axis=(1, 2))
+                rounding += pi / 4 * self._lengths[panel] * np.sum(self._impedance[group.send] * wrong, axis=(1, 2))
+                truncation += missed
+                np.maximum.at(self.direct, group.send, np.max(single, axis=0))
+            lost += float(np.sum(np.sqrt(truncation)))
+            inexact += float(np.sum(np.sqrt(rounding)))
+        return lost, inexact
+
+    def _waves(self, block: WindowBlock, group: JointGroup, panel: int) -> tuple[Array, Array]:
+        """What arrives at the joints and what they send, (windows, joints, ports, k)."""
+        n = self._scheme.deepest + np.arange(block.count)[:, None, None]
+        return block.waves[n - group.back, group.arrive, panel], block.waves[n, group.send, panel]
+
+    def _body_losses(self, plan: MarchPlan, made: MarchTables, group: Bodies, panel: Panel) -> BodyLosses:
+        joints = [plan.joints[number] for number in group.joints]
+        operators = [made.body(joint, panel.length) for joint in joints]
+        known = {id(one): body_roundings(one, group.ports.shape[1] + 4) for one in operators}
+        rates = np.array([[nearest(joint.space.rate * panel.length)] for joint in joints])
+        return BodyLosses(
+            np.array([known[id(one)] for one in operators]),
+            np.array([one.leak for one in operators]),
+            self._weights[group.states[:, 0]] * (4 * rates[:, 0] + 2),
+        )
+
+    def _of_bodies(
+        self, group: Bodies, of: BodyLosses, a: Array, sent: Array, size: Array, x: Array
+    ) -> tuple[Array, Array, Array, Array]:
+        """Of waves squares and sums of what may be wrong, of states errors, and squares of what is missed."""
+        unit, start = self._unit, np.abs(x[..., 0])
+        known = [np.sqrt(np.sum(part**2, axis=-1) + part[..., 0] ** 2) for part in (a, sent, size)]
+        acting = np.sum(np.abs(group.push) * known[0], axis=-1) + _LOADED * group.drive[:, 0] * known[2][..., 0]
+        q, ends = (
+            unit * (each[:, 0] * acting + each[:, 1] * start) + self._smallest * each[:, 2]
+            for each in np.moveaxis(of.roundings, 1, 0)
+        )
+        turned = np.abs(group.ratio)
+        near = unit * (known[1] + np.where(turned == 1, 0.0, 2.0) * (known[0] + known[1]))
+        wrong = turned * q[..., None] + near + 4 * sqrt(group.size + 1) * self._smallest
+        # the last coefficients of q and p, from what is sent, about
+        last = (sent[..., 0, -1] + a[..., 0, -1]) / group.ratio[:, 0]
+        excess = np.abs(last - np.sum(group.push * a[..., -1], axis=-1))
+        about = 4 * unit * (np.abs(sent[..., 0, -1]) + np.abs(a[..., 0, -1])) / turned[:, 0]
+        missed = of.leak * (excess + about + q + (2 * self._pushes + 4) * unit * acting)
+        single = sqrt(group.size) * wrong
+        return wrong**2, single, ends[..., None], np.asarray(np.sum(of.lost * missed**2, axis=-1))
+
+    def _of_blocks(
+        self, group: Blocks, number: int, panel: int, a: Array, sent: Array, acting: Array, size: Array, x: Array
+    ) -> tuple[Array, Array, Array, Array]:
+        """The same."""
+        loaded, largest = (np.zeros((*a.shape[:2], group.points.shape[1], group.size)) for _ in range(2))
+        loaded[..., :3], largest[..., :3] = acting, size
+        given = _joined(group.collect @ a + loaded, x)
+        sizes = _joined(np.abs(group.collect) @ np.abs(a) + largest, np.abs(x))
+        turned = self._norms[number] * self._lengths[panel]
+        missed = self._truncated(self._missed[number, panel], turned, given, sizes)
+        wrong, ends = self._answered(group, panel, sizes)
+        wrong = np.abs(group.spread) @ wrong + 3 * self._unit * (np.abs(sent) + np.abs(a)) + 4 * self._smallest
+        return _square(wrong), np.sum(wrong, axis=-1), ends, missed
+
+    def _of_scatterers(self, group: Scatterers, panel: int, a: Array, size: Array) -> tuple[Array, Array, Array, Array]:
+        """The same."""
+        matrix = np.abs(group.columns[panel])
+        acting = np.concatenate([np.abs(a), np.zeros((*size.shape[:-1], group.size))], axis=2)
+        acting[:, :, a.shape[2] :, :3] = _LOADED * size
+        count = matrix.shape[1] + 4
+        wrong = self._unit * count * (np.swapaxes(matrix, 1, 2) @ acting)
+        small = count * (1 + np.sum(matrix, axis=1)) + np.sum(acting, axis=(2, 3))[..., None]
+        wrong += self._smallest * (small + 4)[..., None]
+        none = np.zeros((len(a), len(group.joints), 0))
+        return _square(wrong), np.sum(wrong, axis=-1), none, np.zeros(len(a))
+
+    def _products(self, columns: Array, sizes: Array) -> Array:
+        """How wrong (..., rows) times (rows, columns) may be, from absolute values.
+
+        What is multiplied is itself a sum of pushes, and so are the `sizes`.
+        """
+        size = np.abs(columns) + NEGLIGIBLE * np.max(np.abs(columns))
+        count = len(columns) + self._pushes + _SPARE
+        small = count * (1 + np.sum(size, axis=0)) + np.sum(sizes, axis=-1, keepdims=True)
+        return np.asarray(self._unit * count * (sizes @ size) + self._smallest * small)
+
+    def _answered(self, group: Blocks, panel: int, sizes: Array) -> tuple[Array, Array]:
+        """How wrong velocities (windows, joints, points, k) and states at the end may be."""
+        columns, states = group.columns[panel], group.states.shape[1]
+        wrong = self._products(columns, sizes)
+        after = sizes[..., -states:] + sizes @ np.abs(columns[:, -states:])
+        ends = wrong[..., -states:] + 2 * self._unit * after
+        return wrong[..., :-states].reshape(*sizes.shape[:2], -1, group.size), ends
+
+    def _truncated(self, missed: Array, turned: float, given: Array, sizes: Array) -> Array:
+        """The squares of what is lost by truncation, (windows,)."""
+        eps = np.linalg.norm(np.abs(given @ missed.T) + self._products(missed.T, sizes), axis=-1)
+        return np.asarray(np.sum((2 * eps * (sqrt(turned) + (1 + turned) / sqrt(2))) ** 2, axis=1))
 
 
-class Roundings:
-    """What a window adds to the error, in energy: for all nodes at once.
+@dataclass(frozen=True)
+class BodyLosses:
+    """Of bodies on a panel: their `roundings`, (joints, q or end, 3), leaks, and what a leak of 1 costs, squared."""
 
-    The program moves `scale` times as much as the plan.
-    """
-
-    def __init__(self, plan: Plan, run: Run, real: Real, scale: fmpq = _ONE) -> None:
-        self._unit, self._smallest = nearest(real.roundoff), not_below(real.smallest / scale)
-        nodes = plan.junctions
-        constants = {step: _constants(operator) for step, operator in run.operators.items()}
-        shape = len(plan.panels), len(nodes)
-        self._q, self._start, self._end, self._end_start, self.leak = (np.zeros(shape) for _ in range(5))
-        self._q_spare, self._end_spare, self._lost = (np.zeros(shape) for _ in range(3))
-        self._q[:] = 4.0
-        self._q_spare[:] = _SPARE * sqrt(run.degree + 2)
-        for p, panel in enumerate(plan.panels):
-            for c, node in enumerate(nodes):
-                if node.rate is not None:
-                    step = node.rate * panel.length
-                    of = constants[step]
-                    self._q[p, c], self._start[p, c], self._q_spare[p, c] = of.coefficients
-                    self._end[p, c], self._end_start[p, c], self._end_spare[p, c] = of.end
-                    self.leak[p, c] = run.operators[step].leak
-                    self._lost[p, c] = nearest(node.mass * (4 * step + 2))  # M (rate h (2 eps)^2 + (2 eps)^2 / 2)
-        self._length = np.array([[nearest(panel.length)] for panel in plan.panels])
-        self._left = np.array([nearest(node.left) for node in nodes])
-        self._right = np.array([nearest(node.right) for node in nodes])
-        self._mass = np.array([nearest(node.mass) for node in nodes])
-        self._alpha, self._beta = np.abs(run.alpha[:, 0]), np.abs(run.beta[:, 0])
-
-    def of(self, block: Block) -> tuple[Array, Array]:
-        """By truncation and by rounding; shape (windows,) each."""
-        before, after = (np.sqrt(np.sum(w**2, axis=-1) + w[..., 0] ** 2) for w in (block.before, block.after))
-        arriving = self._alpha * before[:, RIGHT, :, :-2] + self._beta * before[:, LEFT, :, 2:] + 2 * block.forces
-        starts = np.abs(block.starts)
-        q = self._unit * (self._q * arriving + self._start * starts) + self._smallest * self._q_spare
-        end = self._unit * (self._end * arriving + self._end_start * starts) + self._smallest * self._end_spare
-        missed = self.leak * (np.abs(block.excess) + q + 4 * self._unit * arriving)
-        left = q + self._unit * after[:, LEFT, :, 1:-1]
-        right = q + self._unit * after[:, RIGHT, :, 1:-1]
-        waves = pi / 4 * self._length * (self._left * left**2 + self._right * right**2)
-        inexact = np.sum(np.sqrt(np.sum(waves + self._mass / 2 * end**2, axis=-1)), axis=-1)
-        return np.sum(np.sqrt(np.sum(self._lost * missed**2, axis=-1)), axis=-1), inexact
+    roundings: Array
+    leak: Array
+    lost: Array
 
 
-def _norm(matrix: Array) -> float:
-    """An upper bound of the 2-norm of a matrix A without negative entries.
-
-    For any positive x no eigenvalue of A^T A is larger than the largest (A^T A x)_i / x_i (Collatz).
-    """
-    x = np.ones(matrix.shape[1])
-    for _ in range(20):
-        y = matrix.T @ (matrix @ x)
-        bound = float(np.max(y / x))
-        x = y / np.max(y) + 1e-3
-    return sqrt(bound)
+def _square(wrong: Array) -> Array:
+    """The squares of norms that count c_0 twice."""
+    return np.asarray(np.sum(wrong**2, axis=-1) + wrong[..., 0] ** 2)
 
 
-class _Constants(NamedTuple):
-    """How wrong the coefficients of q, and its value at the `end`, may be: per u |p|, per u |start|, and per smallest
-    number that may be lost by underflow.
-    """
-
-    coefficients: tuple[float, float, float]
-    end: tuple[float, float, float]
-
-
-def _constants(operator: PanelOperator) -> _Constants:
-    """Norms of T and t for the coefficients of q, and the same for its value at the end.
-
-    Counts the roundings of the programs in C (one after the other) and in NumPy (scans and sums in pairs).
-    """
-    degree = len(operator.ratio) - 1
-    levels = ceil(log2(degree + 1))
-    ratio, first, last = (np.abs(np.array(table)) for table in (operator.ratio, operator.first, operator.last))
-    slack, loss = operator.slack, operator.loss
-    # columns: |p_0| ... |p_d|, |start|, and a last one that no value has: products that underflow
-    given = np.eye(degree + 3)
-    start, spare = given[-2], (_SPARE + levels) * given[-1]
-    y, y_error = np.zeros((degree + 2, degree + 3)), np.zeros((degree + 2, degree + 3))
-    for k in range(degree, 0, -1):
-        difference = (2 if k == 1 else 1) * given[k - 1] + (given[k + 1] if k < degree else 0)
-        y[k] = ratio[k] * (difference + y[k + 1])
-        y_error[k] = 8 * y[k] + ratio[k] * y_error[k + 1] + spare
-    y, y_error = y[:-1], y_error[:-1] + levels * y[:-1]
-    counts = np.maximum(np.arange(degree + 1), levels) + 3.0
-    summed = (degree + 4) * given[-1]
-    begun, ended = start + first @ y, last @ y
-    mean = (1 - slack) * begun
-    mean_error = (1 - slack) * (first @ y_error + (first * counts) @ y + summed) + 3 * begun + spare
-    end_error = abs(1 - loss) * mean_error + last @ y_error + (last * counts) @ y + 3 * ((1 + abs(loss)) * mean + ended)
-    end_error += summed + spare
-    q_error = np.empty_like(y_error)
-    q_error[0] = mean_error
-    q, error = 2 * mean, 2 * mean_error
-    for k in range(1, degree + 1):
-        q = y[k] + ratio[k] * q
-        error = y_error[k] + ratio[k] * error + 3 * q + spare
-        q_error[k] = error + levels * q
-    # in the norm that counts c_0 twice
-    q_error[0] *= sqrt(2)
-    q_error[:, 0] /= sqrt(2)
-    end_error[0] /= sqrt(2)
-    return _Constants(
-        (
-            _norm(q_error[:, :-2]),
-            float(np.linalg.norm(q_error[:, -2])),
-            float(np.linalg.norm(q_error[:, -1])),
-        ),
-        (float(np.linalg.norm(end_error[:-2])), float(end_error[-2]), float(end_error[-1])),
-    )
+def _joined(acting: Array, x: Array) -> Array:
+    """What the matrix of a block is multiplied with, (windows, joints, columns)."""
+    return np.concatenate([acting.reshape(*acting.shape[:2], -1), x], axis=2)

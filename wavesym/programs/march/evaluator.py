@@ -1,52 +1,43 @@
-"""The march: waves window by window, for long horizons and many rods, in constant memory and with a proved bound.
+"""The march as an evaluator: of the least degree that is enough for its horizon, in constant memory.
 
-On each window [n, n + 1) what arrives at a node was sent on the window before, so the nodes are independent of each
-other and each needs one short recurrence (operator.py). The degree of the polynomials that hold the waves grows
-like the square root of the horizon, as fronts gather ever finer detail: it is chosen by marching once over the whole
-horizon and adding up what was lost (bound.py), and raised until that is no more than what rounding costs.
+The degree of the polynomials that hold the waves grows like the square root of the horizon, as fronts gather ever finer
+detail: it is found by marching once over the whole horizon and adding up what was lost (bound.py), and raised until
+that is no more than what rounding costs.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
 from flint import arb, fmpq
 
-from wavesym.errors import CostError, WavesymError
+from wavesym.errors import CostError
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.bound import Verdict, judge
-from wavesym.programs.march.given import Given, batch_size, given
-from wavesym.programs.march.operator import PanelOperator
-from wavesym.programs.march.plan import Plan, plan
-from wavesym.programs.march.run import operator_count, operators, steps
-from wavesym.programs.march.tables import march_constants, march_tables
-from wavesym.programs.program import Driven, Program, ProgramOutput, Provenance
+from wavesym.programs.march.plan import MarchPlan, least_numbers, march_plan
+from wavesym.programs.march.space import BLOCK, BODY, SCATTERER
+from wavesym.programs.march.tables import MarchTables, state_bytes, table_bytes
+from wavesym.programs.program import Program, ProgramOutput, Provenance
 
-_HIGHEST_DEGREE = 2000
-_MOST_WORK = 1e9  # nodes * coefficients * windows, half a minute or so
-_BOUNDING = 1 / 20  # of an operator, in the same units per third power of the degree
-_LARGEST_STATE = 1 << 22  # bytes; programs keep it on the stack
-_OVERHEAD = 1000  # of a window, in units of a coefficient
+_MOST_BYTES = 1 << 22  # of tables, and of the state, which programs keep on the stack
+_MOST_WORK = 2e10  # multiplications of trying all degrees, half a minute or so
+_KIND = 2e4  # what joints of a kind take on a panel besides, in such units
 _SETTLED = 0.8  # a bound that a higher degree does not bring below so much of it is left as it is
+_LEAST_DEGREE = 4
 
 
 @dataclass(frozen=True)
-class MarchEvaluator:
-    """A march over [0, tau_max] with polynomials of `degree` in `real` numbers.
+class March:
+    """A march over [0, tau_max] with polynomials of `degree` in `real` numbers."""
 
-    `given` is what is proved for loads that are not the scene's, where that was asked for.
-    """
-
-    plan: Plan
+    plan: MarchPlan
     degree: int
     real: Real
     outputs: tuple[ProgramOutput, ...]
-    given: Given | None = None
 
     @property
     def tau_max(self) -> float:
@@ -59,35 +50,41 @@ class MarchEvaluator:
         return max(output.bound for output in self.outputs)
 
     @cached_property
-    def operators(self) -> dict[fmpq, PanelOperator]:
-        """By rate times length of a panel."""
-        return operators(self.plan, self.degree)
+    def tables(self) -> dict[str, tuple[float, ...]]:
+        """The numbers of its program."""
+        return MarchTables(self.plan, self.degree, self.real).tables([output.bound == 0 for output in self.outputs])
+
+    @cached_property
+    def constants(self) -> dict[str, float]:
+        """Its single numbers."""
+        return MarchTables(self.plan, self.degree, self.real).constants()
 
     @property
     def bytes(self) -> int:
-        """The size of the tables that grow, those of the operators and the loads."""
-        return self.real.bytes * (3 * (self.degree + 1) * len(self.operators) + 6 * len(self.plan.events))
+        """The size of the tables that grow."""
+        return table_bytes(self.plan, self.degree, self.real)
 
     @property
     def state_bytes(self) -> int:
-        """The size of what a march remembers: two windows of waves."""
-        return self.real.bytes * _state(self.plan, self.degree)
+        """The size of what a march remembers: the waves in all bars."""
+        return state_bytes(self.plan, self.degree, self.real)
 
     @property
     def work(self) -> float:
         """About how many operations a window takes, and so a value that is asked for alone on one."""
-        return 8.0 * len(self.plan.panels) * len(self.plan.junctions) * self.degree
+        return 2.0 * _multiplications(self.plan, self.degree)
 
     @property
     def marched(self) -> float:
         """The same of all windows."""
-        return self.work * self.tau_max
+        return self.work * self.plan.windows
 
     @property
     def summary(self) -> str:
         """What it is, in a few words."""
         size = -(-self.state_bytes // 1024)
-        return f"march, degree {self.degree}, a state of {size} KiB, bound {self.error_bound:g}"
+        step = "" if self.plan.step == 1 else f" on steps of {self.plan.step}"
+        return f"march, degree {self.degree}{step}, a state of {size} KiB, bound {self.error_bound:g}"
 
     def shortfall(self, tolerance: fmpq) -> str:
         """Why it does not meet a tolerance."""
@@ -99,126 +96,130 @@ class MarchEvaluator:
     @cached_property
     def check_points(self) -> list[float]:
         """For the self-test: both ends, the first windows, and a few of all later ones."""
-        early = [k / 8 for k in range(int(min(8 * self.tau_max, 160)) + 1)]
-        late = [self.real.nearest(rational(self.tau_max) * k / 32) for k in range(33)]
-        return sorted(set(early + late))
+        step, last = self.plan.step, rational(self.tau_max)
+        early = [self.real.nearest(step * k / 8) for k in range(161) if step * k / 8 <= last]
+        late = [self.real.nearest(last * k / 32) for k in range(33)]
+        return sorted({min(tau, self.tau_max) for tau in early + late})
 
     def program(self, provenance: Provenance) -> Program:
-        """A march remembers waves; what it is made of are tables of a window, and constants."""
+        """Its tables, flat."""
         return Program(
-            "march",
-            self.real,
-            self.tau_max,
-            self.outputs,
-            march_tables(self),
-            march_constants(self),
-            self.bytes,
-            provenance,
-            sources=tuple(channel.name for channel in self.plan.channels),
-            whole=math.isinf(self.plan.valid),
-            driven=Driven(self.given.windows, self.given.errors) if self.given else None,
+            "march", self.real, self.tau_max, self.outputs, self.tables, self.constants, self.bytes, provenance
         )
 
 
-def marched(model: Model, real: Real = DOUBLE, degree: int | None = None, windows: int | None = None) -> MarchEvaluator:
-    """The march of a model in `real` numbers, whatever its bound, of the least sufficient degree or of the one given
-    (at least 8).
+def march(model: Model, real: Real = DOUBLE, degree: int | None = None) -> March:
+    """The march of a model in `real` numbers, whatever its bound: of the least sufficient degree, or of the one given.
 
-    With `windows` the degree suffices for loads that are given while it runs for so long; WavesymError where none can
-    be. OverflowError where numbers would be beyond those of the format.
+    UnservedError where the model has contacts, CostError where it would be long or large. OverflowError where numbers
+    would be beyond those of the format.
     """
-    prepared = plan(model, real, windows or 0)
-    _refuse_extreme(prepared, real)
+    return judged(model, real, degree)[0]
+
+
+def judged(model: Model, real: Real = DOUBLE, degree: int | None = None) -> tuple[March, Verdict]:
+    """The same with all that is known of it."""
+    plan = march_plan(model, real)
+    if any(0 < abs(value) < real.least for value in least_numbers(plan)) or plan.cycle[1] * real.roundoff > 1:
+        raise OverflowError(f"a number of the tables is beyond {real.name} precision")
     if degree is not None:
-        return _made(prepared, degree, real)[0]
-    degree = _first_degree(prepared, prepared.windows, real)
+        return _made(plan, max(degree, _LEAST_DEGREE), real)
+    degree = first_degree(plan, real)
     before = math.inf
     spent = 0.0
     while True:
-        spent = _refuse_long(prepared, degree, spent)
-        made, verdict = _made(prepared, degree, real)
-        # where bodies are very light, what is lost is mostly rounding that no degree mends
-        settled = verdict.truncated <= verdict.rounded or _SETTLED * before < made.error_bound < math.inf
-        if verdict.quiet and settled:
-            break
+        spent = refuse_long(plan, degree, spent, real)
+        made, verdict = _made(plan, degree, real)
+        if verdict.truncated <= verdict.rounded or _SETTLED * before <= made.error_bound < math.inf:
+            return made, verdict
         before = made.error_bound
-        degree += degree // 6
-    return made if windows is None else _driven(made, windows)
+        # each degree gains a factor of e or more
+        missing = math.log(verdict.truncated / verdict.rounded) if verdict.rounded > 0 else math.inf
+        degree += max(2, min(degree // 6, math.ceil(min(missing, 1e6)) + 2))
 
 
-def _driven(made: MarchEvaluator, windows: int) -> MarchEvaluator:
-    """A march of a degree that is enough for given loads too, and what is proved for them."""
-    prepared, real = made.plan, made.real
-    if not prepared.channels:
-        raise WavesymError("--windows: no load can be given here, a system with a load in the light cone expected")
-    degree = max(made.degree, _first_degree(prepared, windows, real))
-    before = math.inf
-    spent = 0.0
-    while True:
-        spent = _refuse_long(prepared, degree, spent, windows, batch_size(prepared))
-        proved = given(prepared, degree, real, windows)
-        worst = max(proved.errors)
-        if proved.settled or _SETTLED * before < worst:
-            return replace(_made(prepared, degree, real)[0], given=proved)
-        before = worst
-        degree += degree // 6
-
-
-def _made(prepared: Plan, degree: int, real: Real) -> tuple[MarchEvaluator, Verdict]:
-    verdict = judge(prepared, degree, real)
+def _made(plan: MarchPlan, degree: int, real: Real) -> tuple[March, Verdict]:
+    try:
+        verdict = judge(plan, degree, real)
+    except OverflowError:  # of the numbers' format, which costs have nothing to do with
+        raise
+    except ArithmeticError as error:
+        raise CostError(f"system.parts: to solve the joints of a march, {error} (softer springs help)") from None
     outputs = tuple(
         ProgramOutput(output.name, bound(arb(error)) if math.isfinite(error) else error, size)
-        for output, error, size in zip(prepared.outputs, verdict.bounds, verdict.largest, strict=True)
+        for output, error, size in zip(plan.outputs, verdict.bounds, verdict.largest, strict=True)
     )
-    return MarchEvaluator(prepared, degree, real, outputs), verdict
+    return March(plan, degree, real, outputs), verdict
 
 
-def _first_degree(prepared: Plan, windows: int, real: Real) -> int:
-    """A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved."""
-    rates = [nearest(node.rate) if node.rate is not None else 0.0 for node in prepared.junctions]
-    longest = max(nearest(panel.length) for panel in prepared.panels)
-    detail = math.sqrt(2 * float(np.mean(rates)) * longest * windows)
-    return math.ceil(detail) + (20 if real is DOUBLE else 10)
+def first_degree(plan: MarchPlan, real: Real) -> int:
+    """A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved.
+
+    A stiff spring adds those of a body on it.
+    """
+    if not any(joint.space.states for joint in plan.joints):
+        return _LEAST_DEGREE
+    longest = max(nearest(panel.length) for panel in plan.panels)
+    bodies = [-nearest(p.space.rates[n, n]) for p in plan.joints for n in range(p.space.states)]
+    slow = sum(rate for rate in bodies if rate > 0) / len(bodies)
+    turning = max(joint.space.turning for joint in plan.joints)
+    detail = math.sqrt(2 * slow * longest * plan.crossings) + min(turning * longest / 2, 1e6)
+    spare = 8 if any(joint.space.law == BLOCK for joint in plan.joints) else 12  # blocks cost its square
+    return math.ceil(detail) + (spare if real is DOUBLE else spare // 2)
 
 
-def _refuse_extreme(prepared: Plan, real: Real) -> None:
-    """OverflowError where a number of the tables is too small for its rounding to be as the unit roundoff says."""
-    nodes = prepared.junctions
-    numbers = [value for node in nodes for value in (node.alpha, node.beta, node.motion)]
-    numbers += [panel.length / 2 for panel in prepared.panels]
-    # the smallest ratio of an operator is about this
-    numbers += [step / (8 * _HIGHEST_DEGREE) for step in steps(prepared)]
-    numbers += [power for event in prepared.events for power in event.powers]
-    numbers += [channel.gain for channel in prepared.channels]
-    numbers += [heard.gain for output in prepared.outputs for heard in output.heard]
-    if any(0 < abs(value) < real.least for value in (*numbers, *prepared.rods)):
-        raise OverflowError(f"a number of the tables is too small for {real.name} precision")
+def _fastest(plan: MarchPlan) -> float:
+    return max(joint.space.norm for joint in plan.joints)
 
 
-def _refuse_long(prepared: Plan, degree: int, spent: float, windows: int = 0, marches: int = 1) -> float:
+def _multiplications(plan: MarchPlan, degree: int) -> int:
+    """On one window."""
+    total = 0
+    for space in (joint.space for joint in plan.joints):
+        ports, size = len(space.ports), degree + 1
+        if space.law == SCATTERER:
+            total += (ports + space.points) * size * ports
+        elif space.law == BODY:
+            total += (2 * ports + 4) * size
+        else:
+            total += (space.points * size + space.states) ** 2
+    return len(plan.panels) * total
+
+
+def _kinds(plan: MarchPlan) -> int:
+    """How many sorts of joints there are, each of which takes its steps at once."""
+    return len(
+        {
+            (of.law, len(of.ports), of.points, of.states, of.key if of.law == BLOCK else None)
+            for of in (joint.space for joint in plan.joints)
+        }
+    )
+
+
+def refuse_long(plan: MarchPlan, degree: int, spent: float, real: Real) -> float:
     """What trying a degree costs, with what is `spent` already; CostError where that is too much."""
-    asked, until = ("--windows", float(windows)) if windows else ("output.until", prepared.tau_max)
-    shorter = "fewer windows" if windows else "a shorter horizon"
-    work = (windows or prepared.windows) * len(prepared.panels)
-    work *= _OVERHEAD + marches * len(prepared.junctions) * degree
-    if degree > _HIGHEST_DEGREE:
+    _refuse_rings(plan, _LEAST_DEGREE, real)  # it is not the joints then
+    if (size := table_bytes(plan, degree, real)) > _MOST_BYTES:
         raise CostError(
-            f"{asked}: rates to {nearest(prepared.rate):g} need polynomials of degree {degree:g} to tau = {until:g}, "
-            f"at most {_HIGHEST_DEGREE} expected in a march ({shorter}, or heavier bodies, helps)"
+            f"system.parts: joints as fast as {_fastest(plan):.3g} on a step of {plan.step} need polynomials of degree "
+            f"{degree:g} to tau = {plan.tau_max:g}, and so {size:.1e} bytes of tables, at most {_MOST_BYTES:.1e} "
+            "expected in a march (softer springs, heavier bodies, or lengths with a smaller common measure, help)"
         )
-    spent += work + _BOUNDING * operator_count(prepared) * degree**3
+    _refuse_rings(plan, degree, real)
+    # two matrices are multiplied with: the answers, and their sizes
+    work = plan.windows * (3.0 * _multiplications(plan, degree) + _KIND * _kinds(plan) * len(plan.panels))
+    spent += work
     if spent > _MOST_WORK:
         raise CostError(
-            f"{asked}: a march of degree {degree} to tau = {until:g} would cost {spent:.1e} operations, at most "
-            f"{_MOST_WORK:.1e} expected ({shorter} helps)"
-        )
-    if 8 * _state(prepared, degree) > _LARGEST_STATE:
-        raise CostError(
-            f"system.m: the state of a march would have {8 * _state(prepared, degree):.1e} bytes, at most "
-            f"{_LARGEST_STATE:.1e} expected (fewer rods, or fewer fractional parts of load times, help)"
+            f"output.until: a march of degree {degree} on steps of {plan.step} to tau = {plan.tau_max:g} would cost "
+            f"{spent:.1e} operations, at most {_MOST_WORK:.1e} expected (a shorter horizon helps)"
         )
     return spent
 
 
-def _state(prepared: Plan, degree: int) -> int:
-    return 4 * len(prepared.panels) * (len(prepared.junctions) + 2) * (degree + 1)
+def _refuse_rings(plan: MarchPlan, degree: int, real: Real) -> None:
+    if (size := state_bytes(plan, degree, real)) > _MOST_BYTES:
+        raise CostError(
+            f"system.parts: the rings of a march on a step of {plan.step} would have {size:.1e} bytes, at most "
+            f"{_MOST_BYTES:.1e} expected (fewer rods, or lengths with a larger common measure, help)"
+        )

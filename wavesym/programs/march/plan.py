@@ -1,50 +1,48 @@
-"""What is marched: the nodes in the light cone, the panels of a window, the loads and what is read; all exact.
+"""What is marched: one step, rings of windows for the waves, joints, loads and what is read; all exact.
 
-The law of a node, inertia q' + g q = alpha a + beta b + load with g = damping + (alpha + beta)/2, is divided by g:
-
-    q'/rate + q = p    (a body, rate = g/inertia),        q = p    (no inertia),        p = alpha a + beta b + load.
-
-Every window [n, n + 1) is cut into the same panels, at the fractional parts of the load times, so that on a panel every
-wave is smooth. A wave that is sent on a panel arrives on the same panel of the next window.
+The step h is the greatest common measure of the delays, so that what is sent on a window [n h, (n + 1) h) arrives at
+the other end of its bar on window n + delay/h: every joint knows all that it needs when a window begins. A window is
+cut into the same panels everywhere, at what load times leave over of h, so that on a panel every wave is smooth.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, reduce
 from itertools import pairwise
-from math import inf
+from math import gcd, lcm
+from typing import Any
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.errors import SpacingError
-from wavesym.exact.joints.node_rules import node_rule
+from wavesym.errors import CostError, SpacingError
+from wavesym.exact.joints.node_rules import joint_rule
 from wavesym.fields.numbers import decimal_text
 from wavesym.mechanics.gauge import Sum
-from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.node import RAMPS, Node
+from wavesym.mechanics.network import End, Joint, Network, Point
+from wavesym.mechanics.node import UnitLoad
 from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.load_events import LoadEvent, load_changes, load_events
+from wavesym.programs.march.space import SHOWN, JointSpace, Port, joint_space
 
-LEFT, RIGHT, LOAD = 0, 1, 2
-"""What is heard: waves that nodes send, or loads."""
-
+FINEST = 64
+"""The shortest delay is no more steps than that."""
 MOST_PANELS = 16
+HIGHEST_DEGREE = 2000
 HELPS = "fewer samples, modes, or for what does not jump NumPy or run"
 """Beside another spacing, where loads leave more panels."""
-# of the sum of what polynomials miss, errors at fronts were seen to be up to about so many times as much
-_ESTIMATED = 100
+
 _LONG = 30  # characters of a number that nobody reads
 _ZERO, _ONE = fmpq(0), fmpq(1)
 
 
 @dataclass(frozen=True)
-class MarchPanel:
+class Panel:
     """Part of every window: from `start` on, `length` long."""
 
     start: fmpq
@@ -52,40 +50,10 @@ class MarchPanel:
 
 
 @dataclass(frozen=True)
-class Junction:
-    """A node, its law divided by g. `rate` is None where it has no inertia.
-
-    `left` and `right` are the impedances of its rods (0 where there is none), `mass` its inertia, all on one scale:
-    mass * rate = (left + right) where nothing is damped. `motion` is the velocity of a body at tau = 0.
-    """
-
-    alpha: fmpq
-    beta: fmpq
-    rate: fmpq | None
-    left: fmpq
-    right: fmpq
-    mass: fmpq
-    motion: fmpq
-
-
-@dataclass(frozen=True)
-class Channel:
-    """A load that can be given while it runs: `gain` times it (`order` 0) or its integral from 0 on (1) is the force.
-
-    `name` is M1, M2 ... (a moment) or a (the base acceleration).
-    """
-
-    name: str
-    force: int
-    gain: fmpq
-    order: int
-
-
-@dataclass(frozen=True)
 class Stretch:
     """Where in a window what arrives is smooth: from t = `start` (it may be < 0) on, t the time since the window began.
 
-    It was sent on `panel`, `back` windows ago (0 or 1), as that panel's polynomial in t - start.
+    It was sent on `panel`, `back` windows ago, as that panel's polynomial in t - start.
     """
 
     start: fmpq
@@ -94,135 +62,197 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class HeardWave:
-    """`gain` times the wave that the node at `column` sends to the LEFT or RIGHT, `delay` after it was sent; or the
-    LOAD with the number `column`. Where it is `summed`, the integral of that.
+class Track:
+    """What is sent into one end of a bar (or a velocity or load that is watched): it arrives `steps` windows later.
+
+    `held` is what is on its way at tau = 0. `impedance` is 0 where no bar carries it. What is `prescribed` is a load,
+    or a velocity that loads give.
     """
 
-    way: int
-    column: int
-    delay: fmpq
+    steps: int
+    held: fmpq
+    impedance: fmpq
+    prescribed: bool = False
+
+
+@dataclass(frozen=True)
+class MarchedJoint:
+    """A joint of the light cone: its laws, and of each port the tracks that `arrive` and that it `sends`.
+
+    `forces` are the loads on its points, by number; -1 for none.
+    """
+
+    space: JointSpace
+    arrive: tuple[int, ...]
+    sends: tuple[int, ...]
+    forces: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class OutputTerm:
+    """One of the waves of an output: `gain` times a track, or times its integral, `delay` after it was sent."""
+
+    track: int
     gain: fmpq
+    delay: fmpq
     summed: bool
 
 
 @dataclass(frozen=True)
-class Watched:
-    """An output: a sum of waves and of integrals of waves."""
+class MarchOutput:
+    """An output: a sum of waves and of integrals of waves over time."""
 
     name: str
-    heard: tuple[HeardWave, ...]
+    heard: tuple[OutputTerm, ...]
 
-    def part(self, *, summed: bool) -> tuple[HeardWave, ...]:
+    def part(self, *, summed: bool) -> tuple[OutputTerm, ...]:
         """The waves, or those of whose integrals it is the sum."""
         return tuple(heard for heard in self.heard if heard.summed == summed)
 
 
 @dataclass(frozen=True)
-class Plan:
-    """A model made ready to march; columns number the nodes of the light cone from 0."""
+class MarchPlan:
+    """A model made ready to march."""
 
     model: Model = field(compare=False)
-    panels: tuple[MarchPanel, ...]
-    junctions: tuple[Junction, ...]
-    rods: tuple[fmpq, ...]  # half the initial velocity of the rods left of each column, and of that right of the last
-    loaded: tuple[int, ...]  # the column of each force
-    events: tuple[LoadEvent, ...]  # of loads divided by g
-    channels: tuple[Channel, ...]
-    outputs: tuple[Watched, ...]
+    step: fmpq
+    panels: tuple[Panel, ...]
+    tracks: tuple[Track, ...]
+    joints: tuple[MarchedJoint, ...]
+    forces: int
+    events: tuple[LoadEvent, ...]
+    outputs: tuple[MarchOutput, ...]
     tau_max: float
-    first: int  # the node at column 0
-    valid: float  # until when no node outside of the light cone can be felt
-    tolerance: float  # of the scene, but no less than what rounding makes of loads that are given
-    trusted: float  # what polynomials may miss in all, of the largest wave, before the programs say so
-
-    @property
-    def ways(self) -> int:
-        """How many arrays of series there are: loads are one, where they are heard."""
-        return LOAD + any(heard.way == LOAD for output in self.outputs for heard in output.heard)
+    pushed: tuple[int, ...]  # the point of each force
 
     @property
     def windows(self) -> int:
-        """How many windows reach tau_max, the one that starts at an integer tau_max included."""
-        return int(self.tau_max) + 1
+        """How many windows reach tau_max, one that starts there included."""
+        return int((rational(self.tau_max) / self.step).floor()) + 1
 
     @cached_property
-    def rate(self) -> fmpq:
-        """The largest rate of a body, 0 without one."""
-        return max((node.rate for node in self.junctions if node.rate is not None), default=fmpq(0))
+    def cycle(self) -> tuple[int, int]:
+        """After so many windows, the first number, tau is an integer again, the second; or beyond the horizon."""
+        windows, span = int(self.step.q), int(self.step.p)
+        return (windows, span) if windows <= self.windows else (self.windows, int(self.tau_max) + 2)
 
-    def scaled(self, factor: fmpq) -> Plan:
+    @property
+    def crossings(self) -> int:
+        """How often a front can have met a joint, at most."""
+        shortest = min(track.steps for track in self.tracks if track.steps)
+        return -(-self.windows // shortest)
+
+    def scaled(self, factor: fmpq) -> MarchPlan:
         """The same with all that moves it `factor` times as large; every motion is, then."""
+
+        def louder(joint: MarchedJoint) -> MarchedJoint:
+            begun = tuple(factor * value for value in joint.space.begun)
+            return replace(joint, space=replace(joint.space, begun=begun))
+
         return replace(
             self,
-            junctions=tuple(replace(node, motion=factor * node.motion) for node in self.junctions),
-            rods=tuple(factor * velocity for velocity in self.rods),
+            tracks=tuple(replace(track, held=factor * track.held) for track in self.tracks),
+            joints=tuple(map(louder, self.joints)),
             events=tuple(event.times(factor) for event in self.events),
-            channels=tuple(replace(channel, gain=factor * channel.gain) for channel in self.channels),
         )
 
-    def changes(self, panel: int) -> Iterator[tuple[int, int, tuple[fmpq, fmpq, fmpq]]]:
-        """Window, force and powers of what is new with each event on a panel."""
-        for event, powers in load_changes(self.events, [each.start for each in self.panels], _ONE):
-            if event.panel == panel:
-                yield event.window, event.force, powers
+    def changes(self) -> Iterator[tuple[int, tuple[fmpq, fmpq, fmpq]]]:
+        """Force and powers of what is new with each event."""
+        for event, powers in load_changes(self.events, [panel.start for panel in self.panels], self.step):
+            yield event.force, powers
 
     def stretches(self, delay: fmpq) -> tuple[Stretch, ...]:
-        """Those of a wave that arrives `delay` after it was sent, 0 <= delay <= 1, in order; they cover the window."""
+        """Those of a wave that arrives `delay` after it was sent, in order; `start` counts from that of a window."""
         found = []
-        for back in (1, 0):
+        windows = int((delay / self.step).floor())
+        for back in (windows + 1, windows):
             for number, panel in enumerate(self.panels):
-                start = delay + panel.start - back
-                if start < 1 and start + panel.length > 0:
+                start = delay + panel.start - back * self.step
+                if start < self.step and start + panel.length > 0:
                     found.append(Stretch(start, back, number))
         return tuple(found)
 
 
-def plan(model: Model, real: Real = DOUBLE, windows: int = 0) -> Plan:
-    """The plan of a model in `real` numbers; what can matter on the first `windows` is part of it too.
+def march_plan(
+    model: Model, real: Real = DOUBLE, space: Callable[[Network, Joint], Any] = joint_space, helps: str = HELPS
+) -> MarchPlan:
+    """The plan of a chain in `real` numbers; `space` makes the laws of its joints, `helps` is for a refusal.
 
-    CostError where load times have too many different fractional parts.
+    UnservedError for contacts; CostError where the step would be too small, or load times have too many remainders.
     """
+    network = model.network
+    network.refuse_contacts()
     model.refuse_damping()
     tau_max = model.horizon(real)
-    columns = model.light_cone(rational(max(tau_max, float(windows))))
-    nodes = [model.named.nodes[x] for x in columns]
-    loads = model.acting(rational(tau_max))
-    cut = panels([load.time for load in loads])
-    loaded = tuple(column for column, node in enumerate(nodes) if node.loads)
-    starts = [rod.velocity / 2 if rod else fmpq(0) for rod in (*(node.left for node in nodes), nodes[-1].right)]
-    return Plan(
+    until = rational(tau_max)
+    reached = model.reached(until)
+    modelled = {end for number in reached for end, _ in network.joints[number].ends}
+    bars = sorted({end.bar for end in modelled} | {read.rod - 1 for read in model.watched if read.point is None})
+    step = _step([network.bars[bar].delay for bar in bars])
+    track_of = {End(bar, side): 2 * k + side for k, bar in enumerate(bars) for side in (0, 1)}
+    tracks = [
+        Track(int(bar.delay / step), bar.held(side), bar.impedance)
+        for bar in (network.bars[number] for number in bars)
+        for side in (0, 1)
+    ]
+    loads = _Loads(model, until, reached)
+    shown = sorted({read.point for read in model.watched if read.point is not None})
+    point_of = {point: len(tracks) + k for k, point in enumerate(shown)}
+    tracks += [Track(0, _ZERO, _ZERO, network.points[point].motion is not None) for point in shown]
+    pushed = {read.point for terms in model.sums.values() for _, read in terms if read.quantity == "load"}
+    load_of = {point: len(tracks) + k for k, point in enumerate(p for p in sorted(loads.numbers) if p in pushed)}
+    silent = len(tracks) + len(load_of)  # a track on which nothing is ever sent
+    tracks += [Track(0, _ZERO, _ZERO, True)] * (len(load_of) + 1)
+    panels = _panels([time for time, _, _ in loads.changes], step, helps)
+    marched = []
+    for number in reached:
+        joint = network.joints[number]
+        laws = space(network, joint)
+        watched = [(k, point) for k, point in enumerate(joint.points) if point in point_of]
+        ports = (*laws.ports, *(Port(k, _ZERO, _ONE, _ZERO) for k, _ in watched))
+        sends = (*(track_of[end] for end, _ in joint.ends), *(point_of[point] for _, point in watched))
+        arrive = (*(track_of[network.beyond(end)] for end, _ in joint.ends), *(silent for _ in watched))
+        forces = tuple(loads.numbers.get(point, -1) for point in joint.points)
+        marched.append(MarchedJoint(replace(laws, ports=ports), arrive, sends, forces))
+    marched += [MarchedJoint(SHOWN, (silent,), (track,), (loads.numbers[point],)) for point, track in load_of.items()]
+    return MarchPlan(
         model,
-        cut,
-        tuple(_junctions(nodes)),
-        tuple(starts),
-        loaded,
-        tuple(_events(nodes, loaded, loads, cut)),
-        tuple(_channels(nodes, loaded)),
+        step,
+        panels,
+        tuple(tracks),
+        tuple(marched),
+        len(loads.numbers),
+        tuple(loads.events(panels, step)),
         tuple(
-            Watched(probe.name, tuple(_heard(model, terms, columns.start, loaded)))
+            MarchOutput(probe.name, tuple(_heard(model.network, terms, track_of, point_of, load_of)))
             for probe, terms in model.sums.items()
         ),
         tau_max,
-        columns.start,
-        inf if len(columns) == model.named.m + 1 else max(tau_max, float(windows)),
-        nearest(max(model.tolerance, 64 * real.roundoff)),
-        # no less than what the arithmetic of so many nodes loses on all windows
-        nearest(max(model.tolerance / _ESTIMATED, real.roundoff * len(nodes) * (int(tau_max) + 1))),
+        tuple(sorted(loads.numbers)),
     )
 
 
-def panels(times: Sequence[fmpq], helps: str = HELPS) -> tuple[MarchPanel, ...]:
-    """The parts of every window between which loads begin or bend. SpacingError where there are too many, with what
-    helps beside another spacing.
-    """
-    cuts = sorted({fmpq(0), fmpq(1)} | {time - time.floor() for time in times})
+def _step(delays: list[fmpq]) -> fmpq:
+    """Their greatest common measure."""
+    below = lcm(*(int(delay.q) for delay in delays))
+    step = fmpq(gcd(*(int(delay * below) for delay in delays)), below)
+    if step * FINEST < (shortest := min(delays)):
+        few = ", ".join(map(str, sorted(set(delays))[:3])) + (", ..." if len(set(delays)) > 3 else "")
+        raise CostError(
+            f"system.parts: delays {few} have the common measure {step}, {float(shortest / step):.3g} to the shortest, "
+            f"at most {FINEST} expected in a march (lengths with a larger common measure, or pieces, help)"
+        )
+    return step
+
+
+def _panels(times: list[fmpq], step: fmpq, helps: str) -> tuple[Panel, ...]:
+    cuts = sorted({_ZERO, step} | {time - (time / step).floor() * step for time in times})
     if len(cuts) - 1 > MOST_PANELS:
         raise SpacingError(
-            f"load: times at a spacing of {told(common(times))} have {len(cuts) - 1} different fractional parts, at "
-            f"most {MOST_PANELS} expected in a march ({suiting(times)}, {helps}, helps)"
+            f"load: times at a spacing of {readable(common(times))} leave {len(cuts) - 1} different remainders of the "
+            f"step {readable(step)}, at most {MOST_PANELS} expected in a march ({suiting(times, step)}, {helps}, helps)"
         )
-    return tuple(MarchPanel(low, high - low) for low, high in pairwise(cuts))
+    return tuple(Panel(low, high - low) for low, high in pairwise(cuts))
 
 
 def common(times: Iterable[fmpq]) -> fmpq:
@@ -233,73 +263,89 @@ def common(times: Iterable[fmpq]) -> fmpq:
 def suiting(times: Iterable[fmpq], step: fmpq = _ONE) -> str:
     """The spacing nearest to that of some times whose multiples have few enough remainders of a step."""
     parts = fraction(common(times) / step).limit_denominator(MOST_PANELS)
-    return f"a spacing of {told(step * rational(parts or Fraction(1, MOST_PANELS)))}"
+    return f"a spacing of {readable(step * rational(parts or Fraction(1, MOST_PANELS)))}"
 
 
-def told(exact: fmpq) -> str:
+def readable(exact: fmpq) -> str:
     """A number to be read: all of it, or 17 digits where it is long."""
     text = decimal_text(fraction(exact))
     return text if len(text) < _LONG else f"{nearest(exact):.17g}"
 
 
-def _junctions(nodes: Sequence[Node]) -> Iterator[Junction]:
-    """The impedances follow from rod to rod: at a node they are as alpha to beta."""
-    impedance = fmpq(1)
-    for node in nodes:
-        rule = node_rule(node)
-        alpha, beta, g = rule.left, rule.right, rule.same
-        inertia = rule.raised.constant
-        left = impedance if node.left else fmpq(0)
-        if node.left and node.right:
-            impedance *= beta / alpha
-        right = impedance if node.right else fmpq(0)
-        # alpha = 2 left / M, and inertia counts in units of M
-        mass = inertia * (2 * right / beta if node.right else 2 * left / alpha) if inertia else fmpq(0)
-        rate = g / inertia if inertia else None
-        yield Junction(alpha / g, beta / g, rate, left, right, mass, node.velocity)
+class _Loads:
+    """What acts on the points of the light cone, or moves them: polynomials from event to event."""
+
+    def __init__(self, model: Model, until: fmpq, reached: dict[int, fmpq]) -> None:
+        points = [point for number in reached for point in model.network.joints[number].points]
+        self.changes: list[tuple[fmpq, int, fmpq_poly]] = []
+        for number in points:
+            point = model.network.points[number]
+            units = {unit.source: fmpq_poly(list(moved_by(point, unit))) for unit in point.loads}
+            for load in model.acting(until):
+                if load.source in units:
+                    self.changes.append((load.time, number, load.weight * units[load.source]))
+            if point.motion is not None and point.velocity != 0:
+                self.changes.append((_ZERO, number, fmpq_poly([point.velocity])))
+        acting = {number for _, number, _ in self.changes}
+        self.numbers = {point: force for force, point in enumerate(sorted(acting))}
+
+    def events(self, panels: tuple[Panel, ...], step: fmpq) -> Iterator[LoadEvent]:
+        """From each change on, the whole polynomial, in order."""
+        gains: dict[tuple[fmpq, int], fmpq_poly] = defaultdict(fmpq_poly)
+        for time, point, polynomial in self.changes:
+            gains[time, self.numbers[point]] += polynomial
+        return load_events(gains, (panel.start for panel in panels), step)
 
 
-def _events(
-    nodes: Sequence[Node], loaded: Sequence[int], loads: Sequence[Applied], panels: Sequence[MarchPanel]
-) -> Iterator[LoadEvent]:
-    gains: dict[tuple[fmpq, int], fmpq_poly] = defaultdict(fmpq_poly)
-    for load in loads:
-        for force, column in enumerate(loaded):
-            for unit in nodes[column].loads:
-                if unit.source == load.source:
-                    new = load.weight * _share(nodes[column]) * fmpq_poly(list(unit.coefficients))
-                    gains[load.time, force] += new
-    return load_events(gains, (panel.start for panel in panels), _ONE)
+def moved_by(point: Point, unit: UnitLoad) -> tuple[Any, ...]:
+    """The force that a unit load makes of itself at a point, or the velocity that it prescribes, by powers of tau."""
+    if point.motion == "acceleration":
+        return (_ZERO, *(coefficient / (power + 1) for power, coefficient in enumerate(unit.coefficients)))
+    return unit.coefficients if point.motion else tuple(joint_rule().load * each for each in unit.coefficients)
 
 
-def _share(node: Node) -> fmpq:
-    """What a load counts in a law that is divided by g."""
-    rule = node_rule(node)
-    return rule.load / rule.same
+def _heard(
+    network: Network, terms: Sum, track_of: dict[End, int], point_of: dict[int, int], load_of: dict[int, int]
+) -> Iterator[OutputTerm]:
+    for weight, reading in terms:
+        summed = reading.order < 0
+        if reading.point is not None:
+            tracks = load_of if reading.quantity == "load" else point_of
+            if reading.point in tracks:
+                yield OutputTerm(tracks[reading.point], weight, _ZERO, summed)
+            continue
+        bar = network.bars[reading.rod - 1]
+        right, left = (weight * sign / (bar.speed if reading.quantity == "strain" else 1) for sign in reading.weights)
+        yield OutputTerm(track_of[End(reading.rod - 1, 0)], right, reading.place * bar.delay, summed)
+        yield OutputTerm(track_of[End(reading.rod - 1, 1)], left, (1 - reading.place) * bar.delay, summed)
 
 
 def power_of_two(numbers: Iterable[fmpq]) -> fmpq:
     """About the largest absolute value of some numbers; 1 where all are 0."""
-    size = max(map(abs, numbers), default=fmpq(0))
-    return fmpq(2) ** (int(size.p).bit_length() - int(size.q).bit_length()) if size else fmpq(1)
+    size = max(map(abs, numbers), default=_ZERO)
+    return fmpq(2) ** (int(size.p).bit_length() - int(size.q).bit_length()) if size else _ONE
 
 
-def _channels(nodes: Sequence[Node], loaded: Sequence[int]) -> Iterator[Channel]:
-    for force, column in enumerate(loaded):
-        for load in nodes[column].loads:
-            if load.kind not in RAMPS:  # a ramp of the acceleration is an acceleration
-                order = len(load.coefficients) - 1
-                gain = load.coefficients[order] * _share(nodes[column])
-                yield Channel(load.source, force, gain, order)
+def largest_number(plan: MarchPlan) -> fmpq:
+    """The largest of what moves it: about as large as its motion."""
+    powers = (power for event in plan.events for power in event.powers)
+    begun = (value for joint in plan.joints for value in joint.space.begun)
+    return max(map(abs, (*(track.held for track in plan.tracks), *begun, *powers)), default=_ZERO)
 
 
-def _heard(model: Model, terms: Sum, first: int, loaded: Sequence[int]) -> Iterator[HeardWave]:
-    for weight, reading in terms:
-        if reading.point is None:
-            right, left = (weight * sign for sign in reading.weights)
-            yield HeardWave(RIGHT, reading.rod - 1 - first, reading.place, right, reading.order < 0)
-            yield HeardWave(LEFT, reading.rod - first, 1 - reading.place, left, reading.order < 0)
-        elif (column := reading.point - first) in loaded:
-            node = model.named.nodes[reading.point]
-            scale = model.network.points[reading.point].mass / node.inertia / _share(node)
-            yield HeardWave(LOAD, loaded.index(column), fmpq(0), weight * scale, False)
+def least_numbers(plan: MarchPlan) -> Iterator[fmpq]:
+    """What programs read as numbers that must not be too small for their format."""
+    for joint in plan.joints:
+        yield from joint.space.begun
+        drive = joint.space.drive or _ONE
+        if joint.space.is_body:  # ratios are no smaller than this
+            yield from (joint.space.rate * panel.length / (8 * HIGHEST_DEGREE) for panel in plan.panels)
+        for port in joint.space.ports:
+            yield from (port.ratio, drive * port.push)
+        yield drive
+    for event in plan.events:
+        yield from event.powers
+    yield from (panel.length / 2 for panel in plan.panels)
+    yield from (track.held for track in plan.tracks)
+    yield from (heard.gain for output in plan.outputs for heard in output.heard)
+    yield plan.step

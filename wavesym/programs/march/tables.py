@@ -1,127 +1,215 @@
-"""A march as flat tables and single numbers: what schemes/march.py and templates/c/march/march.c are run from."""
+"""A plan and a degree as flat tables: what schemes/march.py and templates/c/march/march.c are run from."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
 
-from flint import arb, ctx, fmpq
+import numpy as np
+from flint import fmpq
+from numpy.typing import NDArray
 
-from wavesym.numbers.doubles import middle, rational
+from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.march.given import SMOOTH
-from wavesym.programs.march.plan import Plan, Stretch
-
-if TYPE_CHECKING:
-    from wavesym.programs.march.evaluator import MarchEvaluator
-
-
-def march_tables(evaluator: MarchEvaluator) -> dict[str, tuple[float, ...]]:
-    """Panels, nodes, the operators of bodies, changes of loads, loads to be given, outputs, and where waves arrive."""
-    plan, real, degree = evaluator.plan, evaluator.real, evaluator.degree
-    nodes, panels = plan.junctions, plan.panels
-    rows = {step: row for row, step in enumerate(evaluator.operators)}
-    operators = list(evaluator.operators.values())
-    delays = sorted({each.delay for output in plan.outputs for each in output.heard})
-    heard = [output.heard if made.bound else () for output, made in zip(plan.outputs, evaluator.outputs, strict=True)]
-    stretches = [plan.stretches(delay) for delay in delays]
-    flat = [stretch for group in stretches for stretch in group]
-    forces = {column: force for force, column in enumerate(plan.loaded)}
-
-    def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
-        return tuple(map(real.nearest, values))
-
-    def rounded(values: Iterable[float]) -> tuple[float, ...]:
-        return reals(map(rational, values))
-
-    return {
-        "point": reals(p.start + p.length * (1 - c) / 2 for p in panels for c in _cosines(degree)),
-        "cosine": reals(_cosines(degree)),
-        "half_length": reals(panel.length / 2 for panel in panels),
-        "since": reals(panel.start - other.start for panel in panels for other in panels),
-        "alpha": reals(node.alpha for node in nodes),
-        "beta": reals(node.beta for node in nodes),
-        "body": tuple(
-            -1 if node.rate is None else rows[node.rate * panel.length] for panel in panels for node in nodes
-        ),
-        "force_on": tuple(forces.get(column, -1) for column in range(len(nodes))),
-        "motion": reals(node.motion for node in nodes),
-        "mass": reals(node.mass for node in nodes),
-        "impedance": reals([*(node.left for node in nodes), nodes[-1].right]),
-        "rod": reals(plan.rods),
-        "ratio": rounded(value for operator in operators for value in operator.ratio),
-        "first": rounded(value for operator in operators for value in operator.first),
-        "last": rounded(value for operator in operators for value in operator.last),
-        "slack": rounded(operator.slack for operator in operators),
-        "loss": rounded(operator.loss for operator in operators),
-        "leak": rounded(operator.leak for operator in operators),
-        "event_window": tuple(event.window for event in plan.events),
-        "event_panel": tuple(event.panel for event in plan.events),
-        "event_force": tuple(event.force for event in plan.events),
-        "event_power": reals(power for event in plan.events for power in event.powers),
-        "source_force": tuple(channel.force for channel in plan.channels),
-        "source_gain": reals(channel.gain for channel in plan.channels),
-        "source_integral": tuple(channel.order for channel in plan.channels),
-        "first_heard": firsts(map(len, heard)),
-        "way": tuple(each.way for of in heard for each in of),
-        "sender": tuple(each.column for of in heard for each in of),
-        "gain": reals(each.gain for of in heard for each in of),
-        "summed": tuple(int(each.summed) for of in heard for each in of),
-        "delay": tuple(delays.index(each.delay) for of in heard for each in of),
-        "first_stretch": firsts(map(len, stretches)),
-        "from": tuple(_counts_from(stretch, real) for stretch in flat),
-        "start": reals(stretch.start for stretch in flat),
-        "excess": reals(rational(real.nearest(stretch.start)) - stretch.start for stretch in flat),
-        "back": tuple(stretch.back for stretch in flat),
-        "panel_of": tuple(stretch.panel for stretch in flat),
-    }
+from wavesym.programs.march.block import BlockResponse, block_response
+from wavesym.programs.march.body import BodyOperator, body_operator
+from wavesym.programs.march.plan import MarchedJoint, MarchPlan
+from wavesym.programs.march.space import BLOCK, BODY, SCATTERER, JointSpace
 
 
-def march_constants(evaluator: MarchEvaluator) -> dict[str, float]:
-    """Sizes, and what the program holds the loads and its own polynomials against."""
-    plan, real, degree = evaluator.plan, evaluator.real, evaluator.degree
-    constants: dict[str, float] = {
-        "degree": degree,
-        "panels": len(plan.panels),
-        "nodes": len(plan.junctions),
-        "first_node": plan.first,
-        "forces": len(plan.loaded),
-        "sources": len(plan.channels),
-        "ways": plan.ways,
-        "points": len(plan.panels) * (degree + 1),
-        "events": len(plan.events),
-        "last_window": _last_window(plan, real),
-        "last_tau": real.nearest(rational(min(plan.valid, float(real.reach)))),
-        "trusted": real.not_below(rational(plan.trusted)),
-        "smooth": real.not_below(rational(plan.tolerance)),
-        "reach": real.nearest(real.reach),
-        # of coefficients that are sums of as many products, each rounded a few times
-        "noise": real.nearest(4 * (degree + 8) * real.roundoff),
-    }
-    if evaluator.given:
-        constants |= {
-            "windows": evaluator.given.windows,
-            "given_degree": SMOOTH,
-            "given_error": real.not_below(rational(max(evaluator.given.errors))),
+class MarchTables:
+    """The numbers of a march at some degree in `real` numbers; `bodies` that are blocks as well are `blocked`."""
+
+    def __init__(self, plan: MarchPlan, degree: int, real: Real, *, blocked: bool = False) -> None:
+        self._plan, self._degree, self._real, self._blocked = plan, degree, real, blocked
+
+    @cached_property
+    def responses(self) -> dict[tuple[object, ...], BodyOperator | BlockResponse]:
+        """By laws and length of a panel: of joints that have a state."""
+        found: dict[tuple[object, ...], BodyOperator | BlockResponse] = {}
+        for joint in self._plan.joints:
+            for panel in self._plan.panels:
+                if (law := self.law(joint)) != SCATTERER and (key := self._key(joint, panel.length)) not in found:
+                    found[key] = (
+                        body_operator(joint.space.rate * panel.length, self._degree)
+                        if law == BODY
+                        else block_response(joint.space, panel.length, self._degree)
+                    )
+        return found
+
+    def law(self, joint: MarchedJoint) -> int:
+        """What the step of a joint is."""
+        return BLOCK if self._blocked and joint.space.states else joint.space.law
+
+    def body(self, joint: MarchedJoint, length: fmpq) -> BodyOperator:
+        """The operator of a body on panels of some length."""
+        found = self.responses[self._key(joint, length)]
+        assert isinstance(found, BodyOperator)
+        return found
+
+    def missed(self, joint: MarchedJoint, length: fmpq) -> NDArray[np.float64]:
+        """What the polynomials of a block miss; of a joint without state nothing."""
+        if not joint.space.states:
+            return np.zeros((0, 0))
+        found = self.responses[self._key(joint, length)]
+        assert isinstance(found, BlockResponse)
+        return found.missed
+
+    def _key(self, joint: MarchedJoint, length: fmpq) -> tuple[object, ...]:
+        return response_key(joint, length, self.law(joint))
+
+    def tables(self, nothing: Sequence[bool]) -> dict[str, tuple[float, ...]]:
+        """All tables, by name; `nothing` says of each output whether it is 0 throughout."""
+        plan, real = self._plan, self._real
+
+        def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
+            return tuple(map(real.nearest, values))
+
+        heard = [() if none else output.heard for output, none in zip(plan.outputs, nothing, strict=True)]
+        delays = sorted({one.delay for output in plan.outputs for one in output.heard})
+        stretches = [plan.stretches(delay) for delay in delays]
+        flat = [stretch for group in stretches for stretch in group]
+        begins = [n * plan.step for n in range(plan.cycle[0])]
+        starts = [begin + stretch.start for stretch in flat for begin in begins]
+        first = {id(group[0]) for group in stretches}
+        return {
+            "steps": tuple(track.steps for track in plan.tracks),
+            "ring": firsts(track.steps + 1 for track in plan.tracks),
+            "held": reals(track.held for track in plan.tracks),
+            **self.joints(),
+            "half_length": reals(panel.length / 2 for panel in plan.panels),
+            "since": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
+            "event_window": tuple(event.window for event in plan.events),
+            "event_panel": tuple(event.panel for event in plan.events),
+            "event_force": tuple(event.force for event in plan.events),
+            "event_power": reals(power for event in plan.events for power in event.powers),
+            "first_heard": firsts(map(len, heard)),
+            "track": tuple(one.track for of in heard for one in of),
+            "gain": reals(one.gain for of in heard for one in of),
+            "summed": tuple(int(one.summed) for of in heard for one in of),
+            "delay": tuple(delays.index(one.delay) for of in heard for one in of),
+            "begin": tuple(map(real.not_below, begins)),
+            "first_stretch": firsts(map(len, stretches)),
+            "from": tuple(real.not_below(max(start, fmpq(0))) for start in starts),
+            "start": reals(starts),
+            "excess": reals(rational(real.nearest(start)) - start for start in starts),
+            "low": reals(-stretch.start if id(stretch) in first else fmpq(0) for stretch in flat),
+            "high": reals(min(plan.panels[s.panel].length, plan.step - s.start) for s in flat),
+            "back": tuple(stretch.back for stretch in flat),
+            "panel_of": tuple(stretch.panel for stretch in flat),
         }
-    return constants
+
+    def joints(self) -> dict[str, tuple[float, ...]]:
+        """Those of the joints and their ports."""
+        plan, real = self._plan, self._real
+        spaces = [joint.space for joint in plan.joints]
+        ports = [port for space in spaces for port in space.ports]
+        matrix, where = self._matrices()
+        drives = [joint.space.drive if self.law(joint) == BODY else fmpq(0) for joint in plan.joints]
+
+        def reals(values: Iterable[fmpq]) -> tuple[float, ...]:
+            return tuple(map(real.nearest, values))
+
+        return {
+            "law": tuple(map(self.law, plan.joints)),
+            "first_point": firsts(space.points for space in spaces),
+            "first_state": firsts(space.states for space in spaces),
+            "first_port": firsts(len(space.ports) for space in spaces),
+            "drive": reals(drives),
+            "answer": where,
+            "matrix": matrix,
+            "begun": reals(value for space in spaces for value in space.begun),
+            "force_on": tuple(force for joint in plan.joints for force in joint.forces),
+            "point_of": tuple(port.point for port in ports),
+            "push": reals(
+                (drive or 1) * port.push for space, drive in zip(spaces, drives, strict=True) for port in space.ports
+            ),
+            "ratio": reals(port.ratio for port in ports),
+            "arrive": tuple(track for joint in plan.joints for track in joint.arrive),
+            "send": tuple(track for joint in plan.joints for track in joint.sends),
+        }
+
+    def constants(self) -> dict[str, float]:
+        """Single numbers."""
+        plan, real = self._plan, self._real
+        return {
+            "degree": self._degree,
+            "panels": len(plan.panels),
+            "joints": len(plan.joints),
+            "blocks": sum(self.law(joint) == BLOCK for joint in plan.joints),
+            "states": sum(joint.space.states for joint in plan.joints),
+            "forces": plan.forces,
+            "events": len(plan.events),
+            "tracks": len(plan.tracks),
+            "slots": sum(track.steps + 1 for track in plan.tracks),
+            # where no joint has a state as well: a compiler may look at what is never run then
+            "widest": max(
+                joint.space.points * (self._degree + 1) + joint.space.states
+                if self.law(joint) == BLOCK
+                else self._degree + 1
+                for joint in plan.joints
+            ),
+            "cycle": plan.cycle[0],
+            "span": real.nearest(fmpq(plan.cycle[1])),
+            "step": real.nearest(plan.step),
+        }
+
+    def _matrices(self) -> tuple[tuple[float, ...], tuple[int, ...]]:
+        """One after the other, each by columns, and by panel and joint where they start."""
+        matrix: list[float] = []
+        begins: dict[tuple[object, ...], int] = {}
+        where = []
+        for panel in self._plan.panels:
+            for joint in self._plan.joints:
+                key = self._key(joint, panel.length)
+                if key not in begins:
+                    begins[key] = len(matrix)
+                    matrix += map(self._real.nearest, self._matrix(joint, key))
+                where.append(begins[key])
+        return tuple(matrix), tuple(where)
+
+    def _matrix(self, joint: MarchedJoint, key: tuple[object, ...]) -> Iterator[fmpq]:
+        match self.responses.get(key):
+            case BodyOperator() as body:
+                yield from map(rational, body.rows)
+            case BlockResponse() as block:
+                yield from map(rational, block.matrix.T.ravel().tolist())
+            case None:
+                yield from joint.space.scattering.transpose().entries()
 
 
-def _last_window(plan: Plan, real: Real) -> int:
-    """The last window that real numbers can count, and on which all is modelled."""
-    if math.isinf(plan.valid):
-        return int(1 / real.roundoff) - 1
-    return math.ceil(plan.valid) - 1 if plan.valid > plan.tau_max else int(plan.tau_max)
+def response_key(joint: MarchedJoint, length: fmpq, law: int) -> tuple[object, ...]:
+    """Joints with the same one have the same matrix on panels of this length."""
+    if law == BODY:
+        return ("body", str(joint.space.rate * length))
+    if law == BLOCK:
+        return (*joint.space.key, str(length))
+    return tuple(map(str, joint.space.scattering.entries()))
 
 
-def _counts_from(stretch: Stretch, real: Real) -> float:
-    """The first number that is not before the stretch: tau less the start of its window is exact, so this decides."""
-    return real.not_below(max(stretch.start, fmpq(0)))
+def matrix_size(space: JointSpace, degree: int) -> int:
+    """How many numbers the matrix of a joint has."""
+    if space.law == SCATTERER:
+        return len(space.ports) * (len(space.ports) + space.points)
+    if space.law == BODY:
+        return 3 * (degree + 1)
+    return int((space.points * (degree + 1) + space.states) ** 2)
 
 
-def _cosines(degree: int) -> Sequence[fmpq]:
-    """cos(pi j / degree), to many more digits than are written."""
-    with ctx.workprec(200):
-        return [middle(arb.cos_pi_fmpq(fmpq(j, degree))) for j in range(degree + 1)]
+def table_bytes(plan: MarchPlan, degree: int, real: Real) -> int:
+    """The size of the tables that grow: matrices, loads, and where stretches start."""
+    sizes = {}
+    for joint in plan.joints:
+        for panel in plan.panels:
+            key = response_key(joint, panel.length, joint.space.law)
+            sizes[key] = matrix_size(joint.space, degree)
+    delays = {heard.delay for output in plan.outputs for heard in output.heard}
+    stretches = sum(len(plan.stretches(delay)) for delay in delays) * 3 + 1
+    return real.bytes * (sum(sizes.values()) + 6 * len(plan.events) + plan.cycle[0] * stretches)
+
+
+def state_bytes(plan: MarchPlan, degree: int, real: Real) -> int:
+    """The size of what a march remembers: the rings of waves."""
+    slots = sum(track.steps + 1 for track in plan.tracks)
+    return real.bytes * slots * len(plan.panels) * (degree + 1)

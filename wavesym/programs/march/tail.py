@@ -16,12 +16,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import lgamma, log, sqrt
+from math import lgamma, log
 
 import numpy as np
-
-from wavesym.numbers.doubles import nearest
-from wavesym.programs.march.plan import Plan
 
 _SMALL = log(2.0**-80)
 _HIGHEST = 100_000
@@ -33,25 +30,6 @@ class Tail:
 
     degree: int
     size: float
-
-
-def tail(plan: Plan, degree: int) -> Tail:
-    """The tail of a plan's own motion, at no lower a degree than that of the computed waves."""
-    return tail_after(plan, degree, plan.windows, _jumps(plan))
-
-
-def tail_after(plan: Plan, degree: int, windows: int, jumps: Sequence[float]) -> Tail:
-    """The lowest degree, `degree` at least, whose tail on the first `windows` is below 2**-80 of the jumps.
-
-    `jumps[k]` is the sum of those of k-th derivatives; loads have no more of them.
-    """
-    rate = nearest(plan.rate)
-    if rate == 0 or not any(jumps):
-        return Tail(max(degree, len(jumps)), 0.0)  # without bodies waves are as the loads
-    impedance = min(nearest(z) for node in plan.junctions for z in (node.left, node.right) if z)
-    mass = sum(nearest(node.mass) for node in plan.junctions)
-    added = sqrt(mass / 2 / impedance) * (windows + 2) * len(plan.panels)
-    return tail_of(degree, jumps, rate, windows, added, [nearest(panel.length) for panel in plan.panels])
 
 
 def tail_of(
@@ -83,13 +61,3 @@ def tail_of(
         middle = (low + high) // 2
         low, high = (low, middle) if size(middle) <= wanted else (middle, high)
     return Tail(max(degree, high), float(np.exp(min(size(high), 700.0))))
-
-
-def _jumps(plan: Plan) -> list[float]:
-    """The jumps of order 0, 1, 2 that loads and start make, all added up."""
-    jumps = [2 * sum(abs(nearest(v)) for v in plan.rods), 0.0, 0.0]
-    for panel in range(len(plan.panels)):
-        for _, _, powers in plan.changes(panel):
-            for order, c in enumerate(powers):
-                jumps[order] += abs(nearest(c)) * (2 if order == 2 else 1)
-    return jumps

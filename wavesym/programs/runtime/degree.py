@@ -16,10 +16,10 @@ from wavesym.errors import CostError
 from wavesym.mechanics.network import network_of
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
-from wavesym.programs.march.plan import LOAD, Plan, plan
-from wavesym.programs.march.run import Run, Since
+from wavesym.programs.runtime.line import LOAD, Plan, plan
 from wavesym.programs.runtime.plan import RuntimePlan
 from wavesym.programs.runtime.request import RuntimeField
+from wavesym.programs.runtime.run import Run, Since
 
 LIGHTER = 10
 """Unless it is said how light bodies may be, they may be so many times as light as those of the scene."""

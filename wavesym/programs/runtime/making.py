@@ -13,13 +13,13 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.march.plan import LOAD, Plan
 from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
 from wavesym.programs.runtime.degree import LIGHTEST, degrees, lightest, share
 from wavesym.programs.runtime.joints.making import joints_program
 from wavesym.programs.runtime.laws import RuntimeLaws
+from wavesym.programs.runtime.line import LOAD, Plan
 from wavesym.programs.runtime.plan import RuntimePlan, runtime_plan
 from wavesym.programs.runtime.pushes import Push, as_one
 from wavesym.programs.runtime.readings import reading_tables
@@ -41,7 +41,6 @@ def runtime_program(
     """
     for option, value, usual in (
         ("--evaluator", request.evaluator, "auto"),
-        ("--windows", request.windows, None),
         ("--optimize", request.optimize, None),
     ):
         if value != usual:

@@ -24,7 +24,8 @@ from wavesym.mechanics.node import Node, Parameters
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ring
 from wavesym.numbers.reals import DOUBLE, Real
-from wavesym.programs.march.plan import HeardWave, Plan, Stretch, panels, plan
+from wavesym.programs.march.plan import Stretch
+from wavesym.programs.runtime.line import HeardWave, Plan, panels, plan
 from wavesym.programs.runtime.pushes import Push, ordered, told
 from wavesym.programs.runtime.quiet import drawn, quiet
 from wavesym.programs.runtime.request import RuntimeField

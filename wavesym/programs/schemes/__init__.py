@@ -12,18 +12,16 @@ from wavesym.programs.schemes.hats import HatScheme
 from wavesym.programs.schemes.march import MarchScheme
 from wavesym.programs.schemes.modes import ModesScheme
 from wavesym.programs.schemes.pieces import PiecesScheme
-from wavesym.programs.schemes.rings import RingScheme
 
-Scheme = ClosedScheme | PiecesScheme | MarchScheme | RingScheme | HatScheme | ModesScheme
+Scheme = ClosedScheme | PiecesScheme | MarchScheme | HatScheme | ModesScheme
 
 SCHEMES: dict[str, type[Scheme]] = {
     "closed": ClosedScheme,
     "pieces": PiecesScheme,
     "march": MarchScheme,
-    "rings": RingScheme,
     "hats": HatScheme,
     "modes": ModesScheme,
 }
 
-PARTS: dict[str, tuple[type[Scheme], ...]] = {"hats": (RingScheme,)}
+PARTS: dict[str, tuple[type[Scheme], ...]] = {"hats": (MarchScheme,)}
 """What a scheme is made of."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wavesym.programs.schemes.rings import MarchingRings, RingScheme, WindowBlock
+from wavesym.programs.schemes.march import Marching, MarchScheme, WindowBlock
 
 
 class HatScheme:
@@ -14,12 +14,12 @@ class HatScheme:
         output(tau) = rest(tau) + sum over records j and samples i of sample[j, i] hat_j(tau - begin_j - i spacing_j)
 
     hat_j is what a load does that is 0 at 0, 1 at spacing_j, 0 from 2 spacing_j on, and linear between; `rest`, where
-    there is one, is all that is no record. Each is a march of its own (RingScheme), and their tables stand one after
+    there is one, is all that is no record. Each is a march of its own (MarchScheme), and their tables stand one after
     the other: `extent` has the length of each table of the first march, then those of the next; `constant` the same of
     single numbers. A spacing is the sum of two numbers, as is the instant at which a record begins.
     """
 
-    TABLES = (*RingScheme.TABLES, "extent", "constant", "spacing", "begin_at", "first_sample", "sample")
+    TABLES = (*MarchScheme.TABLES, "extent", "constant", "spacing", "begin_at", "first_sample", "sample")
     CONSTANTS = ("rest",)
 
     def __init__(
@@ -30,16 +30,16 @@ class HatScheme:
         real: type[np.float64],
     ) -> None:
         self._tau_max, self._real = tau_max, real
-        extents = np.array(tables["extent"], int).reshape(-1, len(RingScheme.TABLES))
+        extents = np.array(tables["extent"], int).reshape(-1, len(MarchScheme.TABLES))
         ends = np.cumsum(np.vstack([np.zeros_like(extents[:1]), extents]), axis=0)
         numbers = np.array(tables["constant"], real).reshape(len(extents), -1).tolist()
         marches = [
-            RingScheme(
+            MarchScheme(
                 {
                     name: tables[name][first:last]
-                    for name, first, last in zip(RingScheme.TABLES, ends[k], ends[k + 1], strict=True)
+                    for name, first, last in zip(MarchScheme.TABLES, ends[k], ends[k + 1], strict=True)
                 },
-                dict(zip(RingScheme.CONSTANTS, numbers[k], strict=True)),
+                dict(zip(MarchScheme.CONSTANTS, numbers[k], strict=True)),
                 tau_max,
                 real,
             )
@@ -100,7 +100,7 @@ class ShiftedHats:
     """Phases that differ by no more, in parts of the horizon, are one."""
 
     def __init__(
-        self, march: RingScheme, spacing: list[float], begin: list[float], sample: NDArray[np.float64]
+        self, march: MarchScheme, spacing: list[float], begin: list[float], sample: NDArray[np.float64]
     ) -> None:
         self._march, self._begin, self._sample = march, begin, sample
         # multiples of the first part are exact
@@ -178,7 +178,7 @@ class ShiftedHats:
             yield from self._whole
             return
         each = len(self._march.held) * self._march.panels * (self._march.degree + 1)
-        marching = MarchingRings(self._march, self._windows if each * self._windows <= self.KEPT else None)
+        marching = Marching(self._march, self._windows if each * self._windows <= self.KEPT else None)
         for first in range(0, self._windows, marching.most):
             block = marching.block(first, min(marching.most, self._windows - first))
             if marching.most == self._windows:
@@ -208,7 +208,7 @@ class ShiftedHats:
     def _places(
         self, m: NDArray[np.int_], phase: NDArray[np.float64]
     ) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]:
-        """Of phase + m spacing what RingScheme.places says, without the rounding of a large number."""
+        """Of phase + m spacing what MarchScheme.places says, without the rounding of a large number."""
         march = self._march
         far = m * self._high
         cycle = np.floor(far / march.span)

@@ -5,60 +5,71 @@ from numpy.typing import ArrayLike, NDArray
 
 
 class MarchScheme:
-    """The march. A wave crosses a rod in one unit of tau, so what arrives at a node on a window [n, n + 1) was sent on
-    the window before, and each node needs to know no more. A window is cut into panels at the instants of its loads; on
-    a panel waves are Chebyshev series in u, -1 <= u <= 1. Let a and b arrive from the left and the right. A node solves
+    """The march. All delays are multiples of one step, so what arrives at a joint on a window (one step long) was sent
+    on a window before, and each joint needs to know no more. A window is cut into panels at the instants of loads; on a
+    panel waves are Chebyshev series in u, -1 <= u <= 1. A track is what is sent into an end of a bar.
 
-        q'/rate + q = p (a body) or q = p,    p = alpha a + beta b + load,
+    A joint without state scatters: a matrix makes what it sends of what arrives. The others have velocities q of their
+    points and send ratio q - a; where a arrives, push a acts. A body, one mass without springs, solves
 
-    and sends q - a to the left and q - b to the right. Integrated once, with q_0 and p_0 counted twice, this is
-    q_k + x_k (q_(k-1) - q_(k+1)) = x_k (p_(k-1) - p_(k+1)); ratio, first, last, slack, loss are its elimination.
+        q'/rate + q = p,    p = drive load + the sum of push a:
+
+    integrated once, with q_0 and p_0 counted twice, this is q_k + x_k (q_(k-1) - q_(k+1)) = x_k (p_(k-1) - p_(k+1));
+    slack, ratios, loss, first and last are its elimination. A block, any other joint with a state x (velocities of
+    masses, lengthening of springs), has a matrix for each panel:
+    (coefficients of what acts on its points, x at the start) -> (those of the velocities q, x at the end less x).
     """
 
     TABLES = (
-        # half the length of a panel; what its start is later than that of another
+        # tracks: how many windows later it arrives, and what is on its way at tau = 0
+        "steps",
+        "held",
+        # joints: what they do (0 scatter, 1 a body, 2 a block), where their points, states and ports start in the next
+        # tables, how strong loads are on a body, and where on each panel their matrix is: of a body three rows of
+        # degree + 1, slack and ratios, loss and first, 0 and last
+        "law",
+        "first_point",
+        "first_state",
+        "first_port",
+        "drive",
+        "answer",
+        "matrix",
+        "begun",
+        "force_on",
+        # ports: the point of the joint, factors, and tracks
+        "point_of",
+        "push",
+        "ratio",
+        "arrive",
+        "send",
+        # panels: half the length, and what its start is later than that of another
         "half_length",
         "since",
-        # nodes; on each panel the row of a body in the tables below, -1 for a node without inertia
-        "alpha",
-        "beta",
-        "body",
-        "force_on",
-        "motion",
-        # waves at tau = 0 in the rods on the left of each node, and on the right of the last
-        "rod",
-        # bodies on panels: rows of degree + 1
-        "ratio",
-        "first",
-        "last",
-        "slack",
-        "loss",
-        "leak",
         # changes of the loads: from there on three powers of the time since
         "event_window",
         "event_panel",
         "event_force",
         "event_power",
-        # outputs: where what they hear starts in the next tables; which way it is sent and by which node (or which load
-        # it is), factors, whether the integral counts, and how late it arrives
+        # outputs: where their tracks start in the next tables; factors, whether the integral counts, and delays
         "first_heard",
-        "way",
-        "sender",
+        "track",
         "gain",
         "summed",
         "delay",
-        # delays: in a window, t after its start, a wave is that of `panel_of`, `back` windows ago, from t >= `from` on,
-        # with u = (t - start + excess) / half - 1
+        # after a cycle of windows tau is a whole number again; where they begin in it
+        "begin",
+        # delays: from t >= `from` on, t counted from the start of the cycle, a wave is that of `panel_of`, `back`
+        # windows ago, with u = (t - start + excess) / half - 1; an integral over all of a window is from low to high
         "first_stretch",
         "from",
         "start",
         "excess",
+        "low",
+        "high",
         "back",
         "panel_of",
     )
-    # of the largest velocity or mean of a wave, polynomials may miss `trusted`
-    CONSTANTS = ("degree", "trusted")
-    LEFT, RIGHT, LOAD = 0, 1, 2
+    CONSTANTS = ("degree", "step", "span", "forces")
     SAMPLES = 4096
     """So many samples at once."""
 
@@ -69,40 +80,50 @@ class MarchScheme:
         tau_max: float,
         real: type[np.float64],
     ) -> None:
-        def reals(name: str) -> NDArray[np.float64]:
-            return np.array(tables[name], real)
+        def reals(name: str, *shape: int) -> NDArray[np.float64]:
+            return np.array(tables[name], real).reshape(shape or -1)
 
-        def indices(name: str) -> NDArray[np.int_]:
-            return np.array(tables[name], int)
+        def indices(name: str, *shape: int) -> NDArray[np.int_]:
+            return np.array(tables[name], int).reshape(shape or -1)
 
         self.tau_max, self.real = tau_max, real
-        self.degree, self.trusted = int(constants["degree"]), constants["trusted"]
+        self.degree, self.forces = int(constants["degree"]), int(constants["forces"])
+        self.step, self.span = real(constants["step"]), real(constants["span"])
+        # one track more than there are: for ports that are missing
+        self.steps, self.held = np.append(indices("steps"), 1), np.append(reals("held"), real(0))
         self.half_length = reals("half_length")
-        self.panels, self.nodes = len(self.half_length), len(tables["alpha"])
-        self.since = reals("since").reshape(self.panels, self.panels)
-        self.alpha, self.beta = reals("alpha")[:, None], reals("beta")[:, None]
-        self.body = indices("body").reshape(self.panels, self.nodes)
-        self.force_on = indices("force_on")
-        self.motion, self.rod = reals("motion"), reals("rod")
-        self.ratio, self.first, self.last = (
-            reals(name).reshape(-1, self.degree + 1) for name in ("ratio", "first", "last")
-        )
-        self.slack, self.loss, self.leak = reals("slack"), reals("loss"), reals("leak")
+        self.panels = len(self.half_length)
+        self.since = reals("since", self.panels, self.panels)
+        self.begun, self.force_on = reals("begun"), indices("force_on")
         self.event_window, self.event_panel = indices("event_window"), indices("event_panel")
-        self.event_force, self.event_power = indices("event_force"), reals("event_power")
+        self.event_force, self.event_power = indices("event_force"), reals("event_power", -1, 3)
         self.first_heard = indices("first_heard")
         self.outputs = len(self.first_heard) - 1
-        self.way, self.sender, self.delay = indices("way"), indices("sender"), indices("delay")
+        self.track, self.delay = indices("track"), indices("delay")
         self.gain, self.summed = reals("gain"), indices("summed") > 0
-        self.ways = max(self.LOAD, int(np.max(self.way, initial=0)) + 1)
+        self.begin = reals("begin")
         self.first_stretch = indices("first_stretch")
-        self.counts_from, self.start, self.excess = reals("from"), reals("start"), reals("excess")
+        self.counts_from, self.start, self.excess = (
+            reals(name, -1, len(self.begin)) for name in ("from", "start", "excess")
+        )
+        self.low, self.high = reals("low"), reals("high")
         self.back, self.panel_of = indices("back"), indices("panel_of")
+        self.deepest = max(1, int(np.max(self.back, initial=0)), int(np.max(self.steps)))
+        """How many windows back anything is asked for."""
+        law, answers = indices("law"), indices("answer", self.panels, -1)
+        shapes = [np.diff(tables[f"first_{name}"]) for name in ("point", "state", "port")]
+        # bodies differ in ports, one of which may be missing; blocks are large, so those of a group have one matrix
+        shapes[2][law == 1] = 0
+        kinds = np.stack([law, *shapes, np.where(law == 2, answers[0], 0)], axis=1)
+        self.groups = [
+            (Scatterers, Bodies, Blocks)[kind[0]](self, tables, np.flatnonzero(np.all(kinds == kind, axis=1)), answers)
+            for kind in np.unique(kinds, axis=0)
+        ]
 
     def evaluate(self, tau: ArrayLike) -> NDArray[np.float64]:
         """All outputs at tau, an array or a number: shape (outputs, *tau.shape), NaN where tau is out of range.
 
-        Marches once, up to the last tau. ArithmeticError where the degree is seen to be too low.
+        Marches once, up to the last tau.
         """
         taus = np.asarray(tau, dtype=self.real)
         flat = taus.ravel()
@@ -110,187 +131,362 @@ class MarchScheme:
         inside = np.flatnonzero((flat >= 0) & (flat <= self.tau_max))
         if inside.size:
             order = inside[np.argsort(flat[inside], kind="stable")]
-            values = np.empty((self.outputs, order.size), self.real)
-            self._sample(values, flat[order])
-            out[:, order] = values
+            windows = self.places(flat[order])[0]
+            marching = Marching(self)
+            count = int(windows[-1]) + 1
+            for first in range(0, count, marching.most):
+                block = marching.block(first, min(marching.most, count - first))
+                begin, end = np.searchsorted(windows, [first, first + block.count])
+                for low in range(begin, end, self.SAMPLES):
+                    part = order[low : min(low + self.SAMPLES, end)]
+                    out[:, part] = block.read(flat[part])
         return out.reshape(self.outputs, *taus.shape)
 
-    def _sample(self, out: NDArray[np.float64], tau: NDArray[np.float64]) -> None:
-        """Fill out (outputs, samples) for sorted tau within range."""
-        places = np.floor(tau)
-        totals = np.zeros(len(out), self.real)
-        marching = Marching(self)
-        windows = int(places[-1]) + 1
-        for first in range(0, windows, marching.most):
-            count = min(marching.most, windows - first)
-            waves = marching.block(first, count)
-            begin, end = (int(place) for place in np.searchsorted(places, [first, first + count]))
-            for output in range(self.outputs):
-                sums = self._heard(output, summed=True)
-                if sums.size:
-                    gains = self._gathered(waves, sums, np.arange(count), np.ones(count, self.real))
-                    starts = np.cumsum(np.concatenate([totals[output : output + 1], gains]), dtype=self.real)
-                    totals[output] = starts[-1]
-                for low in range(begin, end, self.SAMPLES):
-                    part = slice(low, min(low + self.SAMPLES, end))
-                    n = places[part].astype(int) - first
-                    t = tau[part] - places[part]
-                    value = self._arrived(waves, self._heard(output, summed=False), n, t)
-                    if sums.size:
-                        value += starts[n] + self._gathered(waves, sums, n, t)
-                    out[output, part] = value
+    def places(self, tau: NDArray[np.float64]) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float64]]:
+        """Of each tau its window, the place of that in a cycle, and the time since the cycle began."""
+        cycle = np.floor(tau / self.span)
+        cycle -= cycle * self.span > tau
+        t = tau - cycle * self.span
+        phase = np.searchsorted(self.begin, t, side="right") - 1
+        return cycle.astype(int) * len(self.begin) + phase, phase, t
 
-    def _heard(self, output: int, *, summed: bool) -> NDArray[np.int_]:
-        """What an output hears, or hears the integrals of, in the tables of that."""
-        here = np.arange(self.first_heard[output], self.first_heard[output + 1])
-        return np.asarray(here[self.summed[here] == summed])
+
+class WindowBlock:
+    """Some windows of a march: all tracks, (deepest + windows, track, panel, k), with those of the windows before.
+
+    `starts` are the states at the start of each panel, `acting` what acts on each point there, `totals` the integrals
+    at the start of each window and at the end of the last.
+    """
+
+    def __init__(
+        self,
+        scheme: MarchScheme,
+        first: int,
+        waves: NDArray[np.float64],
+        starts: NDArray[np.float64],
+        acting: NDArray[np.float64],
+        totals: NDArray[np.float64],
+    ) -> None:
+        self._scheme, self.first, self.count, self.waves = scheme, first, len(starts), waves
+        self.starts, self.acting = starts, acting
+        self.totals = np.repeat(totals[:, None], self.count + 1, axis=1)
+        self._integrals: dict[int, list[NDArray[np.float64]]] = {}
+        self._limits: dict[tuple[int, int], tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
+        n = np.arange(self.count)
+        for output in range(scheme.outputs):
+            if np.any(scheme.summed[self._heard(output)]):
+                self.totals[output, 1:] += np.cumsum(self._gathered(output, n, n, None), dtype=scheme.real)
+
+    def read(self, tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        """All outputs at some tau in these windows."""
+        return self.at(*self._scheme.places(tau))
+
+    def at(
+        self,
+        window: NDArray[np.int_],
+        phase: NDArray[np.int_],
+        t: NDArray[np.float64],
+        outputs: range | None = None,
+    ) -> NDArray[np.float64]:
+        """The same where `places` are known; all outputs, or some."""
+        scheme = self._scheme
+        n = window - self.first
+        chosen = range(scheme.outputs) if outputs is None else outputs
+        out = np.zeros((len(chosen), len(t)), scheme.real)
+        for row, output in zip(out, chosen, strict=True):
+            summed = scheme.summed[self._heard(output)]
+            if np.any(summed):
+                row[:] = self.totals[output, n] + self._gathered(output, n, phase, t)
+            if not np.all(summed):
+                row += self._arrived(output, n, phase, t)
+        return out
+
+    def _heard(self, output: int) -> slice:
+        return slice(self._scheme.first_heard[output], self._scheme.first_heard[output + 1])
+
+    def _tracks(self, output: int, *, summed: bool) -> list[tuple[int, float, int]]:
+        """Tracks with gains and delays that an output hears, or whose integrals it hears."""
+        scheme, here = self._scheme, self._heard(output)
+        heard = zip(scheme.track[here], scheme.gain[here], scheme.delay[here], scheme.summed[here], strict=True)
+        return [(track, gain, delay) for track, gain, delay, integral in heard if integral == summed]
 
     def _arrived(
-        self, waves: NDArray[np.float64], heard: NDArray[np.int_], n: NDArray[np.int_], t: NDArray[np.float64]
+        self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """The sum of what is heard, t after the start of windows n of a block."""
-        total = np.zeros(t.shape, self.real)
-        for k in heard:
-            delay = self.delay[k]
-            stretches = slice(self.first_stretch[delay], self.first_stretch[delay + 1])
-            s = stretches.start + np.searchsorted(self.counts_from[stretches], t, side="right") - 1
-            u = ((t - self.start[s]) + self.excess[s]) / self.half_length[self.panel_of[s]] - 1
-            c = waves[n + 1 - self.back[s], self.way[k], self.panel_of[s], self.sender[k] + 1].T
-            total += self.gain[k] * _series(np.ascontiguousarray(c), u)
+        """What an output hears at t, on windows n, which are at `phase` in their cycle."""
+        scheme = self._scheme
+        total = np.zeros(t.shape, scheme.real)
+        for track, gain, delay in self._tracks(output, summed=False):
+            s = np.full(t.shape, scheme.first_stretch[delay])
+            for later in range(scheme.first_stretch[delay] + 1, scheme.first_stretch[delay + 1]):
+                s[t >= scheme.counts_from[later, phase]] = later
+            half = scheme.half_length[scheme.panel_of[s]]
+            u = ((t - scheme.start[s, phase]) + scheme.excess[s, phase]) / half - 1
+            c = self.waves[scheme.deepest + n - scheme.back[s], track, scheme.panel_of[s]].T
+            total += gain * _series(np.ascontiguousarray(c), u)
         return total
 
+    def _integral(self, track: int) -> list[NDArray[np.float64]]:
+        """Of a track, on each panel, the antiderivatives on all windows, (k, windows)."""
+        if track not in self._integrals:
+            until = self._scheme.deepest + self.count
+            self._integrals[track] = [
+                _antiderivative(self.waves[:until, track, panel].T) for panel in range(self._scheme.panels)
+            ]
+        return self._integrals[track]
+
+    def _ends(self, track: int, stretch: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The antiderivatives where a stretch begins and where it ends, on all windows."""
+        scheme = self._scheme
+        if (track, stretch) not in self._limits:
+            panel = scheme.panel_of[stretch]
+            c, half = self._integral(track)[panel], scheme.half_length[panel]
+            low, high = (
+                _series(c, np.full(c.shape[1], each[stretch] / half - 1, scheme.real))
+                for each in (scheme.low, scheme.high)
+            )
+            self._limits[track, stretch] = low, high
+        return self._limits[track, stretch]
+
     def _gathered(
-        self, waves: NDArray[np.float64], heard: NDArray[np.int_], n: NDArray[np.int_], t: NDArray[np.float64]
+        self, output: int, n: NDArray[np.int_], phase: NDArray[np.int_], t: NDArray[np.float64] | None
     ) -> NDArray[np.float64]:
-        """The same of integrals from the start of the windows to t after it."""
-        sums = np.zeros(t.shape, self.real)
-        for k in heard:
-            total = np.zeros(t.shape, self.real)
-            first, end = self.first_stretch[self.delay[k]], self.first_stretch[self.delay[k] + 1]
+        """The integral from the start of windows n to t; without t over all of them."""
+        scheme = self._scheme
+        total = np.zeros(n.shape, scheme.real)
+        for track, gain, delay in self._tracks(output, summed=True):
+            first, end = scheme.first_stretch[delay], scheme.first_stretch[delay + 1]
             for s in range(first, end):
-                here = np.flatnonzero(t >= self.counts_from[s]) if s > first else np.arange(t.size)
-                half = self.half_length[self.panel_of[s]]
-                wave = waves[n[here] + 1 - self.back[s], self.way[k], self.panel_of[s], self.sender[k] + 1]
-                c = _antiderivative(wave.T)
-                low = np.full(here.shape, self.excess[s] - self.start[s] if s == first else 0, self.real)
-                high = (t[here] - self.start[s]) + self.excess[s]
-                if s + 1 < end:
-                    high = np.where(t[here] >= self.counts_from[s + 1], 2 * half, high)
-                total[here] += half * (_series(c, high / half - 1) - _series(c, low / half - 1))
-            sums += self.gain[k] * total
-        return sums
+                panel, window = scheme.panel_of[s], scheme.deepest + n - scheme.back[s]
+                half = scheme.half_length[panel]
+                low, high = self._ends(track, s)
+                over = np.ones(n.shape, bool)
+                if t is not None:
+                    over = t >= scheme.counts_from[s + 1, phase] if s + 1 < end else ~over
+                    begun = ~over if s == first else ~over & (t >= scheme.counts_from[s, phase])
+                    here = np.flatnonzero(begun)
+                    within = (t[here] - scheme.start[s, phase[here]]) + scheme.excess[s, phase[here]]
+                    c = self._integral(track)[panel][:, window[here]]
+                    total[here] += gain * (half * (_series(c, within / half - 1) - low[window[here]]))
+                total[over] += gain * (half * (high[window[over]] - low[window[over]]))
+        return total
 
 
 class Marching:
     """A march on its way."""
 
-    def __init__(self, scheme: MarchScheme) -> None:
-        shape = scheme.ways, scheme.panels, scheme.nodes + 2, scheme.degree + 1
-        self.most = max(1, min(256, 2_000_000 // (shape[0] * shape[1] * shape[2] * shape[3])))
+    def __init__(self, scheme: MarchScheme, most: int | None = None) -> None:
+        tracks, size = len(scheme.held), scheme.degree + 1
+        self.most = most or max(1, min(256, 2_000_000 // (tracks * scheme.panels * size)))
         """So many windows at once."""
         self._scheme = scheme
-        self._bodies = [PanelBodies(scheme, panel) for panel in range(scheme.panels)]
-        self._last = np.zeros(shape, scheme.real)
-        self._last[scheme.LEFT, :, 1:, 0] = scheme.rod
-        self._last[scheme.RIGHT, :, :-1, 0] = scheme.rod
-        self._velocity = scheme.motion.copy()
-        self._loads: dict[int, tuple[int, int, NDArray[np.float64]]] = {}
-        self._event = 0
-        self._leak: float = 0.0
-        self._size: float = 0.0
+        self._waves = np.zeros((scheme.deepest + self.most, tracks, scheme.panels, size), scheme.real)
+        self._waves[..., 0] = scheme.held[:, None]
+        self._x = scheme.begun.copy()
+        self._loads = RunningLoads(scheme, scheme.event_power, scheme.since)
+        self._totals = np.zeros(scheme.outputs, scheme.real)
 
-    def block(self, first: int, count: int) -> NDArray[np.float64]:
-        """Waves (1 + windows, way, panel, 1 + node, k) of the next windows, the one before them first.
-
-        Where loads are heard they are a way of their own, by number in the place of the node.
-        """
+    def block(self, first: int, count: int) -> WindowBlock:
+        """The next windows; what the block holds is overwritten by the one after it."""
         scheme = self._scheme
-        left, right = scheme.LEFT, scheme.RIGHT
-        waves = np.repeat(self._last[None], 1 + count, axis=0)
+        starts = np.zeros((count, scheme.panels, len(self._x)), scheme.real)
+        acting = np.zeros((count, scheme.panels, len(scheme.force_on), 3), scheme.real)
+        if first > 0:
+            self._waves[: scheme.deepest] = self._waves[self.most : self.most + scheme.deepest].copy()
         for n in range(count):
             for panel in range(scheme.panels):
-                self._change(first + n, panel)
-                a, b = waves[n, right, panel, :-2], waves[n, left, panel, 2:]
-                p = scheme.alpha * a + scheme.beta * b
-                self._load(p, waves[n + 1, scheme.LOAD :, panel], first + n, panel)
-                bodies = self._bodies[panel]
-                nodes = bodies.nodes
-                if nodes.size:
-                    p[nodes], self._velocity[nodes], missed = bodies.moved(p[nodes], self._velocity[nodes])
-                    self._leak += missed
-                    self._size = max(self._size, np.max(np.abs(self._velocity)))
-                waves[n + 1, left, panel, 1:-1] = p - a
-                waves[n + 1, right, panel, 1:-1] = p - b
-        self._last = waves[-1]
-        self._size = max(self._size, np.max(np.abs(waves[:, : scheme.LOAD, ..., 0])))
-        if self._leak > scheme.trusted * self._size:
-            end = first + count
-            raise ArithmeticError(f"degree {scheme.degree} is too low: polynomials lost {self._leak} by tau = {end}")
-        return waves
+                starts[n, panel] = self._x
+                acting[n, panel] = self._loads.on(first + n, panel)
+                for group in scheme.groups:
+                    group.move(self._waves, scheme.deepest + n, panel, acting[n, panel], self._x)
+        made = WindowBlock(scheme, first, self._waves, starts, acting, self._totals)
+        self._totals = made.totals[:, -1]
+        return made
 
-    def _change(self, window: int, panel: int) -> None:
-        """The changes of the loads at the start of a panel."""
+
+class RunningLoads:
+    """The loads, polynomials in the time since their last change."""
+
+    def __init__(self, scheme: MarchScheme, powers: NDArray[np.float64], since: NDArray[np.float64]) -> None:
+        self._scheme, self._powers, self._since = scheme, powers, since
+        self._now: dict[int, tuple[int, int, NDArray[np.float64]]] = {}
+        self._event = 0
+
+    def on(self, window: int, panel: int) -> NDArray[np.float64]:
+        """Three coefficients of what acts on each point on a panel; panels come in order."""
         scheme = self._scheme
         while self._event < len(scheme.event_window) and (
             (scheme.event_window[self._event], scheme.event_panel[self._event]) == (window, panel)
         ):
-            powers = scheme.event_power[3 * self._event : 3 * self._event + 3]
-            self._loads[int(scheme.event_force[self._event])] = window, panel, powers
+            self._now[int(scheme.event_force[self._event])] = window, panel, self._powers[self._event]
             self._event += 1
-
-    def _load(self, p: NDArray[np.float64], heard: NDArray[np.float64], window: int, panel: int) -> None:
-        """Add the loads on a panel to p, as series, and set what is heard of them."""
-        scheme = self._scheme
+        # one more, for points on which nothing acts
+        acting = np.zeros((scheme.forces + 1, 3), scheme.real)
         half = scheme.half_length[panel]
-        for force, (since, place, c) in self._loads.items():
-            middle = (window - since) + scheme.since[panel, place] + half
-            node = np.flatnonzero(scheme.force_on == force)
-            mean = c[0] + middle * c[1] + (middle * middle + half * half / 2) * c[2]
-            series = np.array([mean, half * (c[1] + 2 * middle * c[2]), half * half / 2 * c[2]])
-            p[node, :3] += series
-            heard[:, force + 1, :3] = series
+        for force, (begun, place, c) in self._now.items():
+            middle = ((window - begun) * scheme.step + self._since[panel, place]) + half
+            acting[force, 0] = (c[0] + middle * c[1]) + (middle * middle + half * half / 2) * c[2]
+            acting[force, 1] = half * (c[1] + 2 * middle * c[2])
+            acting[force, 2] = half * half / 2 * c[2]
+        return acting[scheme.force_on]
 
 
-class PanelBodies:
-    """All bodies on one panel: their recurrences as scans, in log2(degree) steps."""
+class JointGroup:
+    """Joints that do the same and have as many points and states.
 
-    def __init__(self, scheme: MarchScheme, panel: int) -> None:
-        self.nodes = np.flatnonzero(scheme.body[panel] >= 0)
-        rows = scheme.body[panel, self.nodes]
-        self.ratio = scheme.ratio[rows]
-        self.sums = np.stack([scheme.first[rows], scheme.last[rows]])
-        self.slack, self.loss, self.leak = scheme.slack[rows], scheme.loss[rows], scheme.leak[rows]
+    Where one has fewer ports than another, what is missing is a port that neither takes nor gives.
+    """
+
+    def __init__(
+        self,
+        scheme: MarchScheme,
+        tables: dict[str, tuple[float, ...]],
+        joints: NDArray[np.int_],
+        answers: NDArray[np.int_],
+    ) -> None:
+        def members(name: str) -> NDArray[np.int_]:
+            firsts = np.array(tables[f"first_{name}"], int)
+            counts = firsts[joints + 1] - firsts[joints]
+            places = np.arange(np.max(counts))
+            return np.where(places < counts[:, None], firsts[joints, None] + places, -1)
+
+        def of_ports(name: str, missing: float) -> NDArray[np.float64]:
+            return np.append(tables[name], missing).astype(scheme.real)[self.ports]
+
+        self.joints = joints
+        self.points, self.states, self.ports = members("point"), members("state"), members("port")
+        self.arrive, self.send = (of_ports(name, len(scheme.held) - 1).astype(int) for name in ("arrive", "send"))
+        self.back = scheme.steps[self.arrive]
+        self.push, self.ratio = of_ports("push", 0), of_ports("ratio", 0)
+        self.at = of_ports("point_of", 0).astype(int)[..., None] == np.arange(self.points.shape[1])
+        self.size = scheme.degree + 1
+        self._answers, self._matrix = answers[:, joints], np.array(tables["matrix"], scheme.real)
+
+    def matrices(self, width: int, height: int) -> NDArray[np.float64]:
+        """Those of each panel and joint, turned: (panels, joints, width, height)."""
+        places = self._answers[..., None] + np.arange(width * height)
+        return np.asarray(self._matrix[places].reshape(*self._answers.shape, width, height))
+
+    def move(
+        self,
+        waves: NDArray[np.float64],
+        n: int,
+        panel: int,
+        acting: NDArray[np.float64],
+        x: NDArray[np.float64],
+    ) -> None:
+        """A panel of a window: what the joints send goes into `waves`, and their states x go on."""
+        a = waves[n - self.back, self.arrive, panel]
+        waves[n, self.send, panel] = self.sent(a, panel, acting[self.points], x)
+
+    def sent(
+        self, a: NDArray[np.float64], panel: int, load: NDArray[np.float64], x: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """What goes out, (joints, ports, k), where a arrives and a load of three coefficients acts on each point."""
+        raise NotImplementedError
+
+
+class Scatterers(JointGroup):
+    """Joints without state."""
+
+    def __init__(
+        self,
+        scheme: MarchScheme,
+        tables: dict[str, tuple[float, ...]],
+        joints: NDArray[np.int_],
+        answers: NDArray[np.int_],
+    ) -> None:
+        super().__init__(scheme, tables, joints, answers)
+        ports = self.ports.shape[1]
+        self.columns = self.matrices(ports + self.points.shape[1], ports)
+        self.waves, self.loads = (
+            np.swapaxes(part, 2, 3).copy() for part in (self.columns[:, :, :ports], self.columns[:, :, ports:])
+        )
+
+    def sent(
+        self, a: NDArray[np.float64], panel: int, load: NDArray[np.float64], x: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        out = self.waves[panel] @ a
+        out[..., :3] += self.loads[panel] @ load
+        return np.asarray(out)
+
+
+class Bodies(JointGroup):
+    """Masses between rods: their recurrences as scans, in log2(degree) steps."""
+
+    def __init__(
+        self,
+        scheme: MarchScheme,
+        tables: dict[str, tuple[float, ...]],
+        joints: NDArray[np.int_],
+        answers: NDArray[np.int_],
+    ) -> None:
+        super().__init__(scheme, tables, joints, answers)
+        self.drive = np.array(tables["drive"], scheme.real)[joints, None]
+        rows = self.matrices(3, self.size)
+        self.slack, self.loss = rows[:, :, 0, 0].copy(), rows[:, :, 1, 0].copy()
+        rows[..., 0] = 0
+        self.ratios, self.sums = rows[:, :, 0].copy(), np.moveaxis(rows[:, :, 1:], 2, 1).copy()
         self.down, self.up = [], []
-        stride, down, up = 1, self.ratio, -self.ratio
-        while stride <= scheme.degree and down.any():
-            self.down.append((stride, down[:, :-stride].copy()))
-            self.up.append((stride, up[:, stride:].copy()))
+        stride, down, up = 1, self.ratios, -self.ratios
+        while stride < self.size and down.any():
+            self.down.append((stride, down[..., :-stride].copy()))
+            self.up.append((stride, up[..., stride:].copy()))
             longer, longer_up = np.zeros_like(down), np.zeros_like(up)
-            longer[:, :-stride] = down[:, :-stride] * down[:, stride:]
-            longer_up[:, stride:] = up[:, stride:] * up[:, :-stride]
+            longer[..., :-stride] = down[..., :-stride] * down[..., stride:]
+            longer_up[..., stride:] = up[..., stride:] * up[..., :-stride]
             # what is too small to matter is 0, and ends the scan
             longer[np.abs(longer) < 2.0**-100] = 0
             stride, down, up = 2 * stride, longer, longer_up
 
-    def moved(
-        self, p: NDArray[np.float64], velocity: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-        """q, its value at the end of the panel, and what the polynomials miss; from p and the value at the start."""
+    def sent(
+        self, a: NDArray[np.float64], panel: int, load: NDArray[np.float64], x: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        p = (self.push[:, None, :] @ a)[:, 0]
+        p[:, :3] += self.drive * load[:, 0]
         y = np.zeros_like(p)
         y[:, 1:] = p[:, :-1]
         y[:, 1] *= 2
         y[:, 1:-1] -= p[:, 2:]
-        y *= self.ratio
+        y *= self.ratios[panel]
         for stride, products in self.down:
-            y[:, :-stride] += products * y[:, stride:]
-        begun, ended = _total(self.sums * y)
-        begun = velocity - begun
-        mean = begun - self.slack * begun
+            y[:, :-stride] += products[panel] * y[:, stride:]
+        begun, ended = _total(self.sums[panel] * y)
+        begun = x[self.states[:, 0]] - begun
+        mean = begun - self.slack[panel] * begun
+        x[self.states[:, 0]] = mean + (ended - self.loss[panel] * mean)
         y[:, 0] = 2 * mean
         for stride, products in self.up:
-            y[:, stride:] += products * y[:, :-stride]
+            y[:, stride:] += products[panel] * y[:, :-stride]
         y[:, 0] = mean
-        return y, mean + (ended - self.loss * mean), np.sum(self.leak * np.abs(y[:, -1] - p[:, -1]))
+        return np.asarray(self.ratio[..., None] * y[:, None] - a)
+
+
+class Blocks(JointGroup):
+    """Joints with any other state, all with the same matrices."""
+
+    def __init__(
+        self,
+        scheme: MarchScheme,
+        tables: dict[str, tuple[float, ...]],
+        joints: NDArray[np.int_],
+        answers: NDArray[np.int_],
+    ) -> None:
+        super().__init__(scheme, tables, joints, answers)
+        self.collect = np.swapaxes(self.at * self.push[..., None], 1, 2)
+        self.spread = self.at * self.ratio[..., None]
+        width = self.points.shape[1] * self.size + self.states.shape[1]
+        self._answers = self._answers[:, :1]
+        self.columns = self.matrices(width, width)[:, 0]
+
+    def sent(
+        self, a: NDArray[np.float64], panel: int, load: NDArray[np.float64], x: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        s = self.collect @ a
+        s[..., :3] += load
+        answer = np.concatenate([s.reshape(len(s), -1), x[self.states]], axis=1) @ self.columns[panel]
+        x[self.states] += answer[:, s[0].size :]
+        return np.asarray(self.spread @ answer[:, : s[0].size].reshape(s.shape) - a)
 
 
 def _total(values: NDArray[np.float64]) -> NDArray[np.float64]:

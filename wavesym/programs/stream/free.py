@@ -18,8 +18,8 @@ from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network, network_of
 from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
-from wavesym.programs.rings.plan import MarchedJoint, RingPlan, WatchedPlace, ring_plan
-from wavesym.programs.rings.space import JointRows, JointSpace, Rows, joint_rows
+from wavesym.programs.march.plan import MarchedJoint, MarchOutput, MarchPlan, march_plan
+from wavesym.programs.march.space import JointRows, JointSpace, Rows, joint_rows
 from wavesym.programs.runtime.joints.network import free_network
 from wavesym.programs.runtime.plan import free_chain
 from wavesym.programs.runtime.request import NAMES, RuntimeField, fields
@@ -39,7 +39,7 @@ class FreeStream:
     model: Model
     inputs: tuple[Input, ...]
     fields: tuple[RuntimeField, ...]
-    rings: RingPlan
+    rings: MarchPlan
     acting: tuple[InputForce, ...]
 
     @property
@@ -58,7 +58,7 @@ class FreeStream:
             ),
             joints=tuple(map(self._joint, self.rings.joints)),
             outputs=tuple(
-                WatchedPlace(output.name, tuple(replace(one, gain=self._number(one.gain)) for one in output.heard))
+                MarchOutput(output.name, tuple(replace(one, gain=self._number(one.gain)) for one in output.heard))
                 for output in self.rings.outputs
             ),
         )
@@ -110,7 +110,7 @@ def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], rea
     """The stream of a model with the parameters `names` at run time.
 
     WavesymError for a name that the scene does not have, and for loads; UnservedError, CostError as `fields`,
-    `free_network` and `ring_plan` say.
+    `free_network` and `march_plan` say.
     """
     if "load" in names:
         raise WavesymError("--runtime: load given with a stream, other parameters expected (its inputs are the loads)")
@@ -125,7 +125,7 @@ def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], rea
     if any(point.motion is not None and isinstance(point.velocity, Ratio) for point in network.points):
         raise UnservedError("--runtime: velocity given where an end moves as it is told, other parameters expected")
     steady = replace(model, network=_loaded(network, model.network), loads=steps_of(inputs))
-    rings = ring_plan(steady, real, joint_rows)
+    rings = march_plan(steady, real, joint_rows)
     if model.chain is not None:
         rings = replace(rings, outputs=tuple(_forces_kept(model, rings, force_kept(model, chain))))
     return FreeStream(model, tuple(inputs), given, rings, tuple(acting_inputs(network, rings.pushed, inputs, kept)))
@@ -137,8 +137,8 @@ def _loaded(network: Network, own: Network) -> Network:
     return replace(network, points=tuple(replace(point, loads=other.loads) for point, other in points))
 
 
-def _forces_kept(model: Model, rings: RingPlan, kept: Any) -> Iterator[WatchedPlace]:
+def _forces_kept(model: Model, rings: MarchPlan, kept: Any) -> Iterator[MarchOutput]:
     """Outputs, forces `kept` times as large."""
     for probe, output in zip(model.probes, rings.outputs, strict=True):
         factor = kept if probe.quantity == "force" else _ONE
-        yield WatchedPlace(output.name, tuple(replace(one, gain=one.gain * factor) for one in output.heard))
+        yield MarchOutput(output.name, tuple(replace(one, gain=one.gain * factor) for one in output.heard))

@@ -9,7 +9,7 @@ from typing import Any
 from flint import fmpq_mat
 
 from wavesym.programs.flat import firsts
-from wavesym.programs.rings.plan import MarchedJoint
+from wavesym.programs.march.plan import MarchedJoint
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.units import Function
 from wavesym.programs.stream.free import FreeStream

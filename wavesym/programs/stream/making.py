@@ -18,7 +18,8 @@ from wavesym.mechanics.loads import Applied, merged
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest
 from wavesym.numbers.reals import REALS, Real
-from wavesym.programs.march.bound import Verdict
+from wavesym.programs.march.bound import Verdict, judge
+from wavesym.programs.march.evaluator import first_degree, refuse_long
 from wavesym.programs.program import (
     Program,
     ProgramOutput,
@@ -29,8 +30,6 @@ from wavesym.programs.program import (
 )
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
-from wavesym.programs.rings.bound import judge
-from wavesym.programs.rings.evaluator import first_degree, refuse_long
 from wavesym.programs.stream.free import FreeStream, free_stream, usual_parameters
 from wavesym.programs.stream.made import MADE, laws_of, places, sizes
 from wavesym.programs.stream.plan import Input, StreamPlan, stream_plan
@@ -58,7 +57,6 @@ def stream_program(model: Model, request: Request, inputs: Sequence[Input], *, t
 def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bool) -> Program:
     for option, value, usual in (
         ("--evaluator", request.evaluator, "auto"),
-        ("--windows", request.windows, None),
         ("--optimize", request.optimize, None),
     ):
         if value != usual:
@@ -149,7 +147,7 @@ def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
     while True:
         spent = refuse_long(plan.rings, degree, spent, real)
         try:
-            verdict = judge(plan.rings, degree, real)
+            verdict = judge(plan.rings, degree, real, blocked=True)
         except OverflowError:
             raise
         except ArithmeticError as error:

@@ -25,8 +25,7 @@ from wavesym.mechanics.network import Network
 from wavesym.mechanics.node import RAMPS
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
-from wavesym.programs.march.plan import MarchPanel
-from wavesym.programs.rings.plan import Heard, MarchedJoint, RingPlan, moved_by, ring_plan
+from wavesym.programs.march.plan import MarchedJoint, MarchPlan, OutputTerm, Panel, march_plan, moved_by
 
 LONGEST = fmpq(1, 8)
 SHORTEST = fmpq(1, 64)
@@ -75,7 +74,7 @@ class StreamPlan:
     There is room for so many `breakpoints`.
     """
 
-    rings: RingPlan
+    rings: MarchPlan
     inputs: tuple[Input, ...]
     acting: tuple[InputForce, ...]
     breakpoints: int
@@ -161,20 +160,20 @@ def stream_plan(
     Raises:
         UnservedError: The model has contacts or damped modes.
     """
-    rings = ring_plan(replace(model, loads=steps_of(inputs)), real)
+    rings = march_plan(replace(model, loads=steps_of(inputs)), real)
     acting = acting_inputs(model.network, rings.pushed, inputs)
     panels = paneled(rings, spacing)
     return StreamPlan(panels, tuple(inputs), tuple(acting), breakpoints(model, panels, spacing, simulated=simulated))
 
 
-def paneled(rings: RingPlan, spacing: fmpq | None, quicker: fmpq = _ONE) -> RingPlan:
+def paneled(rings: MarchPlan, spacing: fmpq | None, quicker: fmpq = _ONE) -> MarchPlan:
     """On the panels of a stream, for joints that may be `quicker` than they are."""
     count = _panels(rings, spacing, quicker)
     length = rings.step / count
-    return replace(rings, panels=tuple(MarchPanel(k * length, length) for k in range(count)))
+    return replace(rings, panels=tuple(Panel(k * length, length) for k in range(count)))
 
 
-def breakpoints(model: Model, rings: RingPlan, spacing: fmpq | None, *, simulated: bool) -> int:
+def breakpoints(model: Model, rings: MarchPlan, spacing: fmpq | None, *, simulated: bool) -> int:
     """For how many instants inside of panels there is to be room, up to `MOST_BREAKPOINTS`.
 
     Those at which multiples of the `spacing` lie, or the times of the model's own loads, up to the horizon; where
@@ -208,7 +207,7 @@ def acting_inputs(
         yield InputForce(point.velocity if point.motion is not None else _ZERO, tuple(gains), summed)
 
 
-def _at_once(one: Heard, passing: Container[int]) -> bool:
+def _at_once(one: OutputTerm, passing: Container[int]) -> bool:
     return one.track in passing and one.delay == 0 and not one.summed
 
 
@@ -216,7 +215,7 @@ def _loaded(joints: Sequence[MarchedJoint]) -> tuple[int, ...]:
     return tuple(n for n, joint in enumerate(joints) if any(force >= 0 for force in joint.forces))
 
 
-def _panels(rings: RingPlan, spacing: fmpq | None, quicker: fmpq) -> int:
+def _panels(rings: MarchPlan, spacing: fmpq | None, quicker: fmpq) -> int:
     """How many are a step of the march."""
     step, joints = rings.step, rings.joints
     fastest = nearest(quicker) * max(joint.space.norm for joint in joints)

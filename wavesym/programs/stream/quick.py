@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from wavesym.errors import CostError
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import Real
-from wavesym.programs.rings.plan import MarchedJoint
-from wavesym.programs.rings.space import JointRows
+from wavesym.programs.march.plan import MarchedJoint
+from wavesym.programs.march.space import JointRows
 from wavesym.programs.stream.free import FreeStream
 from wavesym.programs.stream.plan import StreamPlan
 from wavesym.programs.stream.tables import StreamTables

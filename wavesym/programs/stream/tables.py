@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.rings.plan import MarchedJoint
-from wavesym.programs.rings.space import SHOWN
-from wavesym.programs.rings.tables import RingTables
+from wavesym.programs.march.plan import MarchedJoint
+from wavesym.programs.march.space import SHOWN
+from wavesym.programs.march.tables import MarchTables
 from wavesym.programs.stream.interpolation import kinks, points, transform
 from wavesym.programs.stream.plan import StreamPlan
 
@@ -32,7 +32,7 @@ class StreamTables:
 
     def __init__(self, plan: StreamPlan, degree: int, real: Real) -> None:
         self._plan, self._degree, self._real = plan, degree, real
-        self._rings = RingTables(plan.rings, degree, real)
+        self._rings = MarchTables(plan.rings, degree, real, blocked=True)
         self._joints = plan.rings.joints
 
     def tables(self) -> dict[str, tuple[float, ...]]:

@@ -13,7 +13,7 @@ from wavesym.targets.description import Description
 from wavesym.targets.target import Target
 
 _AT_RUN_TIME = ("runtime", "joints")
-_STREAMING = ("march", "modes", "stream")
+_STREAMING = ("modes", "stream")
 
 # what a stream's bound of errors is for
 _UNDER = {"modes": "under the scene's loads", "stream": "under a step of each load at tau = 0"}

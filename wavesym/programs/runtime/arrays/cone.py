@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from wavesym.programs.march.plan import LEFT, LOAD, RIGHT
 from wavesym.programs.runtime.arrays.laws import ArrayLaws
 from wavesym.programs.runtime.arrays.tables import ArrayTables, Ints
+from wavesym.programs.runtime.line import LEFT, LOAD, RIGHT
 
 Bools = NDArray[np.bool_]
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from wavesym.programs.march.plan import LEFT, LOAD, RIGHT
 from wavesym.programs.runtime.arrays.laws import ArrayLaws
 from wavesym.programs.runtime.arrays.signals import ArraySignals
 from wavesym.programs.runtime.arrays.tables import ArrayTables
 from wavesym.programs.runtime.engine import Array
+from wavesym.programs.runtime.line import LEFT, LOAD, RIGHT
 
 
 class ArrayWaves(ArraySignals):

@@ -14,10 +14,10 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import Real
 from wavesym.programs.flat import firsts
+from wavesym.programs.march.plan import MarchPlan
+from wavesym.programs.march.space import JointRows
 from wavesym.programs.program import Program, ProgramOutput, Provenance
 from wavesym.programs.request import Request
-from wavesym.programs.rings.plan import RingPlan
-from wavesym.programs.rings.space import JointRows
 from wavesym.programs.runtime.degree import LEAST, MARGIN, lightest, refuse_huge
 from wavesym.programs.runtime.joints.network import free_network
 from wavesym.programs.runtime.joints.plan import JointsPlan, joints_plan
@@ -90,12 +90,12 @@ def _refuse_large(made: JointsPlan) -> None:
         )
 
 
-def _fastest(own: RingPlan) -> fmpq:
+def _fastest(own: MarchPlan) -> fmpq:
     """The largest rate at which a joint answers a wave: of a mass, impedances and dashpots beside it over it."""
     return max((-j.space.rates[n, n] for j in own.joints for n in range(j.space.states)), default=fmpq(0))
 
 
-def _degrees(own: RingPlan, fastest: fmpq, kappa_max: fmpq | None) -> tuple[int, int]:
+def _degrees(own: MarchPlan, fastest: fmpq, kappa_max: fmpq | None) -> tuple[int, int]:
     """About the degree to begin with, and one that is enough for rates up to `kappa_max`, too.
 
     A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved. A

@@ -12,9 +12,8 @@ from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import Real
-from wavesym.programs.march.plan import Stretch
-from wavesym.programs.rings.plan import Heard, RingPlan, moved_by, ring_plan
-from wavesym.programs.rings.space import joint_rows
+from wavesym.programs.march.plan import MarchPlan, OutputTerm, Stretch, march_plan, moved_by
+from wavesym.programs.march.space import joint_rows
 from wavesym.programs.runtime.joints.network import FreeNetwork
 from wavesym.programs.runtime.plan import HELPS
 from wavesym.programs.runtime.pushes import Push, ordered, told
@@ -26,7 +25,7 @@ class JointTerm:
     """A wave on one of its stretches. `low` and `high` are where, on [-1, 1], its integral begins and ends."""
 
     heard: int
-    wave: Heard
+    wave: OutputTerm
     stretch: Stretch
     low: fmpq
     high: fmpq
@@ -50,8 +49,8 @@ class JointsPlan:
     """
 
     model: Model
-    plan: RingPlan
-    own: RingPlan
+    plan: MarchPlan
+    own: MarchPlan
     free: FreeNetwork
     pushes: tuple[Push, ...]
     heard: tuple[tuple[int, Any], ...]
@@ -76,8 +75,8 @@ def joints_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real:
     # as if each weighed 1, so that none of them is left out
     changes = {(change.time, change.source) for load in acting for change in load}
     felt = tuple(Applied(source, time, fmpq(1)) for time, source in sorted(changes))
-    own = ring_plan(replace(model, loads=felt), real)
-    plan = ring_plan(replace(model, network=free.network, loads=felt), real, joint_rows, HELPS)
+    own = march_plan(replace(model, loads=felt), real)
+    plan = march_plan(replace(model, network=free.network, loads=felt), real, joint_rows, HELPS)
     silent = quiet(replace(model, network=free.some), loads, real)
     heard = tuple(
         (number, replace(wave, gain=fmpq(0)) if silent[number] else wave)
@@ -89,7 +88,9 @@ def joints_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real:
     return JointsPlan(model, plan, own, free, pushes, heard, tuple(_strands(plan, heard)), tuple(silent))
 
 
-def _pushes(plan: RingPlan, model: Model, acting: Sequence[Sequence[Applied]], sizes: Sequence[fmpq]) -> Iterator[Push]:
+def _pushes(
+    plan: MarchPlan, model: Model, acting: Sequence[Sequence[Applied]], sizes: Sequence[fmpq]
+) -> Iterator[Push]:
     places = {panel.start: number for number, panel in enumerate(plan.panels)}
     for force, point in enumerate(model.network.points[k] for k in plan.pushed):
         powers = {unit.source: fmpq_poly(list(moved_by(point, unit))) for unit in point.loads}
@@ -100,7 +101,7 @@ def _pushes(plan: RingPlan, model: Model, acting: Sequence[Sequence[Applied]], s
                 yield Push(window, panel, force, power, 1 / sizes[number], number, weight, anew)
 
 
-def _strands(plan: RingPlan, heard: Sequence[tuple[int, Heard]]) -> Iterator[JointStrand]:
+def _strands(plan: MarchPlan, heard: Sequence[tuple[int, OutputTerm]]) -> Iterator[JointStrand]:
     groups: dict[tuple[fmpq, fmpq, int], list[JointTerm]] = {}
     for number, (output, wave) in enumerate(heard):
         for stretch in plan.stretches(wave.delay):

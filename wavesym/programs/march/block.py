@@ -1,4 +1,4 @@
-"""What a joint answers on a panel, as one matrix; computed in balls, rounded once.
+"""The response of a joint with a state on a panel, as one matrix; computed in balls, rounded once.
 
 With x' = rates x + pushed s (space.py) on a panel of length h, and x and s as Chebyshev series of degree d, integrated
 once in coefficient space,
@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from wavesym.numbers.balls import precise
 from wavesym.numbers.doubles import middle, nearest
-from wavesym.programs.rings.space import JointSpace
+from wavesym.programs.march.space import JointSpace
 
 Array = NDArray[np.float64]
 
@@ -35,23 +35,23 @@ NEGLIGIBLE = 2.0**-100
 
 
 @dataclass(frozen=True)
-class Answer:
+class BlockResponse:
     """`matrix` as above; `missed`, in the norm of energy, from the same."""
 
     matrix: Array
     missed: Array
 
 
-def answer(space: JointSpace, length: fmpq, degree: int) -> Answer:
+def block_response(space: JointSpace, length: fmpq, degree: int) -> BlockResponse:
     """The answer of a joint with a state on a panel. ArithmeticError where too many bits would be needed."""
 
-    def attempt(_: int) -> Answer | None:
-        return _answer(space, length, degree)
+    def attempt(_: int) -> BlockResponse | None:
+        return _response(space, length, degree)
 
     return precise(attempt, _FIRST_BITS, _MOST_BITS)
 
 
-def _answer(space: JointSpace, length: fmpq, degree: int) -> Answer | None:
+def _response(space: JointSpace, length: fmpq, degree: int) -> BlockResponse | None:
     """None where the working precision does not do."""
     states, points, size = space.states, space.points, degree + 1
     columns = points * size + states
@@ -96,7 +96,11 @@ def _answer(space: JointSpace, length: fmpq, degree: int) -> Answer | None:
     left = arb(length / (4 * size)) * (rates * series[degree] + given[degree])
     missed = [[arb(space.weights[a]).sqrt() * left[a, c] for c in range(columns)] for a in range(states)]
     matrix = _rounded(rows)
-    return None if matrix is None else Answer(matrix, np.array([[nearest(middle(c)) for c in row] for row in missed]))
+    return (
+        None
+        if matrix is None
+        else BlockResponse(matrix, np.array([[nearest(middle(c)) for c in row] for row in missed]))
+    )
 
 
 def _placed(block: arb_mat, columns: int, at: list[int] | range) -> arb_mat:

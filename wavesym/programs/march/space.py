@@ -26,6 +26,8 @@ from wavesym.exact.joints.node_rules import joint_rule
 from wavesym.mechanics.network import Joint, Network
 from wavesym.numbers.doubles import nearest
 
+SCATTERER, BODY, BLOCK = 0, 1, 2
+
 _ZERO = fmpq(0)
 
 Rows = list[list[Any]]
@@ -62,6 +64,26 @@ class JointSpace:
     def points(self) -> int:
         """How many points there are."""
         return self.passed.nrows()
+
+    @cached_property
+    def is_body(self) -> bool:
+        """Whether it is one mass between rods and dashpots, without springs."""
+        return self.states == self.points == 1 and self.moves_with == (0,) and self.rates[0, 0] < 0
+
+    @property
+    def law(self) -> int:
+        """What its step is, in tables: `SCATTERER`, `BODY` or `BLOCK`."""
+        return SCATTERER if not self.states else BODY if self.is_body else BLOCK
+
+    @property
+    def rate(self) -> fmpq:
+        """That of a body: q'/rate + q = drive times what acts on it."""
+        return -self.rates[0, 0]
+
+    @property
+    def drive(self) -> fmpq:
+        """What acts on a body counts so much; of other joints 0."""
+        return self.pushed[0, 0] / self.rate if self.law == BODY else _ZERO
 
     @cached_property
     def norm(self) -> float:

@@ -14,9 +14,9 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.numbers.doubles import nearest
+from wavesym.programs.march.body import Array, BodyOperator, body_operator
 from wavesym.programs.march.load_events import LoadEvent
-from wavesym.programs.march.operator import Array, PanelOperator, Sweeps, operator
-from wavesym.programs.march.plan import LEFT, LOAD, RIGHT, Plan
+from wavesym.programs.runtime.line import LEFT, LOAD, RIGHT, Plan
 
 _BLOCK = 64
 
@@ -112,9 +112,9 @@ def _rest(plan: Plan) -> Since:
     return Since(0, waves, np.array([nearest(node.motion) for node in plan.junctions]))
 
 
-def operators(plan: Plan, degree: int) -> dict[fmpq, PanelOperator]:
+def operators(plan: Plan, degree: int) -> dict[fmpq, BodyOperator]:
     """One for every different rate times length of a panel."""
-    return {step: operator(step, degree) for step in steps(plan)}
+    return {step: body_operator(step, degree) for step in steps(plan)}
 
 
 def operator_count(plan: Plan) -> int:
@@ -132,7 +132,7 @@ class _Step:
     panel.
     """
 
-    def __init__(self, of: list[list[PanelOperator]], degree: int) -> None:
+    def __init__(self, of: list[list[BodyOperator]], degree: int) -> None:
         shape = len(of), len(of[0])
         self.ratio = np.array([[o.ratio for o in row] for row in of]).reshape(*shape, degree + 1)
         self.sides = np.array([[(o.first, o.last) for o in row] for row in of]).reshape(*shape, 2, degree + 1)
@@ -205,3 +205,54 @@ def _total(values: Array) -> Array:
         folded[..., :half] += values[..., count - half :]
         values = folded
     return values[..., 0]
+
+
+class Sweeps:
+    """The recurrences of some operators on arrays, each as a scan: log2(degree) steps instead of degree.
+
+    `down(v)` solves w_k = v_k + e_k w_(k+1), `up(v)` solves w_k = v_k - e_k w_(k-1), along the last axis, for rows of
+    coefficients 0 ... degree that belong to the operators in order (the axis before).
+    """
+
+    def __init__(self, ratio: Array) -> None:
+        self._down = _strides(ratio, backwards=True)
+        self._up = _strides(-ratio, backwards=False)
+
+    @property
+    def levels(self) -> int:
+        """Into how many additions an input goes at most, less one."""
+        return max(len(self._down), len(self._up))
+
+    def down(self, values: Array) -> Array:
+        """From the last coefficient to the first."""
+        result = values.copy()
+        for stride, products in self._down:
+            result[..., :-stride] += products * result[..., stride:]
+        return result
+
+    def up(self, values: Array) -> Array:
+        """From the first coefficient to the last."""
+        result = values.copy()
+        for stride, products in self._up:
+            result[..., stride:] += products * result[..., :-stride]
+        return result
+
+
+NEGLIGIBLE = 2.0**-100
+"""Products of ratios below it are left out of a scan: all of them together are far below one rounding."""
+
+
+def _strides(factor: Array, *, backwards: bool) -> list[tuple[int, Array]]:
+    """For stride 1, 2, 4 ... the products of as many factors; none where they are too small to matter."""
+    result = []
+    stride, products = 1, factor
+    while stride < factor.shape[-1] and np.max(np.abs(products), initial=0.0) > NEGLIGIBLE:
+        longer = np.zeros_like(products)
+        if backwards:
+            result.append((stride, products[..., :-stride].copy()))
+            longer[..., :-stride] = products[..., :-stride] * products[..., stride:]
+        else:
+            result.append((stride, products[..., stride:].copy()))
+            longer[..., stride:] = products[..., stride:] * products[..., :-stride]
+        stride, products = 2 * stride, longer
+    return result

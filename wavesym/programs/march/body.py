@@ -1,0 +1,153 @@
+"""The response of a body (one mass, no springs) on a panel, as three short tables; computed in balls, rounded once.
+
+On a panel of length h, u in [-1, 1], a body obeys q' + rate q = rate p, where p is the force over the sum of its
+dashpots and impedances. With q and p as Chebyshev series of degree d, integrated once in coefficient space, this reads
+for k = 1 ... d
+
+    q_k + x_k (q_(k-1) - q_(k+1)) = x_k (p_(k-1) - p_(k+1)),        x_k = rate h / (4 k),
+
+where q_0 and p_0 count twice and what is beyond d is 0; and sum (-1)^k q_k is the velocity at the start. Eliminated
+from k = d down, as in Miller's algorithm,
+
+    y_k = e_k (p_(k-1) - p_(k+1) + y_(k+1)),    q_k = y_k - e_k q_(k-1),    e_k = x_k / (1 + x_k e_(k+1)),
+
+so that 0 < e_k < 1 (they are ratios of Bessel functions I_k / I_(k-1)) and nothing grows. The velocities at both ends
+are then sums over y, known before q is:
+
+    q_0 = (1 - slack) (start - sum_k first_k y_k),        end = (1 - loss) q_0 + sum_k last_k y_k.
+
+Where bodies are heavy, slack and loss are small: rounded as they are, they leave no trace in 100 000 windows.
+
+The polynomial misses the equation by the one term that does not fit, x_(d+1) (q_d - p_d) T_(d+1): the `leak`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil, log2, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from flint import arb, ctx, fmpq
+from numpy.typing import NDArray
+
+from wavesym.numbers.doubles import midpoint
+
+Array = NDArray[np.float64]
+
+_BITS = 300
+SPARE = 16.0
+"""Products on the way to a coefficient of p or q that may underflow, besides those of a scan."""
+
+
+@dataclass(frozen=True)
+class BodyOperator:
+    """The tables of a rate on a panel; `ratio[k]`, `first[k]` and `last[k]` for k = 0 ... degree, entry 0 unused (0).
+
+    All dimensionless. `step` is rate times the panel's length; `leak` is x_(degree + 1).
+    """
+
+    step: float
+    ratio: tuple[float, ...]
+    first: tuple[float, ...]
+    last: tuple[float, ...]
+    slack: float
+    loss: float
+    leak: float
+
+    @cached_property
+    def rows(self) -> tuple[float, ...]:
+        """As programs have it: slack and ratios, loss and first, 0 and last."""
+        return (self.slack, *self.ratio[1:], self.loss, *self.first[1:], 0.0, *self.last[1:])
+
+
+def body_operator(step: fmpq, degree: int) -> BodyOperator:
+    """The operator of bodies with rate * length = `step` > 0 on series of `degree`, each number rounded once."""
+    with ctx.workprec(_BITS):
+        x = [arb(step) / (4 * k) if k else arb(0) for k in range(degree + 2)]
+        ratio = [arb(0)] * (degree + 2)
+        first = [arb(0)] * (degree + 2)
+        last = [arb(0)] * (degree + 2)
+        for k in range(degree, 0, -1):
+            ratio[k] = x[k] / (1 + x[k] * ratio[k + 1])
+            first[k] = (-1) ** k - ratio[k + 1] * first[k + 1]
+            last[k] = 1 - ratio[k + 1] * last[k + 1]
+        doubled = 2 * ratio[1]
+        return BodyOperator(
+            step=midpoint(arb(step)),
+            ratio=tuple(map(midpoint, ratio[:-1])),
+            first=tuple(map(midpoint, first[:-1])),
+            last=tuple(map(midpoint, last[:-1])),
+            slack=midpoint(-doubled * first[1] / (1 - doubled * first[1])),
+            loss=midpoint(doubled * last[1]),
+            leak=midpoint(x[degree + 1]),
+        )
+
+
+class BodyRoundings(NamedTuple):
+    """How wrong the coefficients of q, and its value at the `end`, may be: per u |p|, per u |start|, and per smallest
+    number that may be lost by underflow.
+    """
+
+    coefficients: tuple[float, float, float]
+    end: tuple[float, float, float]
+
+
+def body_roundings(operator: BodyOperator, count: int) -> BodyRoundings:
+    """Norms of T and t for the coefficients of q, and the same for its value at the end; p is rounded `count` times.
+
+    Counts the roundings of the programs in C (one after the other) and in NumPy (scans and sums in pairs).
+    """
+    degree = len(operator.ratio) - 1
+    levels = ceil(log2(degree + 1))
+    ratio, first, last = (np.abs(np.array(table)) for table in (operator.ratio, operator.first, operator.last))
+    slack, loss = operator.slack, operator.loss
+    # columns: |p_0| ... |p_d|, |start|, and a last one that no value has: products that underflow
+    given = np.eye(degree + 3)
+    start, spare = given[-2], (SPARE + count + levels) * given[-1]
+    y, y_error = np.zeros((degree + 2, degree + 3)), np.zeros((degree + 2, degree + 3))
+    for k in range(degree, 0, -1):
+        difference = (2 if k == 1 else 1) * given[k - 1] + (given[k + 1] if k < degree else 0)
+        y[k] = ratio[k] * (difference + y[k + 1])
+        y_error[k] = (count + 4) * y[k] + ratio[k] * y_error[k + 1] + spare
+    y, y_error = y[:-1], y_error[:-1] + levels * y[:-1]
+    counts = np.maximum(np.arange(degree + 1), levels) + 3.0
+    summed = (degree + 4) * given[-1]
+    begun, ended = start + first @ y, last @ y
+    mean = (1 - slack) * begun
+    mean_error = (1 - slack) * (first @ y_error + (first * counts) @ y + summed) + 3 * begun + spare
+    end_error = abs(1 - loss) * mean_error + last @ y_error + (last * counts) @ y + 3 * ((1 + abs(loss)) * mean + ended)
+    end_error += summed + spare
+    q_error = np.empty_like(y_error)
+    q_error[0] = mean_error
+    q, error = 2 * mean, 2 * mean_error
+    for k in range(1, degree + 1):
+        q = y[k] + ratio[k] * q
+        error = y_error[k] + ratio[k] * error + 3 * q + spare
+        q_error[k] = error + levels * q
+    # in the norm that counts c_0 twice
+    q_error[0] *= sqrt(2)
+    q_error[:, 0] /= sqrt(2)
+    end_error[0] /= sqrt(2)
+    return BodyRoundings(
+        (
+            _norm(q_error[:, :-2]),
+            float(np.linalg.norm(q_error[:, -2])),
+            float(np.linalg.norm(q_error[:, -1])),
+        ),
+        (float(np.linalg.norm(end_error[:-2])), float(end_error[-2]), float(end_error[-1])),
+    )
+
+
+def _norm(matrix: Array) -> float:
+    """An upper bound of the 2-norm of a matrix A without negative entries.
+
+    For any positive x no eigenvalue of A^T A is larger than the largest (A^T A x)_i / x_i (Collatz).
+    """
+    x = np.ones(matrix.shape[1])
+    for _ in range(20):
+        y = matrix.T @ (matrix @ x)
+        bound = float(np.max(y / x))
+        x = y / np.max(y) + 1e-3
+    return sqrt(bound)
