@@ -43,15 +43,15 @@ def generate(
 ) -> tuple[Path, ...]:
     """Write the files of a scene into `directory` (default ./NAME), all or none; the paths written.
 
-    `optimize` is for "speed" (usual in double precision) or for "size" (usual in single). `runtime` names parameters
-    that C takes when it runs: "kappa", "inertia", "velocity", "load"; `parts` are what it has then besides values and
-    the estimate of their errors: "peaks", "gradients", "batch", "misfit", "bound". `kappa_max` is the largest kappa that it
-    is made for (ten times the scene's own), in a general chain the largest rate of a joint. A `stream` takes the loads
-    sample by sample, at any time, or best at multiples of `step`, in tau, and `runtime` when it starts. `package` adds
-    what CMake builds, tests and installs C with. `target` "fmu2" or "fmu3" makes one file, NAME.fmu, a stream for
-    simulators, whose parameters are `runtime`, or all of a named system; CompilerError without a C compiler. Files that
-    wavesym did not write are replaced only by `force`; WavesymError else, and for a language, evaluator, precision, aim
-    or part that there is not.
+    `optimize` is for "speed" (usual in double precision) or for "size" (usual in single). `runtime` names
+    parameters that C takes when it runs: "kappa", "inertia", "velocity", "load"; `parts` are what it has then
+    besides values and the estimate of their errors: "peaks", "gradients", "batch", "misfit", "bound". `kappa_max`
+    is the largest kappa that it is made for (ten times the scene's own), in a general chain the largest rate of a
+    joint. A `stream` takes the loads sample by sample, at any time, or best at multiples of `step`, in tau, and
+    `runtime` when it starts. `package` adds what CMake builds, tests and installs C with. `target` "fmu2" or "fmu3"
+    makes one file, NAME.fmu, a stream for simulators, whose parameters are `runtime`, or all of a named system;
+    CompilerError without a C compiler. Files that wavesym did not write are replaced only by `force`; WavesymError
+    else, and for a language, evaluator, precision, aim or part that there is not.
 
     >>> import wavesym
     >>> for path in wavesym.generate(wavesym.Scene.from_toml("drive_m1"), "drive", language="numpy"):
