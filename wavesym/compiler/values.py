@@ -50,10 +50,10 @@ def model(scene: Scene, runtime: Sequence[str]) -> RuntimeModel:
     """A scene whose parameters are given when it runs, for one set of them or for a million.
 
     `runtime` names them: "kappa", "inertia", "velocity", "load", or of a chain that is written out "mass", "dashpot",
-    "spring", "impedance", "velocity", "load", those that the scene has. Where there is a C compiler it is compiled:
-    values, peaks and misfits together, gradients, and bounds, each when they are first asked for. Elsewhere NumPy
-    computes the same, more slowly, but not for such chains (CompilerError). WavesymError for a scene that has not got
-    these parameters, UnservedError and CostError for one that no such program serves.
+    "spring", "impedance", "velocity", "load", those that the scene has. It is compiled: values,
+    peaks and misfits together, gradients, and bounds, each when they are first asked for. CompilerError where there is
+    no C compiler: the extra `compiler` brings one. WavesymError for a scene that has not got these parameters,
+    UnservedError and CostError for one that no such program serves.
 
     >>> import wavesym
     >>> model = wavesym.model(wavesym.Scene.from_toml("drive_m1"), runtime=["kappa"])

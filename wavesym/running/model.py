@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 from wavesym.errors import WavesymError
 from wavesym.numbers.doubles import nearest
 from wavesym.programs.program import Program
-from wavesym.programs.runtime.engine import Array
 from wavesym.results.horizon import check_horizon
 from wavesym.results.near_zero import is_near_zero, zero_within
+
+Array = NDArray[np.float64]
 
 _WHY = (
     "",
@@ -73,15 +74,16 @@ class RuntimeModel:
     `outputs` are the names of its outputs, `tau_max` its horizon, `parameters` the scene's own numbers of each field,
     by name. They are given by these names, as arrays of shape (sets, numbers), or (numbers,) for all sets; those that
     are not given are the scene's. A set that is refused is NaN throughout, and `check` says why; so is tau out of
-    range. WavesymError for a field that there is not, and for arrays of other shapes.
+    range. WavesymError for a field that there is not, and for arrays of other shapes; CompilerError where there is no C
+    compiler.
     """
 
     def __init__(self, program: Program) -> None:
-        from wavesym.running.sets import sets_engine  # what compiles and computes is loaded when it is needed
+        from wavesym.running.sets import CompiledSets  # what compiles and computes is loaded when it is needed
 
         laws = program.laws
         assert laws is not None
-        self._engine = sets_engine(program)
+        self._engine = CompiledSets(program)
         self.parameters: Mapping[str, Array] = {
             field.name: np.array([float(value) for value in field.values]) for field in laws.fields
         }
@@ -174,8 +176,7 @@ class RuntimeModel:
     def bounds(self, **parameters: ArrayLike) -> Array:
         """Of each set and output the largest error relative to its largest value on the horizon, at most: proved.
 
-        It is pessimistic by a few digits, infinite where it leaves nothing. Of shape (sets, outputs); UnservedError
-        where there is no C compiler.
+        It is pessimistic by a few digits, infinite where it leaves nothing. Of shape (sets, outputs).
         """
         return self._engine.bounds(self._given(parameters)).values
 

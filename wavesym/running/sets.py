@@ -7,31 +7,21 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wavesym.programs.program import Program
-from wavesym.programs.runtime.arrays.engine import ArraySets
-from wavesym.programs.runtime.engine import Array, Engine, FoundSets, no_sets
 from wavesym.running.native import FAST, address, library
-from wavesym.running.toolchain import CompilerError, compiler
+from wavesym.running.toolchain import compiler
 from wavesym.targets.files import runtime_sets
 
 _MANY, _WHERE = ctypes.c_size_t, ctypes.c_void_p
 _LARGEST_BATCH = 1 << 28  # bytes
 
+Array = NDArray[np.float64]
 Memory = NDArray[np.uint8]
-
-
-def sets_engine(program: Program) -> Engine:
-    """What computes a program here: C, or NumPy where there is no compiler."""
-    try:
-        compiler()
-    except CompilerError:
-        return ArraySets(program)
-    return CompiledSets(program)
 
 
 _VALUES, _SLOPES, _BOUNDS = ("peaks", "batch", "misfit"), ("gradients",), ("bound",)
@@ -39,13 +29,30 @@ _VALUES, _SLOPES, _BOUNDS = ("peaks", "batch", "misfit"), ("gradients",), ("boun
 _AT = [_WHERE, ctypes.c_int, _MANY]  # instants
 
 
+class FoundSets(NamedTuple):
+    """Of each set its status (0; 1 a bad number; 2 bodies too light), its error estimate, or one of values and of each
+    derivative, and what was asked for, all NaN where the status is not 0.
+    """
+
+    status: NDArray[np.int32]
+    estimate: Array
+    values: Array
+
+
+def no_sets(sets: int, shape: tuple[int, ...], estimates: tuple[int, ...] = ()) -> FoundSets:
+    """Room for what is found."""
+    return FoundSets(np.empty(sets, np.int32), np.empty((sets, *estimates)), np.empty((sets, *shape)))
+
+
 class CompiledSets:
     """Several sets side by side, derivatives and bounds of one after the other, in the memory of one model.
 
-    CompilerError where there is no C compiler.
+    `given` has a row for each set, with all fields side by side; `tau` is one-dimensional. CompilerError where there is
+    no C compiler.
     """
 
     def __init__(self, program: Program) -> None:
+        compiler()
         self._program = program
         self._name = program.provenance.model.name
         self._outputs = len(program.outputs)
@@ -69,30 +76,34 @@ class CompiledSets:
         return np.empty(self._function(parts, f"{struct}_size", [], _MANY)(), np.uint8)
 
     def values(self, given: Array, tau: Array) -> FoundSets:
-        """See `Engine`."""
+        """Of shape (sets, 1, outputs, times)."""
         sets = self._function(_VALUES, "sets", [_WHERE, _MANY, _WHERE, _WHERE, *_AT, _WHERE, _WHERE, _WHERE])
         shape = (1, self._outputs, len(tau))
         return self._at(sets, [self._batch(), self._room(_VALUES, "model")], given, tau, no_sets(len(given), shape))
 
     def tangents(self, given: Array, tau: Array) -> FoundSets:
-        """See `Engine`."""
+        """The values, then their derivatives by each parameter: of shape (sets, 1 + parameters, outputs, times); and as
+        many estimates, of shape (sets, 1 + parameters).
+        """
         tangents = self._function(_SLOPES, "sets_tangents", [_WHERE, _MANY, _WHERE, *_AT, _WHERE, _WHERE, _WHERE])
         lanes = 1 + given.shape[1]
         found = no_sets(len(given), (lanes, self._outputs, len(tau)), (lanes,))
         return self._at(tangents, [self._room(_SLOPES, "tangent")], given, tau, found)
 
     def peaks(self, given: Array) -> FoundSets:
-        """See `Engine`."""
+        """Of shape (sets, outputs, 4): the least value, its tau, the greatest value, its tau."""
         peaks = self._function(_VALUES, "sets_peaks", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
         return self._of_each(peaks, [self._batch(), self._room(_VALUES, "model")], given, (self._outputs, 4))
 
     def bounds(self, given: Array) -> FoundSets:
-        """See `Engine`."""
+        """The proved bound of each output, of shape (sets, outputs)."""
         bounds = self._function(_BOUNDS, "sets_bounds", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE])
         return self._of_each(bounds, [self._room(_BOUNDS, "bounded")], given, (self._outputs,))
 
     def misfit(self, tau: Array, data: Array) -> Callable[[Array], FoundSets]:
-        """See `Engine`."""
+        """What makes of `given` the sums of the squares of all misfits, of shape (sets,). `data` of shape
+        (outputs, times) is NaN where there is none.
+        """
         misfit = self._function(_VALUES, "sets_misfits", [_WHERE, _MANY, _WHERE, _WHERE, _WHERE, _WHERE, _WHERE])
         size = self._function(_VALUES, "data_size", [_WHERE, _MANY], _MANY)
         init = self._function(_VALUES, "data_init", [_WHERE, _WHERE, _WHERE, _WHERE, _MANY], ctypes.c_int)

@@ -65,7 +65,7 @@ def compiler() -> Compiler:
         return found
     raise CompilerError(
         f"no C compiler: {', '.join(_COMMON)} not found; install one of them, or name another in the environment "
-        f"variable CC, or install one as a Python package: pip install {_PACKAGE}"
+        f"variable CC, or install one as a Python package: pip install {_PACKAGE} (the extra compiler of wavesym)"
     )
 
 
