@@ -86,8 +86,8 @@ class Program:
     """What computes the outputs of a scene for 0 <= tau <= `tau_max`, in `real` numbers; dimensionless.
 
     `kind` names its scheme: "closed", "pieces", "march", "hats", that of one hat of each record, in NumPy alone,
-    "modes", "runtime": a march whose parameters come at run time, by its `laws`, "joints": that of a chain, or
-    "stream": one whose loads do. The last three are C alone.
+    "modes", "runtime": a march whose parameters come at run time, by its `laws`, or "stream": one whose loads do. The
+    last two are C alone.
     `tables` are flat (flat.py), by name, each number as it is written; which there are, the `program` of each
     evaluator says, of marches march/tables.py, of modes modes/tables.py, of streams stream/tables.py.
     `constants` are single numbers. `bytes` is the size of the tables in C. `reference` is for a self-test. `sources`
@@ -115,7 +115,7 @@ class Program:
     @property
     def evaluator(self) -> str:
         """What a user calls its kind."""
-        return {"hats": "march", "joints": "runtime"}.get(self.kind, self.kind)
+        return {"hats": "march"}.get(self.kind, self.kind)
 
     @property
     def error_bound(self) -> float:

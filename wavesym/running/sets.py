@@ -64,10 +64,7 @@ class CompiledSets:
         if parts not in self._libraries:
             files = runtime_sets(self._program, parts)
             header = (f"{self._name}.h", files[f"{self._name}.h"])
-            # joints have loops over a few states, which -O3 takes three times as long to compile for a tenth of their
-            # time
-            flags = ("-O2", *FAST[1:]) if self._program.kind == "joints" else FAST
-            self._libraries[parts] = library(files[f"{self._name}.c"], flags, header)
+            self._libraries[parts] = library(files[f"{self._name}.c"], FAST, header)
         found: ctypes._NamedFuncPointer = getattr(self._libraries[parts], f"{self._name}_{name}")
         found.argtypes, found.restype = arguments, result
         return found

@@ -13,8 +13,8 @@ from typing import Any
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
-from wavesym.programs.runtime.joints.network import free_network, without
-from wavesym.programs.runtime.request import NAMES, RuntimeField, fields
+from wavesym.programs.runtime.network import free_network, without
+from wavesym.programs.runtime.request import NAMES, RuntimeField
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes
 
@@ -33,11 +33,10 @@ class RuntimeCase:
     def of(cls, scene: Scene, names: tuple[str, ...]) -> RuntimeCase:
         """That of a scene. WavesymError where it has no such fields, or cannot be served."""
         model, given = lower(scene), amplitudes(scene) if "load" in names else ()
+        own = free_network(model, names, given).fields
         if model.chain is None:
-            own = free_network(model, names, given).fields
             bare = replace(model, network=without(model.network, names))
         else:
-            own = fields(model, names, given)
             kept = replace(model.chain.parameters, **{name: None for name in names if name != "load"})
             bare = replace(model, chain=replace(model.chain, parameters=kept), network=Network((), ()))
         called = [(field.name, field.labels, field.units) for field in own]

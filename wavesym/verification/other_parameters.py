@@ -17,8 +17,8 @@ from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
 from wavesym.numbers.doubles import fraction, nearest
-from wavesym.programs.runtime.joints.network import free_network
-from wavesym.programs.runtime.request import NAMES, RuntimeField, fields
+from wavesym.programs.runtime.network import free_network
+from wavesym.programs.runtime.request import NAMES, RuntimeField
 from wavesym.scene import Scene
 from wavesym.scene.lowering import amplitudes
 from wavesym.verification.independent import independent_model
@@ -33,7 +33,7 @@ def runtime_names(scene: Scene, model: Model) -> tuple[str, ...]:
     for name in _NAMES:
         with suppress(WavesymError):
             given = amplitudes(scene) if name == "load" else ()
-            _ = fields(model, (name,), given) if model.chain else free_network(model, (name,), given)
+            free_network(model, (name,), given)
             found.append(name)
     return tuple(found)
 

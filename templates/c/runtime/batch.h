@@ -1,13 +1,16 @@
-/* batch.h: models of many sets of parameters side by side.
+/* batch.h: models of many sets of parameters of a chain side by side.
  * Generated files have what stands below the first empty line, with their scene's name. */
 #include "wide.h"
 
 /* What it takes to build a set. */
 typedef struct {
-    name_real waves[2][3][NAME_PANELS][NAME_NODES + 2][NAME_DEGREE + 1];
-    name_real velocity[2][NAME_NODES];
-    name_real table[NAME_PANELS * NAME_NODES][3][NAME_DEGREE + 2];
-    name_real edge[NAME_PANELS * NAME_NODES][3];
+    name_real waves[NAME_SLOTS][NAME_PANELS][NAME_ROW];
+    name_real state[2][NAME_STATES + 1];
+    name_real acting[NAME_PANELS][NAME_POINTS][NAME_ROW];
+    name_real path[NAME_PANELS][NAME_STATES + 1][NAME_ROW];
+    name_real body[NAME_PANELS][NAME_BODIES + 1][NAME_DEGREE + 2][4];
+    name_real solver[NAME_PANELS][4][(NAME_DEGREE + 2) * NAME_SQUARES + 1];
+    name_real edge[NAME_PANELS][2][NAME_SQUARES + 1];
     name_real total[NAME_HEARD + 1];
     name_real change[NAME_EVENTS + 1];
     name_real load[NAME_FORCES + 1][3];
@@ -24,7 +27,7 @@ struct name_batch {
     name_real series[NAME_WINDOWS * NAME_STRANDS * (NAME_DEGREE + 2)][NAME_WIDTH];
     /* for `build_batch` alone: as many sets side by side as a vector holds */
     name_set work[NAME_WIDTH];
-    name_real inverse[NAME_DEGREE + 2];
+    name_real inverse[NAME_ROW + 1];
     int since[NAME_FORCES + 1][2];
     /* of each set the estimate, and what `build` returns; of each window the degree, for all sets, and where its series
      * begin */

@@ -1,9 +1,7 @@
 /* batches.c: models of many sets of parameters at once.
  * Plain C that stands below the text of a march in lanes in generated files, which have what stands below the first empty
  * line. */
-#ifndef NAME_JOINTED
 #include "strands.c"
-#endif
 
 /* Parts are where sets are, and as large; else this is no type. */
 typedef char as_large[sizeof(part_of) == SETS * sizeof(name_set) ? 1 : -1];

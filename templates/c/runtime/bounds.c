@@ -1,9 +1,7 @@
 /* bounds.c: a proved bound of the errors of a model.
  * Plain C that stands below what says how wrong its waves may be in generated files, which have what stands below the
  * first empty line. */
-#ifndef NAME_JOINTED
 #include "bound.c"
-#endif
 
 /* What integrals may be wrong by after a window. */
 static void add_up(const work_of *m, wrong *w, const int *summed, int window, int degree)

@@ -1,8 +1,6 @@
 /* builds.c: models of parameters, window by window; `m` is what is worked in, `made` the model.
  * Plain C that stands below the text of a march in generated files, which have what stands below the first empty line. */
-#ifndef NAME_JOINTED
-#include "runtime.c"
-#endif
+#include "build.c"
 
 /* What begins a model. 0, or 1 for a bad number. */
 static int begun(work_of *m, model_of *made, const name_parameters *parameters, laws *law)

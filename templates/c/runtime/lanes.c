@@ -1,9 +1,7 @@
 /* lanes.c: numbers of many sets of parameters, a set in each lane of a vector.
  * Stands above the text of a march in lanes in generated files, which
  * have what stands below the first empty line. */
-#ifndef NAME_JOINTED
 #include "bounds.c"
-#endif
 
 /* All sets have one degree, the highest that one of them needs. A set that is refused goes along as another, or runs
  * wild in its own lane. A part is as many sets as a vector of WIDE bytes holds. */

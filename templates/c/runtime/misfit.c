@@ -1,9 +1,7 @@
 /* misfit.c: sums of squares of what models miss of data, taken from coefficients.
  * Plain C that stands below the text of batches.c in generated files, which have what stands below the first
  * empty line. */
-#ifndef NAME_JOINTED
 #include "batches.c"
-#endif
 
 /* A group is an output on a section of a window. `numbers` has of each blocks of ROWS rows of its triangle R, interlaced:
  * their weights, z, lowest degrees and all columns; then what all rows from some one on add to the rest, by that row. The

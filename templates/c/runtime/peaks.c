@@ -1,8 +1,6 @@
 /* peaks.c: the least and the greatest value of each output of a model, between samples, too.
  * Plain C that stands below the text of blocks.c in generated files, which have what stands below the first empty line. */
-#ifndef NAME_JOINTED
 #include "blocks.c"
-#endif
 
 /* How often an interval is halved at most; into how many parts one is cut where it is looked at closely;
  * how many sums are taken side by side. */

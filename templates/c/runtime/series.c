@@ -1,15 +1,6 @@
 /* series.c: what marches under parameters that come at run time share: series, loads, the size of outputs.
  * Plain C of a program of a scene called `name`; it stands below the first empty line in NAME.c, above the march. */
-#ifndef NAME_JOINTED
 #include "tables.h"
-#endif
-/* Each march says this of itself; read by itself, this text has a stand-in. */
-#ifndef NAME_MARCHED
-static int reached(const laws *law, const laws *slope, int lane, int output)
-{
-    return law->gain[0] > 0 || slope->gain[0] > 0 || lane + output > 0;
-}
-#endif
 
 /* So many samples are a block. */
 enum { BLOCK = 16 };
@@ -270,16 +261,15 @@ static real relative(const laws *law, const laws *slope, int lane, int output, r
     return !(error <= 0) && (largest > 0 || reached(law, slope, lane, output)) ? infinity() : (real)0;
 }
 
-/* How often a velocity of size 1 is rounded, about. The sums of a body, of so many coefficients, lose up to a sixteenth of
- * the degree squared; of joints only what is read does, and that of its own size. */
+/* How often a velocity of size 1 is rounded, about; and what is read, of its own size. */
 static real rounded_by(int degree)
 {
-    return unit * ((real)(degree + NAME_WINDOWS) + (JOINTED ? (real)0 : (real)(degree * degree) / 16));
+    return unit * (real)(degree + NAME_WINDOWS);
 }
 
 static real read_by(int degree)
 {
-    return JOINTED ? unit * (real)(degree * degree) / 16 : (real)0;
+    return unit * (real)(degree * degree) / 16;
 }
 
 /* Of the largest value of an output, about what `missed`, as a velocity, and reading at a degree make of it, at worst. */

@@ -1,113 +1,179 @@
-/* slopes.c: the march of runtime.c for derivatives by parameters.
- * Plain C that stands below the text of read.c in generated files, which have what stands below the first empty line. */
+/* slopes.c: the march of a chain for derivatives by parameters.
+ * Plain C that stands below the text of runtime/read.c in generated files, which have what stands below the first empty
+ * line. */
 #include "read.c"
 
-/* How much of p - q a body takes up on a window as its rate changes, at most: a slow one no more than its share. */
-static real turned_by(const laws *law, const laws *slope, int node)
+/* For how long what acts on a state is felt on a window: a mass in a dashpot or between bars forgets it before long. */
+static real felt_for(const laws *law, int joint, int state)
 {
-    const real rate = law->rate[node];
-    return magnitude(rate < 1 ? slope->rate[node] : slope->rate[node] / rate);
+    const real own = magnitude(law->rates[at_rates[joint] + state * (states_of(joint) + 1)]);
+    return own * window_length > 1 ? 1 / own : window_length;
 }
 
-/* How much of what values are wrong by acts on their derivatives on a window, at most. */
+/* How much of what values are wrong by acts on their derivatives on a window, at most: in velocities, where a spring is
+ * longer by a velocity times a window. */
 static real felt(const laws *law, const laws *slope)
 {
     real most = 0;
-    for (int node = 0; node < NAME_NODES; ++node) {
-        const real rate = law->rate[node];
-        const real arrives = magnitude(slope->alpha[node]) + magnitude(slope->beta[node]);
-        most = larger(most, rate > 0 && rate < 1 ? rate * arrives : arrives);
-        most = larger(most, 2 * turned_by(law, slope, node));
+    for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+        const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
+        real acts[NAME_WIDEST], more[NAME_WIDEST];
+        real taken[NAME_WIDEST] = {0}; /* so that no compiler thinks that a sum begins with nothing */
+        for (int j = 0; j < points; ++j) {
+            acts[j] = 0;
+            more[j] = 0;
+        }
+        for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+            acts[point_of[port]] += magnitude(law->push[port]);
+            more[point_of[port]] += magnitude(slope->push[port]);
+        }
+        for (int i = 0; i < n; ++i) {
+            real pull = 0;
+            for (int j = 0; j < n; ++j) {
+                const real length = is_mass[first + j] ? (real)1 : window_length;
+                pull += length * magnitude(slope->rates[at_rates[joint] + i * n + j]);
+            }
+            for (int j = 0; j < points; ++j) {
+                const int at = at_pushed[joint] + i * points + j;
+                pull += magnitude(slope->pushed[at]) * acts[j] + magnitude(law->pushed[at]) * more[j];
+            }
+            taken[i] = pull * felt_for(law, joint, i);
+        }
+        for (int i = 0; i < points; ++i) {
+            real sum = 0;
+            for (int j = 0; j < n; ++j) {
+                const int at = at_shown[joint] + i * n + j;
+                const real length = is_mass[first + j] ? (real)1 : window_length;
+                sum += magnitude(law->shown[at]) * taken[j] + length * magnitude(slope->shown[at]);
+            }
+            for (int j = 0; j < points; ++j) {
+                const int at = at_passed[joint] + i * points + j;
+                sum += magnitude(slope->passed[at]) * acts[j] + magnitude(law->passed[at]) * more[j];
+            }
+            most = larger(most, sum);
+        }
     }
     return most;
 }
 
-/* One window of the derivatives by a parameter, of which `slope` is what the laws change by. With q'/rate + q = p,
+/* The largest of what acts on the derivatives of a joint as its laws change, before it cancels: of its means. */
+static real acting_more(const laws *law, const laws *slope, int joint, real (*x)[NAME_ROW], real (*s)[NAME_ROW])
+{
+    const int n = states_of(joint), points = points_of(joint);
+    real most = 0;
+    for (int i = 0; i < n; ++i) {
+        real sum = 0;
+        for (int j = 0; j < n; ++j) {
+            sum += magnitude(slope->rates[at_rates[joint] + i * n + j] * x[j][0]);
+        }
+        for (int j = 0; j < points; ++j) {
+            sum += magnitude(slope->pushed[at_pushed[joint] + i * points + j] * s[j][0]);
+        }
+        most = larger(most, sum * felt_for(law, joint, i));
+    }
+    return most;
+}
+
+/* How a body moves on a panel under f = pushed s, which becomes s. */
+static void moved_body(work_of *m, int joint, int panel, int degree, real *f, real *state, real *x)
+{
+    moving one;
+    real(*const table)[4] = m->body[panel][body_of(joint)];
+    const real pushed = table[0][DRIVE] * table[0][RATE];
+    for (int k = 0; k <= degree; ++k) {
+        f[k] /= pushed;
+    }
+    f[degree + 1] = 0;
+    one.count = 1;
+    one.table[0] = table;
+    one.s[0] = f;
+    one.q[0] = x;
+    one.state[0] = state;
+    move_bodies(&one, degree);
+    for (int k = 0; k <= degree; ++k) {
+        f[k] *= pushed;
+    }
+}
+
+/* One window of the derivatives by a parameter, of which `slope` is what the laws change by: with x' = A x + B s and
+ * q = S x + P s,
  *
- *     dq'/rate + dq = dp + drate/rate (p - q).
+ *     dx' = A dx + B ds + dA x + dB s,    dq = S dx + P ds + dS x + dP s.
  *
  * What its polynomials miss. */
-static real follow(name_tangent *tangent, const laws *law, const laws *slope, int lane, int half, int degree)
+static real follow(name_tangent *tangent, const laws *law, const laws *slope, int lane, int window, int degree)
 {
-    const work_of *const m = &tangent->work;
-    wave_of(*const waves)[3] = tangent->waves[lane];
-    real *const velocity = tangent->velocity[lane][1];
+    work_of *const m = &tangent->work;
+    track_of *const waves = tangent->waves[lane];
     real *const size = &tangent->size[lane][1];
-    moving bodies;
-    real missed = 0, acts = tangent->acts[lane];
-    bodies.count = 0;
-    bodies.node[0] = 0;
-    bodies.node[1] = 0;
+    real missed = 0;
+    real f[NAME_WIDEST][NAME_ROW];
+    real q[NAME_WIDEST][NAME_ROW];
+    real dx[NAME_WIDEST][NAME_ROW];
+    real acting[NAME_POINTS][NAME_ROW];
+    places now;
+    placed(window, &now);
     *size = tangent->size[lane][0];
-    for (int node = 0; node < NAME_NODES; ++node) {
-        velocity[node] = tangent->velocity[lane][0][node];
+    for (int k = 0; k < NAME_STATES; ++k) {
+        tangent->state[lane][1][k] = tangent->state[lane][0][k];
     }
     for (int panel = 0; panel < NAME_PANELS; ++panel) {
-        for (int f = 0; f < NAME_FORCES; ++f) {
-            for (int k = 0; k < 3; ++k) {
-                waves[half][LOAD][panel][f][k] = tangent->force[lane][panel][f][k];
-            }
-        }
-        for (int node = 0; node < NAME_NODES; ++node) {
-            const real *const a = m->waves[!half][RIGHT][panel][node];
-            const real *const b = m->waves[!half][LEFT][panel][node + 2];
-            const real *const da = waves[!half][RIGHT][panel][node];
-            const real *const db = waves[!half][LEFT][panel][node + 2];
-            real *const p = bodies.p[bodies.count];
-            const int f = force_on[node];
-            for (int k = 0; k <= degree; ++k) {
-                p[k] = law->alpha[node] * da[k] + law->beta[node] * db[k] + slope->alpha[node] * a[k] +
-                       slope->beta[node] * b[k];
-            }
-            p[degree + 1] = 0;
-            for (int k = 0; f >= 0 && k < 3; ++k) {
-                p[k] += tangent->force[lane][panel][f][k];
-            }
-            if (law->rate[node] > 0) {
-                const real share_of_rate = slope->rate[node] / law->rate[node];
-                const real *const back = m->waves[half][LEFT][panel][node + 1];
-                for (int k = 0; k <= degree; ++k) {
-                    const real load = f >= 0 && k < 3 ? m->force[panel][f][k] : (real)0;
-                    const real pushed = law->alpha[node] * a[k] + law->beta[node] * b[k] + load;
-                    p[k] += share_of_rate * (pushed - (back[k] + a[k]));
+        for (int joint = 0; joint < NAME_JOINTS; ++joint) {
+            const int n = states_of(joint), points = points_of(joint), first = first_state[joint];
+            real(*const x)[NAME_ROW] = m->path[panel] + first;
+            real(*const s)[NAME_ROW] = m->acting[panel] + first_point[joint];
+            real(*const ds)[NAME_ROW] = acting + first_point[joint];
+            gather(waves, tangent->force[lane][panel], law, joint, panel, &now, degree, 0, acting);
+            gather(m->waves, NULL, slope, joint, panel, &now, degree, 1, acting);
+            if (n > 0) {
+                add_series(law->pushed + at_pushed[joint], n, points, ds, degree, 0, f);
+                add_series(slope->pushed + at_pushed[joint], n, points, s, degree, 1, f);
+                add_series(slope->rates + at_rates[joint], n, n, x, degree, 1, f);
+                if (is_body[joint]) {
+                    moved_body(m, joint, panel, degree, f[0], tangent->state[lane][1] + first, dx[0]);
+                } else {
+                    moved(m, joint, panel, degree, f, tangent->state[lane][1] + first, dx);
                 }
-                const real pushed = law->alpha[node] * a[0] + law->beta[node] * b[0] + (f >= 0 ? m->force[panel][f][0] : (real)0);
-                acts = larger(acts, turned_by(law, slope, node) * pushed);
-                bodies.node[bodies.count] = node;
-                bodies.count += 1;
-            } else {
-                send(waves, half, panel, node, degree, p, size);
+                add_missed(law, joint, panel, degree, f, dx, &missed);
+                tangent->acts[lane] = larger(tangent->acts[lane], acting_more(law, slope, joint, x, s));
+                add_series(law->shown + at_shown[joint], points, n, dx, degree, 0, q);
+                add_series(slope->shown + at_shown[joint], points, n, x, degree, 1, q);
             }
-            if (bodies.count == PAIR || (bodies.count > 0 && node == NAME_NODES - 1)) {
-                missed += moved(m, waves, half, panel, degree, &bodies, velocity, size);
+            add_series(law->passed + at_passed[joint], points, points, ds, degree, n > 0, q);
+            add_series(slope->passed + at_passed[joint], points, points, s, degree, 1, q);
+            send_out(waves, joint, panel, &now, degree, q);
+            for (int i = 0; i < n; ++i) {
+                *size = is_mass[first + i] ? larger(*size, tangent->state[lane][1][first + i]) : *size;
+            }
+            for (int port = first_port[joint]; port < first_port[joint + 1]; ++port) {
+                *size = larger(*size, waves[now.sent[send[port]]][panel][0]);
             }
         }
     }
-    tangent->acts[lane] = acts;
     return missed;
 }
 
 /* What begins derivatives by a parameter. */
 static void started_lane(name_tangent *tangent, const laws *slope, int lane)
 {
-    start_waves(tangent->waves[lane], slope, LEAST);
-    for (int node = 0; node < NAME_NODES; ++node) {
-        tangent->velocity[lane][0][node] = slope->motion[node];
+    start_waves(tangent->waves[lane], slope, NAME_ROW);
+    for (int k = 0; k < NAME_STATES; ++k) {
+        tangent->state[lane][0][k] = slope->begun[k];
     }
 }
 
 /* As settle. */
 static void settle_lane(name_tangent *tangent, int lane)
 {
-    for (int node = 0; node < NAME_NODES; ++node) {
-        tangent->velocity[lane][0][node] = tangent->velocity[lane][1][node];
+    for (int k = 0; k < NAME_STATES; ++k) {
+        tangent->state[lane][0][k] = tangent->state[lane][1][k];
     }
 }
 
-/* Derivatives on the window of now; `before` is the degree of the one before. What their polynomials miss. */
+/* Derivatives on the window of now. What their polynomials miss. */
 static real follow_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane, const progress *now,
                         int before)
 {
-    lengthen(tangent->waves[lane], before, now->degree);
-    return follow(tangent, law, slope, lane, now->window % 2, now->degree);
+    (void)before; /* what a series had not is 0 */
+    return follow(tangent, law, slope, lane, now->window, now->degree);
 }

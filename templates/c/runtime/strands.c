@@ -1,9 +1,7 @@
 /* strands.c: what outputs hear of many sets of parameters, in lanes.
  * Plain C that stands below the text of a march in lanes in generated files, which have what stands below the first empty
  * line. */
-#ifndef NAME_JOINTED
 #include "batch.c"
-#endif
 
 /* As integrate, of a wave of a part, and times half the length of the panel. */
 static void integrate_batch(const real *inverse, const wide *w, int degree, real half, wide *c)

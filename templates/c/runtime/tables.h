@@ -1,4 +1,4 @@
-/* tables.h: stands for what runtime.c.j2 writes above the text of runtime.c, where that is read by itself. */
+/* tables.h: stands for what runtime.c.j2 writes above the text of joints.c, where that is read by itself. */
 #include <stddef.h>
 
 #ifdef SINGLE
@@ -15,7 +15,15 @@ enum {
     NAME_STRANDS = 4,
     NAME_DEGREE = 40,
     NAME_PANELS = 2,
-    NAME_NODES = 3,
+    NAME_JOINTS = 3,
+    NAME_POINTS = 4,
+    NAME_STATES = 3,
+    NAME_SQUARES = 4,
+    NAME_BODIES = 1,
+    NAME_WIDEST = 2,
+    NAME_PORTS = 4,
+    NAME_TRACKS = 4,
+    NAME_SLOTS = 9,
     NAME_FORCES = 1,
     NAME_HEARD = 4,
     NAME_EVENTS = 3,
@@ -24,7 +32,7 @@ enum {
 };
 
 typedef struct {
-    name_real kappa[3];
+    name_real mass[3];
 } name_parameters;
 
 typedef struct name_work name_work;
@@ -44,6 +52,9 @@ struct name_model {
 int name_build(name_model *model, const name_parameters *parameters);
 int name_build_with(name_work *work, name_model *model, const name_parameters *parameters);
 name_real name_error_estimate(const name_model *model);
+int name_error_bound(name_model *model, const name_parameters *parameters, name_real *bound);
+int name_error_bound_with(
+    name_work *work, name_model *model, const name_parameters *parameters, name_real *bound);
 int name_model_peaks(const name_model *model, name_real *out);
 int name_model_eval(const name_model *model, name_real tau, name_real *out);
 int name_model_sample(const name_model *model, name_real tau0, name_real dtau, size_t count, name_real *out);
@@ -51,57 +62,75 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
 name_real name_tangent_estimate(const name_tangent *tangent, int lane);
 int name_tangent_sample(
     const name_tangent *tangent, name_real tau0, name_real dtau, size_t count, name_real *out);
-int name_error_bound(name_model *model, const name_parameters *parameters, name_real *bound);
-int name_error_bound_with(
-    name_work *work, name_model *model, const name_parameters *parameters, name_real *bound);
-int name_build_batch(name_batch *batch, const name_parameters *parameters, size_t sets);
-int name_batch_model(const name_batch *batch, int set, name_model *model);
-size_t name_data_size(const name_real *tau, size_t count);
-int name_data_init(
-    name_data *data, name_real *numbers, const name_real *tau, const name_real *values, size_t count);
-void name_batch_misfit(const name_batch *batch, const name_data *data, name_real *misfit);
 
 #include <float.h>
+
 #include "../real.h"
 #include "../vectors.h"
+
 typedef name_model model_of;
 typedef name_work work_of;
 
-enum { LEAST = 8, LOAD_LANE = -1, STRENGTHS = 1, SECTIONS = 3, CYCLE = 1, JOINTED = 0 };
+enum { LEAST = 8, LOAD_LANE = -1, SECTIONS = 3, CYCLE = 2 };
 
-/* What parameters make of nodes, rods, loads and outputs. */
+/* What parameters make of joints, rods, loads and outputs. */
 typedef struct {
-    real alpha[NAME_NODES];
-    real beta[NAME_NODES];
-    real rate[NAME_NODES];
-    real motion[NAME_NODES];
-    real rod[NAME_NODES + 1];
-    real strength[STRENGTHS + 1];
-    real gain[NAME_HEARD + 1];
+    real rates[5 + 1];
+    real pushed[5 + 1];
+    real shown[5 + 1];
+    real passed[5 + 1];
+    real push[4 + 1];
+    real held[4 + 1];
+    real begun[3 + 1];
+    real weight[3 + 1];
+    real impedance[4 + 1];
+    real strength[1 + 1];
+    real gain[4 + 1];
     const real *load;
 } laws;
 
 int good(const name_parameters *p);
 int good_for_slopes(const name_parameters *p);
 void laws_of(const name_parameters *p, laws *law);
+int laws_within_reach(const laws *law);
 void slopes_of(const name_parameters *p, int lane, laws *law);
 
 extern const real largest_number;
 extern const real least_number;
 extern const real faint;
+extern const real roundings;
 extern const real share;
 extern const real unit;
 extern const real window_length;
 extern const real span;
-extern const real roundings;
 
+/* where points, states and ends of rods of a joint begin, and its matrices; those of blocks at_square, too */
+extern const int first_point[];
+extern const int first_state[];
+extern const int first_port[];
+extern const int at_rates[];
+extern const int at_square[];
+extern const int at_pushed[];
+extern const int at_shown[];
+extern const int at_passed[];
+/* bodies, one mass without springs: which joint each is, and whether a joint is one */
+extern const int body_joint[];
+extern const int is_body[];
+/* of an end its point, how fast it moves, the track that arrives and the one that it sends */
+extern const int point_of[];
+extern const real ratio[];
+extern const int arrive[];
+extern const int send[];
+/* of a track how many windows it takes, and where its ring begins */
+extern const int steps[];
+extern const int ring[];
+/* whether a state is a velocity */
+extern const int is_mass[];
 /* half the length of a panel; what its start is later than that of another: since_panel[panel*PANELS + other] */
 extern const real half_length[];
 extern const real since_panel[];
-/* which load acts on a node, -1 for none */
+/* which load acts on a point, -1 for none */
 extern const int force_on[];
-/* whether a node has inertia */
-extern const int is_body[];
 /* changes of loads, in order: a weight times an amplitude times a strength is added to a power of the time since, or
  * where 3 is added to this power stands for all that acted before */
 extern const int event_window[];
@@ -111,7 +140,8 @@ extern const int event_power[];
 extern const real event_weight[];
 extern const int event_strength[];
 extern const int event_load[];
-/* sections of a window, from which t on; an output on one is a sum of strands: first_strand[section*OUTPUTS + output] */
+/* sections of the windows of a cycle, from which t on; an output on one is a sum of strands:
+ * first_strand[section*OUTPUTS + output] */
 extern const real from[];
 extern const int first_strand[];
 extern const int strand_at[];
@@ -122,15 +152,14 @@ extern const int first_reading[];
 extern const int reading_strand[];
 extern const int reading_strands[];
 extern const int reading_more[];
-/* strands: u = (t - start + excess) * scale - 1 */
+/* strands: u = (t - start + excess) * scale - 1, start and excess for each window of a cycle */
 extern const real strand_start[];
 extern const real strand_excess[];
 extern const real strand_scale[];
-/* what a strand is the sum of: which wave, where it is, and from which u to which its integral goes */
+/* what a strand is the sum of: which track, where it is, and from which u to which its integral goes */
 extern const int first_term[];
 extern const int term_heard[];
-extern const int term_way[];
-extern const int term_sender[];
+extern const int term_track[];
 extern const int term_back[];
 extern const int term_panel[];
 extern const int term_summed[];
@@ -140,6 +169,3 @@ extern const real term_high[];
 extern const int heard_output[];
 /* whether it is 0 whatever the parameters are */
 extern const int silent[];
-
-/* the first alike[panel*NODES + node] of which a body has the same tables */
-extern const int alike[];

@@ -1,4 +1,4 @@
-/* tangent.h: a model with its derivatives.
+/* tangent.h: a model of a chain with its derivatives.
  * Generated files have what stands below the first empty line, with their scene's name. */
 
 /* A model with its derivatives by every parameter, in the order of the parameters: their series lie as the model's. */
@@ -14,8 +14,8 @@ struct name_tangent {
     name_real acts[NAME_LANES];
     /* for `build_tangent` alone */
     name_work work;
-    name_real waves[NAME_LANES][2][3][NAME_PANELS][NAME_NODES + 2][NAME_ROW];
-    name_real velocity[NAME_LANES][2][NAME_NODES];
+    name_real waves[NAME_LANES][NAME_SLOTS][NAME_PANELS][NAME_ROW];
+    name_real state[NAME_LANES][2][NAME_STATES + 1];
     name_real total[NAME_LANES][NAME_HEARD + 1];
     name_real change[NAME_LANES][NAME_EVENTS + 1];
     name_real load[NAME_LANES][NAME_FORCES + 1][3];

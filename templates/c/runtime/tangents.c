@@ -1,8 +1,6 @@
 /* tangents.c: models with their derivatives by parameters, built window by window, and their values.
  * Plain C that stands below the text of slopes.c in generated files, which have what stands below the first empty line. */
-#ifndef NAME_JOINTED
 #include "slopes.c"
-#endif
 
 /* What begins the derivatives by a parameter. 0, or 1 where they are beyond all numbers. */
 static int begun_lane(name_tangent *tangent, const laws *law, const laws *slope, int lane)

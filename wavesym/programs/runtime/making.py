@@ -2,33 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import ceil, log10, sqrt
+from typing import Any
 
-from flint import fmpq
+from flint import fmpq, fmpq_mat
 
-from wavesym.errors import WavesymError
+from wavesym.errors import CostError, WavesymError
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.flat import firsts
+from wavesym.programs.march.plan import MarchedJoint, MarchPlan
+from wavesym.programs.march.space import JointRows
 from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
-from wavesym.programs.runtime.degree import LIGHTEST, degrees, lightest, share
-from wavesym.programs.runtime.joints.making import joints_program
 from wavesym.programs.runtime.laws import RuntimeLaws
-from wavesym.programs.runtime.line import LOAD, Plan
+from wavesym.programs.runtime.network import free_network
 from wavesym.programs.runtime.plan import RuntimePlan, runtime_plan
-from wavesym.programs.runtime.pushes import Push, as_one
+from wavesym.programs.runtime.pushes import as_one
 from wavesym.programs.runtime.readings import reading_tables
-from wavesym.programs.runtime.request import fields
+from wavesym.programs.runtime.request import RuntimeField
 from wavesym.programs.runtime.roundings import most_roundings
 from wavesym.programs.runtime.units import Function
 
 FINEST = {"double": fmpq(1, 10**13), "single": fmpq(1, 10**5)}
 """The smallest tolerance that numbers keep, by precision."""
+LIGHTER = 10
+"""Unless it is said how light bodies may be, they may be so many times as light as those of the scene."""
+LIGHTEST = fmpq(100)
+"""The largest kappa where memory does not matter."""
+LARGEST_MODEL = 1 << 28  # bytes
+
+_LEAST = 8
+_MARGIN = 24  # outputs are often smaller than waves, and errors a few times what is missed
+_MOST_STATES = 8
+_MOST_WINDOWS = 20_000
 
 
 def runtime_program(
@@ -36,44 +48,56 @@ def runtime_program(
 ) -> Program:
     """The program of a model whose parameters `request.runtime` are given at run time.
 
-    `amplitudes` are those of its loads, each with what it is called. WavesymError, CostError as `fields`,
-    `runtime_plan` and `degrees` say, and where other options are given that say otherwise.
+    `amplitudes` are those of its loads, each with what it is called. WavesymError, UnservedError as `free_network`
+    says, CostError as `runtime_plan`, and WavesymError where other options are given that say otherwise.
     """
-    for option, value, usual in (
-        ("--evaluator", request.evaluator, "auto"),
-        ("--optimize", request.optimize, None),
-    ):
+    for option, value, usual in (("--evaluator", request.evaluator, "auto"), ("--optimize", request.optimize, None)):
         if value != usual:
             raise WavesymError(f"{option}: {value} given with --runtime, {usual or 'nothing'} expected")
     real = REALS[request.precision]
     tolerance = max(model.tolerance, FINEST[real.name])
-    if model.chain is None:
-        program = joints_program(model, request, amplitudes, tolerance, real)
-        return _with_reference(program) if tested else program
-    given = fields(model, request.runtime, amplitudes)
-    chosen = any(field.name == "load" for field in given)
+    program = _program(model, request, amplitudes, tolerance, real)
+    return _with_reference(program) if tested else program
+
+
+def sets_program(
+    model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]] = (), precision: str = "double"
+) -> Program:
+    """The same for sets that are computed here, where there is memory for bodies as light as `LIGHTEST`."""
+    request = Request(precision=precision, runtime=tuple(names), kappa_max=LIGHTEST)
+    return runtime_program(model, request, amplitudes)
+
+
+def _program(
+    model: Model, request: Request, amplitudes: Sequence[tuple[str, Applied]], tolerance: fmpq, real: Real
+) -> Program:
+    free = free_network(model, request.runtime, amplitudes)
+    chosen = "load" in request.runtime
     loads = [load for _, load in amplitudes] if chosen else as_one(model)
-    made = runtime_plan(model, given, loads, real)
-    kappa_max = lightest(given, request.kappa_max, max(model.named.parameters.kappa.values()))
-    least, degree = degrees(made, tolerance, real, kappa_max)
-    light = "" if kappa_max is None else f" and for kappa up to {nearest(kappa_max):g}"
-    reason = (
-        f"march with {', '.join(request.runtime)} at run time, degrees from {least} to {degree}, enough for the "
-        f"scene's own parameters{light}; errors are estimated"
-    )
-    tables = _tables(made, real)
+    made = runtime_plan(model, free, loads, real)
+    _refuse_large(made)
+    fastest = _fastest(made.own)
+    kappa_max = _lightest(free.fields, request.kappa_max, fastest)
+    least, degree = _degrees(made.own, fastest, kappa_max, tolerance)
+    _refuse_huge(made.plan.windows, made.plan.tau_max, len(made.strands), degree, real)
+    share = max(nearest(tolerance / (_MARGIN * made.plan.windows)), 2 * nearest(real.roundoff))
     laws = _laws(made, () if chosen else (1.0,) * len(loads))
-    positive = [label for field in given if field.positive for label in field.labels]
-    rounded = most_roundings(laws.functions, positive)
+    tables = _tables(made, laws, real)
+    positive = [label for field in laws.fields if field.positive for label in field.labels]
     constants = {
-        **_constants(made, real),
-        "roundings": rounded,
+        **_constants(made, laws, real),
+        "roundings": most_roundings(laws.functions, positive),
         "degree": degree,
         "least": least,
         **({} if kappa_max is None else {"kappa_max": real.nearest(kappa_max)}),
-        "share": share(made, tolerance, real),
+        "share": share,
     }
-    program = Program(
+    light = "" if kappa_max is None else f", for rates up to {nearest(max(fastest, kappa_max)):g}"
+    reason = (
+        f"march with {', '.join(request.runtime)} at run time, degrees from {least} to {degree} on steps of "
+        f"{made.plan.step}{light}; errors are estimated"
+    )
+    return Program(
         "runtime",
         real,
         made.plan.tau_max,
@@ -86,92 +110,181 @@ def runtime_program(
         laws=laws,
         parts=request.every_part,
     )
-    return _with_reference(program) if tested else program
 
 
-def sets_program(
-    model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]] = (), precision: str = "double"
-) -> Program:
-    """The same for sets that are computed here, where there is memory for bodies as light as `LIGHTEST`."""
-    request = Request(precision=precision, runtime=tuple(names), kappa_max=LIGHTEST)
-    return runtime_program(model, request, amplitudes)
+def _refuse_large(made: RuntimePlan) -> None:
+    states = max(len(joint.space.weights) for joint in made.plan.joints)
+    if states > _MOST_STATES:
+        raise CostError(
+            f"system.parts: {states} masses and springs linked to one another, at most {_MOST_STATES} expected with "
+            "--runtime (fewer springs between the same rods help)"
+        )
+    if made.plan.windows > _MOST_WINDOWS:
+        raise CostError(
+            f"output.until: {made.plan.windows} steps of {made.plan.step} to tau = {made.plan.tau_max:g}, at most "
+            f"{_MOST_WINDOWS} expected (a shorter horizon, or lengths with a larger common measure, help)"
+        )
+
+
+def _lightest(fields: Sequence[RuntimeField], asked: fmpq | None, own: fmpq) -> fmpq | None:
+    """The largest kappa that a program is made for: what was asked for, else `LIGHTER` times the scene's `own`.
+
+    None where no field makes bodies lighter.
+    """
+    if not any(field.positive for field in fields):
+        return None
+    return LIGHTER * own if asked is None else asked
+
+
+def _refuse_huge(windows: int, tau_max: float, strands: int, degree: int, real: Real) -> None:
+    """CostError for a model that would be beyond reason."""
+    size = real.bytes * windows * strands * (degree + 2)
+    if size > LARGEST_MODEL:
+        raise CostError(
+            f"output.until: a model of {size:.1e} bytes would be kept to tau = {tau_max:g}, at most "
+            f"{LARGEST_MODEL:.1e} expected (a shorter horizon, fewer outputs, or a smaller --kappa-max helps)"
+        )
+
+
+def _fastest(own: MarchPlan) -> fmpq:
+    """The largest rate at which a joint answers a wave: of a mass, impedances and dashpots beside it over it."""
+    return max((-j.space.rates[n, n] for j in own.joints for n in range(j.space.states)), default=fmpq(0))
+
+
+def _degrees(own: MarchPlan, fastest: fmpq, kappa_max: fmpq | None, tolerance: fmpq) -> tuple[int, int]:
+    """About the degree to begin with, and one that is enough for rates up to `kappa_max`, too.
+
+    A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved. A
+    stiff spring adds those of a body on it.
+    """
+    longest = max(nearest(panel.length) for panel in own.panels)
+    turning = max(joint.space.turning for joint in own.joints)
+
+    def detail(rate: fmpq) -> float:
+        along = nearest(rate) * longest
+        return sqrt(2 * along * own.crossings) + along / 8 + 2 * turning * longest
+
+    digits = -log10(nearest(tolerance))
+    first = max(_LEAST, ceil(sqrt(2 * nearest(fastest) * longest * own.crossings) + turning * longest + digits / 3))
+    return first, max(ceil(1.5 * detail(max(fastest, kappa_max or fastest))) + 24, first)
 
 
 def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:
-    nodes = made.plan.junctions
+    spaces = [joint.space for joint in made.plan.joints]
     functions: dict[str, tuple[Function, ...]] = {
-        "alpha": tuple(node.alpha for node in nodes),
-        "beta": tuple(node.beta for node in nodes),
-        "rate": tuple(fmpq(0) if node.rate is None else node.rate for node in nodes),
-        "motion": tuple(node.motion for node in nodes),
-        "rod": made.plan.rods,
-        "strength": _strengths(made.pushes),
+        name: tuple(value for space in spaces for value in _flat(getattr(space, name)))
+        for name in ("rates", "pushed", "shown", "passed")
+    }
+    functions |= {
+        "push": tuple(port.push for space in spaces for port in space.ports),
+        "held": tuple(track.held for track in made.plan.tracks),
+        "begun": tuple(value for space in spaces for value in space.begun),
+        "weight": tuple(value for space in spaces for value in space.weights),
+        "impedance": tuple(port.impedance for space in spaces for port in space.ports),
+        "strength": _strengths(made),
         "gain": tuple(wave.gain for _, wave in made.heard),
     }
-    return RuntimeLaws(made.fields, functions, amplitudes)
+    return RuntimeLaws(made.free.fields, functions, amplitudes)
 
 
-def _strengths(pushes: Iterable[Push]) -> tuple[Function, ...]:
-    return tuple(dict.fromkeys(push.strength for push in pushes))
+def _flat(matrix: Any) -> list[Any]:
+    if isinstance(matrix, fmpq_mat):  # of what no parameter changes
+        return list(matrix.entries())
+    return [value for row in matrix for value in row]
 
 
-def _constants(made: RuntimePlan, real: Real) -> dict[str, float]:
-    """Sizes."""
+def _strengths(made: RuntimePlan) -> tuple[Function, ...]:
+    return tuple(dict.fromkeys(push.strength for push in made.pushes))
+
+
+def _constants(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, float]:
     plan = made.plan
+    states = [len(joint.space.weights) for joint in plan.joints]
+    points = [len(joint.forces) for joint in plan.joints]
+    cycle, span = plan.cycle
     return {
         "windows": plan.windows,
         "panels": len(plan.panels),
-        "nodes": len(plan.junctions),
-        "forces": len(plan.loaded),
+        "joints": len(plan.joints),
+        "points": sum(points),
+        "states": sum(states),
+        "squares": sum(count * count for count, joint in zip(states, plan.joints, strict=True) if _is_block(joint)),
+        "bodies": len(_bodies(made)),
+        "widest": max(*states, *points),
+        "ports": sum(len(joint.space.ports) for joint in plan.joints),
+        "tracks": len(plan.tracks),
+        "slots": sum(track.steps + 1 for track in plan.tracks),
+        "forces": plan.forces,
         "heard": len(made.heard),
         "strands": len(made.strands),
         "events": len(made.pushes),
-        "strengths": len(_strengths(made.pushes)),
-        "lanes": sum(len(field.values) for field in made.fields),
+        "lanes": sum(len(field.values) for field in laws.fields),
         "sections": len(made.sections) - 1,
         "groups": (len(made.sections) - 1) * len(plan.outputs),
+        "cycle": cycle,
+        "span": real.nearest(fmpq(span)),
+        "step": real.nearest(plan.step),
         "unit": 2 * nearest(real.roundoff),
     }
 
 
-def _tables(made: RuntimePlan, real: Real) -> dict[str, tuple[float, ...]]:
-    """Panels, changes of loads, sections, strands and the waves they are made of."""
+def _tables(made: RuntimePlan, laws: RuntimeLaws, real: Real) -> dict[str, tuple[float, ...]]:
+    """Joints and their ends, rings, panels, changes of loads, sections, strands and the waves they are made of."""
     plan, pushes = made.plan, made.pushes
-    strengths = _strengths(pushes)
+    spaces = [joint.space for joint in plan.joints]
+    strengths = _strengths(made)
     terms = [term for strand in made.strands for term in strand.terms]
     sections, outputs = len(made.sections) - 1, len(plan.outputs)
     heard = [[made.listening(section, output) for output in range(outputs)] for section in range(sections)]
     listening = [strands for section in heard for strands in section]
-    forces = {column: force for force, column in enumerate(plan.loaded)}
-    places = {strength: place for place, strength in enumerate(strengths)}
+    windows = [plan.step * phase for phase in range(plan.cycle[0])]
+    starts = [begin + strand.start for begin in windows for strand in made.strands]
 
     reals = real.table
 
     return {
+        "first_point": firsts(len(joint.forces) for joint in plan.joints),
+        "first_state": firsts(len(space.weights) for space in spaces),
+        "first_port": firsts(len(space.ports) for space in spaces),
+        **{
+            f"at_{name}": firsts(len(_flat(getattr(space, name))) for space in spaces)
+            for name in ("rates", "pushed", "shown", "passed")
+        },
+        "at_square": firsts(len(joint.space.weights) ** 2 * _is_block(joint) for joint in plan.joints),
+        # one more, where there is none
+        "body_joint": (*_bodies(made), 0),
+        "is_body": tuple(int(n in _bodies(made)) for n in range(len(plan.joints))),
+        "point_of": tuple(port.point for space in spaces for port in space.ports),
+        "ratio": reals(port.ratio for space in spaces for port in space.ports),
+        "arrive": tuple(track for joint in plan.joints for track in joint.arrive),
+        "send": tuple(track for joint in plan.joints for track in joint.sends),
+        "steps": tuple(track.steps for track in plan.tracks),
+        "ring": firsts(track.steps + 1 for track in plan.tracks),
+        "is_mass": (*_masses(made), 0),
         "half_length": reals(panel.length / 2 for panel in plan.panels),
         "since_panel": reals(panel.start - other.start for panel in plan.panels for other in plan.panels),
-        "force_on": tuple(forces.get(column, -1) for column in range(len(plan.junctions))),
-        "is_body": tuple(int(node.rate is not None) for node in plan.junctions),
-        "alike": _alike(plan),
+        "force_on": tuple(force for joint in plan.joints for force in joint.forces),
         "event_window": tuple(push.window for push in pushes),
         "event_panel": tuple(push.panel for push in pushes),
         "event_force": tuple(push.force for push in pushes),
         # of a load that is told anew 3 more
         "event_power": tuple(push.power + 3 * push.anew for push in pushes),
         "event_weight": reals(push.weight for push in pushes),
-        "event_strength": tuple(places[push.strength] for push in pushes),
+        "event_strength": tuple(strengths.index(push.strength) for push in pushes),
         "event_load": tuple(push.load for push in pushes),
-        "from": tuple(real.not_below(begin) for begin in made.sections),
+        "from": (
+            *(real.not_below(begin + at) for begin in windows for at in made.sections[:-1]),
+            real.nearest(fmpq(plan.cycle[1])),
+        ),
         "first_strand": firsts(map(len, listening)),
         "strand_at": tuple(strand for group in listening for strand in group),
         **reading_tables(made.strands, heard),
-        "strand_start": reals(strand.start for strand in made.strands),
-        "strand_excess": reals(rational(real.nearest(strand.start)) - strand.start for strand in made.strands),
+        "strand_start": reals(starts),
+        "strand_excess": reals(rational(real.nearest(start)) - start for start in starts),
         "strand_scale": reals(1 / strand.half for strand in made.strands),
         "first_term": firsts(len(strand.terms) for strand in made.strands),
         "term_heard": tuple(term.heard for term in terms),
-        "term_way": tuple(term.wave.way for term in terms),
-        "term_sender": tuple(term.wave.column + (term.wave.way != LOAD) for term in terms),
+        "term_track": tuple(term.wave.track for term in terms),
         "term_back": tuple(term.stretch.back for term in terms),
         "term_panel": tuple(term.stretch.panel for term in terms),
         "term_summed": tuple(int(term.wave.summed) for term in terms),
@@ -182,10 +295,26 @@ def _tables(made: RuntimePlan, real: Real) -> dict[str, tuple[float, ...]]:
     }
 
 
-def _alike(plan: Plan) -> tuple[int, ...]:
-    """For each node on each panel the first with the same rate, on a panel of the same length."""
-    bodies = [(node.rate, panel.length) for panel in plan.panels for node in plan.junctions]
-    return tuple(map(bodies.index, bodies))
+def _is_body(joint: MarchedJoint) -> bool:
+    """Whether it is one mass without springs."""
+    rows = joint.space
+    return isinstance(rows, JointRows) and len(rows.weights) == rows.masses == len(joint.forces) == 1
+
+
+def _is_block(joint: MarchedJoint) -> bool:
+    return len(joint.space.weights) > 0 and not _is_body(joint)
+
+
+def _bodies(made: RuntimePlan) -> list[int]:
+    """The joints that are bodies."""
+    return [n for n, joint in enumerate(made.plan.joints) if _is_body(joint)]
+
+
+def _masses(made: RuntimePlan) -> Iterator[int]:
+    """Of each state whether it is the velocity of a mass: these come first in a joint."""
+    for joint in made.plan.joints:
+        if isinstance(rows := joint.space, JointRows):  # others have no state
+            yield from (int(n < rows.masses) for n in range(len(rows.weights)))
 
 
 @dataclass(frozen=True)

@@ -34,15 +34,16 @@ class RuntimeField:
         return self.name in POSITIVE
 
 
-def fields(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]]) -> tuple[RuntimeField, ...]:
-    """The fields that `names` ask for, in the order of the scene; `amplitudes` are those of its loads, each with what
-    it is called.
+def system_fields(
+    model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]]
+) -> tuple[RuntimeField, ...]:
+    """The fields that `names` ask for of a named system, in its order.
 
-    UnservedError for a scene that a march of named systems does not serve, WavesymError for a name that it does not
-    have.
+    `amplitudes` are those of its loads, each with what it is called.
+
+    WavesymError for a name that it does not have.
     """
     chain = model.named
-    model.refuse_damping()
     there = {
         name: tuple(sorted(numbers.items())) for name in NAMES if (numbers := getattr(chain.parameters, name, None))
     }

@@ -6,7 +6,7 @@ what outputs weigh are rational functions of the parameters.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -15,15 +15,13 @@ from flint import fmpq, fmpq_mat
 
 from wavesym.errors import UnservedError, WavesymError
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import Network, network_of
+from wavesym.mechanics.network import Network
 from wavesym.numbers.ratio import Ratio
 from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import MarchedJoint, MarchOutput, MarchPlan, march_plan
 from wavesym.programs.march.space import JointRows, JointSpace, Rows, joint_rows
-from wavesym.programs.runtime.joints.network import free_network
-from wavesym.programs.runtime.plan import free_chain
-from wavesym.programs.runtime.request import NAMES, RuntimeField, fields
-from wavesym.programs.runtime.units import Function, force_kept, load_kept
+from wavesym.programs.runtime.network import free_network
+from wavesym.programs.runtime.request import NAMES, RuntimeField
 from wavesym.programs.stream.plan import Input, InputForce, StreamPlan, acting_inputs, breakpoints, paneled, steps_of
 
 QUICKER = fmpq(10)
@@ -114,31 +112,25 @@ def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], rea
     """
     if "load" in names:
         raise WavesymError("--runtime: load given with a stream, other parameters expected (its inputs are the loads)")
-    kept: Function = _ONE
-    if model.chain is None:
-        found = free_network(model, names, ())
-        given, network = found.fields, found.network
-    else:
-        given = fields(model, names, ())
-        _, chain = free_chain(model, given)
-        network, kept = network_of(chain), load_kept(model, chain)
+    free = free_network(model, names, ())
+    network = free.network
     if any(point.motion is not None and isinstance(point.velocity, Ratio) for point in network.points):
         raise UnservedError("--runtime: velocity given where an end moves as it is told, other parameters expected")
     steady = replace(model, network=_loaded(network, model.network), loads=steps_of(inputs))
     rings = march_plan(steady, real, joint_rows)
-    if model.chain is not None:
-        rings = replace(rings, outputs=tuple(_forces_kept(model, rings, force_kept(model, chain))))
-    return FreeStream(model, tuple(inputs), given, rings, tuple(acting_inputs(network, rings.pushed, inputs, kept)))
+    kepts: list[Any] = [free.force_kept if probe.quantity == "force" else _ONE for probe in model.probes]
+    outputs = tuple(
+        MarchOutput(
+            output.name,
+            tuple(replace(one, gain=one.gain * kept) for one in output.heard),
+        )
+        for kept, output in zip(kepts, rings.outputs, strict=True)
+    )
+    acting = acting_inputs(network, rings.pushed, inputs, free.load_kept)
+    return FreeStream(model, tuple(inputs), free.fields, replace(rings, outputs=outputs), tuple(acting))
 
 
 def _loaded(network: Network, own: Network) -> Network:
     """With loads that are numbers: which points they act on is all that counts of them here."""
     points = zip(network.points, own.points, strict=True)
     return replace(network, points=tuple(replace(point, loads=other.loads) for point, other in points))
-
-
-def _forces_kept(model: Model, rings: MarchPlan, kept: Any) -> Iterator[MarchOutput]:
-    """Outputs, forces `kept` times as large."""
-    for probe, output in zip(model.probes, rings.outputs, strict=True):
-        factor = kept if probe.quantity == "force" else _ONE
-        yield MarchOutput(output.name, tuple(replace(one, gain=one.gain * factor) for one in output.heard))

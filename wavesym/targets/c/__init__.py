@@ -12,7 +12,6 @@ from wavesym.targets.c.selftest import selftest
 from wavesym.targets.description import Description
 from wavesym.targets.target import Target
 
-_AT_RUN_TIME = ("runtime", "joints")
 _STREAMING = ("modes", "stream")
 
 # what a stream's bound of errors is for
@@ -28,7 +27,7 @@ class CTarget:
         if program.numpy_only:
             raise UnservedError(program.numpy_only)
         kind: Any = import_module(f"{__name__}.{program.kind}")  # of the kinds that there are only this one
-        if program.kind in _AT_RUN_TIME:
+        if program.laws and program.kind == "runtime":
             files: dict[str, str] = kind.files(description, program)
             return files
         name = description.name

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
-from typing import Any
 
 from flint import fmpq, fmpq_mpoly
 
@@ -22,7 +21,26 @@ from wavesym.targets.c.tables import tables_text
 from wavesym.targets.description import Description
 from wavesym.targets.literals import Lines, c_constants, c_literal, c_literals, c_tables
 
-_SIZES = ("windows", "strands", "degree", "panels", "nodes", "forces", "heard", "events", "lanes", "groups")
+_SIZES = (
+    "windows",
+    "strands",
+    "degree",
+    "panels",
+    "joints",
+    "points",
+    "states",
+    "squares",
+    "bodies",
+    "widest",
+    "ports",
+    "tracks",
+    "slots",
+    "forces",
+    "heard",
+    "events",
+    "lanes",
+    "groups",
+)
 _SETS = {"peaks": "sets.c", "gradients": "sets_tangents.c", "misfit": "sets_batch.c", "bound": "sets_bounds.c"}
 _MOST_ON_STACK = 1 << 16
 """Bytes of work that `build` puts there: more is kept in the model."""
@@ -87,7 +105,7 @@ class CRuntime:
 
     `products` are what is multiplied and added up on the way to them, `slope_products` to their derivatives. `slopes`
     are these, by the number of a parameter; `load_lane` is that of the first load, -1 for none. Work is `inside` of
-    models where it is too much for a stack.
+    models where it is too much for a stack. `arrays` are the laws with how many numbers each has.
     """
 
     scene: Description
@@ -107,6 +125,7 @@ class CRuntime:
     loads: str
     numbers: str
     texts: RuntimeTexts
+    arrays: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
@@ -119,63 +138,32 @@ class CRuntimeSelfTest:
 
 
 def files(scene: Description, program: Program) -> dict[str, str]:
-    """The files of a program, by name."""
+    """NAME.h, NAME.c and NAME_selftest.c of a program."""
     texts = RuntimeTexts(
         series=kernel("runtime/series.c", scene),
-        kernel=kernels(scene, "runtime/runtime.c", "runtime/builds.c"),
+        kernel=kernels(scene, *(f"runtime/{name}.c" for name in ("joints", "march", "build", "builds"))),
         read=kernel("runtime/read.c", scene),
         blocks=kernel("runtime/blocks.c", scene),
         peaks=kernel("runtime/peaks.c", scene),
         gradients=kernels(scene, "runtime/slopes.c", "runtime/tangents.c"),
         bound=kernels(scene, "runtime/wrong.c", "runtime/bound.c", "runtime/bounds.c"),
         lanes=kernel("runtime/lanes.c", scene),
-        batch=kernels(scene, "runtime/batch.c", "runtime/strands.c", "runtime/batches.c"),
+        batch=kernels(scene, *(f"runtime/{name}.c" for name in ("part", "march", "batch", "strands", "batches"))),
         misfit=kernel("runtime/misfit.c", scene),
     )
-    return written("runtime", program, _SIZES, CRuntime(**of_program(scene, program), texts=texts))
-
-
-def of_program(scene: Description, program: Program, march: str = "runtime") -> dict[str, Any]:
-    """The fields of `CRuntime` that are the same whatever marches."""
-    laws, real = program.laws, program.real
-    assert laws is not None
-    own = not any(field.name == "load" for field in laws.fields)
-    derived = "gradients" in program.parts
-    return {
-        "scene": scene,
-        "parts": program.parts,
-        "inside": False,
-        "fields": tuple(parameter_fields(laws, real)),
-        "products": multiplied(laws, laws.every, real),
-        "laws": tuple(assigned(laws, laws.functions, real)),
-        "slope_products": multiplied(laws, laws.every_slope, real) if derived else (),
-        "slopes": tuple(slopes(laws, real)) if derived else (),
-        "load_lane": load_lane(laws),
-        "tables": tables_text(f"{march}/tables.h", c_tables(program.tables, real)),
-        "constants": c_constants(program.constants, real),
-        "amplitudes": c_literals(laws.amplitudes, real) if own else (),
-        "largest": f"{LIMITS[real.name]}_MAX",
-        "least": f"{LIMITS[real.name]}_MIN",
-        "loads": "amplitude" if own else "p->load",
-        "numbers": kernels(scene, "real.h", "vectors.h"),
-    }
-
-
-def written(march: str, program: Program, sizes: Sequence[str], context: CRuntime) -> dict[str, str]:
-    """NAME.h, NAME.c and NAME_selftest.c of a program; templates/c/`march` has what is its own."""
-    scene = context.scene
+    context = _context(scene, program, texts)
     structs = CRuntimeStructs(
         scene=scene,
-        sizes=tuple((name.upper(), context.constants[name]) for name in sizes),
+        sizes=tuple((name.upper(), context.constants[name]) for name in _SIZES),
         fields=context.fields,
-        work=kernel(f"{march}/work.h", scene),
+        work=kernel("runtime/work.h", scene),
         model=kernel("runtime/model.h", scene),
         inside=False,
         others=tuple(
             kernels(scene, *files)
             for part, files in (
-                ("gradients", (f"{march}/tangent.h",)),
-                ("batch", ("runtime/wide.h", f"{march}/batch.h")),
+                ("gradients", ("runtime/tangent.h",)),
+                ("batch", ("runtime/wide.h", "runtime/batch.h")),
                 ("misfit", ("runtime/data.h",)),
             )
             if part in program.parts
@@ -186,19 +174,46 @@ def written(march: str, program: Program, sizes: Sequence[str], context: CRuntim
     inside = memory.size(f"{scene.name}_work") > _MOST_ON_STACK
     declared = render("c/runtime/structs.h.j2", replace(structs, inside=inside))
     memory.read(declared)
-    source = render(f"c/{march}/{march}.c.j2", replace(context, inside=inside))
+    source = render("c/runtime/runtime.c.j2", replace(context, inside=inside))
     memory.read(source)
     header = CRuntimeHeader(
         scene=scene,
         parts=program.parts,
         memory=tuple(_kept(scene, program.parts, memory, inside)),
-        stack=tuple(_stacked(scene, program.parts, memory, inside, context.texts)),
+        stack=tuple(_stacked(scene, program.parts, memory, inside, texts)),
         structs=declared,
     )
     made = {f"{scene.name}.h": render("c/runtime/runtime.h.j2", header), f"{scene.name}.c": source}
     if isinstance(program.reference, ReferenceValues):
         made[f"{scene.name}_selftest.c"] = runtime_selftest(scene, program, program.reference)
     return made
+
+
+def _context(scene: Description, program: Program, texts: RuntimeTexts) -> CRuntime:
+    laws, real = program.laws, program.real
+    assert laws is not None
+    own = not any(field.name == "load" for field in laws.fields)
+    derived = "gradients" in program.parts
+    return CRuntime(
+        scene=scene,
+        parts=program.parts,
+        inside=False,
+        fields=tuple(parameter_fields(laws, real)),
+        products=multiplied(laws, laws.every, real),
+        laws=tuple(assigned(laws, laws.functions, real)),
+        slope_products=multiplied(laws, laws.every_slope, real) if derived else (),
+        slopes=tuple(slopes(laws, real)) if derived else (),
+        load_lane=load_lane(laws),
+        tables=tables_text("runtime/tables.h", c_tables(program.tables, real)),
+        constants=c_constants(program.constants, real),
+        amplitudes=c_literals(laws.amplitudes, real) if own else (),
+        largest=f"{LIMITS[real.name]}_MAX",
+        least=f"{LIMITS[real.name]}_MIN",
+        loads="amplitude" if own else "p->load",
+        numbers=kernels(scene, "real.h", "vectors.h"),
+        texts=texts,
+        arrays=tuple((name, str(len(functions))) for name, functions in laws.functions.items()),
+    )
 
 
 def _kept(scene: Description, parts: Sequence[str], memory: Memory, inside: bool) -> Iterator[tuple[str, str]]:
@@ -239,12 +254,8 @@ def _stacked(
 
 
 def sets(scene: Description, program: Program) -> dict[str, str]:
-    """The files, with what runs many sets of parameters in NAME.c."""
-    return with_sets(scene, program, files(scene, program))
-
-
-def with_sets(scene: Description, program: Program, made: Mapping[str, str]) -> dict[str, str]:
-    """The files of a program, and what of each part runs many sets of parameters; peaks are those of batches, too."""
+    """The files, with what of each part runs many sets of parameters in NAME.c; peaks are those of batches, too."""
+    made = files(scene, program)
     name = f"{scene.name}.c"
     more = kernels(scene, *(f"runtime/{file}" for part, file in _SETS.items() if part in program.parts))
     return {**made, name: f"{made[name]}\n{more}\n"}

@@ -1,11 +1,16 @@
 /* joints.c: where the numbers of joints and waves of a chain are, under parameters that come at run time.
  * Plain C of a program of a scene called `name`. Generated files have their scene's name for it, and what stands below
  * the first empty line. */
-#include "tables.h"
-#define NAME_MARCHED
-#include "../runtime/series.c"
+#include "series.c"
 
-/* The matrices of a joint for each degree, and two more: x_k = SOLVE r_k + DOWN y_(k+1) - DOWN x_(k-1), FIRST and LAST sum
+/* The numbers of a body for each degree, k > 0: y_k = GAIN (s_(k-1) - s_(k+1)) + RATIO y_(k+1), with s_0 twice,
+ * q_k = y_k - RATIO q_(k-1), the others sum to the velocity at both ends; at k = 0 what q_0 has less, and what the end has. */
+enum { GAIN = 0, RATIO = 1, SUM_FIRST = 2, SUM_LAST = 3, SLACK = 0, LOSS = 1, RATE = 2, DRIVE = 3 };
+
+/* Bodies move side by side: each step of a recurrence waits for the one before. */
+enum { BODIES_AT_ONCE = 2 };
+
+/* The matrices of a block for each degree, and two more: x_k = SOLVE r_k + DOWN y_(k+1) - DOWN x_(k-1), FIRST and LAST sum
  * to the state at both ends; START and END belong to x_0. */
 enum { SOLVE = 0, DOWN = 1, FIRST = 2, LAST = 3, START = 0, END = 1 };
 
@@ -19,11 +24,11 @@ enum { SOLVE = 0, DOWN = 1, FIRST = 2, LAST = 3, START = 0, END = 1 };
 /* How many numbers of a wave follow its series: zeros. */
 enum { SPARE = NAME_ROW - NAME_DEGREE };
 
-/* Where a track has what it had so many windows ago, at most as many as it has steps. */
+/* Where a track has what it had so many windows ago, at most as many as it has steps: often each has just one. */
 static int slot(int track, int window, int ago)
 {
-    const int turn = steps[track] + 1;
-    return ring[track] + (window + turn - ago) % turn;
+    const int turn = NAME_SLOTS == 2 * NAME_TRACKS ? 2 : steps[track] + 1;
+    return turn == 2 ? ring[track] + ((window + ago) & 1) : ring[track] + (window + turn - ago) % turn;
 }
 
 /* Where each track has what is sent into it on a window, and what arrives from it: the oldest that it has. */
@@ -48,6 +53,22 @@ static int states_of(int joint)
 static int points_of(int joint)
 {
     return first_point[joint + 1] - first_point[joint];
+}
+
+/* Which body a joint is. */
+static int body_of(int joint)
+{
+    int body = 0;
+    while (body + 1 < NAME_BODIES && body_joint[body] != joint) {
+        ++body;
+    }
+    return body;
+}
+
+/* Whether a joint has matrices of a block. */
+static int is_block(int joint)
+{
+    return at_square[joint + 1] > at_square[joint];
 }
 
 /* A panel, counted through all windows, that there is not: what begins there does not begin. */
@@ -177,7 +198,7 @@ static int reached(const laws *law, const laws *slope, int lane, int output)
 /* Where the matrices of a joint begin, of those of a degree. */
 static size_t square_at(int joint, int k)
 {
-    return (size_t)k * NAME_SQUARES + (size_t)at_rates[joint];
+    return (size_t)k * NAME_SQUARES + (size_t)at_square[joint];
 }
 
 /* `most` grows to the magnitude of x */
@@ -197,3 +218,4 @@ static void add_magnitude(real *sum, const real *x)
 #define PICK(test, one, other) ((test) ? (one) : (other))
 #define SIZE(x) magnitude(x)
 #define ZERO ((real)0)
+#define FUSED 0

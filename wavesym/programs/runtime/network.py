@@ -1,22 +1,26 @@
-"""A chain as a network of functions: what its parts say becomes symbols, where it is given at run time."""
+"""A model's network as functions: what a scene says becomes symbols, where it is given at run time."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from flint import fmpq
 
 from wavesym.errors import UnservedError
+from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import Network
+from wavesym.mechanics.network import Network, network_of
+from wavesym.mechanics.node import Parameters
 from wavesym.numbers.ratio import Ring
 from wavesym.programs.request import refuse_others
 from wavesym.programs.runtime.quiet import drawn
-from wavesym.programs.runtime.request import RuntimeField, field_of
-from wavesym.programs.runtime.units import unit_of, unit_of_load
+from wavesym.programs.runtime.request import RuntimeField, field_of, system_fields
+from wavesym.programs.runtime.units import Function, force_kept, load_kept, unit_of, unit_of_load
+
+_ONE = fmpq(1)
 
 Numbers = dict[tuple[str, int], fmpq]
 """By what has it, a "point", "bar" or "link", and its number."""
@@ -24,22 +28,31 @@ Numbers = dict[tuple[str, int], fmpq]
 
 @dataclass(frozen=True)
 class FreeNetwork:
-    """`network` has functions of the ring's symbols, `fields` their numbers; `some` is it with the numbers drawn."""
+    """`network` has functions of the ring's symbols, `fields` their numbers; `some` is the model with numbers
+    drawn.
+
+    Loads act `load_kept` times as much, and forces that are read are `force_kept` times as large, as the network says.
+    """
 
     fields: tuple[RuntimeField, ...]
     ring: Ring
     network: Network
-    some: Network
+    some: Model
+    load_kept: Function = _ONE
+    force_kept: Function = _ONE
 
 
 def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]]) -> FreeNetwork:
-    """The fields that `names` ask for, in the order of the scene: points, then rods, then what links points.
+    """The fields that `names` ask for, in the order of the scene: points, then rods, then what links points; those of
+    a named system are its own.
 
-    UnservedError for what is not served, WavesymError for a name that the chain does not have.
+    UnservedError for what is not served, WavesymError for a name that the scene does not have.
     """
     network = model.network
     network.refuse_contacts()
     model.refuse_damping()
+    if model.chain is not None:
+        return _free_system(model, names, amplitudes)
     for point in network.points:
         if point.motion is not None and point.velocity != 0:
             raise UnservedError(f"--runtime: the end at {point.place} moves at tau = 0, one at rest expected")
@@ -67,7 +80,39 @@ def free_network(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[
         _freed(network, {key: values[label] / size for key, (label, size) in symbols.items()})
         for values in (ring.symbols(), drawn(fields))
     )
-    return FreeNetwork(tuple(fields), ring, made, some)
+    return FreeNetwork(tuple(fields), ring, made, replace(model, network=some))
+
+
+def _free_system(model: Model, names: Sequence[str], amplitudes: Sequence[tuple[str, Applied]]) -> FreeNetwork:
+    """The same of a named system, whose parameters are those of the paper."""
+    given = system_fields(model, names, amplitudes)
+    ring = Ring(tuple(label for field in given if field.name != "load" for label in field.labels))
+    free, some = (_with(model.named, given, values) for values in (ring.symbols(), drawn(given)))
+    return FreeNetwork(
+        given,
+        ring,
+        network_of(free),
+        replace(model, chain=some, network=network_of(some)),
+        load_kept(model, free),
+        force_kept(model, free),
+    )
+
+
+def _with(chain: Chain, given: Sequence[RuntimeField], values: Mapping[str, Any]) -> Chain:
+    """The chain with these values of the parameters, in their units."""
+    own = {
+        label: values[label] / unit.size
+        for field in given
+        if field.name != "load"
+        for label, unit in zip(field.labels, field.units, strict=True)
+    }
+
+    def numbers(name: str) -> dict[int, Any] | None:
+        values: dict[int, Any] | None = getattr(chain.parameters, name)
+        return values and {i: own.get(f"{name}_{i}", value) for i, value in values.items()}
+
+    names = ("kappa", "inertia", "velocity", "dashpot")
+    return replace(chain, parameters=Parameters(**{name: numbers(name) for name in names}))
 
 
 def _masses(network: Network) -> Iterator[tuple[tuple[str, int], fmpq]]:

@@ -8,6 +8,7 @@
 #undef PICK
 #undef SIZE
 #undef ZERO
+#undef FUSED
 
 /* Add to all strands of a window what is heard of waves: each times its gain, or their integrals from tau = 0 on, of
  * which `total` is what windows before have brought. */
@@ -61,12 +62,12 @@ static int refused(const laws *law)
 /* What begins a march. */
 static void started(work_of *m, const laws *law)
 {
-    start_waves(m->waves, law, NAME_ROW);
+    start_waves(m->waves, law, LEAST + SPARE);
     for (int k = 0; k < NAME_STATES; ++k) {
         m->state[0][k] = law->begun[k];
     }
     tell_inverses(m->inverse, LEAST + SPARE);
-    tabulate(m, law, LEAST);
+    tabulate(m, law, 1, LEAST);
 }
 
 /* The next window begins as this one ends. */
@@ -82,14 +83,22 @@ static void march_window(work_of *m, const laws *law, progress *now)
 {
     now->seen = now->size;
     now->leak = 0;
-    march(m, law, now->window, now->degree, &now->seen, &now->leak);
+    march(m, law, 1, now->window, now->degree, &now->seen, &now->leak);
 }
 
 /* The same at a higher degree. */
 static void heighten(work_of *m, const laws *law, progress *now)
 {
-    now->degree = higher_than(now->degree);
+    const int before = now->degree;
+    now->degree = higher_than(before);
+    for (int place = 0; place < NAME_SLOTS; ++place) {
+        for (int panel = 0; panel < NAME_PANELS; ++panel) {
+            for (int k = before + 1; k < now->degree + SPARE; ++k) {
+                m->waves[place][panel][k] = 0; /* what series had not */
+            }
+        }
+    }
     tell_inverses(m->inverse, now->degree + SPARE);
-    tabulate(m, law, now->degree);
+    tabulate(m, law, 1, now->degree);
     march_window(m, law, now);
 }

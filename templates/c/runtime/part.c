@@ -1,9 +1,7 @@
 /* lanes.c: the march of a chain follows, of many sets of parameters.
  * Plain C that stands below the text of runtime/lanes.c in generated files, which have what stands below the first empty
  * line. */
-#include "bound.c"
-#include "../runtime/bounds.c"
-#include "../runtime/lanes.c"
+#include "lanes.c"
 #include "laws.h"
 
 /* What it takes to build the sets of a part: name_set of each of them. */
@@ -12,6 +10,7 @@ typedef struct {
     wide state[2][NAME_STATES + 1];
     wide acting[NAME_PANELS][NAME_POINTS][NAME_ROW];
     wide path[NAME_PANELS][NAME_STATES + 1][NAME_ROW];
+    wide body[NAME_PANELS][NAME_BODIES + 1][NAME_DEGREE + 2][4];
     wide solver[NAME_PANELS][4][(NAME_DEGREE + 2) * NAME_SQUARES + 1];
     wide edge[NAME_PANELS][2][NAME_SQUARES + 1];
     wide total[NAME_HEARD + 1];
@@ -36,3 +35,4 @@ static void add_magnitude_batch(wide *sum, const wide *x)
 #define PICK CHOSEN
 #define SIZE(x) CHOSEN((x) < none, -(x), (x))
 #define ZERO none
+#define FUSED 1

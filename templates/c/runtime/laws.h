@@ -1,4 +1,4 @@
-/* laws.h: stands for what joints.c.j2 writes above the text of lanes.c, where that is read by itself. */
+/* laws.h: stands for what runtime.c.j2 writes above the text of lanes.c, where that is read by itself. */
 typedef struct {
     wide rates[5 + 1];
     wide pushed[5 + 1];
