@@ -55,16 +55,6 @@ static int points_of(int joint)
     return first_point[joint + 1] - first_point[joint];
 }
 
-/* Which body a joint is. */
-static int body_of(int joint)
-{
-    int body = 0;
-    while (body + 1 < NAME_BODIES && body_joint[body] != joint) {
-        ++body;
-    }
-    return body;
-}
-
 /* Whether a joint has matrices of a block. */
 static int is_block(int joint)
 {

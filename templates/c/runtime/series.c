@@ -261,15 +261,16 @@ static real relative(const laws *law, const laws *slope, int lane, int output, r
     return !(error <= 0) && (largest > 0 || reached(law, slope, lane, output)) ? infinity() : (real)0;
 }
 
-/* How often a velocity of size 1 is rounded, about; and what is read, of its own size. */
-static real rounded_by(int degree)
-{
-    return unit * (real)(degree + NAME_WINDOWS);
-}
-
+/* How often a velocity of size 1 is rounded, about: the sums of a body, of so many coefficients, lose up to a sixteenth of
+ * the degree squared. So does what is read, of its own size. */
 static real read_by(int degree)
 {
     return unit * (real)(degree * degree) / 16;
+}
+
+static real rounded_by(int degree)
+{
+    return unit * (real)(degree + NAME_WINDOWS) + (NAME_BODIES > 0 ? read_by(degree) : (real)0);
 }
 
 /* Of the largest value of an output, about what `missed`, as a velocity, and reading at a degree make of it, at worst. */

@@ -74,6 +74,16 @@ static real acting_more(const laws *law, const laws *slope, int joint, real (*x)
     return most;
 }
 
+/* Which body a joint is. */
+static int body_of(int joint)
+{
+    int body = 0;
+    while (body + 1 < NAME_BODIES && body_joint[body] != joint) {
+        ++body;
+    }
+    return body;
+}
+
 /* How a body moves on a panel under f = pushed s, which becomes s. */
 static void moved_body(work_of *m, int joint, int panel, int degree, real *f, real *state, real *x)
 {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import ceil, log10, sqrt
 from typing import Any
 
 from flint import fmpq, fmpq_mat
@@ -15,29 +14,24 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import REALS, Real
 from wavesym.programs.flat import firsts
-from wavesym.programs.march.plan import MarchedJoint, MarchPlan
+from wavesym.programs.march.plan import MarchedJoint
 from wavesym.programs.march.space import JointRows
 from wavesym.programs.program import Program, ProgramOutput, Provenance, ReferenceValues
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
+from wavesym.programs.runtime.degree import LIGHTEST, degrees, largest_kappa
 from wavesym.programs.runtime.laws import RuntimeLaws
 from wavesym.programs.runtime.network import free_network
 from wavesym.programs.runtime.plan import RuntimePlan, runtime_plan
 from wavesym.programs.runtime.pushes import as_one
 from wavesym.programs.runtime.readings import reading_tables
-from wavesym.programs.runtime.request import RuntimeField
 from wavesym.programs.runtime.roundings import most_roundings
 from wavesym.programs.runtime.units import Function
 
 FINEST = {"double": fmpq(1, 10**13), "single": fmpq(1, 10**5)}
 """The smallest tolerance that numbers keep, by precision."""
-LIGHTER = 10
-"""Unless it is said how light bodies may be, they may be so many times as light as those of the scene."""
-LIGHTEST = fmpq(100)
-"""The largest kappa where memory does not matter."""
 LARGEST_MODEL = 1 << 28  # bytes
 
-_LEAST = 8
 _MARGIN = 24  # outputs are often smaller than waves, and errors a few times what is missed
 _MOST_STATES = 8
 _MOST_WINDOWS = 20_000
@@ -76,11 +70,10 @@ def _program(
     loads = [load for _, load in amplitudes] if chosen else as_one(model)
     made = runtime_plan(model, free, loads, real)
     _refuse_large(made)
-    fastest = _fastest(made.own)
-    kappa_max = _lightest(free.fields, request.kappa_max, fastest)
-    least, degree = _degrees(made.own, fastest, kappa_max, tolerance)
-    _refuse_huge(made.plan.windows, made.plan.tau_max, len(made.strands), degree, real)
     share = max(nearest(tolerance / (_MARGIN * made.plan.windows)), 2 * nearest(real.roundoff))
+    kappa_max = largest_kappa(made, request.kappa_max)
+    least, degree = degrees(made, share, tolerance, kappa_max)
+    _refuse_huge(made.plan.windows, made.plan.tau_max, len(made.strands), degree, real)
     laws = _laws(made, () if chosen else (1.0,) * len(loads))
     tables = _tables(made, laws, real)
     positive = [label for field in laws.fields if field.positive for label in field.labels]
@@ -92,10 +85,16 @@ def _program(
         **({} if kappa_max is None else {"kappa_max": real.nearest(kappa_max)}),
         "share": share,
     }
-    light = "" if kappa_max is None else f", for rates up to {nearest(max(fastest, kappa_max)):g}"
+    what = "rates" if model.chain is None else "kappa"
+    light = (
+        ""
+        if kappa_max is None
+        else f", enough for the scene's own parameters and for {what} up to {nearest(kappa_max):g}"
+    )
+    on = "" if made.plan.step == 1 else f" on steps of {made.plan.step}"
     reason = (
-        f"march with {', '.join(request.runtime)} at run time, degrees from {least} to {degree} on steps of "
-        f"{made.plan.step}{light}; errors are estimated"
+        f"march with {', '.join(request.runtime)} at run time, degrees from {least} to {degree}{on}, enough for the "
+        f"scene's own parameters{light}; errors are estimated"
     )
     return Program(
         "runtime",
@@ -126,16 +125,6 @@ def _refuse_large(made: RuntimePlan) -> None:
         )
 
 
-def _lightest(fields: Sequence[RuntimeField], asked: fmpq | None, own: fmpq) -> fmpq | None:
-    """The largest kappa that a program is made for: what was asked for, else `LIGHTER` times the scene's `own`.
-
-    None where no field makes bodies lighter.
-    """
-    if not any(field.positive for field in fields):
-        return None
-    return LIGHTER * own if asked is None else asked
-
-
 def _refuse_huge(windows: int, tau_max: float, strands: int, degree: int, real: Real) -> None:
     """CostError for a model that would be beyond reason."""
     size = real.bytes * windows * strands * (degree + 2)
@@ -144,29 +133,6 @@ def _refuse_huge(windows: int, tau_max: float, strands: int, degree: int, real: 
             f"output.until: a model of {size:.1e} bytes would be kept to tau = {tau_max:g}, at most "
             f"{LARGEST_MODEL:.1e} expected (a shorter horizon, fewer outputs, or a smaller --kappa-max helps)"
         )
-
-
-def _fastest(own: MarchPlan) -> fmpq:
-    """The largest rate at which a joint answers a wave: of a mass, impedances and dashpots beside it over it."""
-    return max((-j.space.rates[n, n] for j in own.joints for n in range(j.space.states)), default=fmpq(0))
-
-
-def _degrees(own: MarchPlan, fastest: fmpq, kappa_max: fmpq | None, tolerance: fmpq) -> tuple[int, int]:
-    """About the degree to begin with, and one that is enough for rates up to `kappa_max`, too.
-
-    A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved. A
-    stiff spring adds those of a body on it.
-    """
-    longest = max(nearest(panel.length) for panel in own.panels)
-    turning = max(joint.space.turning for joint in own.joints)
-
-    def detail(rate: fmpq) -> float:
-        along = nearest(rate) * longest
-        return sqrt(2 * along * own.crossings) + along / 8 + 2 * turning * longest
-
-    digits = -log10(nearest(tolerance))
-    first = max(_LEAST, ceil(sqrt(2 * nearest(fastest) * longest * own.crossings) + turning * longest + digits / 3))
-    return first, max(ceil(1.5 * detail(max(fastest, kappa_max or fastest))) + 24, first)
 
 
 def _laws(made: RuntimePlan, amplitudes: tuple[float, ...]) -> RuntimeLaws:

@@ -41,7 +41,7 @@ class Memory:
 
     def read(self, text: str) -> None:
         """Constants and structs; where a constant is declared twice the first counts."""
-        text = _COMMENT.sub("", text)
+        text = _bare(text)
         for found in sorted((*_CONSTANTS.finditer(text), *_STRUCT.finditer(text)), key=re.Match.start):
             if found.re is _STRUCT:
                 name, members, other = found.groups()
@@ -57,7 +57,10 @@ class Memory:
     def stack(self, *texts: str, num: str = "real") -> int:
         """What functions need, at most, whichever of them call one another and none itself; `num` is a type in them."""
         self._types["num"] = self._types[num]
-        bodies = (_STRUCT.sub("", _COMMENT.sub("", text)) for text in texts)
+        bare = [_bare(text) for text in texts]
+        for name, members, other in (found.groups() for text in bare for found in _STRUCT.finditer(text)):
+            self._types[name or other] = self._layout(members)
+        bodies = (_STRUCT.sub("", text) for text in bare)
         locals_ = (size * count for body in bodies for (size, _), count in self._arrays(body))
         return _FRAMES * self.size(num) + sum(locals_)
 
@@ -95,3 +98,8 @@ class Memory:
                 value: int = _OPERATORS[type(sign)](self._evaluated(left), self._evaluated(right))
                 return value
         raise ValueError(f"{ast.unparse(node)}: no integer of constants")
+
+
+def _bare(text: str) -> str:
+    """Without comments; what is called OF(name) is called name."""
+    return re.sub(r"\bOF\((\w+)\)", r"\1", _COMMENT.sub("", text))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
@@ -194,15 +194,21 @@ def _context(scene: Description, program: Program, texts: RuntimeTexts) -> CRunt
     assert laws is not None
     own = not any(field.name == "load" for field in laws.fields)
     derived = "gradients" in program.parts
+    # what energies are made of only bounds need
+    needed = {
+        name: functions
+        for name, functions in laws.functions.items()
+        if "bound" in program.parts or name not in ("weight", "impedance")
+    }
     return CRuntime(
         scene=scene,
         parts=program.parts,
         inside=False,
         fields=tuple(parameter_fields(laws, real)),
         products=multiplied(laws, laws.every, real),
-        laws=tuple(assigned(laws, laws.functions, real)),
+        laws=tuple(assigned(laws, needed, real)),
         slope_products=multiplied(laws, laws.every_slope, real) if derived else (),
-        slopes=tuple(slopes(laws, real)) if derived else (),
+        slopes=tuple(slopes(laws, needed, real)) if derived else (),
         load_lane=load_lane(laws),
         tables=tables_text("runtime/tables.h", c_tables(program.tables, real)),
         constants=c_constants(program.constants, real),
@@ -212,7 +218,7 @@ def _context(scene: Description, program: Program, texts: RuntimeTexts) -> CRunt
         loads="amplitude" if own else "p->load",
         numbers=kernels(scene, "real.h", "vectors.h"),
         texts=texts,
-        arrays=tuple((name, str(len(functions))) for name, functions in laws.functions.items()),
+        arrays=tuple((name, str(len(functions))) for name, functions in needed.items()),
     )
 
 
@@ -313,10 +319,10 @@ def multiplied(laws: RuntimeLaws, functions: Iterable[Ratio], real: Real) -> Lin
     return tuple(dict.fromkeys(found))
 
 
-def slopes(laws: RuntimeLaws, real: Real) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
+def slopes(laws: RuntimeLaws, arrays: Container[str], real: Real) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
     """The derivatives that are not 0, by the number of the parameter."""
     places = {label: f"p->{name}[{k}]" for label, (name, k) in laws.places.items()}
-    for lane, found in groupby(laws.slopes, key=lambda slope: slope[0]):
+    for lane, found in groupby((slope for slope in laws.slopes if slope[1] in arrays), key=lambda slope: slope[0]):
         yield str(lane), tuple((f"{array}[{k}]", expression(slope, places, real)) for _, array, k, slope in found)
 
 
