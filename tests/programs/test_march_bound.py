@@ -233,9 +233,7 @@ def test_truncation_that_is_left_out_is_seen(law: str, blocked: bool, monkeypatc
     """A march of a low degree beside one of a high degree, in the norm of energy; scatterers need no degree."""
     plan = march_plan(lower(of_one_kind(law)))
     for degree in (4, 6, 9):
-        error = apart(
-            plan, all_windows(plan, degree, blocked=blocked), all_windows(plan, 40, blocked=blocked)
-        )
+        error = apart(plan, all_windows(plan, degree, blocked=blocked), all_windows(plan, 40, blocked=blocked))
         truncated, rounded = proved(plan, degree, blocked=blocked)
         assert error <= truncated + rounded
         if law == "scatterers":

@@ -6,7 +6,7 @@ from math import factorial, log, sqrt
 
 import numpy as np
 import pytest
-from flint import fmpq_series
+from flint import ctx, fmpq_series
 
 from tests.support.truth import Truth
 from wavesym.numbers.doubles import fraction, nearest, rational
@@ -51,12 +51,15 @@ def test_jumps_are_those_of_loads_and_start() -> None:
 
 def grown(rate, crossings, jumps, order):
     """[x^order] of s(x) after so many crossings and two more, each G times as much."""
-    x = fmpq_series([0, rational(rate)], prec=order + 1)
-    one = fmpq_series([1], prec=order + 1)
-    total = fmpq_series([rational(jump) for jump in jumps], prec=order + 1)
-    for _ in range(crossings + 2):
-        total *= (one + x) / (one - x)
-    return nearest(total[order])
+    ctx.cap, before = order + 1, ctx.cap
+    try:
+        x = fmpq_series([0, rational(rate)])
+        passed, total = (1 + x) / (1 - x), fmpq_series([rational(jump) for jump in jumps])
+        for _ in range(crossings + 2):
+            total *= passed
+        return nearest(total[order])
+    finally:
+        ctx.cap = before
 
 
 SHAFTS = Scene(

@@ -126,7 +126,13 @@ def bodies(draw: st.DrawFn, until: object = "5/2") -> dict[str, Any]:
     begun = st.sampled_from([0, 0, 1, "-1/2"])
     other = draw(
         st.sampled_from(
-            [[{"joint": True}], [{"joint": True, "dashpot": 2}], [{"mass": 1, "spring": 3, "velocity": 0}], [{"spring": 2}], []]
+            [
+                [{"joint": True}],
+                [{"joint": True, "dashpot": 2}],
+                [{"mass": 1, "spring": 3, "velocity": 0}],
+                [{"spring": 2}],
+                [],
+            ]
         )
     )
     last = [rod(), body("c")] if other else []

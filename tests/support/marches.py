@@ -54,9 +54,7 @@ def scheme_of(plan: MarchPlan, degree: int, real: Real = DOUBLE, *, blocked: boo
     return MarchScheme(made.tables([False] * len(plan.outputs)), made.constants(), plan.tau_max, kind)
 
 
-def missed_at(
-    model: Model, degree: int, real: Real = DOUBLE, *, blocked: bool = False, most: int = 12
-) -> Array:
+def missed_at(model: Model, degree: int, real: Real = DOUBLE, *, blocked: bool = False, most: int = 12) -> Array:
     """The same at any degree, in parts of what is proved; of a march whose bodies may be `blocked`."""
     plan = march_plan(model, real)
     taus = asked(model, real, most)
