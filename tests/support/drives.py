@@ -47,6 +47,7 @@ EVERY: dict[str, Any] = {
             "parts": [
                 {"rod": "1/2", "velocity": 1},
                 {"mass": "1/3", "velocity": 0, "dashpot": "1/5"},
+                {"rod": "1/4"},
                 {"rod": 1, "impedance": 3},
                 "absorbing",
             ],
