@@ -48,7 +48,7 @@ def test_a_row_is_that_of_its_name_in_c_and_in_numpy(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "options", [[], ["--evaluator", "march", "--windows", "20"], ["--precision", "single", "--evaluator", "pieces"]]
+    "options", [[], ["--evaluator", "march"], ["--precision", "single", "--evaluator", "pieces"]]
 )
 def test_the_command_in_a_file_makes_it_again(options, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
