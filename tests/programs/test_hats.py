@@ -76,7 +76,9 @@ def looked_at(found: HatMarch, most: int = 40) -> np.ndarray:
 @pytest.mark.parametrize("first", [0, 7], ids=["from nothing", "a jump first"])
 def test_a_record_that_no_window_takes(first: int) -> None:
     model = shaken([first, *SAMPLES])
-    with pytest.raises(CostError, match=r"times at a spacing of 1.37 leave 26 different remainders of the step 1, at most 16"):
+    with pytest.raises(
+        CostError, match=r"times at a spacing of 1.37 leave 26 different remainders of the step 1, at most 16"
+    ):
         march(model)
     found = choose(replace(model, tolerance=fmpq(1, 10**6)), "march").evaluator
     assert isinstance(found, HatMarch)

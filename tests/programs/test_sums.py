@@ -159,7 +159,9 @@ def test_a_program_that_drops_a_load_is_seen(monkeypatch: pytest.MonkeyPatch) ->
         plan=replace(
             made.plan,
             outputs=tuple(
-                replace(output, heard=tuple(each for each in output.heard if not made.plan.tracks[each.track].prescribed))
+                replace(
+                    output, heard=tuple(each for each in output.heard if not made.plan.tracks[each.track].prescribed)
+                )
                 for output in made.plan.outputs
             ),
         ),
