@@ -15,7 +15,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
 from tests.support.generated import files
 from wavesym.exact.motion import Motion
@@ -224,8 +224,12 @@ def test_the_march_has_its_operators_rounded_once(name: str) -> None:
     scene = Scene.from_toml(name)
     made = files(lower(scene), "c", "march")
     given, degree = tables(made[f"{name}.c"]), int(re.search(r"\bDEGREE = (\d+)", made[f"{name}.c"])[1])
-    size, law, matrix = degree + 1, given["law"], given["matrix"]
-    places = [int(at) for k, at in enumerate(given["answer"]) if int(law[k % len(law)]) == 1]
+    law, answer = (
+        [int(text) for text in re.search(rf"const int {table}\[\] = {{([^}}]*)}}", made[f"{name}.c"])[1].split(",")]
+        for table in ("law", "answer")
+    )
+    size, matrix = degree + 1, given["matrix"]
+    places = [at for k, at in enumerate(answer) if law[k % len(law)] == 1]
     assert places
     for at in sorted(set(places)):
         row = matrix[at : at + 3 * size]

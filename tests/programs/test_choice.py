@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 import wavesym
-from wavesym.errors import CostError, RangeError, ToleranceError, WavesymError
+from wavesym.errors import CostError, RangeError, ToleranceError
 from wavesym.numbers.reals import REALS
 from wavesym.programs import choice
 from wavesym.programs.choice import Tried, attempts, choose

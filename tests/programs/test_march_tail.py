@@ -38,7 +38,7 @@ def jumps_of(plan):
 
 
 def test_jumps_are_those_of_loads_and_start() -> None:
-    """A ground of velocity b + c tau + ... sends as much; a force on a base that is light half of it, with rods of 1."""
+    """A ground of velocity b + c tau + ... sends as much, a force on a light base half as much."""
     assert jumps_of(march_plan(lower(building()))) == pytest.approx([0, 1 + 1 / 2, (3 / 2 + 1) / 2 * 2], rel=1e-9)
     # a second load of an opposite kind changes what is new, not what was there
     assert jumps_of(march_plan(lower(building(base="force")))) == pytest.approx([1.5, 2.5, 0], rel=1e-9)
