@@ -217,9 +217,9 @@ def test_generate(compiler: Compiler, capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["generate", "mine.toml", "-o", "there", "--language", "all", "--evaluator", "closed"]) == 0
     assert main(["generate", "mine.toml", "--stream", "--step", "1/8", "--package"]) == 0
     assert compiler.asked == [
-        (None, "c", "auto", "double", None, None, (), {}),
-        (Path("there"), "all", "closed", "double", None, None, (), {}),
-        (None, "c", "auto", "double", None, None, (), {"stream": True, "step": Fraction(1, 8), "package": True}),
+        (None, "c", "auto", "double", None, (), {}),
+        (Path("there"), "all", "closed", "double", None, (), {}),
+        (None, "c", "auto", "double", None, (), {"stream": True, "step": Fraction(1, 8), "package": True}),
     ]
     assert capsys.readouterr().out.split() == [str(Path("out/mine.c")), str(Path("out/mine.h"))] * 3
 

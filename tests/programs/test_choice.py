@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 import wavesym
-from wavesym.errors import CostError, RangeError, ToleranceError, WavesymError
+from wavesym.errors import CostError, RangeError, ToleranceError
 from wavesym.numbers.reals import REALS
 from wavesym.programs import choice
 from wavesym.programs.choice import Tried, attempts, choose
@@ -107,21 +107,12 @@ def test_a_march_is_made_only_where_nothing_else_does(makers):
 def test_only_the_one_asked_for_is_made(makers):
     made = makers(closed=Made("closed", 1e-9), pieces=Made("pieces", 1), march=Made("march", 1e-9))
     assert choose(lower(scene()), "closed", "single") == ("closed", made.closed, "closed is good to 1e-09")
-    assert made.closed.asked == [(lower(scene()), REALS["single"], True, None, "size", False)]
+    assert made.closed.asked == [(lower(scene()), REALS["single"], True, "size", False)]
     assert not made.pieces.asked + made.march.asked
     with pytest.raises(ToleranceError, match=r"cannot be met: pieces: 1 at best$"):
         choose(lower(scene()), "pieces")
     choose(lower(scene()))
-    assert made.closed.asked[1:] == [(lower(scene()), REALS["double"], False, None, "speed", False)]
-
-
-def test_windows_are_those_of_a_march(makers):
-    made = makers(march=Made("march", 1e-9))
-    choose(lower(scene()), "march", windows=7)
-    assert made.march.asked == [(lower(scene()), REALS["double"], True, 7, "speed", False)]
-    for name in ("auto", "pieces"):
-        with pytest.raises(WavesymError, match=f"--windows goes with --evaluator march, {name} given"):
-            choose(lower(scene()), name, windows=7)
+    assert made.closed.asked[1:] == [(lower(scene()), REALS["double"], False, "speed", False)]
 
 
 def test_what_was_asked_for_says_why_it_is_refused(makers):
@@ -160,7 +151,10 @@ def test_of_a_record_that_is_too_much_all_the_causes_are_told(spacing):
         choose(lower(record))
     line = str(told.value)
     spaced = {"31.37": "31.37", "1/200": "0.005"}[spacing]
-    assert f"march: load: times at a spacing of {spaced} have {parts} different fractional parts, at most 16" in line
+    assert (
+        f"march: load: times at a spacing of {spaced} leave {parts} different remainders of the step 1, at most 16"
+        in line
+    )
     assert re.search(r"closed: load: \S+ increments would arrive at the outputs, at most 5.0e\+04 expected", line)
     assert re.search(r"pieces: load: 4 nodes times \d+ units of tau are \d+ stretches between loads, at most", line)
     assert "modes: " not in line  # which are for something else

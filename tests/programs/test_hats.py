@@ -25,11 +25,11 @@ from wavesym.numbers.doubles import fraction, nearest, rational
 from wavesym.programs.choice import choose
 from wavesym.programs.hats import evaluator as hats
 from wavesym.programs.hats.evaluator import HatMarch, hat_march
-from wavesym.programs.hats.split import rest_of, split, still, told
+from wavesym.programs.hats.split import split, still
 from wavesym.programs.making import program
-from wavesym.programs.march.evaluator import marched
-from wavesym.programs.rings.bound import RingVerdict
-from wavesym.programs.rings.evaluator import RingMarch, judged_march, ring_march
+from wavesym.programs.march.bound import Verdict
+from wavesym.programs.march.evaluator import March, judged, march
+from wavesym.programs.march.plan import readable
 from wavesym.programs.schemes.hats import ShiftedHats
 from wavesym.running.compiled import imported
 from wavesym.scene import Scene, lower
@@ -76,8 +76,10 @@ def looked_at(found: HatMarch, most: int = 40) -> np.ndarray:
 @pytest.mark.parametrize("first", [0, 7], ids=["from nothing", "a jump first"])
 def test_a_record_that_no_window_takes(first: int) -> None:
     model = shaken([first, *SAMPLES])
-    with pytest.raises(CostError, match=r"times at a spacing of 1.37 have 26 different fractional parts, at most 16"):
-        marched(model)
+    with pytest.raises(
+        CostError, match=r"times at a spacing of 1.37 leave 26 different remainders of the step 1, at most 16"
+    ):
+        march(model)
     found = choose(replace(model, tolerance=fmpq(1, 10**6)), "march").evaluator
     assert isinstance(found, HatMarch)
     assert found.rest == bool(first)
@@ -183,13 +185,13 @@ def test_evenly_lie_an_even_number_of_instants_from_sample_to_sample() -> None:
     assert set(np.bincount(inside.astype(int)).tolist()) == {4}
 
 
-def allowed(count: int, error: float, height: float, smooth: int) -> tuple[RingMarch, float]:
+def allowed(count: int, error: float, height: float, smooth: int) -> tuple[March, float]:
     """The march of a hat and what is allowed of `count` of them, all of size 1, each so wrong, so large and level."""
     model = chain([{"at": "a", "spacing": "0.37", "samples": [1, 2, -1, 3, 0, 1, 5]}])
     (record,) = split(model).records
-    march, _ = judged_march(still(model, record), degree=smooth)
-    verdict = RingVerdict(smooth, (error,), (height,), 0.0, 0.0, True, smooth, (height,), (0.0,))
-    return march, float(hats._added(replace(record, samples=(fmpq(1),) * count), march, verdict)[0, 0])
+    of_hat, _ = judged(still(model, record), degree=smooth)
+    verdict = Verdict(smooth, (error,), (height,), 0.0, 0.0, smooth, (height,), (0.0,))
+    return of_hat, float(hats._added(replace(record, samples=(fmpq(1),) * count), of_hat, verdict)[0, 0])
 
 
 def test_rounding_of_hats_that_are_added_one_by_one_is_bounded() -> None:
@@ -211,9 +213,9 @@ def test_hats_that_are_read_on_the_next_panel_are_bounded() -> None:
     So both panels are within 1 of it. It is as steep there as can be, and is read as much later as counts as one phase.
     """
     smooth = 18
-    march, most = allowed(1, 1.0, 2.0, smooth)
-    late = rational(ShiftedHats.NEAR * march.tau_max)
-    shortest = min(panel.length for panel in march.plan.panels)
+    of_hat, most = allowed(1, 1.0, 2.0, smooth)
+    late = rational(ShiftedHats.NEAR * of_hat.tau_max)
+    shortest = min(panel.length for panel in of_hat.plan.panels)
     with ctx.workprec(300):
         before = arb(1 - 2 * late / shortest).chebyshev_t(smooth)
         lost = float((1 - before).mid())  # besides the 1 of a panel by itself
@@ -231,8 +233,7 @@ def test_what_no_record_is_stays_as_it_is() -> None:
     (sampled,) = parts.records
     assert (sampled.begin, sampled.spacing) == (0, fmpq(31, 100))
     assert sampled.samples[:4] == tuple(fmpq(n, 100) for n in (131, 69, -69, -69))
-    rest = rest_of(model)
-    assert sorted((load.source, load.time) for load in rest.loads) == [
+    assert sorted((load.source, load.time) for load in parts.rest) == [
         ("a:ramp", 0),
         ("a:ramp", fmpq(31, 100)),
         ("a:ramp", fmpq(62, 100)),
@@ -257,7 +258,7 @@ def test_what_a_march_cannot_have_is_named_and_what_helps() -> None:
     assert "of the step 0.5, at most 16 expected in a march (a spacing of 1, fewer samples, modes, or for" in line
     smooth = chain([{"at": "a", "spacing": "4.999999999", "samples": [0, *SAMPLES]}], 120)
     with pytest.raises(SpacingError, match=r"spacing of 4.999999999 leave 25 .* \(a spacing of 5, fewer samples"):
-        ring_march(smooth)
+        march(smooth)
     with pytest.raises(SpacingError, match=r"spacing of 4\.999999999"):
         choose(smooth, "march", "single")
     long = chain([{"at": "a", "spacing": "1/10000", "samples": [0, *SAMPLES]}], 11)
@@ -278,9 +279,9 @@ def test_auto_takes_it_where_nothing_else_serves() -> None:
     assert "march of one hat" in choice.reason
 
 
-def test_numbers_are_told_as_they_are() -> None:
-    assert [told(value) for value in (fmpq(1, 3), 5 - fmpq(1, 10**9), fmpq(5))] == ["1/3", "4.999999999", "5"]
-    assert told(fmpq(10**40, 3 * 10**40 + 1)) == "0.33333333333333331"
+def test_numbers_are_readable() -> None:
+    assert [readable(value) for value in (fmpq(1, 3), 5 - fmpq(1, 10**9), fmpq(5))] == ["1/3", "4.999999999", "5"]
+    assert readable(fmpq(10**40, 3 * 10**40 + 1)) == "0.33333333333333331"
 
 
 def test_there_is_numpy_and_no_c() -> None:

@@ -73,7 +73,7 @@ def test_its_numbers_are_of_its_format(evaluator, precision):
 def test_each_table_that_a_scheme_names_matters_to_it(kind):
     """Without one of them it is none."""
     recorded = CHAIN.with_({"load": RECORD, "system.parts[1].rod": "7/2"})
-    of_chain = {"rings": ("march", CHAIN), "hats": ("march", recorded), "modes": ("modes", CHAIN)}
+    of_chain = {"march": ("march", CHAIN), "hats": ("march", recorded), "modes": ("modes", CHAIN)}
     evaluator, scene = of_chain.get(kind, (kind, SCENES["building"]))
     model = lower(scene)
     program = making.program(model, choose(model, evaluator).evaluator)

@@ -39,7 +39,7 @@ def test_of_all_kinds_the_smallest_is_taken(model):
 
 
 def test_what_was_asked_for_is_in_the_files(model):
-    made = files(model, "c", "pieces", "single", None, "speed")["made.h"]
+    made = files(model, "c", "pieces", "single", "speed")["made.h"]
     assert "wavesym generate made.toml --evaluator pieces --precision single --optimize speed" in made
 
 

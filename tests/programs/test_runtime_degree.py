@@ -9,10 +9,11 @@ from flint import fmpq
 from tests.support.shaken import SAMPLES, shaken
 from wavesym import Scene, model
 from wavesym.errors import CostError
-from wavesym.programs.march.plan import MarchPanel, plan
-from wavesym.programs.march.run import Run, Since
+from wavesym.programs.march.plan import Panel
 from wavesym.programs.runtime import degree as choosing
 from wavesym.programs.runtime.degree import LEAST, raised
+from wavesym.programs.runtime.line import plan
+from wavesym.programs.runtime.run import Run, Since
 from wavesym.scene import lower
 
 # found among 600 drawn scenes: going on from window 27 degree 27 seems enough, from the start on 33 is needed
@@ -104,7 +105,7 @@ def test_a_march_that_goes_on_at_a_higher_degree_misses_what_was_left_out_alone(
 def test_panels_of_any_lengths_are_marched_one_after_the_other():
     """q'/rate + q = p with p constant on each panel: the solution is known."""
     tenth = fmpq(1, 10)
-    panels = MarchPanel(fmpq(0), tenth), MarchPanel(tenth, 4 * tenth), MarchPanel(5 * tenth, 5 * tenth)
+    panels = Panel(fmpq(0), tenth), Panel(tenth, 4 * tenth), Panel(5 * tenth, 5 * tenth)
     prepared = replace(plan(SHAKEN), panels=panels)
     run = Run(prepared, 30)
     rng = np.random.default_rng(3)

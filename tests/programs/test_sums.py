@@ -12,15 +12,12 @@ from numpy.typing import NDArray
 
 from tests.exact.test_sums import ALL
 from tests.support.generated import files
-from tests.targets.test_march_hand import march
 from wavesym.errors import UnservedError
 from wavesym.exact.reference import Reference
 from wavesym.mechanics.model import Model
 from wavesym.programs.choice import choose
 from wavesym.programs.making import program
-from wavesym.programs.march.evaluator import marched
-from wavesym.programs.march.plan import LOAD
-from wavesym.programs.rings.evaluator import ring_march
+from wavesym.programs.march.evaluator import march
 from wavesym.running.compiled import compiled, imported
 from wavesym.scene import Scene, lower
 
@@ -138,8 +135,7 @@ def test_a_factor_is_a_factor(name: str) -> None:
     factors = [float(probe.factor) for probe in scaled.probes]
     values, others = (np.array(Reference(each).values(taus)) for each in (plain, scaled))
     np.testing.assert_allclose(others, values * np.array(factors)[:, np.newaxis], rtol=4e-16, atol=0)
-    marching = marched if plain.chain else ring_march
-    before, after = (marching(each, degree=20) for each in (plain, scaled))
+    before, after = (march(each, degree=20) for each in (plain, scaled))
     for one, other, factor in zip(before.outputs, after.outputs, factors, strict=True):
         assert other.bound == pytest.approx(one.bound, rel=0.02)
         assert other.largest == pytest.approx(one.largest * abs(factor), rel=1e-6)
@@ -147,8 +143,8 @@ def test_a_factor_is_a_factor(name: str) -> None:
 
 def test_what_a_load_does_is_read_on_its_own_panel() -> None:
     """A body that is pushed is accelerated at once, also where the push changes inside a window."""
-    made = marched(model("drive"))
-    assert {heard.way for heard in made.plan.outputs[0].heard} > {LOAD}
+    made = march(model("drive"))
+    assert {made.plan.tracks[heard.track].prescribed for heard in made.plan.outputs[0].heard} == {False, True}
     before, after = program(model("drive"), made).evaluate([np.nextafter(1.5, 0), 1.5])[0]
     assert after - before == pytest.approx(-0.5, rel=1e-12)
 
@@ -157,34 +153,20 @@ def test_a_program_that_drops_a_load_is_seen(monkeypatch: pytest.MonkeyPatch) ->
     given = model("drive")
     reference = Reference(given)
     taus = instants(reference)
-    made = marched(given)
+    made = march(given)
     deaf = replace(
         made,
         plan=replace(
             made.plan,
             outputs=tuple(
-                replace(output, heard=tuple(heard for heard in output.heard if heard.way != LOAD))
+                replace(
+                    output, heard=tuple(each for each in output.heard if not made.plan.tracks[each.track].prescribed)
+                )
                 for output in made.plan.outputs
             ),
         ),
     )
     assert missed(program(given, deaf).evaluate(taus), reference, taus, [output.bound for output in made.outputs]) > 1e6
-
-
-def test_loads_that_are_given_by_hand_accelerate_at_once() -> None:
-    """The scene's own, at the points of each panel: every output is the same, and is proved for any such load."""
-    own = Scene(**{**DRIVE, "name": "made", "output": {**DRIVE["output"], "tolerance": "1e-6"}})
-    scenes_own, by_hand = march(own), march(own)
-    panels, steps = by_hand.made.plan.panels, [[(0, 1), (1.5, -0.5)], [(1 / 3, 0.2)], [(1 / 3, 2)]]
-    assert by_hand.made.plan.ways > LOAD
-    for window in range(4):
-        starts = [window + float(panel.start) for panel in panels]
-        loads = [[sum(step for time, step in each if time <= start + 1e-9) for start in starts] for each in steps]
-        assert scenes_own.advance() == by_hand.advance(np.array(loads)[:, :, np.newaxis]) == 0
-        np.testing.assert_allclose(by_hand.values(), scenes_own.values(), rtol=0, atol=1e-12)
-    driven = marched(lower(own), windows=4).given
-    assert driven is not None
-    assert max(driven.errors) < 1e-6
 
 
 def test_contacts_are_refused_by_the_march_alone() -> None:

@@ -25,7 +25,7 @@ DRIVE: dict[str, Any] = {
         {"mass": 3, "name": "end"},
     ],
 }
-# a joint of each kind: moved, gears and a branch, a spring without mass, two bodies on a spring, absorbing
+# a joint of each kind: moved, gears and a branch, a spring without mass, two bodies on a spring, a body, absorbing
 EVERY: dict[str, Any] = {
     "type": "chain",
     "parts": [
@@ -44,7 +44,13 @@ EVERY: dict[str, Any] = {
             "from": "gear",
             "name": "side",
             "ratio": -2,
-            "parts": [{"rod": "1/2", "velocity": 1}, {"rod": 1, "impedance": 3}, "absorbing"],
+            "parts": [
+                {"rod": "1/2", "velocity": 1},
+                {"mass": "1/3", "velocity": 0, "dashpot": "1/5"},
+                {"rod": "1/4"},
+                {"rod": 1, "impedance": 3},
+                "absorbing",
+            ],
         }
     ],
 }
@@ -102,3 +108,53 @@ def instants(model: Model, most: int = 12) -> NDArray[np.float64]:
 def exact(model: Model, taus: NDArray[np.float64]) -> NDArray[np.float64]:
     """The outputs from power series in balls, correctly rounded."""
     return np.array(Reference(model).values(taus.tolist()))
+
+
+@st.composite
+def bodies(draw: st.DrawFn, until: object = "5/2") -> dict[str, Any]:
+    """Bodies with one rod to four, alike or nearly, with gears and dashpots; between two of them another joint."""
+
+    def rod() -> dict[str, Any]:
+        made = {"rod": draw(st.sampled_from([1, 1, "1/2", "3/2"]))}
+        return made | {"impedance": draw(st.sampled_from([1, 1, 2, "1/3"])), "velocity": draw(begun)}
+
+    def body(name: str) -> dict[str, Any]:
+        mass, dashpot = (
+            draw(st.sampled_from(sizes)) for sizes in ([1, 1, "1.0000001", "1/2", 3], [0, 0, "1/3", "1.001"])
+        )
+        return {"mass": mass, "dashpot": dashpot, "velocity": draw(begun), "name": name}
+
+    begun = st.sampled_from([0, 0, 1, "-1/2"])
+    other = draw(
+        st.sampled_from(
+            [
+                [{"joint": True}],
+                [{"joint": True, "dashpot": 2}],
+                [{"mass": 1, "spring": 3, "velocity": 0}],
+                [{"spring": 2}],
+                [],
+            ]
+        )
+    )
+    last = [rod(), body("c")] if other else []
+    branches = [
+        {
+            "from": "b",
+            "name": f"side{n}",
+            "ratio": draw(st.sampled_from([1, 2, -1, "-1/2"])),
+            "parts": [rod(), *draw(st.sampled_from([[], ["fixed"], [body(f"far{n}")]]))],
+        }
+        for n in range(draw(st.integers(0, 2)))
+    ]
+    load = [
+        {"at": at, "times": [draw(st.sampled_from([0, "1/3"]))], "steps": [1], "ramps": ["-1/2"]}
+        for at in draw(st.sampled_from([["a"], ["b"], ["a", "b"]]))
+    ]
+    parts = [body("a"), rod(), body("b"), *([rod(), *other] if other else [rod()]), *last]
+    watched = {"velocity": ["a", "b"], "displacement": ["b"], "strain": ["1/4"]}
+    return {
+        "name": "bodies",
+        "system": {"type": "chain", "parts": parts, "branch": branches},
+        "load": load,
+        "output": {"until": until, "tolerance": "1e-3", **watched},
+    }

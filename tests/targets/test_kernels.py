@@ -41,7 +41,7 @@ def test_a_kernel_is_c_as_it_stands(kernel, precision):
         ("closed/closed.c", "sum += polynomial", "sum += polynom"),
         ("pieces/pieces.c", "(size_t)member[", "member["),
         ("march/march.c", "const real middle = ", "const float middle = "),
-        ("march/march.c", "int within = 1;", "int within = 1, before = 0;"),
+        ("march/march.c", "int outside = 0;", "int outside = 0, before = 0;"),
     ],
 )
 def test_a_broken_kernel_is_seen(kernel, right, wrong, tmp_path):
@@ -63,7 +63,7 @@ def test_a_program_writes_all_tables_that_it_has(of):
 def test_tables_are_written_as_they_are_declared():
     """In order, with the comments above those that there are."""
     values = {"steps": ("1, 2,", "3"), "ring": ("0",), "track": ("7",)}
-    first, second = tables_text("rings/tables.h", values)
+    first, second = tables_text("march/tables.h", values)
     assert first.startswith("/* tracks: how many windows later it arrives,")
     assert "static const int steps[] = {\n    1, 2,\n    3\n};\n\nstatic const int ring[] = {\n    0\n};\n" in first
     assert first.endswith("and delays. */\nstatic const int track[] = {\n    7\n};\n")

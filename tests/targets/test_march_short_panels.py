@@ -1,19 +1,23 @@
 """Waves put by hand into a march, on a panel of a billionth: read from exact instants, not from rounded ones."""
 
+import ctypes
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from flint import fmpq, fmpq_poly
 
-from tests.support.generated import numpy_text
-from tests.targets.test_march_hand import March, library
+from tests.support.generated import numpy_text, program_files
 from wavesym.programs.march.bound import reading_weights
-from wavesym.programs.march.evaluator import marched
-from wavesym.programs.march.run import LEFT, RIGHT
+from wavesym.programs.march.evaluator import march
 from wavesym.running.compiled import imported
+from wavesym.running.toolchain import compiler
 from wavesym.scene import Scene, lower
+
+RIGHT, LEFT = 0, 1  # tracks of the first rod
 
 FIRST = Fraction(1, 3)
 SHORT = Fraction(1, 10**9)
@@ -36,14 +40,15 @@ CUTS = [Fraction(0), FIRST, FIRST + SHORT, Fraction(1)]
 
 @cache
 def made():
-    return marched(lower(SCENE), degree=DEGREE)
+    return march(lower(SCENE), degree=DEGREE)
 
 
 def waves():
     """Of both windows, [0] the one before: steep on the short panel, at random."""
     plan = made().plan
     assert [Fraction(int(panel.start.p), int(panel.start.q)) for panel in plan.panels] == CUTS[:-1]
-    shape = 2, 2, len(plan.panels), len(plan.junctions) + 2, DEGREE + 1
+    assert [track.steps for track in plan.tracks[:2]] == [1, 1]
+    shape = 2, len(plan.tracks), len(plan.panels), DEGREE + 1
     return np.random.default_rng(1).uniform(-1, 1, shape)
 
 
@@ -60,27 +65,27 @@ def series(c):
     return sum((exact(value) * CHEBYSHEV[k] for k, value in enumerate(c.tolist())), fmpq_poly())
 
 
-def sent(both, direction, node, since):
-    """The wave that a node sent at an instant of this window, or before it of the one before: the panel, and u."""
+def sent(both, track, since):
+    """What was sent at an instant of this window, or before it of the one before: the panel, and u."""
     half, since = (1, since) if since >= 0 else (0, since + 1)
     panel = max(p for p in range(3) if CUTS[p] <= since)
     u = 2 * (since - CUTS[panel]) / (CUTS[panel + 1] - CUTS[panel]) - 1
-    return both[half, direction, panel, node + 1], u
+    return both[half, track, panel], u
 
 
-def wave(both, direction, node, delay, t):
-    c, u = sent(both, direction, node, t - delay)
+def wave(both, track, delay, t):
+    c, u = sent(both, track, t - delay)
     return series(c)(exact(u))
 
 
-def integral(both, direction, node, delay, t):
+def integral(both, track, delay, t):
     """From the start of the window to t."""
     fronts = {cut + delay - back for cut in CUTS for back in (0, 1)}
     edges = sorted({Fraction(0), t} | {front for front in fronts if 0 < front < t})
     total = fmpq(0)
     for low, high in pairwise(edges):
-        c, begin = sent(both, direction, node, low - delay)
-        (_, end), whole = sent(both, direction, node, (low + high) / 2 - delay), series(c).integral()
+        c, begin = sent(both, track, low - delay)
+        (_, end), whole = sent(both, track, (low + high) / 2 - delay), series(c).integral()
         end = begin + 2 * (end - begin)
         total += exact((high - low) / (end - begin)) * (whole(exact(end)) - whole(exact(begin)))
     return total
@@ -91,7 +96,7 @@ def expected(both, t):
     values, allowed, weights = [], [], [reading_weights(DEGREE, displaced=part) for part in (False, True)]
     for quantity in ("strain", "velocity", "displacement"):
         for delay in DELAYS:
-            places = (LEFT, 1, 1 - delay), (RIGHT, 0, delay)  # all are in the first rod
+            places = (LEFT, 1 - delay), (RIGHT, delay)  # all are in the first rod
             if quantity == "displacement":
                 left, right = (integral(both, *place, t) for place in places)
                 sizes = 2.0**-53 * 24 * 8 * np.max(np.abs(both) @ weights[1])
@@ -123,26 +128,58 @@ def missed(read):
 
 
 def in_numpy(text):
-    scheme = imported(text, "made")._PROGRAM
+    module = imported(text, "made")
+    scheme = module._PROGRAM
+    assert scheme.deepest == 1
 
     def read(both, t):
-        n, at = np.zeros(1, int), np.array([t])
-        for output in range(scheme.outputs):
-            sums, values = (scheme._heard(output, summed=summed) for summed in (True, False))
-            yield (scheme._gathered(both, sums, n, at) + scheme._arrived(both, values, n, at))[0]
+        waves = np.concatenate([both, np.zeros((2, 1, *both.shape[2:]))], axis=1)
+        nothing = np.zeros((1, scheme.panels, 1))
+        window = module.WindowBlock(scheme, 0, waves, nothing, nothing, np.zeros(scheme.outputs))
+        return window.at(np.zeros(1, int), np.zeros(1, int), np.array([t]))[:, 0]
 
-    return lambda both, t: np.array(list(read(both, t)))
+    return read
+
+
+DRIVER = """
+#include "made.c"
+
+void put(const real *both, real t, real *out);
+
+void put(const real *both, real t, real *out)
+{
+    march state;
+    begin_march(&state);
+    state.window = 1;
+    for (int place = 0; place < 2 * TRACKS * PANELS * SIZE; ++place) {
+        const int number = place / (PANELS * SIZE) % TRACKS;
+        const int slot = ring[number] + place / (TRACKS * PANELS * SIZE) % (steps[number] + 1);
+        state.waves[slot][place / SIZE % PANELS][place % SIZE] = both[place];
+    }
+    for (int k = 0; k < OUTPUTS; ++k) {
+        state.total[k] = 0;
+    }
+    read_at(&state, t, out);
+}
+"""
 
 
 def in_c(change):
-    run = March(*library(SCENE, degree=DEGREE, change=change))
-    run.window.value = 0
+    sources = {**program_files(lower(SCENE), made(), "c"), "driver.c": DRIVER}
+    if change:
+        assert change[0] in sources["made.c"]
+        sources["made.c"] = sources["made.c"].replace(*change)
+    with TemporaryDirectory() as folder:
+        for file, text in sources.items():
+            Path(folder, file).write_text(text)
+        compiler().run(["-std=c99", "-O1", "-fPIC", "-shared", "driver.c", "-o", "made.so", "-lm"], Path(folder))
+        library = ctypes.CDLL(str(Path(folder, "made.so")))
+    library.put.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p]
 
     def read(both, t):
-        state = np.frombuffer(run.state, np.float64)[-both.size :].reshape(both.shape)
-        half = np.frombuffer(run.state, np.int32)[1]
-        state[half], state[1 - half] = both[1], both[0]
-        return run.read(t)
+        out = np.empty(len(SCENE.outputs))
+        library.put(np.ascontiguousarray(both).ctypes.data, t, out.ctypes.data)
+        return out
 
     return read
 
@@ -156,9 +193,9 @@ def test_waves_are_read_from_exact_instants_in_numpy():
 
 
 def test_without_the_excess_they_would_not_be_in_numpy():
-    exact_w = "((t - self.start[s]) + self.excess[s])"
+    exact_w = "((t - scheme.start[s, phase]) + scheme.excess[s, phase])"
     assert exact_w in generated()
-    assert missed(in_numpy(generated().replace(exact_w, "(t - self.start[s])"))) > 1e5
+    assert missed(in_numpy(generated().replace(exact_w, "(t - scheme.start[s, phase])"))) > 1e5
 
 
 def test_waves_are_read_from_exact_instants_in_c():
@@ -166,4 +203,7 @@ def test_waves_are_read_from_exact_instants_in_c():
 
 
 def test_without_the_excess_they_would_not_be_in_c():
-    assert missed(in_c(("const real w = (t - start[s]) + excess[s]", "const real w = t - start[s]"))) > 1e5
+    assert (
+        missed(in_c(("(t - start[s * CYCLE + phase]) + excess[s * CYCLE + phase]", "t - start[s * CYCLE + phase]")))
+        > 1e5
+    )

@@ -46,11 +46,12 @@ BREAKS = {
     "a row too long": ("pieces_double_values", "counted < many ? 0 : counted - many + 1", "counted"),
     "an edge that belongs to the piece before": ("pieces_double_values", "tau < edge;", "tau <= edge;"),
     "a value out of range": ("closed_double_values", "tau >= 0 && tau <= CLOSED", "tau <= CLOSED"),
-    "a march too short": ("march_double_values", "state->window < (int)tau", "state->window + 1 < (int)tau"),
-    "a sample too far": ("rings_double_values", "dtau < 0 ? count - 1 - i : i;", "dtau < 0 ? count - i : i;"),
-    "an alarm that goes": ("march_double_march", "state->alarm |=", "state->alarm ="),
-    "a window too many": ("march_double_march", "state->window >= LAST_WINDOW ||", ""),
-    "a load that nobody looks at": ("march_double_march", "|| (loads && !given_within_reach(loads))", ""),
+    "a march too short": (
+        "march_double_values",
+        "state->window < cycle * CYCLE + phase",
+        "state->window + 1 < cycle * CYCLE + phase",
+    ),
+    "a sample too far": ("blocks_double_values", "dtau < 0 ? count - 1 - i : i;", "dtau < 0 ? count - i : i;"),
     "an overflow": ("modes_double_stream", "return wrong ? 2 : 0;", "return 0;"),
     "a refusal that moves": (
         "stream_double_stream",

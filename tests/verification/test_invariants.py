@@ -12,7 +12,7 @@ import wavesym
 from tests.support.drawn import scenes
 from tests.support.generated import assemble
 from wavesym.numbers.doubles import fraction
-from wavesym.programs.march.evaluator import marched
+from wavesym.programs.march.evaluator import march
 from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
 from wavesym.verification import checks
@@ -181,7 +181,7 @@ def test_what_is_not_looked_at_is_said(monkeypatch):
 @FOUR
 def test_the_march_keeps_them_for_long(scene):
     books = Balancing(lower(scene).shortened(fmpq(100)), 10 * MOST)
-    made = marched(books.model.tolerating(fmpq(1, 10**4)))
+    made = march(books.model.tolerating(fmpq(1, 10**4)))
     evaluate = assemble(made).evaluate
     for balance in balances(books, evaluate, [output.bound * output.largest for output in made.outputs]):
         assert balance.error <= balance.allowed

@@ -107,8 +107,7 @@ _COUNTS = (0, 1, 7)
 _CLOSED = PortableProgram("closed", _BUILDING, Request("closed"), "values", _COUNTS)
 _PIECES = PortableProgram("pieces", _BUILDING, Request("pieces"), "values", (*_COUNTS, 5))  # blocks of 4, read plainly
 _MARCH = PortableProgram("march", _BUILDING, Request("march"), "values", (1,), effort="followed")
-_DRIVEN = PortableProgram("march", _BUILDING, Request("march"), "march")
-_RINGS = PortableProgram("rings", "stepped_shaft", Request("march"), "values", _COUNTS)
+_BLOCKS_MARCH = PortableProgram("blocks", "damped_building", Request("march"), "values", _COUNTS)
 _MODES = PortableProgram("modes", _BUILDING, Request("modes"), "stream", changes=tuple(_SHAKEN.items()), effort="more")
 _MODES_SINGLE = replace(
     _MODES.single, changes=tuple({**_SHAKEN, "output": {**_SHAKEN["output"], "tolerance": "1/50"}}.items())
@@ -178,13 +177,11 @@ PROVED = (
     _CLOSED.single,
     _PIECES,
     _PIECES.single,
-    _DRIVEN,
-    _DRIVEN.single,
     _MARCH,
     _BRIEF_MARCH,
     _BRIEF_MARCH.single,
-    _RINGS,
-    _RINGS.single,
+    _BLOCKS_MARCH,
+    _BLOCKS_MARCH.single,
     _MODES,
     _MODES_SINGLE,
     _STREAM,
@@ -206,7 +203,7 @@ PROVED = (
     *(replace(_BRIEF_JOINTS, driver=driver, counts=()) for driver in ("bound", "batch")),
     *(replace(_LEVEL_JOINTS, driver=driver, counts=counts) for driver, counts in (("tangent", (7,)), ("misfit", (2,)))),
 )
-CHECKED = (_CLOSED, _PIECES, _MARCH, _RINGS, _MODES, _STREAM, _TUNED, _RUNTIME, _JOINTS)
+CHECKED = (_CLOSED, _PIECES, _MARCH, _BLOCKS_MARCH, _MODES, _STREAM, _TUNED, _RUNTIME, _JOINTS)
 COMPILED = tuple(
     program for double in CHECKED for program in (double, _MODES_SINGLE if double is _MODES else double.single)
 )

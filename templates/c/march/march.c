@@ -233,7 +233,7 @@ static void advance(march *state)
     for (int panel = 0; panel < PANELS; ++panel) {
         change(state, panel);
         for (int joint = 0; joint < JOINTS; ++joint) {
-            if (law[joint] == BODY) {
+            if (BODIES > 0 && law[joint] == BODY) {
                 step_body(state, joint, panel);
             } else if (BLOCKS > 0 && law[joint] == BLOCK) {
                 step_block(state, joint, panel);

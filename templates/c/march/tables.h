@@ -9,6 +9,7 @@ enum {
     SIZE = DEGREE + 1,
     PANELS = 2,
     JOINTS = 3,
+    BODIES = 1,
     BLOCKS = 1,
     STATES = 2,
     FORCES = 1,

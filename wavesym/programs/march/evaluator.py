@@ -152,10 +152,10 @@ def _made(plan: MarchPlan, degree: int, real: Real) -> tuple[March, Verdict]:
     return March(plan, degree, real, outputs), verdict
 
 
-def first_degree(plan: MarchPlan, real: Real) -> int:
+def first_degree(plan: MarchPlan, real: Real, *, blocked: bool = False) -> int:
     """A front that has met n bodies of rate g is like a Laguerre function: sqrt(2 g n) oscillations to be resolved.
 
-    A stiff spring adds those of a body on it.
+    A stiff spring adds those of a body on it. Blocks, as which bodies may be `blocked`, cost its square.
     """
     if not any(joint.space.states for joint in plan.joints):
         return _LEAST_DEGREE
@@ -164,7 +164,7 @@ def first_degree(plan: MarchPlan, real: Real) -> int:
     slow = sum(rate for rate in bodies if rate > 0) / len(bodies)
     turning = max(joint.space.turning for joint in plan.joints)
     detail = math.sqrt(2 * slow * longest * plan.crossings) + min(turning * longest / 2, 1e6)
-    spare = 8 if any(joint.space.law == BLOCK for joint in plan.joints) else 12  # blocks cost its square
+    spare = 8 if blocked or any(joint.space.law == BLOCK for joint in plan.joints) else 12
     return math.ceil(detail) + (spare if real is DOUBLE else spare // 2)
 
 

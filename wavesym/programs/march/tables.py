@@ -137,6 +137,7 @@ class MarchTables:
             "degree": self._degree,
             "panels": len(plan.panels),
             "joints": len(plan.joints),
+            "bodies": sum(self.law(joint) == BODY for joint in plan.joints),
             "blocks": sum(self.law(joint) == BLOCK for joint in plan.joints),
             "states": sum(joint.space.states for joint in plan.joints),
             "forces": plan.forces,

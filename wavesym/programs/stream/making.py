@@ -142,7 +142,7 @@ def _at_worst(plan: StreamPlan, verdict: Verdict, tolerance: fmpq) -> str:
 
 def _enough(plan: StreamPlan, model: Model, real: Real) -> tuple[int, Verdict]:
     """The least degree that will do, and what it is worth."""
-    degree, spent = max(first_degree(plan.rings, real) - 4, 4), 0.0
+    degree, spent = max(first_degree(plan.rings, real, blocked=True) - 4, 4), 0.0
     tolerance = nearest(max(model.tolerance, _ROUNDINGS * real.roundoff))
     while True:
         spent = refuse_long(plan.rings, degree, spent, real)

@@ -41,7 +41,8 @@ class StreamTables:
         half = nearest(panel / 2)
         heard = [one for output in rings.outputs for one in output.heard]
         late = [plan.late(one.delay) for one in heard]
-        joints = self._rings.joints()
+        # its bodies are blocks
+        joints = {name: table for name, table in self._rings.joints().items() if name not in ("law", "drive")}
         slips = [self.slips(joint) for joint in self._joints]
         spaces = [joint.space for joint in self._joints]
         shown = {joint.sends[0]: joint.forces[0] for joint in self._joints if joint.space is SHOWN}
