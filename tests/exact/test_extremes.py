@@ -9,7 +9,7 @@ from math import atan2, cos, exp, inf, nextafter, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from flint import arb, ctx, fmpq
+from flint import arb, arb_poly, ctx, fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -21,6 +21,7 @@ from wavesym.exact import extremes as module
 from wavesym.exact.contacts.events import events
 from wavesym.exact.extremes import NOTHING, TrueExtreme, extremes
 from wavesym.exact.motion import Motion
+from wavesym.exact.reference import Reference
 from wavesym.numbers.doubles import rational
 from wavesym.scene import Scene, lower
 
@@ -334,3 +335,33 @@ def test_a_search_that_is_broken_is_seen(name, value, monkeypatch):
     except (WavesymError, IndexError):
         return
     assert wrong != right
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_trimmed_is_in_the_radius(seed):
+    """Numbers of many bits that cancel, and powers that hardly count."""
+    random = np.random.default_rng(seed)
+    with ctx.workprec(2000):
+        c = [arb(fmpq(int(random.integers(-(10**9), 10**9)), 3 * 10**6)) * arb(2) ** (300 - 9 * k) for k in range(80)]
+        middles = [each.mid() for each in c]
+        flat, radius = arb(2) ** -64, arb(2) ** -80
+        polynomial, more = module._trimmed(arb_poly(middles), radius, flat)
+        assert polynomial.degree() < 79
+        assert radius < more < flat
+        assert all(int(each.man_exp()[0]).bit_length() < 600 for each in polynomial.coeffs())
+        for t in (-1, 1, *(fmpq(int(random.integers(-99, 99)), 100) for _ in range(20))):
+            assert abs(polynomial(arb(t)) - arb_poly(middles)(arb(t))) <= more - radius
+
+
+def test_a_light_mass_beside_a_stiff_rod_does_not_wait():
+    """Each of its pieces has thousands of bits, of which an extreme needs few: took minutes."""
+    parts = [{"rod": 1}, {"mass": "1/300", "name": "n", "velocity": 1}, {"rod": "1/10", "impedance": 10}, {"mass": 1}]
+    model = lower(
+        Scene(name="light", system={"type": "chain", "parts": parts}, output={"until": "3/10", "velocity": ["n"]})
+    )
+    ((least, greatest),) = extremes(model)
+    taus = np.linspace(0, 0.3, 301)
+    (values,) = Reference(model).values([*taus.tolist(), least.tau])
+    assert greatest.value == values[0] == 1
+    assert least.value == pytest.approx(values[-1], rel=1e-15)
+    assert least.value <= min(values)

@@ -44,6 +44,7 @@ _EQUAL, _FLAT, _KNOWN, _NEGLIGIBLE = arb(2) ** -60, arb(2) ** -64, arb(2) ** -70
 # points of a piece in doubles: of all pieces, then of those that are left
 _POINTS = (33, 513)
 _ROUNDING = 2.0**-52
+_SPARE = 96  # bits of what is far below what counts as constant
 _NEWTON = 200  # steps at most; a dozen do
 # measured: seconds for a piece of an output or wave, times its terms to the power of 3/2
 _COMPOSED, _MOST_SECONDS = 4e-7, 5
@@ -276,7 +277,7 @@ def _tops(coefficients: Sequence[arb], radius: arb, low: arb, flat: arb) -> Iter
         value = whole(arb(t)) + arb(0, radius)
         yield value, t
         low = low.max(value.lower())
-    parts = [(whole, radius, _ZERO, _ONE)]
+    parts = [(*_trimmed(whole, radius, flat), _ZERO, _ONE)]
     while parts:
         polynomial, radius, centre, half = parts.pop()
         c = polynomial.coeffs() or [arb(0)]
@@ -288,16 +289,37 @@ def _tops(coefficients: Sequence[arb], radius: arb, low: arb, flat: arb) -> Iter
             yield value, centre - half
             low = low.max(value.lower())
         elif len(c) > 2 and _sure(c, 2) and c[2] < 0:
-            value, t = _top(polynomial)
+            with ctx.workprec(_bits(c, flat)):
+                value, t = _top(polynomial)
             yield value + arb(0, radius), centre + half * t
             low = low.max((value - radius).lower())
         elif not _sure(c, 1) and not (len(c) > 2 and _sure(c, 2)):
             for side in (1, -1):
-                middles, more = _split(polynomial(arb_poly([arb(side) / 2, arb(1) / 2])))
-                parts.append((arb_poly(list(middles)), (radius + more).upper(), centre + half * side / 2, half / 2))
+                with ctx.workprec(_bits(c, flat)):
+                    shorter = _trimmed(polynomial(arb_poly([arb(side) / 2, arb(1) / 2])), radius, flat)
+                parts.append((*shorter, centre + half * side / 2, half / 2))
         elif half < 1:  # an end is greatest, where another part may meet it
             for t in (-_ONE, _ONE):
                 yield polynomial(arb(t)) + arb(0, radius), centre + half * t
+
+
+def _bits(c: Sequence[arb], flat: arb) -> int:
+    """Enough to know sums of these numbers far below `flat`: some, or all of those that there are."""
+    mantissa, exponent = (int(part) for part in (max(map(abs, c)) / flat).upper().man_exp())
+    return min(max(mantissa.bit_length() + exponent, 0) + _SPARE, ctx.prec)
+
+
+def _trimmed(polynomial: arb_poly, radius: arb, flat: arb) -> tuple[arb_poly, arb]:
+    """Exact numbers with as many bits as they need, without the highest powers as far as they are far below `flat`, and
+    how far from them the output may be.
+    """
+    powers, rest, least = polynomial.coeffs() or [arb(0)], arb(0), flat * 2**-30
+    while len(powers) > 1 and (more := (rest + abs(powers[-1])).upper()) <= least:
+        rest = more
+        powers.pop()
+    with ctx.workprec(_bits(powers, flat)):
+        middles, lost = _split(arb_poly([+c for c in powers]))
+    return arb_poly(list(middles)), (radius + rest + lost).upper()
 
 
 def _sure(c: Sequence[arb], order: int) -> bool:
