@@ -238,7 +238,7 @@ def test_a_contact_that_no_bits_decide_is_refused_with_the_instant(monkeypatch):
 
     monkeypatch.setattr("wavesym.exact.contacts.touching_joint.Enclosed.of", blurred)
     with pytest.raises(
-        GrazingError, match=r"^contact at 0: its gap is 0 at tau = (1|0\.9+\d*) and \d+ bits do not show"
+        GrazingError, match=r"^contact at 0: \d+ bits do not show the sign of its gap at tau = (1|0\.9+\d*) "
     ):
         events(model)
 

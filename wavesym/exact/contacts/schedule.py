@@ -114,8 +114,8 @@ def _decided(network: Network, search: Callable[[], T]) -> T:
     link = network.links[undecided.link]
     what = "force" if undecided.closed else "gap"
     raise GrazingError(
-        f"contact at {link.place}: its {what} is 0 at tau = {nearest(undecided.tau):.17g} and {bits} bits do not show "
-        "what follows (another gap, load or length helps)"
+        f"contact at {link.place}: {bits} bits do not show the sign of its {what} at tau = "
+        f"{nearest(undecided.tau):.17g} (another gap, load or length, or heavier masses beside it, help)"
     )
 
 
