@@ -18,7 +18,7 @@ from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import bound, nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
 from wavesym.programs.march.bound import Verdict, judge
-from wavesym.programs.march.plan import MarchPlan, least_numbers, march_plan
+from wavesym.programs.march.plan import HIGHEST_DEGREE, MarchPlan, least_numbers, march_plan
 from wavesym.programs.march.space import BLOCK, BODY, SCATTERER
 from wavesym.programs.march.tables import MarchTables, state_bytes, table_bytes
 from wavesym.programs.program import Program, ProgramOutput, Provenance
@@ -199,6 +199,12 @@ def _kinds(plan: MarchPlan) -> int:
 def refuse_long(plan: MarchPlan, degree: int, spent: float, real: Real) -> float:
     """What trying a degree costs, with what is `spent` already; CostError where that is too much."""
     _refuse_rings(plan, _LEAST_DEGREE, real)  # it is not the joints then
+    if degree > HIGHEST_DEGREE:
+        raise CostError(
+            f"output.until: rates to {_fastest(plan):g} need polynomials of degree {degree:g} to tau = "
+            f"{plan.tau_max:g}, at most {HIGHEST_DEGREE} expected in a march (a shorter horizon, or heavier bodies, "
+            "helps)"
+        )
     if (size := table_bytes(plan, degree, real)) > _MOST_BYTES:
         raise CostError(
             f"system.parts: joints as fast as {_fastest(plan):.3g} on a step of {plan.step} need polynomials of degree "
@@ -206,8 +212,11 @@ def refuse_long(plan: MarchPlan, degree: int, spent: float, real: Real) -> float
             "expected in a march (softer springs, heavier bodies, or lengths with a smaller common measure, help)"
         )
     _refuse_rings(plan, degree, real)
-    # two matrices are multiplied with: the answers, and their sizes
-    work = plan.windows * (3.0 * _multiplications(plan, degree) + _KIND * _kinds(plan) * len(plan.panels))
+    # two matrices are multiplied with: the responses, and their sizes; and those of what bodies round
+    operators = {(s.rate, p.length) for s in (j.space for j in plan.joints) if s.law == BODY for p in plan.panels}
+    work = len(operators) * degree**3.0 + plan.windows * (
+        3.0 * _multiplications(plan, degree) + _KIND * _kinds(plan) * len(plan.panels)
+    )
     spent += work
     if spent > _MOST_WORK:
         raise CostError(
