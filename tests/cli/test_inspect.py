@@ -136,13 +136,13 @@ def test_what_cannot_be_felt_is_left_out() -> None:
     assert "left_out  2 of 4 nodes" in inspection(near)
 
 
-def test_the_law_of_a_node_by_hand() -> None:
+def test_the_law_of_a_joint_by_hand() -> None:
     """Floor 1: U_tt + 2 kappa U_t = 2 kappa (a + b); roof: U_tt + kappa U_t = 2 kappa a."""
-    nodes = by(told(scene(), "laws")["nodes"], "x")
-    body = {"kind": "body", "raised": {"constant": "1", "slope": "1"}, "load": "1"}
-    assert nodes[1] == body | {"x": 1, "same": "6/5", "left": "6/5", "right": "6/5"}
-    assert nodes[2] == body | {"x": 2, "same": "1/5", "left": "2/5", "right": "0"}
-    assert nodes[0]["raised"] == {"constant": "0", "slope": "0"}
+    joints = by(told(scene(), "laws")["joints"], "joint")
+    assert [joints[k]["polynomial"]["rates"] for k in range(3)] == [[], ["6/5"], ["1/5"]]
+    assert [joints[k]["ends"] for k in range(3)] == [1, 2, 1]
+    ratios = [[Fraction(joints[k][name][0][0]) for name in "CM"] for k in (1, 2)]
+    assert [damping / mass for damping, mass in ratios] == [Fraction(6, 5), Fraction(1, 5)]
 
 
 def value(linear: dict[str, str], at: Fraction | int) -> Fraction:
@@ -321,9 +321,10 @@ def test_a_changed_model_is_seen() -> None:
     changed = {section.key: section for section in modelled.modelled(replace(model, chain=chain))}
     assert [section.key for section in first if section != changed[section.key]] == ["nodes"]
     assert _rows(changed["nodes"])[1]["rate"] == "3/5"
-    assert {s.key for s, t in zip(laws.laws(model), laws.laws(replace(model, chain=chain)), strict=True) if s != t} == {
-        "nodes"
-    }
+    points = list(model.network.points)
+    points[1] = replace(points[1], mass=2 * points[1].mass)
+    other = replace(model, network=replace(model.network, points=tuple(points)))
+    assert {s.key for s, t in zip(laws.laws(model), laws.laws(other), strict=True) if s != t} == {"joints"}
     load = replace(model.loads[0], weight=fmpq(7))
     heavy = {s.key: s for s in modelled.modelled(replace(model, loads=(load, *model.loads[1:])))}
     assert [section.key for section in first if section != heavy[section.key]] == ["loads"]

@@ -12,8 +12,6 @@ from wavesym.derivation import node_law as derived
 from wavesym.derivation.delay import _at_node, delay_equations
 from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, node_law
 from wavesym.derivation.recurrence import joint_rule, recurrence, stretch_law
-from wavesym.derivation.recurrence import node_rule as numbers_of
-from wavesym.exact.joints import node_rules
 from wavesym.mechanics.node import Node, Rod
 from wavesym.scene import Scene, lower
 
@@ -34,7 +32,7 @@ KINDS = ("closed", "pieces", "march")
 
 
 def forget() -> None:
-    for cached in (node_law, delay_equations, recurrence, joint_rule, node_rules._derived):
+    for cached in (node_law, delay_equations, recurrence, joint_rule):
         cached.cache_clear()
 
 
@@ -69,20 +67,9 @@ def test_on_a_stretch_powers_go_up():
     assert (own.raised - INERTIA * (k + 1)).expand() == 0
 
 
-def test_a_node_knows_its_rate_as_it_is_derived():
-    for node in (*lower(SCENE).chain.nodes, *lower(Scene.from_toml("drive_equal")).chain.nodes):
-        rule = numbers_of(node)
-        assert (rule.same, rule.raised.constant, rule.load) == (node.radiation, node.inertia, 1)
-
-
 def test_a_rod_end_is_a_dashpot_and_a_force():
     """Seen from its end a rod is a dashpot Z and a force 2 Z a, on either side."""
     assert joint_rule() == (1, 1, 1, (1, 1), (2, 2))
-
-
-def test_a_rod_that_is_not_there_brings_nothing():
-    rule = numbers_of(Node(None, REST, inertia=1, alpha=5, beta=2))
-    assert (rule.left, rule.right, rule.same) == (0, 2, 1)
 
 
 def of_a_chain():

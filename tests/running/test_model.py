@@ -6,11 +6,11 @@ from functools import cache
 
 import numpy as np
 import pytest
+from wavesym.programs.runtime.arrays.engine import ArraySets
 
 import wavesym
 from tests.support.without_compiler import without_compiler
 from wavesym.errors import WavesymError
-from wavesym.programs.runtime.arrays.engine import ArraySets
 from wavesym.running import sets
 
 SCENE = wavesym.Scene.from_toml("drive_equal").with_(

@@ -5,13 +5,13 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from wavesym.programs.runtime.arrays.engine import ArraySets
 
 import wavesym
 from tests.support.without_compiler import without_compiler
 from wavesym.errors import SpacingError, UnservedError
 from wavesym.programs.march import plan
 from wavesym.programs.request import Request
-from wavesym.programs.runtime.arrays.engine import ArraySets
 from wavesym.programs.runtime.making import runtime_program
 from wavesym.running import sets
 from wavesym.scene.lowering import amplitudes, lower

@@ -18,9 +18,8 @@ import wavesym
 from wavesym.compiler.generation import stream_program
 from wavesym.compiler.texts import tables as table_rows
 from wavesym.derivation import delay, recurrence
-from wavesym.derivation.exact_rule import JointRule, Linear, NodeRule, Rule, Weights
+from wavesym.derivation.exact_rule import JointRule, Linear, Rule, Weights
 from wavesym.derivation.node_law import NodeLaw
-from wavesym.exact.joints import node_rules
 from wavesym.exact.modes.stiffness import HarmonicLaw, Stiffness
 from wavesym.programs.making import make
 from wavesym.programs.request import KINDS, Request
@@ -62,10 +61,6 @@ def coefficients(rule: Rule) -> Rule:
     return replace(rule, terms=tuple(terms))
 
 
-def node(rule: NodeRule) -> NodeRule:
-    return rule._replace(left=FACTOR * rule.left)
-
-
 def joint(rule: JointRule) -> JointRule:
     left, right = rule.radiates
     return rule._replace(radiates=(FACTOR * left, FACTOR * right))
@@ -83,7 +78,6 @@ Broken = Callable[[Any], Any]
 LAWS: Mapping[str, tuple[tuple[Any, ...], str, Broken]] = {
     "law of a node": ((delay, recurrence), "node_law", node_law),
     "recurrences": ((recurrence,), "_rule", coefficients),
-    "powers at a node": ((recurrence,), "node_rule", node),
     "M, C, K of a joint": ((recurrence,), "joint_rule", joint),
     "factors of a joint": ((recurrence,), "factor_weights", factor),
     "dynamic stiffness": ((Stiffness,), "law", stiffness),
@@ -92,7 +86,7 @@ LAWS: Mapping[str, tuple[tuple[Any, ...], str, Broken]] = {
 
 def numbers(law: str | None) -> dict[str, str]:
     """The numbers of every program; with a law broken, or how that was noticed."""
-    for made in (recurrence.joint_rule, recurrence.recurrence, node_rules._derived):
+    for made in (recurrence.joint_rule, recurrence.recurrence):
         made.cache_clear()
     for home in LAWS[law][0] if law else ():
         _, name, broken = LAWS[law or ""]

@@ -56,4 +56,4 @@ def test_what_a_march_does_not_serve_is_said(modal, monkeypatch):
     jumps = replace(model, loads=tuple(replace(load, source="a") for load in model.loads))
     (outcome,) = records(Known(jumps, jumps, 90.0, (), ()))
     assert (outcome.passed, outcome.cells) == (True, {"march": "refused"})
-    assert "times at a spacing of 1.37 have 26 different fractional parts" in outcome.note
+    assert "times at a spacing of 1.37 leave 26 different remainders of the step 1" in outcome.note

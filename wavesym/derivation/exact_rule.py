@@ -63,21 +63,6 @@ class Rule:
     loads: tuple[LoadTerm, ...]
 
 
-class NodeRule(NamedTuple):
-    """A node's law on powers of u, on a stretch without fronts: from r = `left` a + `right` b + `load` times what acts,
-
-        same q_k + raised(k) q_(k+1) = r_k,
-
-    so that powers of the velocity q go up, from its value at the start; without inertia `raised` is 0.
-    """
-
-    same: fmpq
-    raised: Linear
-    left: fmpq
-    right: fmpq
-    load: fmpq
-
-
 class JointRule(NamedTuple):
     """What points of a joint have from (2.4), as factors: `inertia` of M, `damping` of dashpots, `load` of what acts.
 

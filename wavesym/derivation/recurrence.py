@@ -19,11 +19,11 @@ from sympy import Expr, Integer, Symbol, exp
 
 from wavesym.derivation.delay import COUNT, INDEX, SYMBOLS, DelayEquation, delay_equations
 from wavesym.derivation.delay_terms import Operator
-from wavesym.derivation.exact_rule import JointRule, Linear, LoadTerm, NodeRule, Rule, Term, Weights
+from wavesym.derivation.exact_rule import JointRule, Linear, LoadTerm, Rule, Term, Weights
 from wavesym.derivation.node_law import ALPHA, BETA, DAMPING, INERTIA, NodeLaw, node_law
 from wavesym.derivation.numbers import number
 from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.node import Node, Parameters, System
+from wavesym.mechanics.node import Parameters, System
 
 RATE = Symbol("g")
 POWER = Symbol("k", integer=True, nonnegative=True)
@@ -137,24 +137,6 @@ def stretch_law(law: NodeLaw) -> StretchLaw:
     """What a node's law makes of powers: the ansatz at rate 0."""
     own = weights(law.own)
     return StretchLaw(SymbolicWeights(own.same.subs(RATE, 0), own.raised, own.jump), law.left, law.right, law.load)
-
-
-def node_rule(node: Node) -> NodeRule:
-    """The law of one node on powers, in exact numbers."""
-    law = stretch_law(node_law())
-    places = {
-        INERTIA.name: node.inertia,
-        DAMPING.name: node.damping,
-        ALPHA.name: node.alpha if node.left else fmpq(0),
-        BETA.name: node.beta if node.right else fmpq(0),
-    }
-
-    def value(expression: Expr) -> fmpq:
-        return number(expression, places, None)
-
-    return NodeRule(
-        value(law.own.same), _linear(law.own.raised, POWER, value), *map(value, (law.left, law.right, law.load))
-    )
 
 
 @cache

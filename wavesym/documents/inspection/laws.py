@@ -1,35 +1,26 @@
-"""The laws that are run, in the chain's own numbers: of its nodes on powers, of its wave functions on clocks."""
+"""The laws that are run, in the scene's own numbers: of its joints, and of the paper's wave functions on clocks."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from wavesym.derivation.exact_rule import Linear, LoadTerm, NodeRule, Rule, Term, Weights
-from wavesym.documents.inspection.modelled import cone, kind
+from wavesym.derivation.exact_rule import Linear, LoadTerm, Rule, Term, Weights
+from wavesym.documents.inspection.modelled import cone
 from wavesym.documents.inspection.networked import joint_laws, not_served
 from wavesym.documents.inspection.section import Listing, Plain, Section, Told
-from wavesym.exact.joints.node_rules import node_rule
 from wavesym.exact.tables.table import Function, Rules
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 
 
 def laws(model: Model) -> Iterator[Section]:
-    """Both ansaetze for what is in the light cone; of a chain that is written out the law of each joint."""
+    """The law of each joint in the light cone, and of a named system the recurrences of its wave functions."""
+    yield cone(model)
+    yield joint_laws(model)
     if model.chain is None:
-        yield cone(model)
-        yield joint_laws(model)
         yield not_served(model)
         return
     nodes = model.light_cone(rational(model.horizon()))
-    yield cone(model)
-    yield Listing(
-        "nodes",
-        "Powers alone, which pieces and march run: "
-        "same q[k] + raised q[k+1] = left a[k] + right b[k] + load s[k]\n"
-        "of a node's velocity q, of what arrives from the left (a) and right (b), and of what acts (s)",
-        [_of_node(x, model) for x in nodes],
-    )
     rules = Rules(model.named)
     functions = [Function(name, rod) for rod in nodes[1:] for name in ("f", "g")]
     yield Listing(
@@ -41,20 +32,6 @@ def laws(model: Model) -> Iterator[Section]:
         [_of_function(rules[function]) for function in functions],
         ("own", "terms", "loads"),
     )
-
-
-def _of_node(x: int, model: Model) -> dict[str, Plain]:
-    node = model.named.nodes[x]
-    rule: NodeRule = node_rule(node)
-    return {
-        "x": x,
-        "kind": kind(node),
-        "same": str(rule.same),
-        "raised": _linear(rule.raised, "k"),
-        "left": str(rule.left),
-        "right": str(rule.right),
-        "load": str(rule.load),
-    }
 
 
 def _of_function(rule: Rule) -> dict[str, Plain]:

@@ -1,35 +1,10 @@
-"""The laws of nodes and joints in exact numbers, each derived when it is first asked for."""
+"""The laws of joints in exact numbers, each derived when it is first asked for: SymPy is needed only there."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import cache
-
 from flint import fmpq
 
-from wavesym.derivation.exact_rule import JointRule, NodeRule, Weights
-from wavesym.mechanics.node import Node
-from wavesym.numbers.ratio import Ratio
-
-
-def node_rule(node: Node) -> NodeRule:
-    """The law of a node on powers of time; what acts on it is no part of that."""
-    bare = replace(node, loads=())
-    # functions of different rings may look alike, so what has symbols is not kept
-    symbolic = any(isinstance(value, Ratio) for value in (node.alpha, node.beta, node.damping))
-    return _derive(bare) if symbolic else _derived(bare)
-
-
-@cache
-def _derived(node: Node) -> NodeRule:
-    return _derive(node)
-
-
-def _derive(node: Node) -> NodeRule:
-    # SymPy is needed only here, where laws are made
-    from wavesym.derivation.recurrence import node_rule
-
-    return node_rule(node)
+from wavesym.derivation.exact_rule import JointRule, Weights
 
 
 def joint_rule() -> JointRule:
