@@ -5,6 +5,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 from flint import fmpq
+from wavesym.programs.runtime.line import plan
+from wavesym.programs.runtime.run import Run, Since
 
 from tests.support.shaken import SAMPLES, shaken
 from wavesym import Scene, model
@@ -12,8 +14,6 @@ from wavesym.errors import CostError
 from wavesym.programs.march.plan import Panel
 from wavesym.programs.runtime import degree as choosing
 from wavesym.programs.runtime.degree import LEAST, raised
-from wavesym.programs.runtime.line import plan
-from wavesym.programs.runtime.run import Run, Since
 from wavesym.scene import lower
 
 # found among 600 drawn scenes: going on from window 27 degree 27 seems enough, from the start on 33 is needed

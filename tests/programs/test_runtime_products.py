@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from flint import fmpq
+from wavesym.programs.runtime.arrays.laws import allowed, array_laws, array_slopes
 
 import wavesym
 from wavesym.numbers.doubles import rational
 from wavesym.numbers.ratio import Ratio
 from wavesym.programs.request import Request
-from wavesym.programs.runtime.arrays.laws import allowed, array_laws, array_slopes
 from wavesym.programs.runtime.making import runtime_program
 from wavesym.scene import lower
 

@@ -13,7 +13,6 @@ import wavesym
 from tests.support.builds import LANGUAGES, STRICT
 from tests.support.built_model import BuiltModel
 from tests.support.slopes import beyond, slope_of
-from tests.support.without_compiler import without_compiler
 from tests.targets.test_runtime_c import SANITIZED
 from wavesym.errors import WavesymError
 from wavesym.running.toolchain import compiler
@@ -241,19 +240,6 @@ def test_estimates_of_derivatives_hold(make, data):
         for name, of in NUMBERS[make].items()
     }
     assert beyond_estimate(make, numbers, name, data.draw(st.integers(0, len(numbers[name]) - 1))) < 1
-
-
-@pytest.mark.slow
-@EVERY
-def test_numpy_estimates_the_same(make):
-    """But for degrees, which are those of values there, too."""
-    tau, numbers = [1.0], NUMBERS[make]
-    with without_compiler():
-        plain = wavesym.model(make(numbers), runtime=list(numbers)).gradients(tau)
-    found = model_of(make).gradients(tau)
-    for name in numbers:
-        ratio = plain.estimates[name] / found.estimates[name]
-        assert np.all((ratio > 1 / 4) & (ratio < 4))
 
 
 @pytest.mark.slow
