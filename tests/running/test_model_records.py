@@ -144,7 +144,7 @@ BESIDE = {"load": [{"spacing": "2/3", "samples": SAMPLES}, {"times": [1], "a": [
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        (MANY, "load: times at a spacing of 0.3017 have 8 different fractional parts, at most 7 expected"),
+        (MANY, "load: times at a spacing of 0.3017 leave 8 different remainders of the step 1, at most 7 expected"),
         (BESIDE, "--runtime: load given where samples act beside another load on the same body"),
     ],
 )
