@@ -247,7 +247,7 @@ def test_what_is_not_served_is_refused(scene, runtime, message, tmp_path):
     assert not (tmp_path / "none").exists()
 
 
-@pytest.mark.parametrize("more", [{"language": "all"}, {"evaluator": "march"}, {"windows": 3}, {"optimize": "size"}])
+@pytest.mark.parametrize("more", [{"language": "all"}, {"evaluator": "march"}, {"optimize": "size"}])
 def test_other_options_are_refused(more, tmp_path):
     with pytest.raises(WavesymError, match="with --runtime"):
         wavesym.generate(BUILDING, tmp_path / "none", runtime=["kappa"], **more)
