@@ -1,4 +1,4 @@
-"""What is computed wrong in C with parameters at run time, so that errors are far above rounding: the text, and another."""
+"""What is computed wrong in C with parameters at run time, errors then far above rounding: the text and another."""
 
 BODIES = [
     ("const num less = 2 * own[j]", "const num less = 1.9999999 * own[j]"),
