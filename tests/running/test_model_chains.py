@@ -271,7 +271,7 @@ def test_its_selftest_passes(tmp_path):
 
 @pytest.mark.slow
 def test_its_selftest_sees_what_is_broken(tmp_path):
-    assert selftest(tmp_path / "wrong", ("one = ratio[port] * times", "one = 0.999999 * ratio[port] * times")) == 1
+    assert selftest(tmp_path / "wrong", ("ended_at[j] - table[j]", "0.999999 * ended_at[j] - table[j]")) == 1
 
 
 @pytest.mark.slow

@@ -199,7 +199,7 @@ def test_in_single_precision_too(case, tmp_path):
     "change",
     [
         ("total[heard] += high[side] - low[side];", "total[heard] += high[side];"),
-        ("(ended[j] - table[j][0][LOSS] * mean)", "(ended[j] - table[j][0][SLACK] * mean)"),
+        ("(ended_at[j] - table[j][0][LOSS] * mean)", "(ended_at[j] - table[j][0][SLACK] * mean)"),
         ("all->rates[k], lane) = law->rates[k]", "all->rates[k], 0) = law->rates[k]"),
         ("here[side] += MAGNITUDES(sum);", "(void)sum;"),
         ("much_more = 4 * p[side].largest[output]", "much_more = 16 * p[side].largest[output]"),
