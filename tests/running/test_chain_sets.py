@@ -1,11 +1,10 @@
-"""Many sets of a chain's parameters: side by side in C, and in NumPy, each is what its chain is alone."""
+"""Many sets of a chain's parameters: side by side each is what its chain is alone."""
 
 import numpy as np
 import pytest
 
 import wavesym
-from tests.running.test_model_chains import EVERY, HARD, NUMBERS, exact, frame, model_of, shaft, tree
-from tests.support.without_compiler import without_compiler
+from tests.running.test_model_chains import EVERY, HARD, NUMBERS, exact, frame, model_of
 from tests.targets.test_runtime_batch import Batch, check_neighbours
 
 
@@ -24,11 +23,6 @@ def drawn(make, count, seed=5, spread=1.0):
     for name, values in sets.items():
         values[:3] = own[name], HARD[make][name], np.where(np.array(own[name]) == 0, 0, 1)
     return sets
-
-
-def without(make):
-    with without_compiler():
-        return wavesym.model(make(NUMBERS[make]), runtime=list(NUMBERS[make]))
 
 
 @pytest.mark.slow
@@ -71,38 +65,6 @@ def test_misfits_are_sums_of_squares(make):
     data[0, ::3] = np.nan
     sums = np.nansum((model.run(tau, **sets) - data) ** 2, axis=(1, 2))
     assert model.misfit(tau, data)(**sets) == pytest.approx(sums, rel=1e-10, abs=0)
-    assert without(make).misfit(tau, data)(**sets) == pytest.approx(sums, rel=1e-6, abs=0)
-
-
-@pytest.mark.slow
-@EVERY
-def test_numpy_finds_what_c_finds(make):
-    model, other, sets = model_of(make), without(make), drawn(make, 16)
-    sets["mass"][5, 0], sets["mass"][6, 0] = -1, 1e-9
-    tau = np.linspace(0, model.tau_max, 23)
-    one, same = model.gradients(tau, **sets), other.gradients(tau, **sets)
-    assert one.checks.status.tolist() == same.checks.status.tolist()
-    assert one.checks.status[[0, 5, 6]].tolist() == [0, 1, 2]
-    fine = one.checks.status == 0
-    allowed = 1e-11 + one.checks.estimate[fine] + same.checks.estimate[fine]
-    largest = np.max(np.abs(one.values[fine]), axis=2)
-    apart = np.max(np.abs(one.values - same.values)[fine], axis=2)
-    assert np.all(apart <= allowed[:, None] * largest)
-    own = [np.max(np.abs(one.by[name][0] - same.by[name][0])) for name in one.by]
-    assert max(own) <= 1e-9 * max(np.max(np.abs(one.by[name][0])) for name in one.by)
-    for kind in ("min", "max"):
-        found, expected = (getattr(each.peaks(**sets), kind)[fine] for each in (other, model))
-        assert np.all(np.abs(found - expected) <= 2 * allowed[:, None] * largest + 1e-15)
-
-
-def test_numpy_finds_what_the_chain_does():
-    model = without(tree)
-    numbers = {name: [1.0] * len(values) for name, values in NUMBERS[tree].items()}
-    tau = np.linspace(0, model.tau_max, 31)
-    true = wavesym.evaluator(tree(exact(numbers)))(tau)
-    largest = np.max(np.abs(true), axis=1)
-    found = model.run(tau, **numbers)[0]
-    assert np.all(np.max(np.abs(found - true), axis=1) <= model.check(**numbers).estimate[0] * largest)
 
 
 @pytest.mark.slow
@@ -111,11 +73,9 @@ def test_derivatives_by_a_load_that_is_0_are_as_good():
     model, tau = model_of(frame), np.linspace(0, 4.5, 19)
     numbers = NUMBERS[frame] | {"dashpot": [8, 40], "impedance": [11, 2], "load": [0, 0.5]}
     with_it = NUMBERS[frame] | {"dashpot": [8, 40], "impedance": [11, 2], "load": [1, 0]}
-    for each in (model, without(frame)):
-        slope = each.gradients(tau, **numbers).by["load"][0, 0]  # as motion is linear in loads, that of load 1 alone
-        true = wavesym.evaluator(frame(exact(with_it)))(tau)
-        assert np.all(np.max(np.abs(slope - true), axis=1) <= 1e-9 * np.max(np.abs(true), axis=1) + 1e-13)
-    assert shaft in NUMBERS
+    slope = model.gradients(tau, **numbers).by["load"][0, 0]  # as motion is linear in loads, that of load 1 alone
+    true = wavesym.evaluator(frame(exact(with_it)))(tau)
+    assert np.all(np.max(np.abs(slope - true), axis=1) <= 1e-9 * np.max(np.abs(true), axis=1) + 1e-13)
 
 
 ENDS = wavesym.Scene(
@@ -142,16 +102,13 @@ TOUCHING = wavesym.Scene(
 @pytest.mark.parametrize(("scene", "names"), [(ENDS, ["mass", "impedance"]), (TOUCHING, ["kappa", "velocity"])])
 def test_what_is_always_0_does_not_count(scene, names):
     """The strain of a free end: without that knowledge there was rounding in it, and no estimate of the others."""
-    compiled = wavesym.model(scene, runtime=names)
-    with without_compiler():
-        other = wavesym.model(scene, runtime=names)
-    for model in (compiled, other):
-        silent = [k for k, name in enumerate(model.outputs) if name in ("strain@4/3", "strain@0+")]
-        values = model.run(np.linspace(0, model.tau_max, 50))[0]
-        assert not values[silent].any()
-        assert np.all(np.max(np.abs(values), axis=1)[[k for k in (0, 1) if k not in silent]] > 0.1)
-        assert model.check().estimate[0] < 1e-10
-    assert compiled.bounds()[0, silent] == 0
+    model = wavesym.model(scene, runtime=names)
+    silent = [k for k, name in enumerate(model.outputs) if name in ("strain@4/3", "strain@0+")]
+    values = model.run(np.linspace(0, model.tau_max, 50))[0]
+    assert not values[silent].any()
+    assert np.all(np.max(np.abs(values), axis=1)[[k for k in (0, 1) if k not in silent]] > 0.1)
+    assert model.check().estimate[0] < 1e-10
+    assert model.bounds()[0, silent] == 0
 
 
 @pytest.mark.slow
@@ -164,14 +121,11 @@ def test_what_lies_beyond_the_horizon_does_not_count(until):
         load=[{"body": 1, "times": [0], "steps": [1]}],
         output={"until": until, "tolerance": "1e-11", "velocity": [0, 2]},
     )
-    compiled = wavesym.model(scene, runtime=["kappa"])
-    with without_compiler():
-        models = [compiled, wavesym.model(scene, runtime=["kappa"])]
-    for model in models:
-        tau = np.linspace(0, model.tau_max, 101)
-        true = wavesym.evaluator(scene)(tau)
-        largest, wrong = np.max(np.abs(true), axis=1), np.max(np.abs(model.run(tau)[0] - true), axis=1)
-        assert np.all(wrong <= model.check().estimate[0] * largest)
+    model = wavesym.model(scene, runtime=["kappa"])
+    tau = np.linspace(0, model.tau_max, 101)
+    true = wavesym.evaluator(scene)(tau)
+    largest, wrong = np.max(np.abs(true), axis=1), np.max(np.abs(model.run(tau)[0] - true), axis=1)
+    assert np.all(wrong <= model.check().estimate[0] * largest)
     # and side by side
-    apart = compiled.misfit(tau, true)
+    apart = model.misfit(tau, true)
     assert np.isfinite(apart(kappa=np.ones((9, 2)))).all()

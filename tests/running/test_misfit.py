@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import wavesym
-from tests.support.without_compiler import without_compiler
-from wavesym.errors import UnservedError, WavesymError
+from wavesym.errors import WavesymError
 
 SCENE = wavesym.Scene.from_toml("drive_equal").with_(
     {"output.until": 4, "output.tolerance": "1e-11", "load[1].times": ["3/2"]}
@@ -75,15 +74,3 @@ def test_other_data_are_refused(model):
         model.misfit([1.0], np.full((len(model.outputs), 1), np.inf))
     with pytest.raises(WavesymError, match="tau: 0 to 4 expected"):
         model.misfit([7.0], np.zeros((len(model.outputs), 1)))
-
-
-def test_numpy_finds_the_same(model):
-    with without_compiler():
-        other = wavesym.model(SCENE, runtime=["kappa", "load"])
-    kappa = np.array([*KAPPA[:3], [1, -1, 1]])
-    tau, data = TAUS["few"], np.ones((len(model.outputs), 3))
-    data[0, 1] = np.nan
-    expected = model.misfit(tau, data)(kappa=kappa)
-    assert other.misfit(tau, data)(kappa=kappa) == pytest.approx(expected, rel=1e-9, nan_ok=True)
-    with pytest.raises(UnservedError, match="bounds: 4 sets given without a C compiler"):
-        other.bounds(kappa=kappa)

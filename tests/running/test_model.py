@@ -12,6 +12,7 @@ import wavesym
 from tests.support.without_compiler import without_compiler
 from wavesym.errors import WavesymError
 from wavesym.running import sets
+from wavesym.running.toolchain import CompilerError
 
 SCENE = wavesym.Scene.from_toml("drive_equal").with_(
     {"output.until": 3, "output.tolerance": "1e-11", "load[1].times": ["3/2"]}
@@ -19,12 +20,17 @@ SCENE = wavesym.Scene.from_toml("drive_equal").with_(
 KAPPA = np.array([[0.5, 2, 0.25], [1, 1.0000001, 1], [1e-3, 1e-3, 1e-3], [100, 1e-3, 20]])
 
 
-@pytest.fixture(scope="module", params=["C", "NumPy"])
-def model(request):
-    with without_compiler() if request.param == "NumPy" else pytest.MonkeyPatch.context() as machine:
-        if machine:
-            machine.setattr(sets, "FAST", ("-O1",))  # compiled sooner
-        yield wavesym.model(SCENE, runtime=["kappa", "load"])
+@pytest.fixture(scope="module", autouse=True)
+def sooner():
+    """Compiled sooner."""
+    with pytest.MonkeyPatch.context() as machine:
+        machine.setattr(sets, "FAST", ("-O1",))
+        yield
+
+
+@pytest.fixture(scope="module")
+def model():
+    return wavesym.model(SCENE, runtime=["kappa", "load"])
 
 
 def scene(kappa):
@@ -49,7 +55,6 @@ def test_each_set_is_its_scene(model, tau):
     assert np.all(estimate < 1e-9)
 
 
-@pytest.mark.parametrize("model", ["C"], indirect=True)
 def test_errors_are_within_bounds(model):
     tau = np.linspace(0, 3, 25)
     bounds = model.bounds(kappa=[KAPPA[0], -KAPPA[0]])
@@ -88,11 +93,8 @@ def test_derivatives_are_those_of_the_exact_outputs(model):
     assert np.allclose(sums, found.values, rtol=0, atol=1e-13)
 
 
-def test_extremes_are_not_those_of_samples_alone(model, monkeypatch):
+def test_extremes_are_not_those_of_samples_alone(model):
     full = model.peaks(kappa=KAPPA)
-    if isinstance(model._engine, ArraySets):
-        monkeypatch.setattr("wavesym.programs.runtime.arrays.peaks._Summit.explore", lambda *_: None)
-        assert np.max(full.max - model.peaks(kappa=KAPPA).max) > 1e-6
     samples = model.run(kappa=KAPPA, tau=np.linspace(0, 3, 1001))
     # those at jumps aside, no sample is beyond the extremes, and one is near
     assert np.all(samples.max(axis=2) <= full.max + 1e-12)
@@ -162,10 +164,16 @@ def test_a_model_says_that_other_processes_make_their_own(model, way):
         way(model)
 
 
+def test_without_a_compiler_there_is_no_model():
+    with without_compiler(), pytest.raises(CompilerError, match="pip install ziglang") as error:
+        wavesym.model(SCENE, runtime=["kappa"])
+    assert "the extra compiler of wavesym" in str(error.value)
+    assert "\n" not in str(error.value)
+
+
 def test_velocities_of_a_scene_that_does_not_move_may_come_later():
     scene = wavesym.Scene.from_toml("collision_m4").with_({"output.until": 4})
-    with without_compiler():
-        still = wavesym.model(scene.with_({"system.velocity": [1, 1]}), runtime=["velocity"])
+    still = wavesym.model(scene.with_({"system.velocity": [1, 1]}), runtime=["velocity"])
     checks = still.check(velocity=[[1, -0.5], [1, 1]])
     assert checks.status.tolist() == [0, 0]
     tau = np.linspace(0, 4, 9)

@@ -13,7 +13,6 @@ import wavesym
 from tests.support.builds import LANGUAGES, STRICT
 from tests.support.built_model import BuiltModel
 from tests.support.slopes import beyond, slope_of
-from tests.support.without_compiler import without_compiler
 from tests.targets.test_runtime_c import SANITIZED
 from wavesym.errors import WavesymError
 from wavesym.running.toolchain import compiler
@@ -244,19 +243,6 @@ def test_estimates_of_derivatives_hold(make, data):
 
 
 @pytest.mark.slow
-@EVERY
-def test_numpy_estimates_the_same(make):
-    """But for degrees, which are those of values there, too."""
-    tau, numbers = [1.0], NUMBERS[make]
-    with without_compiler():
-        plain = wavesym.model(make(numbers), runtime=list(numbers)).gradients(tau)
-    found = model_of(make).gradients(tau)
-    for name in numbers:
-        ratio = plain.estimates[name] / found.estimates[name]
-        assert np.all((ratio > 1 / 4) & (ratio < 4))
-
-
-@pytest.mark.slow
 def test_extremes_are_those_of_the_chain():
     found = model_of(shaft).peaks()
     for place, output in enumerate(wavesym.summary(shaft(NUMBERS[shaft])).outputs):
@@ -285,7 +271,7 @@ def test_its_selftest_passes(tmp_path):
 
 @pytest.mark.slow
 def test_its_selftest_sees_what_is_broken(tmp_path):
-    assert selftest(tmp_path / "wrong", ("ratio[port] * q", "0.999999 * ratio[port] * q")) == 1
+    assert selftest(tmp_path / "wrong", ("ended_at[j] - table[j]", "0.999999 * ended_at[j] - table[j]")) == 1
 
 
 @pytest.mark.slow

@@ -1,6 +1,5 @@
 """Parameters of scenes with units: what is given anew is what a scene with these numbers says."""
 
-from contextlib import nullcontext
 from copy import deepcopy
 
 import numpy as np
@@ -8,8 +7,8 @@ import pytest
 
 import wavesym
 from tests.scene.test_physical_scenes import BUILDING, CHAIN, COLLISION, DRIVE, STOREY
-from tests.support.without_compiler import without_compiler
-from wavesym.programs.runtime import plan
+from wavesym.programs.runtime import network
+from wavesym.running import sets
 
 
 def drive():
@@ -91,11 +90,16 @@ CASES = {
 }
 
 
+@pytest.fixture(autouse=True)
+def sooner(monkeypatch):
+    """Compiled sooner."""
+    monkeypatch.setattr(sets, "FAST", ("-O1",))
+
+
 def missed(case):
     """The largest error of any output, relative to its largest value, of the other scene; and the model."""
     first, other, numbers = CASES[case][0]()
-    with nullcontext() if case in ("chain", "storeys") else without_compiler():
-        model = wavesym.model(wavesym.Scene(**first), runtime=list(numbers))
+    model = wavesym.model(wavesym.Scene(**first), runtime=list(numbers))
     tau = np.linspace(0, model.tau_max, 41)
     true = wavesym.evaluator(wavesym.Scene(**other))(tau)
     errors = np.abs(model.run(tau, **numbers)[0] - true)
@@ -121,7 +125,7 @@ def test_another_set_is_another_scene(case):
 @pytest.mark.slow
 @pytest.mark.parametrize("rule", ["load_kept", "force_kept"])
 def test_loads_and_forces_that_change_with_discs_are_seen(rule, monkeypatch):
-    monkeypatch.setattr(plan, rule, lambda model, free: 1)
+    monkeypatch.setattr(network, rule, lambda model, free: 1)
     assert missed("drive")[0] > 1e-3
 
 

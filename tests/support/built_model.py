@@ -10,6 +10,7 @@ import numpy as np
 
 from tests.support.builds import LANGUAGES, STRICT
 from wavesym import compiler as ways
+from wavesym import evaluator
 from wavesym.programs.request import PARTS
 from wavesym.programs.runtime.request import POSITIVE
 from wavesym.running.toolchain import compiler
@@ -99,6 +100,15 @@ class BuiltModel:
     def at(self, tau):
         out = np.empty(self.outputs)
         return self._eval(self.model.ctypes.data, tau, out.ctypes.data), out
+
+    def errors(self, scene, count=301):
+        """Of each output the largest error relative to its largest value; below, by no more than what samples miss."""
+        step = self.until / (count - 1)
+        _, found = self.sample(0.0, step, count)
+        true = evaluator(scene)(np.array([k * step for k in range(count)]))
+        largest, wrong = np.max(np.abs(true), axis=1), np.max(np.abs(found - true), axis=1)
+        assert np.all(wrong[largest == 0] == 0)
+        return wrong / np.where(largest > 0, largest, 1)
 
     def sample(self, tau0, dtau, count):
         out = np.empty((self.outputs, count))

@@ -199,8 +199,8 @@ def test_in_single_precision_too(case, tmp_path):
     "change",
     [
         ("total[heard] += high[side] - low[side];", "total[heard] += high[side];"),
-        ("(ended[j] - edge[LOSS] * mean)", "(ended[j] - edge[SLACK] * mean)"),
-        ("all->rate[node], lane) = law->rate[node]", "all->rate[node], 0) = law->rate[node]"),
+        ("(ended_at[j] - table[j][0][LOSS] * mean)", "(ended_at[j] - table[j][0][SLACK] * mean)"),
+        ("all->rates[k], lane) = law->rates[k]", "all->rates[k], 0) = law->rates[k]"),
         ("here[side] += MAGNITUDES(sum);", "(void)sum;"),
         ("much_more = 4 * p[side].largest[output]", "much_more = 16 * p[side].largest[output]"),
         ("= (real)1.5 * p[side].mean[output]", "= 8 * p[side].mean[output]"),

@@ -12,6 +12,7 @@ import pytest
 import wavesym
 from tests.support.builds import LANGUAGES, STRICT, needs_binutils
 from tests.support.built_model import BuiltModel, written
+from tests.support.faults import BODIES
 from tests.support.patience import first_always
 from wavesym.cli import main
 from wavesym.errors import WavesymError
@@ -122,7 +123,7 @@ def test_any_parameters_give_what_their_scene_gives(case, tmp_path):
 @pytest.mark.parametrize(
     ("change", "case"),
     [
-        (("const real begun = 2 * ratio[1]", "const real begun = 1.9999999 * ratio[1]"), "building"),
+        (BODIES[0], "building"),
         (("2.0 * p->kappa[1]", "1.999999 * p->kappa[1]"), "building"),
         (("half * (c[1] + 2 * middle * c[2])", "half * (c[1] + middle * c[2])"), "ground"),
         (("total[heard] - low", "total[heard]"), "collision"),
@@ -247,7 +248,7 @@ def test_what_is_not_served_is_refused(scene, runtime, message, tmp_path):
     assert not (tmp_path / "none").exists()
 
 
-@pytest.mark.parametrize("more", [{"language": "all"}, {"evaluator": "march"}, {"windows": 3}, {"optimize": "size"}])
+@pytest.mark.parametrize("more", [{"language": "all"}, {"evaluator": "march"}, {"optimize": "size"}])
 def test_other_options_are_refused(more, tmp_path):
     with pytest.raises(WavesymError, match="with --runtime"):
         wavesym.generate(BUILDING, tmp_path / "none", runtime=["kappa"], **more)

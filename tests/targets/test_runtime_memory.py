@@ -29,7 +29,7 @@ CASES = {
     "chain": (CHAIN, ["mass", "impedance"], "single", 10),
     "building in single precision": (BUILDING, ["kappa"], "single", 1),
     "chain in double precision": (CHAIN, ["mass", "load"], "double", 100),
-    "many panels": (RECORD, ["kappa"], "double", 2),
+    "many panels": (RECORD, ["kappa"], "double", 10),
 }
 STRUCTS = ("model", "work", "tangent", "batch", "data")
 WHO = {

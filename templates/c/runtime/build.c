@@ -10,6 +10,84 @@
 #undef ZERO
 #undef FUSED
 
+/* How an output weighs waves, added up. */
+static real weight_of(const laws *law, int output)
+{
+    real weight = faint; /* gains may underflow */
+    for (int k = 0; k < NAME_HEARD; ++k) {
+        weight += heard_output[k] == output ? magnitude(law->gain[k]) : (real)0;
+    }
+    return weight;
+}
+
+/* An error relative to what is surely there of an output; of one that waves have reached that may be nothing. */
+static real relative(const laws *law, const laws *slope, int lane, int output, real error, real largest)
+{
+    if (silent[output]) {
+        return 0;
+    }
+    if (error < largest) {
+        return error / (largest - error);
+    }
+    return !(error <= 0) && (largest > 0 || reached(law, slope, lane, output)) ? infinity() : (real)0;
+}
+
+/* How often a velocity of size 1 is rounded, about: the sums of a body, of so many coefficients, lose up to a sixteenth of
+ * the degree squared. So does what is read, of its own size. */
+static real read_by(int degree)
+{
+    return unit * (real)(degree * degree) / 16;
+}
+
+static real rounded_by(int degree)
+{
+    return unit * (real)(degree + NAME_WINDOWS) + (NAME_BODIES > 0 ? read_by(degree) : (real)0);
+}
+
+/* Of the largest value of an output, about what `missed`, as a velocity, and reading at a degree make of it, at worst. */
+static real estimated(const work_of *m, const laws *law, real missed, int degree)
+{
+    real worst = 0;
+    for (int output = 0; output < NAME_OUTPUTS; ++output) {
+        const real largest = m->largest[output];
+        const real error = weight_of(law, output) * missed + read_by(degree) * largest;
+        worst = larger(worst, relative(law, law, OF_VALUES, output, error, largest));
+    }
+    return worst;
+}
+
+/* How far a build has come. */
+typedef struct {
+    int window, degree, event;
+    size_t place;
+    real missed, size, heard;
+    real leak, seen; /* what the window of now misses, and `size` with it */
+} progress;
+
+/* A derivative may miss so much more of itself than a value. */
+enum { LENIENT = 64 };
+
+static int higher_than(int degree)
+{
+    const int higher = degree + degree / 4;
+    return higher < NAME_DEGREE ? higher : NAME_DEGREE;
+}
+
+/* About what velocities are wrong by, at worst. Errors were up to five times what polynomials miss; docs/march.md of
+ * wavesym has what was measured. */
+static real wrong_by(real missed, real size, int degree)
+{
+    return 6 * missed + rounded_by(degree) * size;
+}
+
+static int ended(const work_of *m, model_of *made, const laws *law, const progress *now)
+{
+    const real missed = wrong_by(now->missed, now->size, now->degree);
+    made->built = finite_number(now->size) && finite_number(missed) && finite_number(now->heard);
+    made->estimate = made->built ? estimated(m, law, missed, now->degree) : not_a_number();
+    return !made->built;
+}
+
 /* Add to all strands of a window what is heard of waves: each times its gain, or their integrals from tau = 0 on, of
  * which `total` is what windows before have brought. */
 static void listen(const work_of *m, track_of *waves, const real *gains, real *total, int window, int degree, real *all)

@@ -64,6 +64,9 @@ static int is_block(int joint)
 /* A panel, counted through all windows, that there is not: what begins there does not begin. */
 enum { NEVER = NAME_WINDOWS * NAME_PANELS };
 
+/* No parameter: the values themselves. */
+enum { OF_VALUES = -1 };
+
 /* From which panel on, counted through all windows, something moves at a joint, or acts on it: its own, at first. Of
  * derivatives, where `of` is what the laws change by: what differs as the parameter does. */
 static int stirred(const laws *law, const laws *of, int lane, int joint)
@@ -153,8 +156,8 @@ static int heard_since(const laws *of, const int *since, int output)
     return 0;
 }
 
-/* Whether a joint that something has come to can be felt in an output: what numbers that cancel leave does not matter. Of
- * derivatives that is a joint whose laws change. */
+/* Whether a joint that something has come to can be felt in an output up to TAU_MAX: what numbers that cancel leave does
+ * not matter. Of derivatives that is a joint whose laws change, by `slope`. */
 static int reached(const laws *law, const laws *slope, int lane, int output)
 {
     int since[NAME_TRACKS], changed[NAME_TRACKS];

@@ -62,6 +62,12 @@ int name_build_tangent(name_tangent *tangent, const name_parameters *parameters)
 name_real name_tangent_estimate(const name_tangent *tangent, int lane);
 int name_tangent_sample(
     const name_tangent *tangent, name_real tau0, name_real dtau, size_t count, name_real *out);
+int name_build_batch(name_batch *batch, const name_parameters *parameters, size_t sets);
+int name_batch_model(const name_batch *batch, int set, name_model *model);
+size_t name_data_size(const name_real *tau, size_t count);
+int name_data_init(
+    name_data *data, name_real *numbers, const name_real *tau, const name_real *values, size_t count);
+void name_batch_misfit(const name_batch *batch, const name_data *data, name_real *misfit);
 
 #include <float.h>
 

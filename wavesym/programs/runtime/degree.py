@@ -7,7 +7,7 @@ share. Where springs make blocks of joints it is what a front asks for that has 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import ceil, log10, sqrt
 from typing import NamedTuple
@@ -44,16 +44,16 @@ class DegreeRange(NamedTuple):
 
 
 def largest_kappa(made: RuntimePlan, kappa_max: fmpq | None) -> fmpq | None:
-    """The largest kappa (in a general chain the largest rate) that a program is made for: `kappa_max`, if it was said.
+    """The largest kappa (in a general chain the largest rate) that a program is made for: `kappa_max`, if it was said,
+    or the scene's own, where that is larger.
 
     None where no field makes bodies lighter.
     """
     if not any(field.positive for field in made.free.fields):
         return None
-    if kappa_max is not None:
-        return kappa_max
-    own = made.model.chain
-    return LIGHTER * (max(own.parameters.kappa.values()) if own else fastest(made.own))
+    chain = made.model.chain
+    own = max(chain.parameters.kappa.values()) if chain else fastest(made.own)
+    return LIGHTER * own if kappa_max is None else max(kappa_max, own)
 
 
 def fastest(plan: MarchPlan) -> fmpq:
@@ -72,11 +72,27 @@ def degrees(made: RuntimePlan, share: float, tolerance: fmpq, kappa_max: fmpq | 
         first = max(LEAST, ceil(_front(own, fastest(own)) / 2 + digits / 3))
         rate = max(fastest(own), kappa_max or fmpq(0))
         return DegreeRange(first, max(ceil(1.5 * _front(own, rate)) + 24, first))
-    degree = _enough(own, LEAST, share)
+    started = any(field.name == "velocity" for field in made.free.fields)
+    degree = LEAST
+    for usual in _begun(own, anew=started):
+        degree = _enough(usual, degree, share)
     first = max(LEAST, 4 * degree // 5)
-    for light in () if kappa_max is None else _light(made, kappa_max):
-        degree = _enough(light, degree, share, f" for kappa up to {nearest(kappa_max or fmpq(0)):g}")
+    for quick in () if kappa_max is None else _light(made, kappa_max):
+        for light in _begun(quick, anew=started):
+            degree = _enough(light, degree, share, f" for kappa up to {nearest(kappa_max or fmpq(0)):g}")
     return DegreeRange(first, degree)
+
+
+def _begun(plan: MarchPlan, *, anew: bool) -> Iterator[MarchPlan]:
+    """As the scene begins, and, where that is given `anew`, with bodies that do not move together."""
+    yield plan
+    if anew:
+        yield replace(plan, joints=tuple(_apart(number, joint) for number, joint in enumerate(plan.joints)))
+
+
+def _apart(number: int, joint: MarchedJoint) -> MarchedJoint:
+    space = joint.space
+    return replace(joint, space=replace(space, begun=tuple(value - 1 - number for value in space.begun)))
 
 
 def _front(plan: MarchPlan, rate: fmpq) -> float:

@@ -86,11 +86,7 @@ def _program(
         "share": share,
     }
     what = "rates" if model.chain is None else "kappa"
-    light = (
-        ""
-        if kappa_max is None
-        else f", enough for the scene's own parameters and for {what} up to {nearest(kappa_max):g}"
-    )
+    light = "" if kappa_max is None else f" and for {what} up to {nearest(kappa_max):g}"
     on = "" if made.plan.step == 1 else f" on steps of {made.plan.step}"
     reason = (
         f"march with {', '.join(request.runtime)} at run time, degrees from {least} to {degree}{on}, enough for the "

@@ -15,7 +15,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_poly
 
-from wavesym.mechanics.loads import Applied
+from wavesym.mechanics.loads import Applied, merged
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Point
 from wavesym.numbers.doubles import rational
@@ -87,11 +87,17 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real
     # as if each weighed 1, so that none of them is left out
     changes = {(change.time, change.source) for load in acting for change in load}
     felt = tuple(Applied(source, time, fmpq(1)) for time, source in sorted(changes))
-    own = march_plan(replace(model, loads=felt), real)
     # which points loads act on is all that counts of them here
     points = zip(free.network.points, model.network.points, strict=True)
     network = replace(free.network, points=tuple(replace(point, loads=own.loads) for point, own in points))
     plan = march_plan(replace(model, network=network, loads=felt), real, joint_rows, HELPS)
+    # in the scene each counts as it says, or, where that is 0, once
+    known = (
+        replace(change, weight=change.weight * (load.weight or 1))
+        for load, changes in zip(loads, acting, strict=True)
+        for change in changes
+    )
+    own = march_plan(replace(model, loads=merged(known)), real, helps=HELPS)
     silent = quiet(free.some, loads, real)
     kept: list[Any] = [free.force_kept if probe.quantity == "force" else fmpq(1) for probe in model.probes]
     heard = tuple(
