@@ -5,7 +5,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from flint import fmpq
-from wavesym.programs.runtime.arrays.laws import allowed, array_laws, array_slopes
 
 import wavesym
 from wavesym.numbers.doubles import rational

@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from wavesym.programs.runtime.arrays.engine import ArraySets
 
 import wavesym
 from tests.support.without_compiler import without_compiler

@@ -5,7 +5,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from wavesym.programs.runtime.arrays.engine import ArraySets
 
 import wavesym
 from wavesym.errors import SpacingError, UnservedError
