@@ -58,7 +58,7 @@ static int points_of(int joint)
 /* Whether a joint has matrices of a block. */
 static int is_block(int joint)
 {
-    return at_square[joint + 1] > at_square[joint];
+    return NAME_SQUARES > 0 && at_square[joint + 1] > at_square[joint];
 }
 
 /* A panel, counted through all windows, that there is not: what begins there does not begin. */

@@ -335,7 +335,7 @@ static void OF(moved)(const OF(work_of) *m, int joint, int panel, int degree, nu
         }
     }
     num before[NAME_WIDEST];
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < NAME_WIDEST; ++i) { /* all, so that no compiler thinks that a sum begins with nothing */
         before[i] = ZERO;
     }
     OF(add_product)(m->edge[panel][START] + at_square[joint], begun_at, n, 1, before);
@@ -641,7 +641,7 @@ static void OF(march_joint)(OF(work_of) *m, const OF(laws) *law, int joint, int 
     num(*const x)[NAME_ROW] = m->path[panel] + first;
     num(*const s)[NAME_ROW] = m->acting[panel] + first_point[joint];
     OF(gather)(m->waves, m->force[panel], law, joint, panel, now, degree, 0, m->acting[panel]);
-    if (n > 0) {
+    if (is_block(joint)) {
         OF(add_series)(law->pushed + at_pushed[joint], n, points, s, degree, 0, f);
         OF(moved)(m, joint, panel, degree, f, m->state[1] + first, x);
         OF(add_missed)(law, joint, panel, degree, f, x, missed);
