@@ -466,7 +466,8 @@ static void OF(scatter_point)(OF(work_of) *m, const OF(laws) *law, int joint, in
     OF(enlarge)(size, right);
 }
 
-/* Up to BODIES_AT_ONCE bodies, each between at most two rods: as `moving`, with what arrives and what they send. */
+/* Up to BODIES_AT_ONCE bodies, each between at most two rods: as `moving`, with what
+ * arrives, times their drives, and what they send. */
 typedef struct {
     int count;
     num (*table[BODIES_AT_ONCE])[4];
@@ -487,6 +488,7 @@ static void OF(move_between)(OF(between) *e, real half, int degree)
     num(*table[BODIES_AT_ONCE])[4];
     const num *a[BODIES_AT_ONCE], *b[BODIES_AT_ONCE];
     num *q[BODIES_AT_ONCE], *left[BODIES_AT_ONCE], *right[BODIES_AT_ONCE];
+    real on_left[BODIES_AT_ONCE], on_right[BODIES_AT_ONCE];
     UNROLLED
     for (int j = 0; j < BODIES_AT_ONCE; ++j) {
         const int of = j < e->count ? j : 0;
@@ -496,6 +498,8 @@ static void OF(move_between)(OF(between) *e, real half, int degree)
         q[j] = e->q[of];
         left[j] = e->left[of];
         right[j] = e->right[of];
+        on_left[j] = e->on_left[of];
+        on_right[j] = e->on_right[of];
         one[j] = e->one[of];
         other[j] = e->other[of];
         here[j] = one[j] * a[j][degree] + other[j] * b[j][degree];
@@ -508,9 +512,10 @@ static void OF(move_between)(OF(between) *e, real half, int degree)
             num below = one[j] * a[j][k - 1] + other[j] * b[j][k - 1];
             const num *const force = k <= 3 ? e->force[j < e->count ? j : 0] : NULL;
             if (force) {
-                below += force[k - 1];
+                below += table[j][0][DRIVE] * force[k - 1];
             }
-            y[j] = table[j][k][GAIN] * ((k == 1 ? (num)(2 * below) : below) - above[j]) + table[j][k][RATIO] * y[j];
+            const num change = (k == 1 ? (num)(2 * below) : below) - above[j];
+            y[j] = table[j][k][RATIO] * change + table[j][k][RATIO] * y[j];
             q[j][k] = y[j];
             begun_at[j] += table[j][k][SUM_FIRST] * y[j];
             ended_at[j] += table[j][k][SUM_LAST] * y[j];
@@ -523,8 +528,8 @@ static void OF(move_between)(OF(between) *e, real half, int degree)
         const num mean = rest - table[j][0][SLACK] * rest;
         *e->state[j] = mean + (ended_at[j] - table[j][0][LOSS] * mean);
         q[j][0] = mean;
-        left[j][0] = e->on_left[j] * mean - a[j][0];
-        right[j][0] = e->on_right[j] * mean - b[j][0];
+        left[j][0] = on_left[j] * mean - a[j][0];
+        right[j][0] = on_right[j] * mean - b[j][0];
         OF(enlarge)(e->size[j], e->state[j]);
         OF(enlarge)(e->size[j], left[j]);
         OF(enlarge)(e->size[j], right[j]);
@@ -535,15 +540,13 @@ static void OF(move_between)(OF(between) *e, real half, int degree)
     for (int k = 1; k <= degree; ++k) {
         UNROLLED
         for (int j = 0; j < BODIES_AT_ONCE; ++j) {
-            const int of = j < e->count ? j : 0;
             y[j] = q[j][k] - table[j][k][RATIO] * y[j];
-            left[j][k] = e->on_left[of] * y[j] - a[j][k];
-            right[j][k] = e->on_right[of] * y[j] - b[j][k];
+            left[j][k] = on_left[j] * y[j] - a[j][k];
+            right[j][k] = on_right[j] * y[j] - b[j][k];
         }
     }
     for (int j = 0; j < e->count; ++j) {
-        const num rest = (table[j][0][DRIVE] * highest[j] - y[j]) *
-                         (table[j][0][RATE] * (half / (real)(2 * (degree + 1))));
+        const num rest = (highest[j] - y[j]) * (table[j][0][RATE] * (half / (real)(2 * (degree + 1))));
         OF(add_magnitude)(e->missed[j], &rest);
     }
     e->count = 0;
@@ -572,8 +575,8 @@ static void OF(march_between)(OF(work_of) *all, const OF(laws) *law, int sets, i
             some.b[j] = m->waves[now->arrived[arrive[next]]][panel];
             some.left[j] = m->waves[now->sent[send[port]]][panel];
             some.right[j] = m->waves[now->sent[send[next]]][panel];
-            some.one[j] = law[set].push[port];
-            some.other[j] = next > port ? law[set].push[next] : ZERO;
+            some.one[j] = m->body[panel][body][0][DRIVE] * law[set].push[port];
+            some.other[j] = next > port ? (num)(m->body[panel][body][0][DRIVE] * law[set].push[next]) : ZERO;
             some.on_left[j] = ratio[port];
             some.on_right[j] = ratio[next];
             some.force[j] = force < 0 ? NULL : m->force[panel][force];
