@@ -107,7 +107,9 @@ _COUNTS = (0, 1, 7)
 _CLOSED = PortableProgram("closed", _BUILDING, Request("closed"), "values", _COUNTS)
 _PIECES = PortableProgram("pieces", _BUILDING, Request("pieces"), "values", (*_COUNTS, 5))  # blocks of 4, read plainly
 _MARCH = PortableProgram("march", _BUILDING, Request("march"), "values", (1,), effort="followed")
-_BLOCKS_MARCH = PortableProgram("blocks", "damped_building", Request("march"), "values", _COUNTS)
+_BLOCKS_MARCH = PortableProgram(
+    "blocks", "damped_building", Request("march"), "values", _COUNTS, (("output.until", 6),)
+)
 _MODES = PortableProgram("modes", _BUILDING, Request("modes"), "stream", changes=tuple(_SHAKEN.items()), effort="more")
 _MODES_SINGLE = replace(
     _MODES.single, changes=tuple({**_SHAKEN, "output": {**_SHAKEN["output"], "tolerance": "1/50"}}.items())
