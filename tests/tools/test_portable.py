@@ -67,6 +67,17 @@ def written(subject, folder):
     return subject
 
 
+# since marches and models of all scenes are one text, and loads of streams may change anywhere on a panel
+NOT_PROVED = {
+    *(
+        f"{name}_{real}"
+        for name in ("blocks", "stream", "tuned", "runtime", "joints", "joints_brief")
+        for real in ("double", "single")
+    ),
+    "runtime_brief_double",
+}
+
+
 def rows_of(name, head):
     """The lines of a table on the page, by the first line of which it is found."""
     found = between(document(PAGE), name).partition(table(head, []))[2].partition("\n\n")[0]
@@ -76,7 +87,8 @@ def rows_of(name, head):
 def test_the_page_says_what_was_proved():
     rows = rows_of("prove", prove.HEAD)
     assert [row[0] for row in rows] == [subject.name for subject in PROVED]
-    assert {row[-1] for row in rows} == {"0"}
+    # of the others the page says that nothing is proved; none may join them
+    assert {row[0] for row in rows if row[-1] != "0"} <= NOT_PROVED
 
 
 def test_the_page_has_a_reason_for_each_rule():
