@@ -1,6 +1,10 @@
-"""What all tests share: `--run-slow`, and where Hypothesis keeps quiet about slow machines."""
+"""What all tests share: `--run-slow`, `--processor`, and where Hypothesis keeps quiet about slow machines."""
 
 from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Generator
 
 import pytest
 from hypothesis import Phase, settings
@@ -13,6 +17,12 @@ settings.load_profile("wavesym")
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--run-slow", action="store_true", help="run the tests marked slow too")
+    parser.addoption("--processor", action="store_true", help="list the processor seconds of each file and test")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("--processor"):
+        config.pluginmanager.register(ProcessorSeconds())
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -21,3 +31,41 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if "slow" in item.keywords:
             item.add_marker(pytest.mark.skip(reason="slow: run with --run-slow"))
+
+
+class ProcessorSeconds:
+    """The processor time of each file and test, with that of the processes they start: the clock depends on the load.
+
+    A fixture or cache counts for the test that asks for it first. With xdist each worker measures, the controller adds.
+    """
+
+    def __init__(self) -> None:
+        self.before = 0.0
+        self.files: Counter[str] = Counter()
+        self.tests: Counter[str] = Counter()
+
+    def pytest_runtest_logstart(self) -> None:
+        self.before = _processor_seconds()
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(self) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+        report = yield
+        before, self.before = self.before, _processor_seconds()
+        report.user_properties.append(("processor seconds", self.before - before))
+        return report
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        seconds = sum(value for name, value in report.user_properties if name == "processor seconds")
+        self.files[report.nodeid.split("::")[0]] += seconds
+        self.tests[report.nodeid] += seconds
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        terminalreporter.section(f"processor seconds: {self.files.total():.1f}, collecting left out")
+        for counted in (self.files, self.tests):
+            for name, seconds in counted.most_common():
+                if seconds >= 0.1:
+                    terminalreporter.write_line(f"{seconds:8.2f}  {name}")
+
+
+def _processor_seconds() -> float:
+    return sum(os.times()[:4])

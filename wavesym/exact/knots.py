@@ -55,9 +55,11 @@ class Knots:
     @cached_property
     def stretches(self) -> int:
         """How many stretches there are in all. CostError where there are too many to count."""
-        if self._windowed:
-            return len(self._last) * self._count * len(self._parts)
-        return sum(len(times) - 1 for times in self.joints.values())
+        return sum(map(self.count, self._last))
+
+    def count(self, number: int) -> int:
+        """How many stretches a joint has; windows are not written out for it."""
+        return self._count * len(self._parts) if self._windowed else len(self.joints[number]) - 1
 
     @property
     def crossings(self) -> int:

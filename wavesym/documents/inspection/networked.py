@@ -122,7 +122,8 @@ def joint_laws(model: Model) -> Listing:
     """M, C and K of the joints in the light cone, and the knots of each."""
     until = rational(model.horizon())
     try:
-        knots = {number: len(times) - 1 for number, times in Knots(model, until).joints.items()}
+        found = Knots(model, until)
+        knots = {number: found.count(number) for number in found.reached}
         refusal = ""
     except CostError as error:
         knots, refusal = {}, str(error)
