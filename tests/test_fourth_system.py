@@ -54,7 +54,7 @@ def scene() -> Scene:
 
 
 def test_its_dashpot_brakes_the_roof():
-    roof = lower(scene()).chain.nodes[2]
+    roof = scene().system.chain.nodes[2]
     assert (roof.damping, roof.radiation) == (fmpq(2, 7), fmpq(2, 7) + fmpq(1, 5))
 
 

@@ -108,12 +108,13 @@ def test_the_rates_are_those_of_the_paper() -> None:
 
 @pytest.mark.parametrize("name", NAMED)
 def test_the_model_is_told_as_it_is(name: str) -> None:
-    model, read = lower(short(name)), builtin(name, "model")
+    scene, read = short(name), builtin(name, "model")
+    model, chain = lower(scene), scene.system.chain
     assert read["model"]["sha256"] == model.labels.sha256
     assert Fraction(read["model"]["until"]) == Fraction(str(model.until))
     assert read["model"]["tolerance"] == str(model.tolerance)
-    assert len(read["nodes"]) == len(read["rods"]) + 1 == model.chain.m + 1
-    for row, node in zip(read["nodes"], model.chain.nodes, strict=True):
+    assert len(read["nodes"]) == len(read["rods"]) + 1 == chain.m + 1
+    for row, node in zip(read["nodes"], chain.nodes, strict=True):
         for key in ("inertia", "alpha", "beta", "damping"):
             assert row[key] == str(getattr(node, key))
         assert row["contact"] == node.contact
@@ -318,23 +319,23 @@ def test_what_takes_long_is_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_changed_model_is_seen() -> None:
     """One node's inertia, one weight, one place: each changes what is said of it, and nothing else does."""
-    model = lower(scene())
-    first = list(modelled.modelled(model))
-    heavier = replace(model.chain.nodes[1], inertia=fmpq(2))
-    chain = replace(model.chain)
-    chain.__dict__["nodes"] = (model.chain.nodes[0], heavier, model.chain.nodes[2])
-    changed = {section.key: section for section in modelled.modelled(replace(model, chain=chain))}
+    model, own = lower(scene()), scene().system.chain
+    first = list(modelled.modelled(model, own))
+    heavier = replace(own.nodes[1], inertia=fmpq(2))
+    chain = replace(own)
+    chain.__dict__["nodes"] = (own.nodes[0], heavier, own.nodes[2])
+    changed = {section.key: section for section in modelled.modelled(model, chain)}
     assert [section.key for section in first if section != changed[section.key]] == ["nodes"]
     assert _rows(changed["nodes"])[1]["rate"] == "3/5"
     points = list(model.network.points)
     points[1] = replace(points[1], mass=2 * points[1].mass)
     other = replace(model, network=replace(model.network, points=tuple(points)))
-    assert {s.key for s, t in zip(laws.laws(model), laws.laws(other), strict=True) if s != t} == {"joints"}
+    assert {s.key for s, t in zip(laws.laws(model, own), laws.laws(other, own), strict=True) if s != t} == {"joints"}
     load = replace(model.loads[0], weight=fmpq(7))
-    heavy = {s.key: s for s in modelled.modelled(replace(model, loads=(load, *model.loads[1:])))}
+    heavy = {s.key: s for s in modelled.modelled(replace(model, loads=(load, *model.loads[1:])), own)}
     assert [section.key for section in first if section != heavy[section.key]] == ["loads"]
     probe = replace(model.probes[0], place=fmpq(1, 4))
-    moved = {s.key: s for s in modelled.modelled(model.watching([probe, *model.probes[1:]]))}
+    moved = {s.key: s for s in modelled.modelled(model.watching([probe, *model.probes[1:]]), own)}
     assert [section.key for section in first if section != moved[section.key]] == ["outputs"]
 
 

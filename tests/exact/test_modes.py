@@ -86,12 +86,13 @@ def test_frequency_equation_of_drawn_chains_is_the_derived_law(seed):
     table = {"type": "drive", "m": 3, "kappa": kappa, "inertia": inertia}
     if seed % 2:
         table = {"type": "building", "m": 2, "kappa": kappa, "base": "force"}
-    model = lower(Scene(name="a", system=table, output={"until": 1, "velocity": [1]}))
+    scene = Scene(name="a", system=table, output={"until": 1, "velocity": [1]})
+    model, nodes = lower(scene), scene.system.chain.nodes
     rows_of = [
         point.mass / node.inertia if node.inertia else 1
-        for point, node in zip(model.network.points, model.chain.nodes, strict=True)
+        for point, node in zip(model.network.points, nodes, strict=True)
     ]
-    q, rows = by_the_law(model.chain.nodes, [sympy.Rational(str(factor)) for factor in rows_of])
+    q, rows = by_the_law(nodes, [sympy.Rational(str(factor)) for factor in rows_of])
     _, matrix = by_the_matrix(model.network)
     for x in range(len(q)):
         row = sum(matrix[x, y] * q[y] for y in range(len(q)))

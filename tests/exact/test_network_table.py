@@ -27,10 +27,12 @@ from wavesym.exact.tables.network_response import RuledNetwork
 from wavesym.exact.tables.network_table import NetworkTable, network_table
 from wavesym.exact.tables.signal import Signal, observed, signals
 from wavesym.exact.tables.table import Function, full_table
+from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Bar, Link, Network, Point
 from wavesym.scene import Scene, lower
 from wavesym.scene.explicit_text import explicit_text
+from wavesym.scene.lowering import named_chain
 
 UNTIL = 3
 NOWHERE = fmpq(0)
@@ -39,13 +41,12 @@ NOWHERE = fmpq(0)
 # ---- named systems
 
 
-def named_rows(model: Model) -> dict[tuple[object, ...], object]:
+def named_rows(model: Model, chain: Chain) -> dict[tuple[object, ...], object]:
     """The rows of the paper's recurrences, with the tau at which waves leave their nodes for intervals."""
-    assert model.chain is not None
-    table = full_table(model.chain, None, model.until)
+    table = full_table(chain, None, model.until)
     found = {}
     for row in table.rows():
-        tau = model.chain.leaves(row.function, row.rod, table.interval * (row.interval - 1))
+        tau = chain.leaves(row.function, row.rod, table.interval * (row.interval - 1))
         source = "start" if row.source == "impact" else row.source
         found[row.function, row.rod, source, tau, row.rate, row.power] = row.value
     return found
@@ -61,15 +62,18 @@ NAMED = ["collision_m4", "drive_m1", "drive_equal", "building_m2", "building_hal
 @pytest.mark.parametrize("name", NAMED)
 def test_the_law_of_joints_makes_the_tables_of_the_paper(name: str) -> None:
     """Clocks, lags and recurrences on the one hand, joints and exact instants on the other."""
-    model = lower(Scene.from_toml(name))
-    assert network_rows(model) == named_rows(model) != {}
+    scene = Scene.from_toml(name)
+    model = lower(scene)
+    assert network_rows(model) == named_rows(model, scene.system.chain) != {}
 
 
 @settings(max_examples=8)
 @given(scenes())
 def test_any_named_system_has_one_table(scene: Scene) -> None:
     model = lower(scene).shortened(fmpq(5))
-    assert network_rows(model) == named_rows(model)
+    chain = named_chain(scene)
+    assert chain is not None
+    assert network_rows(model) == named_rows(model, chain)
 
 
 @pytest.mark.parametrize("name", NAMED)
@@ -110,9 +114,9 @@ def test_a_named_system_that_is_written_out_has_the_same_table(name: str, tmp_pa
 def test_the_law_of_a_named_node_is_that_of_its_joint() -> None:
     """inertia D + radiation, times what makes the impedances on both sides of a rod one."""
     for name in NAMED:
-        model = lower(Scene.from_toml(name))
-        assert model.chain is not None
-        for node, joint in zip(model.chain.nodes, model.network.joints, strict=True):
+        scene = Scene.from_toml(name)
+        model = lower(scene)
+        for node, joint in zip(scene.system.chain.nodes, model.network.joints, strict=True):
             law = JointLaw.of(model.network, joint)
             if law.given[0] is None:
                 assert law.mass[0] * node.radiation == law.damping[0][0] * node.inertia

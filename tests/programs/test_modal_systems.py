@@ -334,7 +334,7 @@ def test_what_modes_do_not_serve_is_refused():
 
 
 def test_many_rods_are_refused_at_once():
-    with pytest.raises(CostError, match=r"^system.m: 400 rods in modes, at most 129 expected"):
+    with pytest.raises(CostError, match=r"^system: 400 rods in modes, at most 129 expected"):
         modal_system(building(["1"] * 401, [samples(3)]))
 
 

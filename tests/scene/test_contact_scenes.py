@@ -200,6 +200,6 @@ def test_sides_of_an_open_collision() -> None:
 @pytest.mark.parametrize("parts", [[MASS, "contact", ROD], [ROD, {"contact": 1}, ROD]])
 def test_what_has_one_law_refuses_contacts(parts: list[Any]) -> None:
     with pytest.raises(UnservedError, match=r"system: the contact at \S+ opens and closes, .* march"):
-        _ = chain(parts).named
+        chain(parts).network.refuse_contacts()
     with pytest.raises(UnservedError, match=r"system: the contact at \S+ opens and closes"):
-        _ = lower(collision()).named
+        lower(collision()).network.refuse_contacts()

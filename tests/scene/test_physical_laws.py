@@ -17,6 +17,7 @@ import pytest
 from wavesym.mechanics.clock import Clock
 from wavesym.results.response import Response
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import named_chain
 from wavesym.scene.physical.building import Columns
 from wavesym.scene.physical.drive import PhysicalDrive
 from wavesym.scene.physical.elastic import Rods
@@ -115,7 +116,7 @@ def test_a_bore_of_nothing_is_none() -> None:
     for each, units, path in ((system, {}, "shaft"), (chain, {"kind": "torsional"}, "parts")):
         full = Scene(name="s", units=units, system=each, output={"until": 3, "strain": [0] if not units else ["0 m+"]})
         at = f"system.{path}[{0 if path == 'shaft' else 1}].bore"
-        assert lower(full.with_({at: "0 mm"})).chain == lower(full).chain
+        assert named_chain(full.with_({at: "0 mm"})) == named_chain(full)
 
 
 @pytest.mark.parametrize("length", ["1.2 m", "0.9 m"])

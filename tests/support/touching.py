@@ -82,7 +82,7 @@ def line(parts: Sequence[tuple[Any, ...]], until: object, watched: Sequence[Prob
                 applied.append(Applied(name, q(0), q(1)))
     network = Network(tuple(points), tuple(bars), tuple(links))
     probes = tuple(watched) or (seen(0),)
-    return Model("line", None, network, tuple(applied), probes, q(until), q("1e-10"), Labels({}, (), ""))
+    return Model("line", network, tuple(applied), probes, q(until), q("1e-10"), Labels({}, (), ""))
 
 
 def seen(bar: int, place: object = 0, quantity: str = "velocity") -> Probe:

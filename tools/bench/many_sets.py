@@ -39,7 +39,7 @@ def varied(scene: Scene, sets: int) -> list[Scene]:
 
 def kappa_of(scene: Scene) -> list[float]:
     """As a program takes them."""
-    return [nearest(value) for _, value in sorted(lower(scene).named.parameters.kappa.items())]
+    return [nearest(one.value) for one in lower(scene).parameters.numbers["kappa"]]
 
 
 def rows(scene: Scene) -> Iterator[Sequence[str]]:

@@ -92,8 +92,7 @@ def light(scene: Scene) -> Scene:
 
 
 def _kappa(scene: Scene) -> Array:
-    own = lower(scene).named.parameters.kappa
-    return np.array([nearest(value) for _, value in sorted(own.items())])
+    return np.array([nearest(one.value) for one in lower(scene).parameters.numbers["kappa"]])
 
 
 class TimedSets:

@@ -14,10 +14,10 @@ from wavesym.exact.tables.table import Row, Table, full_table
 from wavesym.mechanics.symbolic import generic, symbolic
 from wavesym.numbers.doubles import fraction, rational
 from wavesym.scene import Scene, lower
+from wavesym.scene.lowering import named_chain
 
 if TYPE_CHECKING:
     from wavesym.mechanics.chain import Chain
-    from wavesym.mechanics.model import Model
 
 
 MOST_FACTORED = 100_000  # coefficients of a symbolic table; half a millisecond each, however small
@@ -51,9 +51,8 @@ def table(scene: Scene, intervals: int | None = None) -> Table | NetworkTable:
     model = lower(scene)
     model.refuse_damping()
     until = rational(model.horizon())
-    if model.chain is None:
-        return network_table(model.network, intervals, until)
-    return full_table(model.chain, intervals, until)
+    chain = named_chain(scene)
+    return full_table(chain, intervals, until) if chain else network_table(model.network, intervals, until)
 
 
 def tables_text(scene: Scene, intervals: int | None, format: str) -> Iterator[str]:
@@ -68,7 +67,7 @@ def symbolic_tables_text(scene: Scene, intervals: int | None, format: str) -> tu
     """
     model = lower(scene)
     model.refuse_damping()
-    symbols = in_rates(symbolic(_named(model, "--symbolic", "tables")))
+    symbols = in_rates(symbolic(_named(scene, "--symbolic", "tables")))
     until = rational(model.horizon())
     refuse_costly(symbols.chain, intervals, until)
     made = full_table(symbols.chain, intervals, until, most=MOST_FACTORED)
@@ -98,9 +97,8 @@ def derive(source: str | Scene, m: int | None, format: str = "text") -> str:
         return derivation(source, m, format)
     model = lower(source)
     model.refuse_damping()
-    if model.chain is None:
-        return network_derivation(model, format)
-    return scene_derivation(source.name, symbolic(model.chain), format)
+    chain = named_chain(source)
+    return scene_derivation(source.name, symbolic(chain), format) if chain else network_derivation(model, format)
 
 
 def walks(source: str | Scene, m: int | None, intervals: int, format: str = "text") -> str:
@@ -114,15 +112,16 @@ def walks(source: str | Scene, m: int | None, intervals: int, format: str = "tex
     if isinstance(source, str):
         assert m is not None  # polynomials are those of one chain
         return walk_polynomials((generic(system, m) for system in systems(source, m)), intervals, format)
-    return walk_polynomials([symbolic(_named(lower(source), "--walks", "derive"))], intervals, format)
+    return walk_polynomials([symbolic(_named(source, "--walks", "derive"))], intervals, format)
 
 
-def _named(model: Model, option: str, command: str) -> Chain:
-    """The chain as the paper has it. UnservedError where it is written out."""
+def _named(scene: Scene, option: str, command: str) -> Chain:
+    """The chain as the paper has it. UnservedError where it has none."""
+    model, chain = lower(scene), named_chain(scene)
     model.refuse_damping()
-    if model.chain is None:
+    if chain is None:
         raise UnservedError(
             f"system.type: {model.labels.type} given with {option}, collision, drive or building expected "
             f"(`{command}` without {option} serves a chain)"
         )
-    return model.chain
+    return chain

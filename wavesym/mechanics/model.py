@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 
 from flint import fmpq
 
 from wavesym.errors import UnservedError
-from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.clock import Clock
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.gauge import Gauge, Sum, readings
 from wavesym.mechanics.length import LengthUnit
-from wavesym.mechanics.light_cone import felt, light_cone
 from wavesym.mechanics.loads import Applied
 from wavesym.mechanics.network import Network
+from wavesym.mechanics.parameters import Parametrization, PartParameters
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.numbers.reals import DOUBLE, Real
@@ -27,13 +26,15 @@ class Labels:
     """What to call a model's parts: `system` its type and what was chosen of it, `loads` a line for each load.
 
     `sha256` is that of the scene, whatever way it was written. `notes` say how the scene was read where that may
-    surprise.
+    surprise. `size` is how many rods there are, `dimensions` what lengths and times count.
     """
 
     system: Mapping[str, str]
     loads: tuple[str, ...]
     sha256: str
     notes: tuple[str, ...] = ()
+    size: str = ""
+    dimensions: str = ""
 
     @property
     def type(self) -> str:
@@ -44,17 +45,16 @@ class Labels:
 
 @dataclass(frozen=True)
 class Model:
-    """A chain, the loads on it, what is watched until tau = `until`, and the error allowed.
+    """A network, the loads on it, its outputs until tau = `until`, and the error allowed.
 
-    `chain` is as the paper has it, None for one that is written out; `network` is the same as a graph.
     `tolerance` is relative to an output's largest value. Loads are sorted by time; where they have samples, the closest
     are `spacing` apart. The `clock` is that of a physical scene, `length` the unit of its places where they are
     lengths. `damping` is that of its modes; `inputs` says of the sources of its loads, and of the numbers of its parts
-    by name, what 1 is in a unit, and that unit. An `endless` one goes on after that tau.
+    by name, what 1 is in a unit, and that unit. An `endless` one goes on after that tau. `preset` are the parameters of
+    a network that a preset made, None where they are those of its parts.
     """
 
     name: str
-    chain: Chain | None
     network: Network
     loads: tuple[Applied, ...]
     probes: tuple[Probe, ...]
@@ -67,17 +67,12 @@ class Model:
     spacing: fmpq | None = None
     inputs: Mapping[str, tuple[fmpq, str]] = field(default_factory=dict)
     endless: bool = False
+    preset: Parametrization | None = None
 
     @property
-    def named(self) -> Chain:
-        """The chain as the paper has it. UnservedError for one that is written out, part by part."""
-        if self.chain is None:
-            self.network.refuse_contacts()
-            raise UnservedError(
-                f"system.type: {self.labels.type} given, collision, drive or building expected "
-                "(a chain has pieces, a march and `run`)"
-            )
-        return self.chain
+    def parameters(self) -> Parametrization:
+        """Its numbers by name: those of a preset, or of the parts of the network."""
+        return self.preset or PartParameters(self.network)
 
     def told(self, load: Applied) -> str:
         """A step of a load, in units where there are any: how much, and when."""
@@ -130,25 +125,21 @@ class Model:
         """The loads that begin by then."""
         return tuple(load for load in self.loads if load.time <= until)
 
-    def light_cone(self, until: fmpq) -> range:
-        """The numbers of the nodes that can influence an output by then."""
-        return range(self.named.m + 1) if self.whole else light_cone(self.named, self.watched, until)
-
     def reached(self, until: fmpq) -> dict[int, fmpq]:
         """The joints of the network that can influence an output by then, and until when each can.
 
         A contact counts as if it were closed: it may close. What one does is asked for until the end, as an output is.
         """
-        return self._felt_at(until, [self.network.links[number].left for number in self.contacts(until)])
+        return self._reached(until, [self.network.links[number].left for number in self.contacts(until)])
 
     def contacts(self, until: fmpq) -> tuple[int, ...]:
         """The links that are contacts and can influence an output by then."""
         if not self.network.contacts:
             return ()
-        reached, network = self._felt_at(until), self.network
+        reached, network = self._reached(until), self.network
         return tuple(n for n in network.contacts if network.joint_of[network.links[n].left] in reached)
 
-    def _felt_at(self, until: fmpq, more: Iterable[int] = ()) -> dict[int, fmpq]:
+    def _reached(self, until: fmpq, more: Iterable[int] = ()) -> dict[int, fmpq]:
         network = self.network
         places = [(reading.rod - 1, reading.place) for reading in self.watched if reading.point is None]
         points = [reading.point for reading in self.watched if reading.point is not None] + list(more)
@@ -162,12 +153,26 @@ class Model:
         }
 
     @cached_property
-    def felt(self) -> dict[str, dict[int, fmpq]]:
-        """The parameters that can matter to an output within the horizon, by name and index."""
-        if self.chain is None:
-            return {}
-        crossing = self.chain.m + 1 if self.whole else 0
-        return felt(self.chain, self.watched, self.until + crossing)
+    def letters(self) -> dict[str, dict[int, fmpq]]:
+        """The parameters of a preset that can matter to an output within the horizon, by letter and index.
+
+        A body that a wave first meets at `until` has not answered by then; a node without mass has.
+        """
+        places = [(reading.rod - 1, reading.place) for reading in self.watched if reading.point is None]
+        points = [reading.point for reading in self.watched if reading.point is not None]
+        network = self.network
+
+        @cache
+        def distances() -> dict[int, fmpq]:
+            return network.distances(places, points)
+
+        def matters(point: int) -> bool:
+            distance = distances().get(network.joint_of[point])
+            if self.whole or distance is None:
+                return self.whole
+            return distance < self.until or (distance == self.until and network.points[point].mass == 0)
+
+        return self.parameters.letters(matters)
 
     def shortened(self, until: fmpq) -> Model:
         """The same with an earlier end."""

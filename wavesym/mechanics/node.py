@@ -46,6 +46,11 @@ class UnitLoad:
         """Its name in tables and loads: M1, M2, ... R1, R2, ... a, b."""
         return self.kind if self.number is None else f"{self.kind}{self.number}"
 
+    @property
+    def is_ramp(self) -> bool:
+        """Whether it is the ramp of another one: "b", "R1", ..., of the node of a general chain "NODE:ramp"."""
+        return self.kind in RAMPS or self.kind.endswith(":ramp")
+
 
 @dataclass(frozen=True)
 class Node:

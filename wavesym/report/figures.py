@@ -123,9 +123,9 @@ def _load(model: Model) -> PlotPanel:
 
 def _title(number: int, model: Model, load: TriedLoad) -> Iterator[str]:
     values = ", ".join(
-        f"{name}_{index} = {value}" for name, numbers in model.felt.items() for index, value in numbers.items()
+        f"{name}_{index} = {value}" for name, numbers in model.letters.items() for index, value in numbers.items()
     )
-    yield f"Fig. {number} of the paper, redrawn: {model.labels.system['type']}, m = {model.named.m}; {values}"
+    yield f"Fig. {number} of the paper, redrawn: {model.labels.system['type']}, {model.labels.size}; {values}"
     if model.labels.loads:
         yield (
             f"The paper's load curve is not in its text. Drawn: {load.name}, "

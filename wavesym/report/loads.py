@@ -68,7 +68,7 @@ def _named(model: Model, point: Point, scale: Scale | None) -> tuple[str, str]:
     """What kind of quantity acts on a point, and what its scene calls that."""
     if model.labels.system["type"] == "building":
         return "acceleration", "acceleration of the base"
-    if model.chain is not None:
+    if any(unit.number is not None for unit in point.loads):
         return "force", " + ".join(sorted({unit.source.partition(":")[0] for unit in point.loads}))
     kind = point.motion or "force"
     called = "moment" if scale and (kind, scale.kind) == ("force", "torsional") else kind

@@ -64,8 +64,7 @@ def draw(histories: Histories, loads: Sequence[History] = ()) -> Figure:
     """The outputs of a scene under its loads; the same bytes from the same scene where `saving.save` writes it."""
     model = histories.model
     until, scale = nearest(model.until), timescale(model)
-    size = f"m = {model.chain.m}" if model.chain else f"{len(model.network.bars)} rods"
-    title = [f"{model.name}: {model.labels.system['type']}, {size}, {scale.symbol} to {scale.of(until)}"]
+    title = [f"{model.name}: {model.labels.system['type']}, {model.labels.size}, {scale.symbol} to {scale.of(until)}"]
     title += [line for note in notes(histories) for line in wrap(note, CHARACTERS)]
     opened = [
         Instant(end.double, f"contact at x = {end.x} opens, {scale.told(end.double)}") for end in histories.contacts

@@ -29,8 +29,8 @@ def _lines(scene: Scene) -> Iterator[str]:
     told = InUnits(scene.physical.scale, model.network) if scene.physical else Dimensionless()
     yield f"# {scene.name}, a {said.get('type', scene.system.type)}, written out part by part."
     parted = model.labels.system.get("contacts") == "open"
-    if model.chain and (joined := [] if parted else [x for x, node in enumerate(model.chain.nodes) if node.contact]):
-        at = ", ".join(map(str, joined))
+    if joined := [] if parted else [point.place for point in model.network.points if point.glued]:
+        at = ", ".join(joined)
         yield f"# Its contacts are closed, as in the paper's formal model: the rods are joined at {at}."
     yield from told.remarks
     yield f"name = {json.dumps(scene.name)}"

@@ -12,9 +12,12 @@ from flint import fmpq
 
 from wavesym.errors import SceneError
 from wavesym.fields.loads import Load, TimedLoad
+from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.damping import Damping
 from wavesym.mechanics.loads import Applied, AppliedRecord, merged
 from wavesym.mechanics.model import Labels, Model
+from wavesym.mechanics.network import Network
+from wavesym.mechanics.parameters import SystemParameters
 from wavesym.mechanics.probe import Probe
 from wavesym.numbers.doubles import nearest, rational
 from wavesym.records.load import RecordedLoad
@@ -32,22 +35,30 @@ def lower(scene: Scene) -> Model:
         raise SceneError(f"{type(scene).__name__} given, a Scene expected (Scene.from_toml reads one)")
     output = scene.output
     length = scene.physical.length if scene.physical else None
-    chain, network = scene.system.made(scene.load, length)
+    chain, network = named_chain(scene), scene.system.network(scene.load, length)
     return Model(
         name=scene.name,
-        chain=chain,
         network=network,
         loads=_loads(scene),
         probes=tuple(_probe(output, scene.scale) for output in scene.outputs),
         until=rational(output.until),
         tolerance=rational(output.tolerance),
-        labels=_labels(scene),
+        labels=_labels(scene, chain, network),
         clock=scene.scale.clock if scene.scale else None,
         length=length,
         damping=_damping(scene),
         inputs=_inputs(scene),
         spacing=min((rational(load.step) for load in scene.load if load.step), default=None),
+        preset=SystemParameters(chain) if chain else None,
     )
+
+
+def named_chain(scene: Scene) -> Chain | None:
+    """The chain as the paper has it, None of a scene that the paper has not.
+
+    Tables, derivations and walks are written in its letters; everything else takes the network.
+    """
+    return scene.system.named_chain(scene.load)
 
 
 def _damping(scene: Scene) -> Damping | None:
@@ -63,7 +74,7 @@ def drifts(scene: Scene) -> tuple[Probe, ...]:
     return tuple(_probe(Observable("drift", place.x, 0, f"drift@{place.x}", place), scene.scale) for place in places)
 
 
-def _labels(scene: Scene) -> Labels:
+def _labels(scene: Scene, chain: Chain | None, network: Network) -> Labels:
     said = scene.dimensionless().model_dump(mode="json")
     if scene.scale is not None:
         said["units"] = scene.scale.canonical
@@ -73,6 +84,8 @@ def _labels(scene: Scene) -> Labels:
         loads=scene.physical.loads if scene.physical else tuple(load.told for load in scene.load),
         sha256=hashlib.sha256(canonical.encode()).hexdigest(),
         notes=(*_damping_notes(scene), *_record_notes(scene)),
+        size=f"m = {chain.m}" if chain else f"{len(network.bars)} rods",
+        dimensions="x in rod lengths, tau = c t / l" if chain else "places in lengths, tau in lengths at speed 1",
     )
 
 
@@ -136,7 +149,9 @@ def _when(scene: Scene, tau: Fraction) -> str:
 def _inputs(scene: Scene) -> dict[str, tuple[fmpq, str]]:
     given = scene.physical.inputs if scene.physical else ()
     parts = scene.scale.parts if scene.scale else {}
+    inertia = {"inertia": (fmpq(1), "kg*m^2")} if scene.scale else {}  # as a physical drive is rewritten
     return {
+        **inertia,
         **{name: (rational(size), unit) for name, (size, unit) in parts.items()},
         **{
             source: (rational(factor), unit)

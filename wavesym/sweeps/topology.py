@@ -13,7 +13,7 @@ from typing import Any
 from wavesym.errors import WavesymError
 from wavesym.mechanics.model import Model
 from wavesym.mechanics.network import Network
-from wavesym.programs.runtime.network import free_network, without
+from wavesym.programs.runtime.network import free_network
 from wavesym.programs.runtime.request import NAMES, RuntimeField
 from wavesym.scene import Scene, lower
 from wavesym.scene.lowering import amplitudes
@@ -34,15 +34,12 @@ class RuntimeCase:
         """That of a scene. WavesymError where it has no such fields, or cannot be served."""
         model, given = lower(scene), amplitudes(scene) if "load" in names else ()
         own = free_network(model, names, given).fields
-        if model.chain is None:
-            bare = replace(model, network=without(model.network, names))
-        else:
-            kept = replace(model.chain.parameters, **{name: None for name in names if name != "load"})
-            bare = replace(model, chain=replace(model.chain, parameters=kept), network=Network((), ()))
+        rest = model.parameters.without(names)
+        bare = replace(model, network=Network((), ()), preset=None)
         called = [(field.name, field.labels, field.units) for field in own]
         timed = [(load.source, load.time) for _, load in given]
         loads = () if "load" in names else model.loads
-        return cls(model, own, (replace(bare, labels=None, loads=loads), called, timed))  # type: ignore[arg-type]
+        return cls(model, own, (rest, replace(bare, labels=None, loads=loads), called, timed))  # type: ignore[arg-type]
 
 
 def differing(first: Scene, second: Scene) -> Iterator[str]:

@@ -18,7 +18,7 @@ from wavesym.fields.numbers import Numbers, Positives
 from wavesym.fields.table import shown, wrong
 from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.length import LengthUnit
-from wavesym.mechanics.network import Network, network_of, parted
+from wavesym.mechanics.network import Network, parted
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, single
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.preset import Preset
@@ -116,7 +116,11 @@ class Collision(Preset):
         beyond = position.side > 0
         return replace(place, side=position.side, rod=place.rod + beyond, part=Fraction(1 - beyond))
 
-    def made(self, loads: Sequence[Load], length: LengthUnit | None = None) -> tuple[Chain | None, Network]:
-        """The chain as the paper has it, and as a network; with open contacts this alone."""
-        network = network_of(self.chain)
-        return (self.chain, network) if self.contacts == "closed" else (None, parted(network, range(2, self.m, 2)))
+    def named_chain(self, loads: Sequence[Load]) -> Chain | None:
+        """The chain as the paper has it: contacts stay closed."""
+        return self.chain if self.contacts == "closed" else None
+
+    def network(self, loads: Sequence[Load], length: LengthUnit | None = None) -> Network:
+        """The bodies and rods, with contacts that open where these do."""
+        network = super().network(loads, length)
+        return network if self.contacts == "closed" else parted(network, range(2, self.m, 2))

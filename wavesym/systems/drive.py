@@ -14,8 +14,6 @@ from wavesym.fields.loads import Load, LoadKinds, SampledLoad, TimedLoad
 from wavesym.fields.numbers import Integer, Numbers, Positives
 from wavesym.fields.table import shown
 from wavesym.mechanics.chain import Chain
-from wavesym.mechanics.length import LengthUnit
-from wavesym.mechanics.network import Network, network_of
 from wavesym.mechanics.node import Family, Node, Parameters, Quantity, Rod, System, UnitLoad, single
 from wavesym.records.load import RecordedLoad
 from wavesym.systems.preset import Preset
@@ -118,8 +116,7 @@ class Drive(Preset):
         """How its modes are damped."""
         return {"damping": self.damping.told} if self.damping else {}
 
-    def made(self, loads: Sequence[Load], length: LengthUnit | None = None) -> tuple[Chain, Network]:
-        """The chain as the paper has it, with ramps where a load needs them, and as a network."""
+    def named_chain(self, loads: Sequence[Load]) -> Chain:
+        """The chain as the paper has it, with ramps where a load needs them."""
         ramped = any(not isinstance(load, Moment) or any(load.ramps) for load in loads)
-        chain = replace(self.chain, system=DRIVE_RAMPS) if ramped else self.chain
-        return chain, network_of(chain)
+        return replace(self.chain, system=DRIVE_RAMPS) if ramped else self.chain

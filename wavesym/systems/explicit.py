@@ -82,14 +82,17 @@ class ExplicitChain(SceneTable):
             )
         return None
 
-    def made(self, loads: Sequence[Load], length: LengthUnit | None = None) -> tuple[None, Network]:
-        """No chain of the paper, and the network with the loads on its points; its places are told in a unit."""
+    def named_chain(self, loads: Sequence[Load]) -> None:
+        """None: the paper has none of these chains."""
+
+    def network(self, loads: Sequence[Load], length: LengthUnit | None = None) -> Network:
+        """The network with the loads on its points; its places are in the unit of `length`."""
         units: dict[int, dict[str, UnitLoad]] = {}
         for load in loads:
             for kind, coefficients in (("step", (fmpq(1),)), ("ramp", (fmpq(0), fmpq(1)))):
                 unit = UnitLoad(f"{_at(load)}:{kind}", None, coefficients)
                 units.setdefault(self._point(load), {})[unit.source] = unit
-        return None, self.drawing.network({point: tuple(each.values()) for point, each in units.items()}, length)
+        return self.drawing.network({point: tuple(each.values()) for point, each in units.items()}, length)
 
     def _point(self, load: Load) -> int:
         return node(self.drawing, _at(load))

@@ -110,11 +110,15 @@ class Preset(SceneTable):
         """What is wrong with a load, and under which key; None where nothing is."""
         return load.refused(self.m)
 
-    def made(self, loads: Sequence[Load], length: LengthUnit | None = None) -> tuple[Chain | None, Network]:
-        """The chain as the paper has it, and as a network; its places count rods."""
-        return self.chain, network_of(self.chain)
+    def named_chain(self, loads: Sequence[Load]) -> Chain | None:
+        """The chain as the paper has it under these loads, None where the paper has none."""
+        return self.chain
+
+    def network(self, loads: Sequence[Load], length: LengthUnit | None = None) -> Network:
+        """The same as a network; its places count rods."""
+        return network_of(self.named_chain(loads) or self.chain)
 
     @property
     def lines(self) -> Lines:
         """Its rods, in a line."""
-        return straight(self.made(())[1])
+        return straight(self.network(()))

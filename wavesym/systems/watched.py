@@ -10,7 +10,6 @@ from typing import Protocol
 
 from wavesym.fields.loads import Load
 from wavesym.fields.table import Written, shown
-from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.network import End, Network
 from wavesym.systems.place import MisplacedError, Place, Position
 from wavesym.systems.station import Lines
@@ -30,7 +29,7 @@ class Located(Protocol):
 
     def located(self, position: Position, quantity: str, loads: Sequence[Load]) -> Place: ...
 
-    def made(self, loads: Sequence[Load]) -> tuple[Chain | None, Network]: ...
+    def network(self, loads: Sequence[Load]) -> Network: ...
 
 
 @dataclass(frozen=True)
@@ -56,7 +55,7 @@ class Watching:
 
     @cached_property
     def _network(self) -> Network:
-        return self.system.made(self.loads)[1]
+        return self.system.network(self.loads)
 
     @cached_property
     def _rods(self) -> dict[str, list[int]]:

@@ -150,9 +150,8 @@ _MORE = {
 
 def _units(model: Model) -> str:
     """What numbers count."""
-    places = "x in rod lengths, tau = c t / l" if model.chain else "places in lengths, tau in lengths at speed 1"
     if model.clock is None:
-        return f"Everything is dimensionless: {places}, strain positive in tension."
+        return f"Everything is dimensionless: {model.labels.dimensions}, strain positive in tension."
     return f"Time is tau, of which one is {literal(nearest(model.clock.seconds))} s; outputs have the units below."
 
 
@@ -190,7 +189,7 @@ def _model(model: Model) -> list[str]:
         f"{kind[1]}, all of it" if model.endless else f"{kind[1]}, as far as the light cone of the outputs reaches"
     ]
     lines += [f"{key} = {value}" for key, value in choices]
-    for name, numbers in model.felt.items():
+    for name, numbers in model.letters.items():
         if numbers:
             lines.append(", ".join(f"{name}_{index} = {value}" for index, value in numbers.items()))
     lines += [f"load {number}: {line}" for number, line in enumerate(model.labels.loads) if line]

@@ -24,7 +24,7 @@ def manifest(description: Description, program: Program) -> str:
     """The manifest as JSON text. Numbers that are exact in the scene are strings, doubles are numbers."""
     model = program.provenance.model
     system: dict[str, object] = dict(model.labels.system)
-    for parameter, numbers in model.felt.items():
+    for parameter, numbers in model.letters.items():
         system[parameter] = {str(index): str(value) for index, value in numbers.items()}
     content = {
         "schema_version": SCHEMA_VERSION,

@@ -139,7 +139,7 @@ def independent_model(scene: Scene, model: Model) -> Model:
     places = (at for quantity in QUANTITIES for at in getattr(scene.output, quantity))
     return replace(
         model,
-        chain=None,
+        preset=None,
         network=Network(tuple(points), tuple(sketch.bars), tuple(sketch.links)),
         loads=tuple(sorted(loads, key=lambda load: load.time)),
         probes=tuple(sketch.probe(probe, at) for probe, at in zip(model.probes, places, strict=True)),

@@ -46,19 +46,19 @@ def draw_parameters(scene: Scene, model: Model, own: Sequence[RuntimeField]) -> 
         for field in own
         for value, factor in zip(field.values, factors[field.name], strict=True)
     ]
-    if model.chain is not None:
-        lists = {
-            name: tuple(value * fraction(factor) for value, factor in zip(getattr(scene.system, name), of, strict=True))
-            for name, of in factors.items()
-            if name != "load"
-        }
-        scene = scene.model_copy(update={"system": scene.system.model_copy(update=lists)})
-    made = independent_model(scene, model)
-    if model.chain is None:
-        labels = {
-            label: factor for field in own for label, factor in zip(field.labels, factors[field.name], strict=True)
-        }
-        made = replace(made, network=_changed(made.network, labels))
+    listed = {name: of for name, of in factors.items() if hasattr(scene.system, name)}  # others are those of parts
+    lists = {
+        name: tuple(value * fraction(factor) for value, factor in zip(getattr(scene.system, name), of, strict=True))
+        for name, of in listed.items()
+    }
+    made = independent_model(scene.model_copy(update={"system": scene.system.model_copy(update=lists)}), model)
+    labels = {
+        label: factor
+        for field in own
+        if field.name not in listed
+        for label, factor in zip(field.labels, factors[field.name], strict=True)
+    }
+    made = replace(made, network=_changed(made.network, labels))
     if "load" in factors:
         made = replace(made, loads=tuple(replace(load, weight=_TOGETHER["load"] * load.weight) for load in made.loads))
     return numbers, made
@@ -68,7 +68,7 @@ def _factors(field: RuntimeField, model: Model) -> list[fmpq]:
     if field.name in _TOGETHER:
         return [_TOGETHER[field.name]] * len(field.values)
     factors = [fmpq(8 + (5 * k + 3) % 7, 10) for k in range(len(field.values))]
-    if model.clock and model.chain and model.chain.parameters.inertia:
+    if model.clock and "inertia" in model.parameters.numbers:
         factors[0] = fmpq(1)  # in units the first shaft and the first disc of a drive say what a moment of 1 is
     return factors
 

@@ -14,15 +14,15 @@ from wavesym.documents.inspection.summary import summary
 from wavesym.documents.inspection.tabled import tabled
 from wavesym.documents.inspection.text import section_lines
 from wavesym.scene import Scene, lower
-from wavesym.scene.lowering import sources
+from wavesym.scene.lowering import named_chain, sources
 
 SUMMARY = "summary"
 _STAGES: Mapping[str, Callable[[Scene], Iterable[Section]]] = {
-    SUMMARY: lambda scene: summary(lower(scene), sources(scene), scene.physical),
+    SUMMARY: lambda scene: summary(lower(scene), named_chain(scene), sources(scene), scene.physical),
     "scene": said,
-    "model": lambda scene: modelled(lower(scene)),
-    "laws": lambda scene: laws(lower(scene)),
-    "table": lambda scene: tabled(lower(scene)),
+    "model": lambda scene: modelled(lower(scene), named_chain(scene)),
+    "laws": lambda scene: laws(lower(scene), named_chain(scene)),
+    "table": lambda scene: tabled(lower(scene), named_chain(scene)),
     "program": lambda scene: programmed(lower(scene), sources(scene)),
 }
 

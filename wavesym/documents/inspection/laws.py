@@ -5,23 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from wavesym.derivation.exact_rule import Linear, LoadTerm, Rule, Term, Weights
-from wavesym.documents.inspection.modelled import cone
+from wavesym.documents.inspection.modelled import cone, nodes_in_reach
 from wavesym.documents.inspection.networked import joint_laws, not_served
 from wavesym.documents.inspection.section import Listing, Plain, Section, Told
 from wavesym.exact.tables.table import Function, Rules
+from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.model import Model
-from wavesym.numbers.doubles import rational
 
 
-def laws(model: Model) -> Iterator[Section]:
-    """The law of each joint in the light cone, and of a named system the recurrences of its wave functions."""
-    yield cone(model)
+def laws(model: Model, chain: Chain | None) -> Iterator[Section]:
+    """The law of each joint in the light cone, and of a chain of the paper the recurrences of its wave functions."""
+    yield cone(model, chain)
     yield joint_laws(model)
-    if model.chain is None:
+    if chain is None:
         yield not_served(model)
         return
-    nodes = model.light_cone(rational(model.horizon()))
-    rules = Rules(model.named)
+    nodes = nodes_in_reach(model)
+    rules = Rules(chain)
     functions = [Function(name, rod) for rod in nodes[1:] for name in ("f", "g")]
     yield Listing(
         "functions",

@@ -14,14 +14,14 @@ from wavesym.numbers.doubles import rational
 from wavesym.numbers.reals import DOUBLE, SINGLE
 
 
-def modelled(model: Model) -> Iterator[Section]:
-    """The parts of a model."""
+def modelled(model: Model, chain: Chain | None) -> Iterator[Section]:
+    """The parts of a model; of one that the paper has, its nodes and rods."""
     yield Facts(
         "model",
         "What is computed",
         {
             **model.labels.system,
-            **(counted(model) if model.chain is None else {"m": model.chain.m}),
+            **(counted(model) if chain is None else {"m": chain.m}),
             "until": str(model.until),
             "tolerance": str(model.tolerance),
             "horizon_double": model.horizon(DOUBLE),
@@ -29,8 +29,8 @@ def modelled(model: Model) -> Iterator[Section]:
             "sha256": model.labels.sha256,
         },
     )
-    yield cone(model)
-    yield from parts(model) if model.chain is None else _named_parts(model.chain)
+    yield cone(model, chain)
+    yield from parts(model) if chain is None else _named_parts(chain)
     yield Listing(
         "loads",
         "Loads: unit responses, each from its time on and times its weight",
@@ -55,13 +55,19 @@ def _named_parts(chain: Chain) -> Iterator[Section]:
     )
 
 
-def cone(model: Model) -> Facts:
+def nodes_in_reach(model: Model) -> range:
+    """The nodes of a chain of the paper from the first to the last one that can influence an output."""
+    joints = model.reached(rational(model.horizon()))
+    return range(min(joints), max(joints) + 1)
+
+
+def cone(model: Model, chain: Chain | None) -> Facts:
     """The nodes that are modelled, and how many are not."""
-    if model.chain is None:
+    if chain is None:
         return graph_cone(model)
-    modelled_nodes = model.light_cone(rational(model.horizon()))
-    out = model.named.m + 1 - len(modelled_nodes)
-    left_out = Told(out, f"{out} of {model.named.m + 1} nodes")
+    modelled_nodes = nodes_in_reach(model)
+    out = chain.m + 1 - len(modelled_nodes)
+    left_out = Told(out, f"{out} of {chain.m + 1} nodes")
     values = {"first": modelled_nodes[0], "last": modelled_nodes[-1], "left_out": left_out}
     return Facts("light_cone", "Light cone: the nodes from which something can reach an output in time", values)
 

@@ -33,7 +33,11 @@ def counted(model: Model) -> dict[str, Plain]:
 def not_served(model: Model) -> Facts:
     """What named systems have and written-out chains have not."""
     try:
-        refusal = str(model.named)
+        model.network.refuse_contacts()
+        refusal = (
+            f"system.type: {model.labels.type} given, collision, drive or building expected (a chain has pieces, a "
+            "march and `run`)"
+        )
     except UnservedError as error:
         refusal = str(error)
     words = "Symbolic tables, walks and highest powers are not served"

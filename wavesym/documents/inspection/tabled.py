@@ -9,6 +9,7 @@ from wavesym.errors import CostError, UnservedError
 from wavesym.exact.motion import Motion
 from wavesym.exact.tables.network_table import NetworkTable, network_table
 from wavesym.exact.tables.table import Table, full_table
+from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.model import Model
 from wavesym.numbers.doubles import rational
 
@@ -17,20 +18,20 @@ MOST_SHOWN = 8  # knots of an output of a chain that is written out
 LONGEST = 10_000  # tau; to estimate the size of longer tables takes seconds, too
 
 
-def tabled(model: Model) -> Iterator[Section]:
+def tabled(model: Model, chain: Chain | None) -> Iterator[Section]:
     """The size of the table that `tables` prints, and the knots of every output."""
     try:
         _refuse_long(model)
-        made = _made(model)
+        made = _made(model, chain)
     except (CostError, UnservedError) as refusal:
         yield Facts("table", "The exact table is not made here", {"refusal": str(refusal)})
     else:
         yield from _sizes(made)
     where = "at 0 and at n + part, for each n = 0, 1, ... and each part of a unit of tau"
-    if model.chain is None:
+    if chain is None:
         where = f"at `count` instants; here are the first {MOST_SHOWN}"
     yield Listing(
-        "knots", f"Knots: an output may jump or bend {where}", list(_knots(model)), ("parts", "first", "refusal")
+        "knots", f"Knots: an output may jump or bend {where}", list(_knots(model, chain)), ("parts", "first", "refusal")
     )
 
 
@@ -42,12 +43,12 @@ def _refuse_long(model: Model) -> None:
         )
 
 
-def _made(model: Model) -> Table | NetworkTable:
+def _made(model: Model, chain: Chain | None) -> Table | NetworkTable:
     model.refuse_damping()
     until = rational(model.horizon())
-    if model.chain is None:
+    if chain is None:
         return network_table(model.network, None, until, most=MOST_COUNTED)
-    return full_table(model.chain, None, until, most=MOST_COUNTED)
+    return full_table(chain, None, until, most=MOST_COUNTED)
 
 
 def _sizes(table: Table | NetworkTable) -> Iterator[Section]:
@@ -77,8 +78,8 @@ def _sizes(table: Table | NetworkTable) -> Iterator[Section]:
     yield Listing("functions", "Its wave functions, for each source", rows)
 
 
-def _knots(model: Model) -> Iterator[dict[str, Plain]]:
-    shown = "first" if model.chain is None else "parts"
+def _knots(model: Model, chain: Chain | None) -> Iterator[dict[str, Plain]]:
+    shown = "first" if chain is None else "parts"
     try:
         motion = Motion(model, rational(model.horizon()))
     except (CostError, UnservedError) as refusal:
@@ -88,7 +89,7 @@ def _knots(model: Model) -> Iterator[dict[str, Plain]]:
     for probe in model.probes:
         starts = motion.starts(probe)
         row: dict[str, Plain] = {"name": probe.name, "count": len(starts)}
-        if model.chain is None:
+        if chain is None:
             yield {**row, "first": list(map(str, starts[:MOST_SHOWN])), "refusal": Told(None, "")}
         else:
             parts = sorted({start - start.floor() for start in starts[len(starts) > 1 :]})

@@ -40,6 +40,7 @@ from wavesym.papers.record import Case, Nothing, Reading, Reproduction, Sentence
 from wavesym.papers.sentences import SentencePattern, sentence_reader
 from wavesym.papers.tree import Number, Relation, Tree, latex
 from wavesym.scene import lower
+from wavesym.scene.lowering import named_chain
 
 NEAR = 0.01
 """How far a time that is read off a figure may be out, as a part of itself."""
@@ -196,8 +197,10 @@ def _example(scene: Described, load: TriedLoad, found: Finding) -> Reproduction:
 
 
 def _shown(scene: Described, load: TriedLoad, outputs: Mapping[str, Sequence[str]], look: str) -> Reproduction:
-    model = lower(scene.scene(load))
-    text = written(model.named, dict(load.pieces), model.until, outputs)
+    described = scene.scene(load)
+    chain = named_chain(described)
+    assert chain is not None  # as the paper has it
+    text = written(chain, dict(load.pieces), lower(described).until, outputs)
     return Reproduction(text, f"wavesym run SCENE --samples {SAMPLES}", look)
 
 

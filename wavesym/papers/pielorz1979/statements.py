@@ -186,7 +186,7 @@ def _first_opening(velocities: tuple[int, ...]) -> arb:
     probes = tuple(Probe(f"strain@{x}", "strain", x, fmpq(1)) for x in range(2, exact.m, 2))
     impact = (Applied("impact", fmpq(0), fmpq(1)),)
     network = network_of(exact.chain)
-    model = Model("meeting", exact.chain, network, impact, probes, fmpq(UNTIL), fmpq(1), Labels({}, (), ""))
+    model = Model("meeting", network, impact, probes, fmpq(UNTIL), fmpq(1), Labels({}, (), ""))
     ends = contact_ends(model)
     return min((end.tau for end in ends), default=arb.pos_inf(), key=float)
 

@@ -73,7 +73,7 @@ def still(model: Model, load: RecordLoad) -> Model:
         points=tuple(replace(point, velocity=_ZERO) for point in model.network.points),
         bars=tuple(replace(bar, velocity=_ZERO, strain=_ZERO) for bar in model.network.bars),
     )
-    return replace(model, chain=None, network=network, loads=load.hat, spacing=None)
+    return replace(model, preset=None, network=network, loads=load.hat, spacing=None)
 
 
 def _record(step: str, ramp: str, loads: Sequence[Applied], until: fmpq) -> tuple[RecordLoad, list[Applied]]:

@@ -127,9 +127,7 @@ class ModalChain(ABC, Generic[K]):
         most = isqrt(self.WORK // self.FIRST)
         if rods <= most:
             return
-        if self.model.chain is None:
-            raise CostError(f"system.parts: {rods} rods in modes, at most {most} expected (fewer rods or march helps)")
-        raise CostError(f"system.m: {rods} rods in modes, at most {most} expected (fewer rods or march helps)")
+        raise CostError(f"system: {rods} rods in modes, at most {most} expected (fewer rods or march helps)")
 
     def reached(self, known: K, count: int) -> Numbers:
         """What each output reaches, but for what is left out."""

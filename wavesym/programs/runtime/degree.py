@@ -7,7 +7,7 @@ share. Where springs make blocks of joints it is what a front asks for that has 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from math import ceil, log10, sqrt
 from typing import NamedTuple
@@ -16,8 +16,6 @@ import numpy as np
 from flint import fmpq
 
 from wavesym.errors import CostError
-from wavesym.mechanics.model import Model
-from wavesym.mechanics.network import network_of
 from wavesym.numbers.doubles import nearest
 from wavesym.numbers.reals import DOUBLE
 from wavesym.programs.march.plan import MarchedJoint, MarchPlan, march_plan
@@ -51,8 +49,9 @@ def largest_kappa(made: RuntimePlan, kappa_max: fmpq | None) -> fmpq | None:
     """
     if not any(field.positive for field in made.free.fields):
         return None
-    chain = made.model.chain
-    own = max(chain.parameters.kappa.values()) if chain else fastest(made.own)
+    parameters = made.model.parameters
+    light = parameters.lightness
+    own = max(one.value for one in parameters.numbers[light]) if light else fastest(made.own)
     return LIGHTER * own if kappa_max is None else max(kappa_max, own)
 
 
@@ -106,19 +105,13 @@ def _front(plan: MarchPlan, rate: fmpq) -> float:
 
 def _light(made: RuntimePlan, largest: fmpq) -> list[MarchPlan]:
     """With bodies as light as they may be, all alike, and not: waves between equal ones may cancel."""
-    model, chain = made.model, made.model.chain
-    if chain is None:
+    parameters = made.model.parameters
+    if not parameters.lightness:
         return [_quick(made.own, largest, uneven=uneven) for uneven in (False, True)]
-    own = chain.parameters.kappa
-    light = {i: max(value, largest) for i, value in own.items()}
-    uneven = {i: value * (1 - fmpq(place % 3, 10)) for place, (i, value) in enumerate(light.items())}
-    return [_with_kappa(replace(model, loads=made.own.model.loads), kappa) for kappa in (light, uneven)]
-
-
-def _with_kappa(model: Model, kappa: Mapping[int, fmpq]) -> MarchPlan:
-    chain = model.named
-    made = replace(chain, parameters=replace(chain.parameters, kappa=dict(kappa)))
-    return march_plan(replace(model, chain=made, network=network_of(made)))
+    light = {one.label: max(one.value, largest) for one in parameters.numbers[parameters.lightness]}
+    uneven = {label: value * (1 - fmpq(place % 3, 10)) for place, (label, value) in enumerate(light.items())}
+    model = replace(made.model, loads=made.own.model.loads, preset=None)
+    return [march_plan(replace(model, network=parameters.network(kappa))) for kappa in (light, uneven)]
 
 
 def _quick(plan: MarchPlan, rate: fmpq, *, uneven: bool) -> MarchPlan:

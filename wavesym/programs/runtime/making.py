@@ -85,7 +85,7 @@ def _program(
         **({} if kappa_max is None else {"kappa_max": real.nearest(kappa_max)}),
         "share": share,
     }
-    what = "rates" if model.chain is None else "kappa"
+    what = model.parameters.lightness or "rates"
     light = "" if kappa_max is None else f" and for {what} up to {nearest(kappa_max):g}"
     on = "" if made.plan.step == 1 else f" on steps of {made.plan.step}"
     reason = (

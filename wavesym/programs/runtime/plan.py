@@ -99,7 +99,7 @@ def runtime_plan(model: Model, free: FreeNetwork, loads: Sequence[Applied], real
     )
     own = march_plan(replace(model, loads=merged(known)), real, helps=HELPS)
     silent = quiet(free.some, loads, real)
-    kept: list[Any] = [free.force_kept if probe.quantity == "force" else fmpq(1) for probe in model.probes]
+    kept: list[Any] = [free.factors.force if probe.quantity == "force" else fmpq(1) for probe in model.probes]
     heard = tuple(
         (number, replace(wave, gain=fmpq(0) if silent[number] else wave.gain * kept[number]))
         for number, output in enumerate(plan.outputs)
@@ -120,7 +120,7 @@ def _pushes(
             for time, power, weight, anew in told(changes, powers):
                 window = int((time / plan.step).floor())
                 panel = places[time - window * plan.step]
-                yield Push(window, panel, force, power, size * free.load_kept / sizes[load], load, weight, anew)
+                yield Push(window, panel, force, power, size * free.factors.load / sizes[load], load, weight, anew)
 
 
 def _unit_loads(own: Point, free: Point) -> tuple[dict[str, fmpq_poly], Function]:

@@ -12,10 +12,8 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
-from wavesym.mechanics.chain import Chain
 from wavesym.mechanics.loads import Applied, AppliedRecord
 from wavesym.mechanics.model import Model
-from wavesym.mechanics.node import RAMPS
 from wavesym.numbers.ratio import Ratio
 
 Function = Ratio | fmpq
@@ -35,11 +33,7 @@ PLAIN = ParameterUnit(fmpq(1), "")
 
 def unit_of(model: Model, name: str) -> ParameterUnit:
     """That of the numbers of a field other than `load`."""
-    if model.clock is None or name == "kappa":
-        return PLAIN
-    if name == "inertia":  # as a physical drive is rewritten
-        return ParameterUnit(fmpq(1), "kg*m^2")
-    return ParameterUnit(*model.inputs[name])
+    return ParameterUnit(*model.inputs[name]) if name in model.inputs else PLAIN
 
 
 def unit_of_load(model: Model, load: Applied) -> ParameterUnit:
@@ -47,24 +41,7 @@ def unit_of_load(model: Model, load: Applied) -> ParameterUnit:
     if model.clock is None or isinstance(load, AppliedRecord):
         return PLAIN
     size, text = model.inputs[load.source]
-    ramp = load.source.endswith(":ramp") if model.chain is None else load.source[0] in RAMPS
-    if not ramp:
+    unit = next(unit for point in model.network.points for unit in point.loads if unit.source == load.source)
+    if not unit.is_ramp:
         return ParameterUnit(size, text)
     return ParameterUnit(size / model.clock.per_tau, f"{text}/{model.clock.unit}")
-
-
-def load_kept(model: Model, free: Chain) -> Function:
-    """What a load is multiplied by where parameters change the moment that a dimensionless 1 is."""
-    if model.clock is None or free.parameters.inertia is None:
-        return fmpq(1)
-    own, now = model.named.parameters, free.parameters
-    kept: Function = own.kappa[1] * own.inertia[1] / (now.kappa[1] * now.inertia[1])
-    return kept
-
-
-def force_kept(model: Model, free: Chain) -> Function:
-    """The same of a force that is read."""
-    if model.clock is None or free.parameters.inertia is None:
-        return fmpq(1)
-    kept: Function = free.parameters.inertia[1] / model.named.parameters.inertia[1]
-    return kept

@@ -21,7 +21,7 @@ from wavesym.numbers.reals import Real
 from wavesym.programs.march.plan import MarchedJoint, MarchOutput, MarchPlan, march_plan
 from wavesym.programs.march.space import JointRows, JointSpace, Rows, joint_rows
 from wavesym.programs.runtime.network import free_network
-from wavesym.programs.runtime.request import NAMES, RuntimeField
+from wavesym.programs.runtime.request import RuntimeField
 from wavesym.programs.stream.plan import Input, InputForce, StreamPlan, acting_inputs, breakpoints, paneled, steps_of
 
 QUICKER = fmpq(10)
@@ -99,11 +99,6 @@ class FreeStream:
         return replace(joint, space=space)
 
 
-def usual_parameters(model: Model) -> tuple[str, ...]:
-    """Those that a model for simulators has unless others are asked for: all of a named system."""
-    return tuple(name for name in NAMES if model.chain is not None and getattr(model.named.parameters, name, None))
-
-
 def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], real: Real) -> FreeStream:
     """The stream of a model with the parameters `names` at run time.
 
@@ -118,7 +113,7 @@ def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], rea
         raise UnservedError("--runtime: velocity given where an end moves as it is told, other parameters expected")
     steady = replace(model, network=_loaded(network, model.network), loads=steps_of(inputs))
     rings = march_plan(steady, real, joint_rows)
-    kepts: list[Any] = [free.force_kept if probe.quantity == "force" else _ONE for probe in model.probes]
+    kepts: list[Any] = [free.factors.force if probe.quantity == "force" else _ONE for probe in model.probes]
     outputs = tuple(
         MarchOutput(
             output.name,
@@ -126,7 +121,7 @@ def free_stream(model: Model, names: Sequence[str], inputs: Sequence[Input], rea
         )
         for kept, output in zip(kepts, rings.outputs, strict=True)
     )
-    acting = acting_inputs(network, rings.pushed, inputs, free.load_kept)
+    acting = acting_inputs(network, rings.pushed, inputs, free.factors.load)
     return FreeStream(model, tuple(inputs), free.fields, replace(rings, outputs=outputs), tuple(acting))
 
 

@@ -30,7 +30,7 @@ from wavesym.programs.program import (
 )
 from wavesym.programs.reference_values import reference_values
 from wavesym.programs.request import Request
-from wavesym.programs.stream.free import FreeStream, free_stream, usual_parameters
+from wavesym.programs.stream.free import FreeStream, free_stream
 from wavesym.programs.stream.made import MADE, laws_of, places, sizes
 from wavesym.programs.stream.plan import Input, StreamPlan, stream_plan
 from wavesym.programs.stream.quick import quick_enough, refuse_stiff
@@ -62,7 +62,7 @@ def _program(model: Model, request: Request, inputs: Sequence[Input], tested: bo
         if value != usual:
             raise WavesymError(f"{option}: {value} given with --stream, {usual or 'nothing'} expected")
     real = REALS[request.precision]
-    names = request.runtime or (usual_parameters(model) if request.target else ())
+    names = request.runtime or (model.parameters.usual if request.target else ())
     free = free_stream(model, names, inputs, real) if names else None
     simulated = bool(request.target)
     plan = (

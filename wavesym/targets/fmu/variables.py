@@ -87,7 +87,7 @@ def _variables(program: Program) -> Iterator[Variable]:
     name = "spacing" if stepped else "panel"
     yield Variable(name, "local", "constant", about, f"{nearest(rational(length) * clock):.15g}", seconds)
     settable = parameters(program)
-    for name, numbers in model.felt.items():
+    for name, numbers in model.letters.items():
         for index, value in numbers.items() if name not in {field.name for field in settable} else ():
             about = "what the model was made with; a change takes another one"
             yield Variable(f"{name}_{index}", "local", "constant", about, literal(nearest(value)))
